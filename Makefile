@@ -1,0 +1,69 @@
+# make run: build, replay the lecture's moving wall, draw its figures.   make test: build and pass everything.
+# Needed: python3 >= 3.10 with venv and headers, g++ and make. The rest comes from the package index into .venv.
+
+PYTHON ?= python3
+VENV   ?= .venv
+BUILD  ?= build/ctest
+BIN    := $(VENV)/bin
+export PATH := $(abspath $(BIN)):$(PATH)
+export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
+
+SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md \
+           $(shell find cpp cmake python -type f -not -path '*/__pycache__/*')
+CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp' -o -name '*.[ch]')
+PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
+
+.PHONY: run test gates bench format lint clean
+
+run: $(VENV)/installed
+	mkdir -p out
+	$(BIN)/arm3r run scenarios/moving_wall.yaml -o out/moving_wall.csv
+	$(BIN)/arm3r-plot out/moving_wall.csv --lecture -o out/
+
+test: $(VENV)/test $(BUILD)/tests
+	@failed=0; \
+	$(BIN)/ctest --test-dir $(BUILD) --output-on-failure --parallel $(CMAKE_BUILD_PARALLEL_LEVEL) || failed=1; \
+	$(BIN)/python -m pytest -q || failed=1; \
+	exit $$failed
+
+gates: $(VENV)/test $(BUILD)/tests
+	$(BIN)/python -m pytest -q -m gate
+
+bench: $(VENV)/test
+	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
+	$(BIN)/cmake --build $(BUILD) --target arm3r_benchmarks
+	$(BIN)/python benchmarks/run.py
+
+format: $(VENV)/dev
+	$(BIN)/clang-format -i $(CODE)
+	$(BIN)/ruff check --fix-only .
+	$(BIN)/ruff format .
+
+lint: $(VENV)/dev
+	$(BIN)/clang-format --dry-run -Werror $(CODE)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+clean:
+	rm -rf build out $(VENV)
+
+# The package, built in the tree that the C++ tests are built in too, so that nothing is compiled twice.
+$(VENV)/installed: $(SOURCES) | $(VENV)/tools
+	SKBUILD_BUILD_DIR=$(BUILD) $(PIP) --no-build-isolation .
+	@touch $@
+
+$(VENV)/tools: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) $$($(BIN)/python cmake/build_requires.py)
+	@touch $@
+
+# An extra of the installed package.
+$(VENV)/test $(VENV)/dev: $(VENV)/%: pyproject.toml | $(VENV)/installed
+	$(PIP) 'arm3r_cpp[$*]'
+	@touch $@
+
+.PHONY: $(BUILD)/tests
+$(BUILD)/tests: $(VENV)/installed $(VENV)/test
+	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_TESTS=ON > /dev/null
+	$(BIN)/cmake --build $(BUILD) --target arm3r_tests

@@ -1,0 +1,50 @@
+#pragma once
+// The same arm in the hands of others, behind plain numbers: each peer is a library of its own, compiled as suits it
+// best, and sees nothing of arm3r but this file. Slide convention.
+
+#include <memory>
+#include <string>
+
+namespace peers {
+
+struct Body {
+    double length, mass, com;  // m, kg, m from the joint
+    double inertia[3];         // kg m^2 about the centre of mass: along the link, across in its plane, along the joint
+};
+
+struct Numbers {
+    double base_height;     // m
+    double turret_inertia;  // kg m^2 about the vertical
+    Body link2, link3;
+    double gravity[3];  // m/s^2
+};
+
+class Pinocchio {
+public:
+    static std::string build();  // version, compiler and flags
+    explicit Pinocchio(const Numbers& numbers);
+    ~Pinocchio();
+    void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);
+
+private:
+    struct Inside;
+    std::unique_ptr<Inside> in_;
+};
+
+class Mujoco {
+public:
+    static std::string build();
+    Mujoco(const Numbers& numbers, double step);
+    ~Mujoco();
+    void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);
+    void start(const double* q, const double* qd);
+    void step();  // RK4
+    const double* q() const;
+    const double* qd() const;
+
+private:
+    struct Inside;
+    std::unique_ptr<Inside> in_;
+};
+
+}  // namespace peers

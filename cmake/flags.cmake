@@ -1,0 +1,34 @@
+# How every file is compiled. Results are the same to the last bit at any optimisation level and on any CPU, so nothing
+# may contract, reorder or assume; what is switched off below does not change a result.
+
+string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
+foreach(_flags CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${_type})
+  if("${${_flags}}" MATCHES "-ffast-math|-Ofast|-funsafe-math|-fassociative-math|-ffp-contract=(fast|on)|-freciprocal-math")
+    message(FATAL_ERROR "${_flags} holds ${CMAKE_MATCH_0}: it would change results. Remove it; -O3 is the default.")
+  endif()
+endforeach()
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, RelWithDebInfo" FORCE)
+endif()
+
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_C_VISIBILITY_PRESET hidden)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+
+set(_numeric -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND _numeric -fno-tree-slp-vectorize) # pairing scalars up lengthens the chain of a step by a tenth
+endif()
+add_library(arm3r_flags INTERFACE)
+target_compile_features(arm3r_flags INTERFACE cxx_std_20)
+target_compile_options(arm3r_flags INTERFACE ${_numeric} -Wall -Wextra
+                       $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>) # false alarms
+target_compile_definitions(arm3r_flags INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY ARM3R_VERSION="${PROJECT_VERSION}")
+
+string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
+list(JOIN _numeric " " _numeric)
+string(JOIN " " ARM3R_BUILD_INFO ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}
+       ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_numeric})

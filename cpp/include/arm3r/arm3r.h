@@ -1,0 +1,213 @@
+/* arm3r: dynamics, contact and simulation of a 3R spatial arm. The C interface.
+ *
+ * The public API is what this header declares; it is also, word for word, what the Python package reads.
+ *
+ * Units are SI and radians. Joint vectors (q, qd, qdd, tau) follow the arm's convention, vectors in space are in base axes.
+ * Arrays are row-major; `n` states in give `n` results out. Every pointer is non-null unless marked Nullable.
+ * Text comes in as pointer and length, in UTF-8, without need of a terminator. Text that goes out is zero-terminated,
+ * belongs to the object it came from and lives as long as that object, or until the same function is called on it again.
+ * Functions return ARM3R_OK or a negative arm3r_status; the reason is then in arm3r_error_message() of the same thread.
+ * A handle may be read by several threads at once; calls that change it must not overlap. Use after free is undefined.
+ */
+#ifndef ARM3R_H
+#define ARM3R_H
+
+#ifndef ARM3R_CDEF
+#include <stddef.h>
+#include <stdint.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+#ifndef ARM3R_API
+#ifdef __GNUC__
+#define ARM3R_API __attribute__((visibility("default")))
+#else
+#define ARM3R_API
+#endif
+#endif
+#endif
+
+/* ---- version ------------------------------------------------------------------------------------------------- */
+
+enum { ARM3R_ABI = 1 }; /* changes when an old caller could no longer work */
+
+ARM3R_API int32_t arm3r_abi_version(void);     /* the library's ARM3R_ABI */
+ARM3R_API const char *arm3r_version(void);     /* "0.1.0" */
+ARM3R_API const char *arm3r_build_info(void);  /* compiler and flags, one line */
+
+/* ---- errors --------------------------------------------------------------------------------------------------- */
+
+typedef enum arm3r_status {
+    ARM3R_OK = 0,
+    ARM3R_E_NULL = -101,       /* a pointer that must not be null is null */
+    ARM3R_E_SIZE = -102,       /* an array or buffer has the wrong length */
+    ARM3R_E_INDEX = -103,      /* no parameter, column or event with this index or name */
+    ARM3R_E_VALUE = -104,      /* a number is not finite or outside the range of the function */
+    ARM3R_E_REACH = -105,      /* inverse kinematics: the point is out of reach */
+    ARM3R_E_SINGULAR = -106,   /* the pose is singular for this function */
+    ARM3R_E_OVERLAP = -107,    /* input and output arrays overlap */
+    ARM3R_E_BUSY = -108,       /* the handle is in use by another call */
+    ARM3R_E_FILE = -109,       /* a file cannot be read */
+    ARM3R_E_SCENARIO = -201,   /* the scenario is not valid */
+    ARM3R_E_SIZE_CAP = -401,   /* the run would need more rows, steps or memory than allowed */
+    ARM3R_E_MEMORY = -402,     /* out of memory */
+    ARM3R_E_OUTPUT = -501,     /* a result cannot be written */
+    ARM3R_E_CALLBACK = -601,   /* a callback asked to stop by a negative value */
+    ARM3R_E_ABI = -701,        /* struct of an unknown size, or a reserved field that is not zero */
+    ARM3R_E_FORMAT = -702,     /* the scenario is written for another format version */
+    ARM3R_E_INTERNAL = -901    /* a bug in arm3r */
+} arm3r_status;
+
+/* The last failure of this thread; "" after none. Valid until the next failing call of this thread. */
+ARM3R_API const char *arm3r_error_message(void);
+/* The same as JSON: {"status", "code", "message", "problems": [{code, message, file, line, column, path, got, allowed, hint}]}. */
+ARM3R_API const char *arm3r_error_json(void);
+
+/* ---- how a run ended ------------------------------------------------------------------------------------------ */
+
+typedef enum arm3r_outcome {
+    ARM3R_RUN_OK = 0,
+    ARM3R_RUN_STOPPED = 1,         /* the stop flag or the progress function asked for it */
+    ARM3R_RUN_DIVERGED = 2,        /* a state is not finite, or an angle beyond 1e5 rad */
+    ARM3R_RUN_STEP_COLLAPSE = 3,   /* the step size fell below what the clock can resolve */
+    ARM3R_RUN_EVENT_STORM = 4,     /* more than 4096 contact events */
+    ARM3R_RUN_ILL_CONDITIONED = 5, /* the mass matrix lost its positive definiteness */
+    ARM3R_RUN_ENERGY = 6,          /* the energy balance does not close */
+    ARM3R_RUN_BUDGET = 7           /* max_steps or the time limit is used up */
+} arm3r_outcome;
+
+ARM3R_API const char *arm3r_outcome_name(int32_t outcome); /* "ok", "stopped", ...; "" for an unknown value */
+
+/* ---- numbers: parameters ------------------------------------------------------------------------------------------
+ * A scenario is a flat array of arm3r_param_count() doubles. A key of the scenario file with one number has the key's
+ * path as its name, "wall.contact.stiffness"; one with several has "initial.q[0]", "initial.q[1]", ... A choice is stored as
+ * the index of its word, a flag as 0 or 1, and NaN means "not given": the value then follows from others.
+ */
+
+ARM3R_API size_t arm3r_param_count(void);
+ARM3R_API int32_t arm3r_param_index(const char *name, size_t name_size, size_t *index);
+ARM3R_API int32_t arm3r_param_name(size_t index, const char **name);
+ARM3R_API int32_t arm3r_param_defaults(double *params, size_t count); /* the lecture's arm, at rest, no wall, no control */
+
+/* ---- numbers: the arm --------------------------------------------------------------------------------------------- */
+
+typedef struct arm3r_arm arm3r_arm;
+
+ARM3R_API int32_t arm3r_arm_create(const double *params, size_t count, arm3r_arm **arm);
+ARM3R_API void arm3r_arm_free(arm3r_arm *arm); /* Nullable */
+
+/*                                               per state:   in                                       out                */
+ARM3R_API int32_t arm3r_arm_tip_position(const arm3r_arm *arm, size_t n, const double *q, double *tip);      /* 3 -> 3, m */
+ARM3R_API int32_t arm3r_arm_elbow_position(const arm3r_arm *arm, size_t n, const double *q, double *elbow);  /* 3 -> 3, m */
+ARM3R_API int32_t arm3r_arm_centres(const arm3r_arm *arm, size_t n, const double *q, double *centres);       /* 3 -> 3x3, m: a row a link */
+ARM3R_API int32_t arm3r_arm_jacobian(const arm3r_arm *arm, size_t n, const double *q, double *jacobian);     /* 3 -> 3x3, m */
+ARM3R_API int32_t arm3r_arm_geometric_jacobian(const arm3r_arm *arm, size_t n, const double *q, double *jacobian); /* 3 -> 6x3, linear rows first */
+ARM3R_API int32_t arm3r_arm_jacobian_dot(const arm3r_arm *arm, size_t n, const double *q, const double *qd, double *jacobian_dot); /* 3, 3 -> 3x3, m/s */
+ARM3R_API int32_t arm3r_arm_mass_matrix(const arm3r_arm *arm, size_t n, const double *q, double *mass);      /* 3 -> 3x3, kg m^2, armature included */
+ARM3R_API int32_t arm3r_arm_coriolis_matrix(const arm3r_arm *arm, size_t n, const double *q, const double *qd, double *coriolis); /* 3, 3 -> 3x3, Christoffel */
+ARM3R_API int32_t arm3r_arm_velocity_product(const arm3r_arm *arm, size_t n, const double *q, const double *qd, double *product); /* 3, 3 -> 3, N m: C qd */
+ARM3R_API int32_t arm3r_arm_gravity_torque(const arm3r_arm *arm, size_t n, const double *q, double *tau_g);  /* 3 -> 3, N m: what holds the arm */
+ARM3R_API int32_t arm3r_arm_operational_space_inertia(const arm3r_arm *arm, size_t n, const double *q, double *lambda); /* 3 -> 3x3, kg */
+ARM3R_API int32_t arm3r_arm_effective_mass(const arm3r_arm *arm, size_t n, const double *q, const double *direction, double *mass); /* 3, 3 (any length) -> 1, kg */
+ARM3R_API int32_t arm3r_arm_manipulability(const arm3r_arm *arm, size_t n, const double *q, double *manipulability); /* 3 -> 1, m^3: |det J| */
+ARM3R_API int32_t arm3r_arm_energy(const arm3r_arm *arm, size_t n, const double *q, const double *qd, double *kinetic, double *potential); /* 3, 3 -> 1, 1, J */
+ARM3R_API int32_t arm3r_arm_forward_dynamics(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *tau,
+                                             const double *f_on_tip /* Nullable */, double *qdd); /* 3, 3, 3, 3 -> 3, rad/s^2 */
+ARM3R_API int32_t arm3r_arm_inverse_dynamics(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *qdd,
+                                             const double *f_on_tip /* Nullable */, double *tau); /* 3, 3, 3, 3 -> 3, N m */
+/* The independent Newton-Euler recursion on rotation matrices: the transform sensor, and the check of the closed form. */
+ARM3R_API int32_t arm3r_arm_recursion_inverse_dynamics(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *qdd,
+                                                       const double *f_on_tip /* Nullable */, double *tau); /* as arm3r_arm_inverse_dynamics */
+ARM3R_API int32_t arm3r_arm_recursion_forward_dynamics(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *tau,
+                                                       const double *f_on_tip /* Nullable */, double *qdd); /* as arm3r_arm_forward_dynamics */
+ARM3R_API int32_t arm3r_arm_tip_sensor(const arm3r_arm *arm, size_t n, const double *q, const double *qd, double *position, double *velocity); /* 3, 3 -> 3, 3 */
+/* front: 1 joint 1 faces the point, 0 it faces away; elbow_up: 1 the elbow lies above the line from shoulder to tip.
+ * On ARM3R_E_REACH, *failed (Nullable) is the first index out of reach and nothing is written. */
+ARM3R_API int32_t arm3r_arm_inverse_kinematics(const arm3r_arm *arm, size_t n, const double *tip, int32_t front, int32_t elbow_up,
+                                               double *q, size_t *failed /* Nullable */); /* 3 -> 3, rad */
+
+/* ---- numbers: a run ------------------------------------------------------------------------------------------------ */
+
+typedef struct arm3r_run arm3r_run;
+
+/* Called at most every 20 ms, from the thread of the run. t: simulated time, s; stop: where it will end, s; steps so far.
+ * Returns 0 to go on; > 0 ends the run as `stopped`; < 0 makes the call fail with ARM3R_E_CALLBACK. */
+typedef int32_t (*arm3r_progress)(void *user, double t, double stop, int64_t steps);
+
+typedef struct arm3r_run_options {
+    size_t struct_size;             /* sizeof(arm3r_run_options) */
+    const volatile int32_t *stop;   /* Nullable: the run ends as `stopped` soon after *stop is not 0 */
+    arm3r_progress progress;        /* Nullable */
+    void *user;                     /* Nullable: handed to progress */
+    double time_limit;              /* s of wall clock; 0: none. Beyond it the outcome is `budget` */
+    int64_t reserved[4];            /* 0 */
+} arm3r_run_options;
+
+typedef struct arm3r_event {
+    int32_t type;                   /* 0 make, 1 break */
+    int32_t reserved;
+    double t;                       /* s */
+    double q[3], qd[3];             /* rad, rad/s */
+    double tip[3];                  /* m */
+} arm3r_event;
+
+/* Simulate. ARM3R_OK means that there is a run to read, whatever its outcome. */
+ARM3R_API int32_t arm3r_params_run(const double *params, size_t count, const arm3r_run_options *options /* Nullable */, arm3r_run **run);
+ARM3R_API void arm3r_run_free(arm3r_run *run); /* Nullable */
+
+ARM3R_API int32_t arm3r_run_outcome(const arm3r_run *run, int32_t *outcome);
+ARM3R_API int32_t arm3r_run_shape(const arm3r_run *run, size_t *rows, size_t *columns);
+/* Column `index`: `rows` doubles, contiguous, alive until the run is freed. */
+ARM3R_API int32_t arm3r_run_column(const arm3r_run *run, size_t index, const char **name, const char **unit, const double **data);
+ARM3R_API int32_t arm3r_run_event_count(const arm3r_run *run, size_t *count);
+ARM3R_API int32_t arm3r_run_event(const arm3r_run *run, size_t index, arm3r_event *event);
+
+/* ---- text: scenarios ----------------------------------------------------------------------------------------------- */
+
+typedef struct arm3r_scenario arm3r_scenario;
+
+/* Read a scenario from text; `file` is the name used in messages and, without its suffix, the default of `name`. */
+ARM3R_API int32_t arm3r_scenario_create(const char *text, size_t text_size, const char *file, size_t file_size, arm3r_scenario **scenario);
+/* The same from a regular file, or from standard input when path is "-". */
+ARM3R_API int32_t arm3r_scenario_load(const char *path, size_t path_size, arm3r_scenario **scenario);
+ARM3R_API void arm3r_scenario_free(arm3r_scenario *scenario); /* Nullable */
+ARM3R_API int32_t arm3r_scenario_copy(const arm3r_scenario *scenario, arm3r_scenario **copy);
+/* Put a value (YAML, flow style) in place of what stands at a dotted path; list items by [i]. A new type, method or law drops
+ * the keys of the old one. Nothing is validated before one of the functions below is called. */
+ARM3R_API int32_t arm3r_scenario_set(arm3r_scenario *scenario, const char *path, size_t path_size, const char *value, size_t value_size);
+ARM3R_API int32_t arm3r_scenario_validate(const arm3r_scenario *scenario);
+/* The value at a path as JSON, defaults included; inf as "inf", an absent value as null. */
+ARM3R_API int32_t arm3r_scenario_get(const arm3r_scenario *scenario, const char *path, size_t path_size, const char **json);
+ARM3R_API int32_t arm3r_scenario_name(const arm3r_scenario *scenario, const char **name);
+/* The whole scenario with all defaults, itself a scenario file; annotate 1: each value with its provenance in a comment. */
+ARM3R_API int32_t arm3r_scenario_yaml(const arm3r_scenario *scenario, int32_t annotate, const char **yaml);
+ARM3R_API int32_t arm3r_scenario_params(const arm3r_scenario *scenario, double *params, size_t count);
+ARM3R_API int32_t arm3r_scenario_run(const arm3r_scenario *scenario, const arm3r_run_options *options /* Nullable */, arm3r_run **run);
+
+/* ---- text: results ------------------------------------------------------------------------------------------------- */
+
+ARM3R_API int32_t arm3r_run_summary(const arm3r_run *run, const char **json);   /* the JSON summary, one object */
+ARM3R_API int32_t arm3r_run_report(const arm3r_run *run, const char **text);    /* the summary for people */
+ARM3R_API int32_t arm3r_run_checks(const arm3r_run *run, size_t *count, size_t *failed);
+/* CSV in pieces: the sink returns 0 to go on, anything else ends the call with ARM3R_E_OUTPUT. */
+typedef int32_t (*arm3r_sink)(void *user, const char *data, size_t size);
+ARM3R_API int32_t arm3r_run_csv(const arm3r_run *run, arm3r_sink sink, void *user /* Nullable */);
+/* Write PATH and, beside it, the summary with the suffix .json: each whole or not at all. */
+ARM3R_API int32_t arm3r_run_save(const arm3r_run *run, const char *path, size_t path_size);
+/* Fail with ARM3R_E_OUTPUT if arm3r_run_save could not write there: to be asked before a long run. */
+ARM3R_API int32_t arm3r_output_probe(const char *path, size_t path_size);
+
+/* ---- text: reference ----------------------------------------------------------------------------------------------- */
+
+ARM3R_API const char *arm3r_schema_json(void);     /* JSON Schema of the scenario file */
+ARM3R_API const char *arm3r_schema_markdown(void); /* the reference page of scenario keys */
+ARM3R_API const char *arm3r_columns_text(void);    /* name, unit and meaning of every column, one a line */
+ARM3R_API const char *arm3r_columns_markdown(void);
+ARM3R_API const char *arm3r_template(void);        /* a commented scenario to start from */
+
+#ifndef ARM3R_CDEF
+#ifdef __cplusplus
+}
+#endif
+#endif
+#endif

@@ -1,0 +1,95 @@
+// A number with its N exact first derivatives. Its value has the same bits as the double computation.
+#pragma once
+
+#include <array>
+
+#include "arm3r/real.hpp"
+
+namespace arm3r {
+
+template <int N>
+struct Dual {
+    double number = 0.0;
+    std::array<double, N> slope{};
+
+    Dual() = default;
+    Dual(double constant) : number(constant) {}
+    Dual(double number, const std::array<double, N>& slope) : number(number), slope(slope) {}
+
+    // The i-th of the N quantities that the derivatives refer to.
+    static Dual variable(double number, int i) {
+        Dual x(number);
+        x.slope[i] = 1.0;
+        return x;
+    }
+
+    friend double value(const Dual& x) { return x.number; }
+
+    friend Dual operator+(const Dual& a, const Dual& b) { return chain(a.number + b.number, a, 1.0, b, 1.0); }
+    friend Dual operator-(const Dual& a, const Dual& b) { return chain(a.number - b.number, a, 1.0, b, -1.0); }
+    friend Dual operator*(const Dual& a, const Dual& b) {
+        return chain(a.number * b.number, a, b.number, b, a.number);
+    }
+    friend Dual operator/(const Dual& a, const Dual& b) {
+        const double quotient = a.number / b.number;
+        return chain(quotient, a, 1.0 / b.number, b, -quotient / b.number);
+    }
+    friend Dual operator-(const Dual& a) { return chain(-a.number, a, -1.0); }
+    Dual& operator+=(const Dual& b) { return *this = *this + b; }
+    Dual& operator-=(const Dual& b) { return *this = *this - b; }
+    Dual& operator*=(const Dual& b) { return *this = *this * b; }
+    Dual& operator/=(const Dual& b) { return *this = *this / b; }
+
+    friend bool operator<(const Dual& a, const Dual& b) { return a.number < b.number; }
+    friend bool operator>(const Dual& a, const Dual& b) { return a.number > b.number; }
+    friend bool operator<=(const Dual& a, const Dual& b) { return a.number <= b.number; }
+    friend bool operator>=(const Dual& a, const Dual& b) { return a.number >= b.number; }
+    friend bool operator==(const Dual& a, const Dual& b) { return a.number == b.number; }
+    friend bool operator!=(const Dual& a, const Dual& b) { return a.number != b.number; }
+
+    friend Dual select(bool mask, const Dual& a, const Dual& b) { return mask ? a : b; }
+    friend Dual min(const Dual& a, const Dual& b) { return b < a ? b : a; }
+    friend Dual max(const Dual& a, const Dual& b) { return a < b ? b : a; }
+    friend Dual abs(const Dual& x) { return copysign(x, Dual(1.0)); }
+    friend Dual copysign(const Dual& magnitude, const Dual& sign) {
+        const double flip = copysign(1.0, magnitude.number) * copysign(1.0, sign.number);
+        return chain(copysign(magnitude.number, sign.number), magnitude, flip);
+    }
+
+    friend Dual sqrt(const Dual& x) {
+        const double root = sqrt(x.number);
+        return chain(root, x, 0.5 / root);
+    }
+    friend SinCos<Dual> sincos(const Dual& x) {
+        const auto [sine, cosine] = sincos(x.number);
+        return {chain(sine, x, cosine), chain(cosine, x, -sine)};
+    }
+    friend Dual tanh(const Dual& x) {
+        const double result = tanh(x.number);
+        return chain(result, x, (1.0 - result) * (1.0 + result));
+    }
+    friend Dual atan2(const Dual& y, const Dual& x) {
+        const double square = x.number * x.number + y.number * y.number;
+        return chain(atan2(y.number, x.number), y, x.number / square, x, -y.number / square);
+    }
+    friend Dual fifth_root(const Dual& x) {
+        const double root = fifth_root(x.number);
+        return chain(root, x, root / (5.0 * x.number));
+    }
+
+private:
+    static Dual chain(double result, const Dual& a, double by_a) {
+        Dual y(result);
+        for (int i = 0; i < N; ++i) y.slope[i] = by_a * a.slope[i];
+        return y;
+    }
+    static Dual chain(double result, const Dual& a, double by_a, const Dual& b, double by_b) {
+        Dual y(result);
+        for (int i = 0; i < N; ++i) y.slope[i] = by_a * a.slope[i] + by_b * b.slope[i];
+        return y;
+    }
+};
+
+static_assert(Real<Dual<1>> && Real<Dual<6>>);
+
+}  // namespace arm3r

@@ -1,0 +1,89 @@
+#pragma once
+// What every function of the C interface stands on: the guard, the checks of arguments, and the handles.
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arm3r/arm3r.h"
+#include "checks.hpp"
+#include "error.hpp"
+#include "scenario.hpp"
+#include "simulation.hpp"
+
+namespace arm3r {
+
+// Keep a failure for arm3r_error_message() of this thread, and return its status.
+int32_t remember(const Error& error) noexcept;
+int32_t remember(arm3r_status status, const char* message) noexcept;
+
+// The body of a C function: nothing thrown leaves it.
+template <class Body>
+int32_t guard(Body&& body) noexcept {
+    try {
+        body();
+        return ARM3R_OK;
+    } catch (const Error& error) {
+        return remember(error);
+    } catch (const std::bad_alloc&) {
+        return remember(ARM3R_E_MEMORY, "out of memory");
+    } catch (const std::exception& error) {
+        return remember(ARM3R_E_INTERNAL, error.what());
+    } catch (...) {
+        return remember(ARM3R_E_INTERNAL, "an unknown exception");
+    }
+}
+
+// Throws Error ARM3R_E_NULL.
+void need(const void* pointer, const char* name);
+
+// Text from outside: `size` bounds it. Refuses more than `most` bytes, a NUL inside, and what is not UTF-8.
+std::string text_in(const char* text, std::size_t size, const char* name, std::size_t most = 4096);
+
+// Null gives the defaults. Throws Error ARM3R_E_ABI for a struct this library does not know.
+RunOptions options_in(const arm3r_run_options* options);
+
+// Texts that a handle has given out: each is made once and stays where it is.
+class Texts {
+public:
+    template <class Make>
+    const char* get(const std::string& what, Make&& make) const {
+        const std::lock_guard lock(mutex_);
+        auto found = texts_.find(what);
+        if (found == texts_.end()) found = texts_.emplace(what, make()).first;
+        return found->second.c_str();
+    }
+    void clear() { texts_.clear(); }
+
+private:
+    mutable std::mutex mutex_;
+    mutable std::map<std::string, std::string> texts_;
+};
+
+}  // namespace arm3r
+
+struct arm3r_run {
+    arm3r::Run run;
+    std::string name;                                // "" where there was no scenario
+    std::string scenario;                            // resolved, as YAML
+    std::vector<arm3r::CheckResult> checks;
+    arm3r::Texts texts;
+};
+
+struct arm3r_scenario {
+    arm3r::Scenario scenario;
+    arm3r::Texts texts;
+
+    const arm3r::Resolved& resolved() const;         // made once after each change
+    void changed();
+
+private:
+    mutable std::mutex mutex_;
+    mutable std::optional<arm3r::Resolved> resolved_;
+};

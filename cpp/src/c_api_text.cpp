@@ -1,0 +1,227 @@
+// The text half of the C interface: scenarios, results, reference.
+
+#include <algorithm>
+#include <memory>
+
+#include "c_api.hpp"
+#include "input.hpp"
+#include "numbers.hpp"
+#include "output.hpp"
+#include "reference.hpp"
+#include "results.hpp"
+#include "schema.hpp"
+
+using namespace arm3r;
+
+namespace {
+
+constexpr std::size_t any_size = SIZE_MAX;  // the reader has its own limit, and its own words for it
+
+Results results_of(const arm3r_run& run) { return {run.run, run.name, run.scenario, run.checks}; }
+
+arm3r_scenario* new_scenario(Scenario scenario) {
+    auto handle = std::make_unique<arm3r_scenario>();
+    handle->scenario = std::move(scenario);
+    return handle.release();
+}
+
+// Problems that only the numbers show, with their place in the text.
+Run simulate_located(const Scenario& scenario, const Resolved& resolved, const RunOptions& options) {
+    try {
+        return simulate(resolved.params, options);
+    } catch (const Error& error) {
+        if (error.problems().empty()) throw;
+        throw Error(error.status(), located(error.problems(), scenario));
+    }
+}
+
+void save(const arm3r_run& run, const std::string& path) {
+    OutputFile csv(path), summary(summary_path(path));
+    write_csv(run.run, [&](std::string_view piece) { return csv.write(piece), true; });
+    summary.write(summary_json(results_of(run)));
+    csv.close();
+    summary.close();
+    csv.publish();
+    summary.publish();
+}
+
+// A text that is made once for the whole process; "" where there is no memory for it.
+template <std::string (*make)()>
+const char* made_once() noexcept {
+    const char* text = "";
+    guard([&] {
+        static const std::string made = make();
+        text = made.c_str();
+    });
+    return text;
+}
+
+}  // namespace
+
+const Resolved& arm3r_scenario::resolved() const {
+    const std::lock_guard lock(mutex_);
+    if (!resolved_) resolved_ = resolve(scenario);
+    return *resolved_;
+}
+
+void arm3r_scenario::changed() {
+    resolved_.reset();
+    texts.clear();
+}
+
+// ---- scenarios
+
+int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* file, size_t file_size, arm3r_scenario** scenario) {
+    return guard([&] {
+        need(text, "text");
+        need(scenario, "scenario");
+        const std::string name = text_in(file, file_size, "file");
+        constexpr std::size_t enough = (1 << 20) + 1;
+        *scenario = new_scenario(read_scenario(std::string(text, std::min(text_size, enough)), name));
+    });
+}
+
+int32_t arm3r_scenario_load(const char* path, size_t path_size, arm3r_scenario** scenario) {
+    return guard([&] {
+        need(scenario, "scenario");
+        const std::string file = text_in(path, path_size, "path");
+        *scenario = new_scenario(read_scenario(read_input(file), file == "-" ? "<stdin>" : file));
+    });
+}
+
+void arm3r_scenario_free(arm3r_scenario* scenario) { delete scenario; }
+
+int32_t arm3r_scenario_copy(const arm3r_scenario* scenario, arm3r_scenario** copy) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(copy, "copy");
+        *copy = new_scenario(scenario->scenario);
+    });
+}
+
+int32_t arm3r_scenario_set(arm3r_scenario* scenario, const char* path, size_t path_size, const char* value, size_t value_size) {
+    return guard([&] {
+        need(scenario, "scenario");
+        Scenario edited = scenario->scenario;
+        set(edited, text_in(path, path_size, "path"), text_in(value, value_size, "value", any_size));
+        scenario->scenario = std::move(edited);
+        scenario->changed();
+    });
+}
+
+int32_t arm3r_scenario_validate(const arm3r_scenario* scenario) {
+    return guard([&] {
+        need(scenario, "scenario");
+        scenario->resolved();
+    });
+}
+
+int32_t arm3r_scenario_get(const arm3r_scenario* scenario, const char* path, size_t path_size, const char** json) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(json, "json");
+        const std::string at = text_in(path, path_size, "path");
+        const Resolved& resolved = scenario->resolved();
+        *json = scenario->texts.get("get " + at, [&] { return json_at(resolved, at); });
+    });
+}
+
+int32_t arm3r_scenario_name(const arm3r_scenario* scenario, const char** name) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(name, "name");
+        *name = scenario->resolved().name.c_str();
+    });
+}
+
+int32_t arm3r_scenario_yaml(const arm3r_scenario* scenario, int32_t annotate, const char** yaml) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(yaml, "yaml");
+        const Resolved& resolved = scenario->resolved();
+        *yaml = scenario->texts.get(annotate ? "annotated" : "yaml", [&] { return to_yaml(resolved.tree, annotate != 0); });
+    });
+}
+
+int32_t arm3r_scenario_params(const arm3r_scenario* scenario, double* params, size_t count) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(params, "params");
+        if (count != param_count())
+            throw Error(ARM3R_E_SIZE, "`count` is " + std::to_string(count) + ", there are " + std::to_string(param_count()) + " parameters");
+        const Resolved& resolved = scenario->resolved();
+        std::copy(resolved.params.begin(), resolved.params.end(), params);
+    });
+}
+
+int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_options* options, arm3r_run** run) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(run, "run");
+        const RunOptions chosen = options_in(options);
+        const Resolved& resolved = scenario->resolved();
+        auto handle = std::make_unique<arm3r_run>();
+        handle->name = resolved.name;
+        handle->scenario = to_yaml(resolved.tree, false);
+        handle->run = simulate_located(scenario->scenario, resolved, chosen);
+        handle->checks = evaluate(resolved.checks, handle->run, param(resolved.params, "time.log_every"));
+        *run = handle.release();
+    });
+}
+
+// ---- results
+
+int32_t arm3r_run_summary(const arm3r_run* run, const char** json) {
+    return guard([&] {
+        need(run, "run");
+        need(json, "json");
+        *json = run->texts.get("summary", [&] { return summary_json(results_of(*run)); });
+    });
+}
+
+int32_t arm3r_run_report(const arm3r_run* run, const char** text) {
+    return guard([&] {
+        need(run, "run");
+        need(text, "text");
+        *text = run->texts.get("report", [&] { return report(results_of(*run)); });
+    });
+}
+
+int32_t arm3r_run_checks(const arm3r_run* run, size_t* count, size_t* failed) {
+    return guard([&] {
+        need(run, "run");
+        need(count, "count");
+        need(failed, "failed");
+        *count = run->checks.size();
+        *failed = 0;
+        for (const CheckResult& check : run->checks) *failed += !check.passed;
+    });
+}
+
+int32_t arm3r_run_csv(const arm3r_run* run, arm3r_sink sink, void* user) {
+    return guard([&] {
+        need(run, "run");
+        need(reinterpret_cast<const void*>(sink), "sink");
+        if (!write_csv(run->run, [&](std::string_view piece) { return sink(user, piece.data(), piece.size()) == 0; }))
+            throw Error(ARM3R_E_OUTPUT, "the sink did not take all of the CSV");
+    });
+}
+
+int32_t arm3r_run_save(const arm3r_run* run, const char* path, size_t path_size) {
+    return guard([&] {
+        need(run, "run");
+        save(*run, text_in(path, path_size, "path"));
+    });
+}
+
+int32_t arm3r_output_probe(const char* path, size_t path_size) {
+    return guard([&] { probe_output(text_in(path, path_size, "path")); });
+}
+
+// ---- reference
+
+const char* arm3r_schema_json(void) { return made_once<schema_json>(); }
+const char* arm3r_schema_markdown(void) { return made_once<schema_markdown>(); }
+const char* arm3r_columns_text(void) { return made_once<columns_text>(); }
+const char* arm3r_columns_markdown(void) { return made_once<columns_markdown>(); }
+const char* arm3r_template(void) { return made_once<scenario_template>(); }

@@ -1,0 +1,328 @@
+#include "checks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "columns.hpp"
+#include "numbers.hpp"
+#include "paths.hpp"
+#include "results.hpp"
+#include "schema.hpp"
+
+namespace arm3r {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+const Words subjects = {"column", "event", "count", "summary"};  // in the order of Check::Subject
+const Words event_types = {"make", "break"};                     // in the order of Event::Type
+const Words reductions = {"min", "max", "max_abs", "range", "final"};
+const Words limits = {"equals", "abs", "rel", "below", "above"};
+
+Words keys_of(Check::Subject subject) {
+    Words keys = {"name", subjects[subject]};
+    if (subject == Check::column) keys.insert(keys.end(), {"minus", "at", "of"});
+    if (subject == Check::event) keys.push_back("index");
+    keys.insert(keys.end(), limits.begin(), limits.end());
+    return keys;
+}
+
+std::string listed(const Words& words) {
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+    return out;
+}
+
+std::string did_you_mean(std::string_view word, const Words& words) {
+    const std::string near = nearest(word, words);
+    return near.empty() ? "" : "did you mean " + near + "?";
+}
+
+bool is_in(const Words& words, std::string_view word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+
+Words columns_of(std::span<const double> params) {
+    Words names;
+    for (const Column& column : column_table())
+        if (!column.only_with_wall || param(params, "wall") != 0) names.emplace_back(column.name);
+    return names;
+}
+
+class CheckReader {
+public:
+    CheckReader(const Node& node, std::string path, std::span<const double> params, const std::string& file,
+                std::vector<Problem>& problems)
+        : node_(node), path_(std::move(path)), params_(params), file_(file), problems_(problems) {}
+
+    Check read() {
+        Check check;
+        if (!read_subject(check)) return check;
+        refuse_unknown_keys(check.subject);
+        read_what(check);
+        read_limits(check);
+        read_name(check);
+        return check;
+    }
+
+private:
+    void problem(const Mark& at, std::string_view key, std::string code, std::string message, std::string got = {},
+                 std::string allowed = {}, std::string hint = {}) {
+        problems_.push_back(located({.code = "check." + std::move(code), .path = key.empty() ? path_ : join(path_, key),
+                                     .message = std::move(message), .got = std::move(got), .allowed = std::move(allowed),
+                                     .hint = std::move(hint)}, at, file_));
+    }
+
+    bool read_subject(Check& check) {
+        if (node_.type != Node::map) {
+            problem(node_.mark, "", "type", "a check is a map", shape_of(node_), "", "{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}");
+            return false;
+        }
+        int found = 0;
+        for (std::size_t i = 0; i < subjects.size(); ++i) {
+            if (!node_.find(subjects[i])) continue;
+            check.subject = static_cast<Check::Subject>(i);
+            ++found;
+        }
+        if (found == 1) return true;
+        std::string hint;
+        for (const Node& child : node_.children)
+            if (hint.empty() && !is_in(limits, child.key) && child.key != "name") hint = did_you_mean(child.key, subjects);
+        problem(node_.mark, "", "subject", found ? "a check has one subject" : "a check needs a subject", "", "one of " + listed(subjects), hint);
+        return false;
+    }
+
+    void refuse_unknown_keys(Check::Subject subject) {
+        const Words keys = keys_of(subject);
+        for (const Node& child : node_.children)
+            if (!is_in(keys, child.key))
+                problem(child.key_mark, child.key, "unknown_key", "a check of a " + subjects[subject] + " has no such key", "",
+                        listed(keys), did_you_mean(child.key, keys));
+    }
+
+    std::string word(const std::string& key, const Words& words, std::string code) {
+        const Node* node = node_.find(key);
+        if (!node || node->type == Node::hole) return {};
+        if (node->type == Node::scalar && is_in(words, node->text)) return node->text;
+        problem(node->mark, key, std::move(code), "must be one of the words", shape_of(*node),
+                words.size() <= 8 ? listed(words) : "the columns of this run (arm3r columns)", did_you_mean(node->text, words));
+        return {};
+    }
+
+    std::optional<double> number(const std::string& key, bool whole = false) {
+        const Node* node = node_.find(key);
+        if (!node || node->type == Node::hole) return {};
+        NumberFault fault{"number.type", "expects a number", ""};
+        if (node->type == Node::scalar && node->quoted) fault = {"number.quoted", "a number has no quotes", "write " + node->text};
+        if (node->type == Node::scalar && !node->quoted)
+            if (const auto value = read_number(node->text, {.whole = whole}, fault)) return value;
+        problems_.push_back(located({.code = fault.code, .path = join(path_, key), .message = fault.message, .got = shape_of(*node),
+                                     .allowed = "", .hint = fault.hint}, node->mark, file_));
+        return {};
+    }
+
+    void read_what(Check& check) {
+        const std::string& subject = subjects[check.subject];
+        if (check.subject == Check::column) {
+            check.what = column("column");
+            if (node_.find("minus")) check.minus = column("minus");
+            read_row(check);
+        } else if (check.subject == Check::summary) {
+            check.what = word(subject, summary_number_names(), "field");
+        } else {
+            check.what = word(subject, event_types, "event");
+            const double index = number("index", true).value_or(0);
+            if (index < 0 || index > 4096) problem(node_.find("index")->mark, "index", "index", "must be 0 or more", shortest(index));
+            else check.index = static_cast<std::size_t>(index);
+        }
+    }
+
+    std::string column(const std::string& key) {
+        const Words here = columns_of(params_);
+        const Node* node = node_.find(key);
+        const auto& all = column_table();
+        const bool needs_wall = node->type == Node::scalar && !is_in(here, node->text) &&
+                                std::any_of(all.begin(), all.end(), [&](const Column& c) { return c.name == node->text; });
+        if (!needs_wall) return word(key, here, "column");
+        problem(node->mark, key, "column", "this column is only there with a wall", node->text, "", "add `wall: {}` or take the check out");
+        return {};
+    }
+
+    void read_row(Check& check) {
+        check.of = word("of", reductions, "of");
+        const Node* at = node_.find("at");
+        if (bool(at) == bool(node_.find("of")))
+            return problem(node_.mark, "", "row", at ? "has both `at` and `of`" : "needs `at` or `of`", "", "at: TIME, or of: " + listed(reductions));
+        if (const auto time = number("at")) {
+            check.at = *time;
+            if (!is_row(*time))
+                problem(at->mark, "at", "at", "no row is logged at this time", shortest(*time),
+                        "k*time.log_every, or time.stop = " + shortest(param(params_, "time.stop")));
+        }
+    }
+
+    bool is_row(double time) const {
+        const double every = param(params_, "time.log_every"), stop = param(params_, "time.stop");
+        const double nearest_row = std::round(time / every) * every;
+        const double slack = 1e-9 * every;
+        return time == stop || (time >= 0 && nearest_row < stop - slack && std::abs(time - nearest_row) <= slack);
+    }
+
+    void read_limits(Check& check) {
+        check.equals = number("equals");
+        check.below = number("below");
+        check.above = number("above");
+        check.abs = tolerance("abs");
+        check.rel = tolerance("rel");
+        const bool has_equals = node_.find("equals"), has_range = node_.find("below") || node_.find("above");
+        if (has_equals == has_range)
+            problem(node_.mark, "", "limit", has_equals ? "has `equals` and `below` or `above`" : "needs a limit", "",
+                    "equals (with abs, rel), or below, above");
+        for (const char* key : {"abs", "rel"})
+            if (const Node* node = node_.find(key); node && !has_equals)
+                problem(node->key_mark, key, "limit", "a tolerance goes with `equals`");
+    }
+
+    double tolerance(const std::string& key) {
+        const double value = number(key).value_or(0);
+        if (value < 0) problem(node_.find(key)->mark, key, "tolerance", "must not be negative", shortest(value));
+        return value;
+    }
+
+    void read_name(Check& check) {
+        const Node* node = node_.find("name");
+        if (node && node->type == Node::scalar && !node->text.empty())
+            check.name = node->text;
+        else if (node && node->type != Node::hole)
+            problem(node->mark, "name", "name", "must be a text", shape_of(*node));
+        else
+            check.name = subject_text(check);
+    }
+
+    static std::string subject_text(const Check& check) {
+        const std::string minus = check.minus.empty() ? "" : " - " + check.minus;
+        switch (check.subject) {
+            case Check::column: return check.what + minus + (check.of.empty() ? " at " + shortest(check.at) : ", " + check.of);
+            case Check::event: return "time of " + check.what + " " + std::to_string(check.index);
+            case Check::count: return "number of " + check.what + " events";
+            default: return check.what;
+        }
+    }
+
+    const Node& node_;
+    std::string path_;
+    std::span<const double> params_;
+    const std::string& file_;
+    std::vector<Problem>& problems_;
+};
+
+// ---- evaluation
+
+struct Measured {
+    std::optional<double> value;
+    std::string reason;
+};
+
+std::span<const double> column_of(const Run& run, const std::string& name) {
+    for (std::size_t i = 0; i < run.columns.size(); ++i)
+        if (column_table()[run.columns[i]].name == name) return run.column(i);
+    throw Error(ARM3R_E_INTERNAL, "a check names the column " + name + ", which the run lacks");
+}
+
+double reduce(const std::string& of, const std::vector<double>& values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (of == "min") return *low;
+    if (of == "max") return *high;
+    if (of == "max_abs") return std::max(std::abs(*low), std::abs(*high));
+    if (of == "range") return *high - *low;
+    return values.back();
+}
+
+std::vector<double> values_of(const Check& check, const Run& run) {
+    const std::span<const double> column = column_of(run, check.what);
+    std::vector<double> values(column.begin(), column.end());
+    if (!check.minus.empty()) {
+        const std::span<const double> minus = column_of(run, check.minus);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] -= minus[i];
+    }
+    return values;
+}
+
+Measured measure_column(const Check& check, const Run& run, double log_every) {
+    const std::vector<double> values = values_of(check, run);
+    if (values.empty()) return {{}, "the run has no rows"};
+    if (!check.of.empty()) return {reduce(check.of, values), ""};
+    const std::span<const double> t = column_of(run, "t");
+    const auto row = std::lower_bound(t.begin(), t.end(), check.at - 1e-9 * log_every);
+    if (row == t.end() || *row - check.at > 1e-9 * log_every)
+        return {{}, "no row at t = " + shortest(check.at) + " s; the run ended at " + shortest(run.t_end) + " s"};
+    return {values[static_cast<std::size_t>(row - t.begin())], ""};
+}
+
+std::vector<double> event_times(const Run& run, const std::string& type) {
+    std::vector<double> times;
+    for (const Event& event : run.events)
+        if (event_types[event.type] == type) times.push_back(event.t);
+    return times;
+}
+
+Measured measure(const Check& check, const Run& run, double log_every) {
+    if (check.subject == Check::column) return measure_column(check, run, log_every);
+    if (check.subject == Check::summary) return {summary_number(run, check.what), ""};
+    const std::vector<double> times = event_times(run, check.what);
+    if (check.subject == Check::count) return {static_cast<double>(times.size()), ""};
+    if (check.index < times.size()) return {times[check.index], ""};
+    return {{}, "there were " + std::to_string(times.size()) + " " + check.what + " events"};
+}
+
+std::string limit_text(const Check& check) {
+    std::string out;
+    const auto add = [&](const char* word, double value) { out += (out.empty() ? "" : ", ") + std::string(word) + shortest(value); };
+    if (check.equals) {
+        add("equals ", *check.equals);
+        if (check.abs > 0) add("abs ", check.abs);
+        if (check.rel > 0) add("rel ", check.rel);
+    }
+    if (check.above) add("above ", *check.above);
+    if (check.below) add("below ", *check.below);
+    return out;
+}
+
+bool holds(const Check& check, double value) {
+    if (check.equals) {
+        const double off = std::abs(value - *check.equals);
+        return off <= check.abs || off <= check.rel * std::abs(*check.equals);
+    }
+    return (!check.below || value < *check.below) && (!check.above || value > *check.above);
+}
+
+CheckResult evaluate_one(const Check& check, const Run& run, double log_every) {
+    const Measured measured = measure(check, run, log_every);
+    CheckResult result{.name = check.name, .passed = measured.value && holds(check, *measured.value), .value = measured.value,
+                       .limit = limit_text(check), .deviation = {}, .reason = measured.reason};
+    if (measured.value && check.equals) result.deviation = std::abs(*measured.value - *check.equals);
+    return result;
+}
+
+}  // namespace
+
+std::vector<Check> read_checks(const Node& list, std::span<const double> params, const std::string& file,
+                               std::vector<Problem>& problems) {
+    std::vector<Check> checks;
+    if (list.type != Node::list && list.type != Node::hole)
+        problems.push_back(located({.code = "check.type", .path = "checks", .message = "expects a list of checks", .got = shape_of(list),
+                                    .allowed = "", .hint = "checks: [{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}]"},
+                                   list.mark, file));
+    if (list.type != Node::list) return checks;
+    for (std::size_t i = 0; i < list.children.size(); ++i)
+        checks.push_back(CheckReader(list.children[i], item("checks", i), params, file, problems).read());
+    return checks;
+}
+
+std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, double log_every) {
+    std::vector<CheckResult> results;
+    for (const Check& check : checks) results.push_back(evaluate_one(check, run, log_every));
+    return results;
+}
+
+}  // namespace arm3r

@@ -1,0 +1,42 @@
+#pragma once
+// The claims of a scenario file, each held against a run.
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulation.hpp"
+#include "yaml_events.hpp"
+
+namespace arm3r {
+
+struct Check {
+    enum Subject { column, event, count, summary } subject = column;
+    std::string name;
+    std::string what;             // the column, "make" or "break", or the field of the summary
+    std::string minus;            // a second column, taken off row by row; or ""
+    std::string of;               // min | max | max_abs | range | final; or "": the row at `at`
+    double at = 0;                // s
+    std::size_t index = 0;        // of the event
+    std::optional<double> equals, below, above;
+    double abs = 0, rel = 0;      // tolerances of `equals`: either suffices
+};
+
+struct CheckResult {
+    std::string name;
+    bool passed = false;
+    std::optional<double> value;  // none: there was nothing to measure, see `reason`
+    std::string limit;            // "equals 50 (abs 1e-6)"
+    std::optional<double> deviation;
+    std::string reason;
+};
+
+// The checks of a list; what is wrong in it goes to `problems`. `params` tells which columns and rows there will be.
+std::vector<Check> read_checks(const Node& list, std::span<const double> params, const std::string& file,
+                               std::vector<Problem>& problems);
+
+std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, double log_every);
+
+}  // namespace arm3r

@@ -1,0 +1,35 @@
+#pragma once
+// What the executable does with signals, standard output and a terminal.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace cli {
+
+// From here on SIGINT, SIGTERM and SIGHUP ask the run to stop; a second one ends the program at once.
+void catch_signals();
+const volatile std::int32_t* stop_flag();
+bool stop_requested();
+[[noreturn]] void die_by_signal();
+
+// All of it, or throws Exit. Standard error is best effort.
+void print(std::string_view text);
+void complain(std::string_view text);
+
+// A bar on standard error, from one second on, where that is a terminal.
+class Progress {
+public:
+    explicit Progress(std::string name);
+    ~Progress();
+    static std::int32_t callback(void* self, double t, double stop, std::int64_t steps);
+
+private:
+    void draw(double seconds, double fraction);
+
+    std::string name_;
+    double start_, next_;  // s, monotonic
+    bool terminal_, drawn_ = false;
+};
+
+}  // namespace cli

@@ -1,0 +1,48 @@
+#pragma once
+// When the tip touches the wall and lets go of it, found on the solution within a step; docs/model.md (4.8), (5.3).
+
+#include <array>
+#include <optional>
+
+#include "sample.hpp"
+
+namespace arm3r {
+
+struct Crossing {
+    double theta;  // where in the step, in (from, 1]
+    Mode next;
+    bool over_edge;
+};
+
+class ContactWatch {
+public:
+    // `looks`: at how many places per step the depth is looked at, ends included.
+    ContactWatch(const Plant<double>& plant, int looks) : plant_(plant), looks_(looks) {}
+
+    Mode mode_at_start(const FullState& y) const;
+
+    // The first change of mode after `from`, or nothing. `deepest` grows to the largest depth reached in contact before it, m.
+    std::optional<Crossing> next(const Inside& inside, double from, Mode mode, double& deepest) const;
+
+private:
+    // Depth and the four distances inside the outline, m, with their rates, m/s.
+    struct Look {
+        std::array<double, 5> value, rate;
+    };
+    struct Falling {
+        int signal;
+        double sign;     // the event is where sign*value falls below zero
+        Mode next;
+    };
+
+    static bool has_fallen(const Falling& falling, const Look& here);
+    Look look(const Inside& inside, double theta) const;
+    std::optional<double> first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b, const Look& at_b) const;
+    double turning_point(const Inside& inside, const Falling& falling, double a, double b) const;
+    double root(const Inside& inside, const Falling& falling, double a, double b) const;
+
+    const Plant<double>& plant_;
+    int looks_;
+};
+
+}  // namespace arm3r

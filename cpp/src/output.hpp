@@ -1,0 +1,32 @@
+#pragma once
+// Files that appear whole or not at all.
+
+#include <string>
+#include <string_view>
+
+namespace arm3r {
+
+// A file in the making, under a temporary name beside its final one. Gone unless published.
+class OutputFile {
+public:
+    explicit OutputFile(std::string path);  // throws Error ARM3R_E_OUTPUT, like all below
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    void write(std::string_view data);
+    void close();    // what was written has arrived
+    void publish();  // the final name now has it
+
+private:
+    std::string path_, temporary_;
+    int descriptor_ = -1;
+};
+
+// "out/run.csv" -> "out/run.json"; throws where these two would be one
+std::string summary_path(const std::string& path);
+
+// Throws Error ARM3R_E_OUTPUT where PATH and its summary could not be written.
+void probe_output(const std::string& path);
+
+}  // namespace arm3r

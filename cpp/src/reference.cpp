@@ -1,0 +1,251 @@
+#include "reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "columns.hpp"
+#include "paths.hpp"
+#include "scenario.hpp"
+#include "schema.hpp"
+#include "text.hpp"
+
+namespace arm3r {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& words, const char* between) {
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
+    return out;
+}
+
+std::string when_text(const Key& key) {
+    return key.when_key.empty() ? "" : "only where " + key.when_key + " is " + listed(key.when, " or ");
+}
+
+std::string unit_text(const Key& key) {
+    return key.unit.empty() ? "" : key.kind == Kind::angle ? key.unit + ", or VALUE deg" : key.unit;
+}
+
+// ---- JSON Schema
+
+std::string bound(const char* name, double value, bool open) {
+    if (std::isinf(value)) return {};
+    return std::string(", \"") + (open ? "exclusiveM" : "m") + (name + 1) + "\": " + shortest(value);
+}
+
+std::string number_schema(const Key& key) {
+    const std::string type = key.kind == Kind::integer ? "integer" : "number";
+    const std::string number = "{\"type\": \"" + type + "\"" + bound("minimum", key.bounds.low, key.bounds.open_low) +
+                               bound("maximum", key.bounds.high, key.bounds.open_high) + "}";
+    if (key.kind == Kind::angle) return "{\"anyOf\": [" + number + ", {\"type\": \"string\", \"pattern\": \"^[-+.0-9e]+ +deg$\"}]}";
+    if (key.allow_infinity) return "{\"anyOf\": [" + number + ", {\"const\": \"inf\"}]}";
+    return number;
+}
+
+std::string value_schema(const Key& key) {
+    if (key.kind == Kind::flag) return "{\"type\": \"boolean\"}";
+    if (key.kind == Kind::choice) {
+        std::vector<std::string> words;
+        for (const std::string& word : key.choices) words.push_back(json_string(word));
+        return "{\"enum\": [" + listed(words, ", ") + "]}";
+    }
+    const std::string size = std::to_string(key.size), number = number_schema(key);
+    const std::string list = "{\"type\": \"array\", \"items\": " + number + ", \"minItems\": " + size + ", \"maxItems\": " + size + "}";
+    switch (key.form) {
+        case Form::vector_or_word: return "{\"anyOf\": [" + list + ", {\"const\": " + json_string(key.word) + "}]}";
+        case Form::number_or_vector:
+        case Form::by_choice: return "{\"anyOf\": [" + number + ", " + list + "]}";
+        default: return key.size == 1 ? number : list;
+    }
+}
+
+std::string sentence(const Key& key) {
+    std::string out = key.doc;
+    if (!key.unit.empty()) out += " [" + unit_text(key) + "]";
+    if (!key.when_key.empty()) out += " (" + when_text(key) + ")";
+    return out;
+}
+
+// The schema of a value with a description put in as its first member.
+std::string described(const std::string& schema, const std::string& description) {
+    return "{\"description\": " + json_string(description) + ", " + schema.substr(1);
+}
+
+std::string checks_schema() {
+    return "{\"description\": \"Claims that are held against the run.\", \"type\": \"array\", \"items\": {\"type\": \"object\"}}";
+}
+
+std::string section_schema(const std::string& section, const std::string& indent) {
+    const std::string inner = indent + "  ";
+    std::vector<std::string> properties;
+    for (const std::string& name : names_below(section)) {
+        const std::string path = join(section, name);
+        const Key* key = find_key(path);
+        std::string schema;
+        if (path == "format") schema = "{\"description\": \"Version of this format.\", \"const\": 1}";
+        else if (path == "name") schema = "{\"description\": \"Default: the file's stem.\", \"type\": [\"string\", \"number\"]}";
+        else if (path == "checks") schema = checks_schema();
+        else if (!is_section(path)) schema = described(value_schema(*key), sentence(*key));
+        else schema = key ? described(section_schema(path, inner), sentence(*key)) : section_schema(path, inner);
+        properties.push_back(inner + json_string(name) + ": " + schema);
+    }
+    return "{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\n" + listed(properties, ",\n") + "\n" + indent + "}}";
+}
+
+// ---- Markdown
+
+std::string cell(const std::string& text) {
+    std::string out;
+    for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
+    return out;
+}
+
+std::string row(const std::vector<std::string>& cells) {
+    std::string out = "|";
+    for (const std::string& text : cells) out += " " + cell(text) + " |";
+    return out + "\n";
+}
+
+std::string table_head(const std::vector<std::string>& names) {
+    std::string out = row(names) + "|";
+    for (std::size_t i = 0; i < names.size(); ++i) out += "---|";
+    return out + "\n";
+}
+
+std::string range_text(const Key& key) {
+    if (key.kind == Kind::choice) return listed(key.choices, ", ");
+    if (key.kind == Kind::flag) return "true, false";
+    if (key.kind == Kind::section) return "a map";
+    std::string out = (key.bounds.open_low ? "> " : "") + shortest(key.bounds.low) + " to " + (key.bounds.open_high ? "< " : "") +
+                      shortest(key.bounds.high);
+    if (key.allow_infinity) out += ", inf";
+    if (key.form == Form::vector_or_word) out += ", " + key.word;
+    return out;
+}
+
+std::string default_text(const Key& key) {
+    if (key.kind == Kind::section) return "absent";
+    const double first = key.fallback.front();
+    if (std::isnan(first)) return key.required ? "required" : key.unset;
+    if (key.kind == Kind::choice) return key.choices[static_cast<std::size_t>(first)];
+    if (key.kind == Kind::flag) return first != 0 ? "true" : "false";
+    std::string out;
+    for (const double value : key.fallback)
+        if (!std::isnan(value)) out += (out.empty() ? "" : ", ") + shortest(value);
+    return key.size > 1 && !std::isnan(key.fallback[1]) ? "[" + out + "]" : out;
+}
+
+std::string numbers_text(const Key& key) {
+    switch (key.form) {
+        case Form::number_or_vector: return "1 or " + std::to_string(key.size);
+        case Form::by_choice: return "1 for " + key.when.front() + ", else " + std::to_string(key.size);
+        default: return key.kind == Kind::choice || key.kind == Kind::section || key.kind == Kind::flag ? "" : std::to_string(key.size);
+    }
+}
+
+std::string key_row(const Key& key) {
+    const std::string where = key.when_key.empty() ? "" : " *" + when_text(key) + "*";
+    return row({"`" + key.path + "`", numbers_text(key), unit_text(key), default_text(key), range_text(key),
+                source_name(static_cast<int>(key.source)), key.doc + where});
+}
+
+bool is_copy(const Key& key) { return key.unset == "as the plant"; }
+
+const char* const markdown_head = R"(# Scenario keys
+
+A scenario is one YAML document of at most 1 MiB. `format: 1` is required; every other key has a default, except those marked
+*required*, which are needed where they exist at all. `name` (default: the file's stem) names the run and its files.
+
+Numbers are decimal: `[+-]digits[.digits][e[+-]digits]`, also `.5`; no quotes, no leading zeros. They are SI and radians; where the
+unit says so, `VALUE deg` is VALUE*pi/180. Anchors, aliases, tags, merge keys, duplicate keys and second documents are errors.
+
+The source of a default: *lecture* says it, *inferred* follows from what the lecture says, *our choice* is neither.
+
+)";
+
+const char* const markdown_tail = R"(
+## The controller's copy of the arm
+
+`controller.model` takes the keys of `arm` except `convention` and `gravity`. A key given there is what the controller believes;
+the others are as the plant.
+
+## checks
+
+A list of claims, each held against the run; a claim that fails makes the executable exit with 10.
+
+| Subject | Value |
+|---|---|
+| `column: NAME` with `at: TIME` | the column in the row at that time, which must be a row |
+| `column: NAME` with `of: min`, `max`, `max_abs`, `range` or `final` | of all rows |
+| `column: NAME`, `minus: NAME` | the same of the difference, row by row |
+| `event: make` or `break`, `index: N` | the time of the event of this type with this index, from 0 |
+| `count: make` or `break` | the number of such events |
+| `summary: FIELD` | a number of the summary, e.g. `peak_force`, `steps.accepted` |
+
+The limit is `equals: X` with `abs: A` and `rel: R` (either tolerance suffices; none: exactly), or `below: X`, `above: X` or both.
+`name` is what the report calls the check.
+)";
+
+// ---- template
+
+void take_docs(Node& node, const std::string& path) {
+    for (Node& child : node.children) take_docs(child, join(path, child.key));
+    const Key* key = find_key(path);
+    if (!key) return;
+    const std::string unit = key->unit.empty() ? "" : unit_text(*key) + ": ";
+    const std::string words = key->kind == Kind::choice ? listed(key->choices, " | ") + ". " : "";
+    node.note = unit + words + key->doc;
+}
+
+}  // namespace
+
+std::string schema_json() {
+    return "{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\", \"title\": \"arm3r scenario\", \"required\": [\"format\"], " +
+           section_schema("", "").substr(1) + "\n";
+}
+
+std::string schema_markdown() {
+    std::string out = markdown_head, section;
+    for (const Key& key : schema()) {
+        if (is_copy(key)) continue;
+        const std::string top = key.path.substr(0, key.path.find('.'));
+        if (top != section)
+            out += (section.empty() ? "## " : "\n## ") + top + "\n\n" +
+                   table_head({"Key", "Numbers", "Unit", "Default", "Range", "Source", "Meaning"});
+        section = top;
+        out += key_row(key);
+    }
+    return out + markdown_tail;
+}
+
+std::string columns_text() {
+    std::string out;
+    for (const Column& column : column_table()) {
+        std::string line(column.name);
+        line.resize(std::max<std::size_t>(line.size() + 1, 18), ' ');
+        line += column.unit.empty() ? "-" : column.unit;
+        line.resize(std::max<std::size_t>(line.size() + 1, 28), ' ');
+        out += line + std::string(column.doc) + (column.only_with_wall ? " (only with a wall)" : "") + "\n";
+    }
+    return out;
+}
+
+std::string columns_markdown() {
+    std::string out = "# Columns of a run\n\nCSV: one header line of bare names, comma, LF. SI units, radians; no NaN.\n\n" +
+                      table_head({"Column", "Unit", "Meaning"});
+    for (const Column& column : column_table())
+        out += row({"`" + std::string(column.name) + "`", std::string(column.unit),
+                    std::string(column.doc) + (column.only_with_wall ? " Only with a wall." : "")});
+    return out;
+}
+
+std::string scenario_template() {
+    Node tree = resolve(read_scenario("format: 1\nwall: {}\nchecks: []\n", "scenario")).tree;
+    std::erase_if(tree.children, [](const Node& node) { return node.key == "name"; });
+    for (Node& section : tree.children) take_docs(section, section.key);
+    tree.children.front().note = "version of this format; the only key that must be given";
+    return "# A scenario with every default written out. Delete what you do not change.\n" + to_yaml(tree, true);
+}
+
+}  // namespace arm3r

@@ -1,0 +1,14 @@
+#pragma once
+// Everything that can be said about scenarios and columns, said by the schema and the column table themselves.
+
+#include <string>
+
+namespace arm3r {
+
+std::string schema_json();       // JSON Schema, draft 2020-12
+std::string schema_markdown();
+std::string columns_text();
+std::string columns_markdown();
+std::string scenario_template();
+
+}  // namespace arm3r

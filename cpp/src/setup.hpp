@@ -1,0 +1,46 @@
+#pragma once
+// From the flat parameters to the typed things that a run works on. Slide convention from here on.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "arm3r/plant.hpp"
+#include "error.hpp"
+
+namespace arm3r {
+
+struct Solver {
+    enum Method { dopri5, rk4 } method;
+    double rtol, atol, max_step, step;  // s; max_step may be inf
+    double max_steps;
+};
+
+struct Setup {
+    bool simscape;             // how q, qd and torques are written at the faces
+    Plant<double> plant;
+    Vec3<double> q, qd;        // at t = 0
+    Solver solver;
+    double stop, log_every;    // s
+};
+
+// `params` must have passed validate() (schema.hpp); only rules between keys are left to `check_setup`.
+Arm<double> make_arm(std::span<const double> params);
+Setup make_setup(std::span<const double> params);
+
+// What no single key can break: the mass matrix over the whole workspace (3.10), inertia inequalities, the start.
+std::vector<Problem> check_setup(std::span<const double> params);
+
+// What is allowed but probably a slip, each one sentence with the numbers.
+std::vector<std::string> likely_slips(std::span<const double> params);
+
+// Smallest M11 and smallest determinant of the lower block over all poses, and the link angles where they occur (3.10).
+struct WorstPose {
+    double value;
+    double q2, q3;  // rad, slide
+};
+WorstPose smallest_M11(const Lumped<double>& lumped);
+WorstPose smallest_lower_determinant(const Lumped<double>& lumped);
+
+}  // namespace arm3r

@@ -1,0 +1,391 @@
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "columns.hpp"
+#include "error.hpp"
+#include "events.hpp"
+#include "numbers.hpp"
+#include "sample.hpp"
+#include "schema.hpp"
+#include "setup.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double largest_angle = 1e5;     // rad: beyond it sincos is no longer exact to the last bits
+constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
+constexpr std::size_t most_events = 4096;
+constexpr double most_bytes = 2e9;        // of rows
+constexpr double most_fixed_steps = 1e9;
+constexpr int most_bad_trials = 30;       // steps in a row that are not even finite
+constexpr int looks_per_adaptive_step = 9, looks_per_fixed_step = 2;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+bool is_finite(const FullState& y) {
+    return std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
+}
+
+std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
+
+class Simulator {
+public:
+    Simulator(std::span<const double> params, const RunOptions& options)
+        : setup_(make_setup(params)), options_(options), rhs_(setup_.plant),
+          watch_(setup_.plant, setup_.solver.method == Solver::dopri5 ? looks_per_adaptive_step : looks_per_fixed_step) {
+        reserve_rows();
+        run_.events.reserve(most_events);
+        run_.warnings = likely_slips(params);
+    }
+
+    Run run() {
+        start();
+        while (run_.outcome == ARM3R_RUN_OK && t_ < setup_.stop) {
+            if (steps_taken() >= setup_.solver.max_steps) end(ARM3R_RUN_BUDGET, "solver.max_steps is used up");
+            else if (poll()) setup_.solver.method == Solver::dopri5 ? adaptive_step() : fixed_step();
+        }
+        finish();
+        return std::move(run_);
+    }
+
+private:
+    // ---- rows
+
+    void reserve_rows() {
+        const double ticks = std::ceil(setup_.stop / setup_.log_every - 1e-9);
+        const std::vector<Column>& table = column_table();
+        for (std::size_t i = 0; i < table.size(); ++i)
+            if (setup_.plant.has_wall || !table[i].only_with_wall) run_.columns.push_back(i);
+        const double bytes = (ticks + 1) * double(run_.columns.size() * sizeof(double));
+        if (bytes > most_bytes)
+            throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.rows", .path = "time.log_every", .message = "the run would need too many rows",
+                        .got = shortest(ticks + 1) + " rows, " + shortest(std::ceil(bytes / 1e6)) + " MB", .allowed = "2000 MB", .hint = "log less often"}});
+        const double fixed_steps = setup_.stop / setup_.solver.step;
+        if (setup_.solver.method == Solver::rk4 && fixed_steps > std::min(most_fixed_steps, setup_.solver.max_steps))
+            throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.steps", .path = "solver.step", .message = "the run would need too many steps",
+                        .got = shortest(std::ceil(fixed_steps)), .allowed = shortest(std::min(most_fixed_steps, setup_.solver.max_steps)),
+                        .hint = "take a larger step, or raise solver.max_steps"}});
+        run_.capacity = static_cast<std::size_t>(std::max(ticks, 0.0)) + 1;
+        run_.data = std::make_unique_for_overwrite<double[]>(run_.capacity * run_.columns.size());
+    }
+
+    double next_row_time() const { return double(run_.rows) * setup_.log_every; }
+
+    // All rows before `until`, from the solution within the step.
+    void log_until(double until, const Inside& inside) {
+        const double last = setup_.stop - 1e-9 * setup_.log_every;
+        for (double t = next_row_time(); t < until && t < last && run_.outcome == ARM3R_RUN_OK; t = next_row_time()) {
+            const double theta = (t - inside.t0) / inside.h;
+            log(t, inside(theta), inside, theta);
+            poll();
+        }
+    }
+
+    void log(double t, const FullState& y, const Inside& inside, double theta) {
+        const Row row = sample(setup_.plant, setup_.simscape, t, y, mode_, energy_at_start_, inside, theta);
+        for (std::size_t i = 0; i < run_.columns.size(); ++i) run_.data[i * run_.capacity + run_.rows] = row.value[run_.columns[i]];
+        run_.rows += 1;
+        note_residual(row.value.back());
+        if (row.link_behind_wall && link_behind_since_ < 0) link_behind_since_ = t;
+    }
+
+    // ---- the books
+
+    void note_residual(double residual) { run_.energy_residual_max = std::max(run_.energy_residual_max, std::abs(residual)); }
+
+    void close_books() {
+        const Energies now = energies(setup_.plant, t_, y_, mode_);
+        note_residual(energy_residual(y_, now.sum(), energy_at_start_));
+        exchanged_ = std::max({exchanged_, std::abs(y_[6]), std::abs(y_[7]), std::abs(y_[8]), now.kinetic, std::abs(now.potential - potential_at_start_)});
+        held_ = std::max(held_, std::abs(now.kinetic) + std::abs(now.potential) + std::abs(now.contact));
+    }
+
+    void judge_books() {
+        const bool adaptive = setup_.solver.method == Solver::dopri5;
+        const double rtol = adaptive ? setup_.solver.rtol : 1e-6;
+        const double limit = 100 * rtol * exchanged_ + 1e-12 * held_;
+        if (!(run_.energy_residual_max > limit)) return;
+        const std::string text = "the energy balance does not close: " + shortest(run_.energy_residual_max) + " J are left over, the limit is " + shortest(limit) + " J";
+        if (adaptive && rtol <= 1e-6) end(ARM3R_RUN_ENERGY, text);
+        else run_.warnings.push_back(text);
+    }
+
+    // ---- contact
+
+    Touch touch() const {
+        if (mode_ == Mode::embedded || !setup_.plant.has_wall) return Touch::none;
+        if (setup_.solver.method == Solver::rk4) return Touch::each_stage;
+        return mode_ == Mode::contact ? Touch::pressed : Touch::none;
+    }
+
+    void note_depth(double depth) { run_.peak_force = std::max(run_.peak_force, setup_.plant.contact.stiffness[0] * depth); }
+
+    // What is stored in the contact is lost when the tip leaves it over an edge (4.9).
+    void change_mode(double t, const FullState& y, const Crossing& crossing) {
+        if (crossing.over_edge) y_[8] += energies(setup_.plant, t, y, mode_).contact;
+        if (crossing.next == Mode::contact) record(Event::make, t, y);
+        if (mode_ == Mode::contact) record(Event::brk, t, y);
+        mode_ = crossing.next;
+    }
+
+    void record(Event::Type type, double t, const FullState& y) {
+        if (run_.events.size() == most_events) {
+            end(ARM3R_RUN_EVENT_STORM, "more than 4096 contact events, the last at t = " + shortest(t) + " s");
+            return;
+        }
+        const Vec3<double> q = angles(y), qd = rates(y);
+        run_.events.push_back({type, t, plain(setup_.simscape ? flipped(q) : q), plain(setup_.simscape ? flipped(qd) : qd),
+                               plain(tip_position(setup_.plant.arm, pose(q)))});
+    }
+
+    // ---- steps
+
+    void start() {
+        for (int i = 0; i < 3; ++i) {
+            y_[i] = setup_.q[i];
+            y_[3 + i] = setup_.qd[i];
+        }
+        mode_ = watch_.mode_at_start(y_);
+        if (mode_ == Mode::contact) record(Event::make, 0.0, y_);
+        const Energies energy = energies(setup_.plant, 0.0, y_, mode_);
+        energy_at_start_ = energy.sum();
+        potential_at_start_ = energy.potential;
+        held_ = std::abs(energy.kinetic) + std::abs(energy.potential) + std::abs(energy.contact);
+        derive();
+        h_ = first_step();
+        FullState ahead;  // what stands in for the solution when there is no step
+        for (std::size_t i = 0; i < state_size; ++i) ahead[i] = y_[i] + h_ * f_[i];
+        inside_ = hermite(0.0, h_, y_, f_, ahead, f_);
+    }
+
+    // The derivative at the present instant, with the sines and cosines that the next stages turn from.
+    void derive() {
+        rhs_.touch = touch();
+        rhs_.begin_step(y_);
+        rhs_(t_, y_, f_);
+        run_.steps.evaluations += 1;
+    }
+
+    double weighted_norm(const FullState& v) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < motion_size; ++i) {
+            const double ratio = v[i] / (setup_.solver.atol + setup_.solver.rtol * std::abs(y_[i]));
+            sum += ratio * ratio;
+        }
+        return std::sqrt(sum / double(motion_size));
+    }
+
+    double first_step() {  // (5.2)
+        if (setup_.solver.method == Solver::rk4) return setup_.solver.step;
+        const double size = weighted_norm(y_), slope = weighted_norm(f_);
+        const double trial = size < 1e-5 || slope < 1e-5 ? 1e-6 : 0.01 * size / slope;
+        FullState euler, f1;
+        for (std::size_t i = 0; i < state_size; ++i) euler[i] = y_[i] + trial * f_[i];
+        rhs_(trial, euler, f1);
+        run_.steps.evaluations += 1;
+        for (std::size_t i = 0; i < state_size; ++i) f1[i] -= f_[i];
+        const double bend = weighted_norm(f1) / trial;
+        const double steepest = std::max(slope, bend);
+        const double by_slope = steepest <= 1e-15 ? std::max(1e-6, 1e-3 * trial) : fifth_root(0.01 / steepest);
+        return std::min(100 * trial, by_slope);
+    }
+
+    double largest_step() const {
+        const Plant<double>& plant = setup_.plant;
+        double h = setup_.solver.max_step;
+        if (plant.has_wall && plant.wall.motion == Motion::sinusoid) h = std::min(h, 1 / (16 * plant.wall.frequency));
+        if (plant.acts_on_arm && mode_ == Mode::contact && plant.contact.stiffness[0] > 0)
+            h = std::min(h, 0.25 * pi * std::sqrt(effective_mass(plant.arm, pose(angles(y_)), plant.wall.n) / plant.contact.stiffness[0]));
+        return h;
+    }
+
+    void adaptive_step() {
+        const double rest = setup_.stop - t_;
+        double h = std::min(h_, largest_step());
+        const bool last = h >= rest * 0.99;  // no sliver of a step at the end
+        if (last) h = rest;
+        if (h < 16 * epsilon * std::max(t_, 1e-3) && !last) {
+            end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(t_) + " s: the motion changes faster than the clock resolves");
+            return;
+        }
+        stepper_.step(rhs_, t_, y_, f_, h);
+        run_.steps.evaluations += 6;
+        const double error = is_finite(stepper_.y1) ? stepper_.error(y_, h, setup_.solver.rtol, setup_.solver.atol) : infinite_;
+        if (!(error < 1)) {
+            reject(h, error);
+            return;
+        }
+        bad_trials_ = 0;
+        inside_ = stepper_.interpolant(t_, y_, h);
+        double deepest = 0;
+        const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, deepest);
+        note_depth(deepest);
+        const double theta = crossing ? crossing->theta : 1;
+        const double t1 = crossing ? t_ + theta * h : last ? setup_.stop : t_ + h;
+        log_until(t1, inside_);
+        if (run_.outcome != ARM3R_RUN_OK) return;
+        theta_ = theta;
+        y_ = crossing ? inside_(theta) : stepper_.y1;
+        accept(t1);
+        if (crossing) {
+            change_mode(t1, y_, *crossing);
+            derive();
+        } else {
+            carry_over();
+        }
+        close_books();
+        const double factor = step_factor(error);
+        h_ = h * (just_rejected_ ? std::min(factor, 1.0) : factor);
+        just_rejected_ = false;
+    }
+
+    void carry_over() {  // the last stage is the first of the next step
+        f_ = stepper_.f1;
+        rhs_.begin_step(y_);
+    }
+
+    void reject(double h, double error) {
+        run_.steps.rejected += 1;
+        just_rejected_ = true;
+        if (std::isfinite(error)) {
+            h_ = h * std::min(1.0, step_factor(error));
+            return;
+        }
+        h_ = 0.1 * h;
+        if (++bad_trials_ > most_bad_trials) end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(t_) + " s");
+    }
+
+    void fixed_step() {
+        const double t1 = std::min(setup_.stop, double(run_.steps.accepted + 1) * setup_.solver.step);
+        const bool last = t1 >= setup_.stop - 1e-9 * setup_.solver.step;
+        const double h = last ? setup_.stop - t_ : setup_.solver.step;
+        const double t0 = t_;
+        const FullState y0 = y_, f0 = f_;
+        FullState y1 = rk4_step(rhs_, t_, y_, f_, h);
+        run_.steps.evaluations += 3;
+        if (!is_finite(y1)) {
+            end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(t_) + " s; a smaller solver.step may hold it");
+            return;
+        }
+        y_ = y1;
+        accept(last ? setup_.stop : t1);
+        derive();
+        inside_ = hermite(t0, h, y0, f0, y_, f_);
+        theta_ = 1;
+        settle_fixed_step(t0, h);
+    }
+
+    // Contact is located after the step; a change of mode acts from the next step on.
+    void settle_fixed_step(double t0, double h) {
+        double deepest = 0, from = 0;
+        bool changed = false;
+        while (const std::optional<Crossing> crossing = watch_.next(inside_, from, mode_, deepest)) {
+            const double t = t0 + crossing->theta * h;
+            log_until(t, inside_);
+            change_mode(t, inside_(crossing->theta), *crossing);
+            changed = true;
+            from = crossing->theta;
+            if (run_.outcome != ARM3R_RUN_OK || from >= 1) break;
+        }
+        note_depth(deepest);
+        log_until(t_, inside_);
+        if (changed) derive();
+        close_books();
+    }
+
+    void accept(double t1) {
+        for (std::size_t i = 3; i < motion_size; ++i)
+            if (std::abs(y_[i]) < smallest_rate) y_[i] = 0;
+        t_ = t1;
+        run_.steps.accepted += 1;
+        for (int i = 0; i < 3; ++i)
+            if (std::abs(y_[i]) > largest_angle) end(ARM3R_RUN_DIVERGED, "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(t_) + " s");
+        if (!well_conditioned()) end(ARM3R_RUN_ILL_CONDITIONED, "the mass matrix is no longer positive definite to rounding at t = " + shortest(t_) + " s");
+    }
+
+    bool well_conditioned() const {
+        const Mat3<double> M = mass_matrix(setup_.plant.arm, pose(angles(y_)));
+        return M(0, 0) > 0 && M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2) > 8 * epsilon * M(1, 1) * M(2, 2);
+    }
+
+    // ---- the end
+
+    double steps_taken() const { return double(run_.steps.accepted + run_.steps.rejected); }
+
+    void end(arm3r_outcome outcome, std::string message) {
+        if (run_.outcome != ARM3R_RUN_OK) return;
+        run_.outcome = outcome;
+        run_.message = std::move(message);
+    }
+
+    // Whether to go on. The clock is read now and then only.
+    bool poll() {
+        if (options_.stop && *options_.stop) end(ARM3R_RUN_STOPPED, "stopped at t = " + shortest(t_) + " s");
+        if (++polls_ % 256 == 0) read_clock();
+        return run_.outcome == ARM3R_RUN_OK;
+    }
+
+    void read_clock() {
+        const double elapsed = seconds_since(begun_);
+        if (options_.time_limit > 0 && elapsed > options_.time_limit)
+            end(ARM3R_RUN_BUDGET, "the time limit of " + shortest(options_.time_limit) + " s is used up at t = " + shortest(t_) + " s");
+        if (!options_.progress || elapsed < next_report_) return;
+        next_report_ = elapsed + 0.02;
+        const std::int32_t answer = options_.progress(options_.user, t_, setup_.stop, static_cast<std::int64_t>(steps_taken()));
+        if (answer < 0) throw Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer));
+        if (answer > 0) end(ARM3R_RUN_STOPPED, "stopped at t = " + shortest(t_) + " s");
+    }
+
+    void finish() {
+        if (run_.outcome == ARM3R_RUN_OK) {
+            log(t_, y_, inside_, theta_);
+            judge_books();
+        }
+        if (link_behind_since_ >= 0)
+            run_.warnings.push_back("a link other than at its tip is behind the wall from t = " + shortest(link_behind_since_) + " s on; only the tip feels the wall");
+        run_.t_end = t_;
+        run_.elapsed_s = seconds_since(begun_);
+    }
+
+    static constexpr double infinite_ = std::numeric_limits<double>::infinity();
+
+    const Clock::time_point begun_ = Clock::now();
+    const Setup setup_;
+    const RunOptions options_;
+    Run run_;
+    RightHandSide<double, double> rhs_;
+    ContactWatch watch_;
+    Dopri5<double, state_size, motion_size> stepper_;
+
+    double t_ = 0, h_ = 0;
+    FullState y_{}, f_{};
+    Mode mode_ = Mode::free;
+    Inside inside_;      // the solution within the last step
+    double theta_ = 0;   // where t_ lies in it
+    bool just_rejected_ = false;
+    int bad_trials_ = 0;
+
+    double energy_at_start_ = 0, potential_at_start_ = 0;
+    double exchanged_ = 0, held_ = 0;  // J, the largest flows and stocks of the run
+    double link_behind_since_ = -1;
+    unsigned polls_ = 0;
+    double next_report_ = 0;
+};
+
+}  // namespace
+
+Run simulate(std::span<const double> params, const RunOptions& options) {
+    std::vector<Problem> problems = validate(params);
+    if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
+    return Simulator(params, options).run();
+}
+
+}  // namespace arm3r

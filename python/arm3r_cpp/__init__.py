@@ -1,0 +1,36 @@
+"""arm3r: dynamics, wall contact and simulation of a 3R spatial arm.
+
+>>> import arm3r_cpp as arm3r
+>>> run = arm3r.Scenario.load("scenarios/moving_wall.yaml").run()
+>>> run["f_on_wall_x"][-1], run.events, run.passed
+
+`Scenario` reads, changes and runs scenarios, `Run` holds results, `Arm` has the functions of the model, `plot` draws,
+and the errors are told apart by class (`Arm3rError` is the base of all). Units are SI and radians.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+
+TYPE_CHECKING = False  # importing it from typing would cost more than all the rest here
+if TYPE_CHECKING:
+    from typing import Any
+
+    from . import plot as plot
+    from ._api import *  # noqa: F403
+
+
+def __getattr__(name: str) -> Any:
+    # numpy is loaded on first use, matplotlib where something is drawn: starting the executable needs neither.
+    if find_spec(f"{__name__}.{name}"):
+        return import_module(f"{__name__}.{name}")
+    api = import_module(f"{__name__}._api")
+    if name not in api.__all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}; it has {', '.join(dir())}")
+    value = globals()[name] = getattr(api, name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*import_module(f"{__name__}._api").__all__, "plot"])

@@ -1,0 +1,211 @@
+"""The only module that knows the library: loading, errors, text, arrays, handles, and a run in progress."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arm3r
+from .errors import Arm3rError, IncompatibleError, class_of
+
+ffi, lib = _arm3r.ffi, _arm3r.lib
+
+Floats = NDArray[np.float64]
+
+
+def _check_abi() -> None:
+    found, expected = lib.arm3r_abi_version(), lib.ARM3R_ABI
+    if found != expected:
+        raise IncompatibleError(
+            f"libarm3r.so speaks version {found} of the C interface (it is arm3r {version}), the Python extension speaks "
+            f"version {expected}; install arm3r_cpp again, and look for another libarm3r.so in "
+            f"LD_LIBRARY_PATH={os.getenv('LD_LIBRARY_PATH', '')} and LD_PRELOAD={os.getenv('LD_PRELOAD', '')}",
+            status=lib.ARM3R_E_ABI,
+            code="abi",
+        )
+
+
+# ---- errors ---------------------------------------------------------------------------------------------------------
+
+
+def error(status: int, *, detail: str = "", **context: Any) -> Arm3rError:
+    """The error of this thread's last failed call."""
+    report = json.loads(ffi.string(lib.arm3r_error_json()))
+    return class_of(status)(
+        report["message"] + detail, status=status, code=report["code"], problems=report["problems"], **context
+    )
+
+
+def call(function: Callable[..., int], *arguments: Any) -> None:
+    """Call a function of the library; raise when it fails."""
+    status = function(*arguments)
+    if status:
+        raise error(status)
+
+
+# ---- text -----------------------------------------------------------------------------------------------------------
+
+
+def utf8(text: str) -> tuple[bytes, int]:
+    """Text as the library takes it: bytes and their number."""
+    data = text.encode()
+    return data, len(data)
+
+
+def file_path(path: str | os.PathLike[str]) -> tuple[bytes, int]:
+    """A path as the library takes it."""
+    data = os.fsencode(path)
+    return data, len(data)
+
+
+def text(function: Callable[..., int], *arguments: Any) -> str:
+    """Call a function whose last argument receives text."""
+    out = ffi.new("const char **")
+    call(function, *arguments, out)
+    return string(out[0])
+
+
+def string(pointer: Any) -> str:
+    return ffi.string(pointer).decode()
+
+
+# ---- handles --------------------------------------------------------------------------------------------------------
+
+
+def create(kind: str, function: Callable[..., int], *arguments: Any) -> Any:
+    """Call a function whose last argument receives a new handle of `arm3r_<kind>`, freed when nothing holds it."""
+    out = ffi.new(f"arm3r_{kind} **")
+    call(function, *arguments, out)
+    return ffi.gc(out[0], getattr(lib, f"arm3r_{kind}_free"))
+
+
+# ---- arrays ---------------------------------------------------------------------------------------------------------
+
+
+def finite(value: Any, name: str) -> Floats:
+    """`value` as float64, C-contiguous and aligned. TypeError: not real numbers; ValueError: not finite."""
+    if np.ma.isMaskedArray(value):
+        raise TypeError(f"{name}: a masked array has holes; fill them first")
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: real numbers are needed, got an array of {array.dtype}")
+    array = np.require(array, np.float64, ["C", "A"])
+    good = np.isfinite(array)
+    if not good.all():
+        index = tuple(int(i) for i in np.argwhere(~good)[0])
+        raise ValueError(f"{name}{list(index)}: a finite number is needed, got {array[index]}")
+    return array
+
+
+def states(**values: Any) -> tuple[tuple[int, ...], list[Any]]:
+    """Arrays (..., 3), broadcast over their leading axes: those axes, and pointers; no f_on_tip becomes NULL."""
+    given = {name: value for name, value in values.items() if name != "f_on_tip" or value is not None}
+    arrays = {name: finite(value, name) for name, value in given.items()}
+    for name, array in arrays.items():
+        if array.ndim == 0 or array.shape[-1] != 3:
+            raise ValueError(f"{name}: the shape (..., 3) is needed, got {array.shape}")
+    try:
+        leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise ValueError(f"the leading axes do not broadcast: {shapes}") from None
+    full = {name: np.ascontiguousarray(np.broadcast_to(a, (*leading, 3))) for name, a in arrays.items()}
+    return leading, [readable(full[name]) if name in full else ffi.NULL for name in values]
+
+
+def readable(array: Floats) -> Any:
+    """A pointer to an array's numbers; it keeps the array alive."""
+    if array.dtype != np.float64 or not array.flags.c_contiguous or not array.flags.aligned:
+        raise TypeError(f"a contiguous float64 array is needed, got {array.dtype} with strides {array.strides}")
+    return ffi.from_buffer("double[]", array)
+
+
+def writable(array: Floats) -> Any:
+    """The same, to be written through."""
+    if not array.flags.writeable:
+        raise TypeError("a writable array is needed")
+    return readable(array)
+
+
+class _Column:
+    """Memory of a run, as numpy takes it: read-only, and alive as long as any view of it."""
+
+    def __init__(self, run: Any, data: Any, rows: int) -> None:
+        self._run = run
+        address = int(ffi.cast("uintptr_t", data))
+        self.__array_interface__ = {"version": 3, "typestr": "=f8", "shape": (rows,), "data": (address, True)}
+
+
+# ---- runs -----------------------------------------------------------------------------------------------------------
+
+Progress = Callable[[float, float, int], Any]
+
+
+class _Call:
+    """One run in progress: what is to be called, and what that raised."""
+
+    def __init__(self, progress: Progress | None) -> None:
+        self.progress = progress
+        self.raised: BaseException | None = None
+
+
+_here = threading.local()  # .call: this thread's run in progress
+
+
+def _keep(kind: type[BaseException], raised: BaseException, traceback: Any) -> None:
+    _here.call.raised = raised.with_traceback(traceback)
+
+
+@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+def arm3r_python_progress(user: Any, t: float, stop: float, steps: int) -> int:
+    # Entering a Python function is what lets signal handlers run: this is how Ctrl-C ends a run.
+    progress = _here.call.progress
+    return int(progress is not None and bool(progress(t, stop, steps)))
+
+
+def start(function: Callable[..., int], *arguments: Any, progress: Progress | None, time_limit: float | None) -> Any:
+    """A run by a function whose last arguments are options and the new run. What `progress` raises comes out again."""
+    options = ffi.new("arm3r_run_options *")
+    options.struct_size = ffi.sizeof("arm3r_run_options")
+    options.progress = lib.arm3r_python_progress
+    options.time_limit = 0.0 if time_limit is None else time_limit
+    this, outer = _Call(progress), getattr(_here, "call", None)
+    _here.call = this
+    try:
+        return create("run", function, *arguments, options)
+    except Arm3rError:
+        if this.raised is None:
+            raise
+    finally:
+        _here.call = outer
+    raise this.raised
+
+
+def outcome(run: Any) -> str:
+    out = ffi.new("int32_t *")
+    call(lib.arm3r_run_outcome, run, out)
+    return string(lib.arm3r_outcome_name(out[0]))
+
+
+def columns(run: Any) -> tuple[dict[str, Floats], dict[str, str]]:
+    """Values and units of a run's columns, by name; the values are views of the run's own memory."""
+    rows, count = ffi.new("size_t *"), ffi.new("size_t *")
+    call(lib.arm3r_run_shape, run, rows, count)
+    name, unit, data = ffi.new("const char **"), ffi.new("const char **"), ffi.new("const double **")
+    values, units = {}, {}
+    for index in range(count[0]):
+        call(lib.arm3r_run_column, run, index, name, unit, data)
+        key = string(name[0])
+        values[key] = np.asarray(_Column(run, data[0], rows[0]))
+        units[key] = string(unit[0])
+    return values, units
+
+
+version = string(lib.arm3r_version())
+_check_abi()

@@ -1,0 +1,164 @@
+"""The arm's kinematics and dynamics, for one state or for millions in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _native
+from ._native import Floats, ffi, lib
+from .params import param_defaults
+
+
+class Arm:
+    """An arm: every function takes (..., 3) arrays, broadcasts them over the leading axes and returns new arrays.
+
+    Joint vectors q, qd, qdd (rad, rad/s, rad/s^2) and tau (N m) follow the arm's convention; points, velocities and
+    forces are in base axes. Without leading axes a scalar result is a number.
+
+    Every function raises TypeError for arguments that are not arrays of real numbers, ValueError for wrong shapes and
+    for numbers that are not finite (naming argument and index), and `UsageError` where the model has no answer.
+    """
+
+    def __init__(self, params: ArrayLike | None = None) -> None:
+        """The arm of a flat parameter array (`Scenario.params`); by default the lecture's.
+
+        Raises:
+            UsageError, ScenarioError: the array has the wrong length, or does not describe an arm.
+        """
+        self._params = param_defaults() if params is None else np.array(params, np.float64)
+        self._handle = _native.create("arm", lib.arm3r_arm_create, _native.readable(self._params), self._params.size)
+
+    @property
+    def params(self) -> Floats:
+        """The flat parameter array it was made of, as a copy."""
+        return self._params.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Arm, (self._params,)
+
+    def _batch(self, function: Callable[..., int], *shapes: tuple[int, ...], **arguments: Any) -> list[Any]:
+        """One call: (..., 3) arrays in, one array of each shape out."""
+        leading, pointers = _native.states(**arguments)
+        results = [np.empty(leading + shape) for shape in shapes]
+        count = int(np.prod(leading, dtype=np.intp))
+        _native.call(function, self._handle, count, *pointers, *map(_native.writable, results))
+        return [result if result.shape else float(result) for result in results]
+
+    def _one(self, function: Callable[..., int], *shape: int, **arguments: Any) -> Any:
+        return self._batch(function, shape, **arguments)[0]
+
+    def tip_position(self, q: ArrayLike) -> Floats:
+        """(..., 3) -> (..., 3), m."""
+        return self._one(lib.arm3r_arm_tip_position, 3, q=q)
+
+    def elbow_position(self, q: ArrayLike) -> Floats:
+        """(..., 3) -> (..., 3), m."""
+        return self._one(lib.arm3r_arm_elbow_position, 3, q=q)
+
+    def centres(self, q: ArrayLike) -> Floats:
+        """Centres of mass of the three links: (..., 3) -> (..., 3, 3), m, a row a link."""
+        return self._one(lib.arm3r_arm_centres, 3, 3, q=q)
+
+    def jacobian(self, q: ArrayLike) -> Floats:
+        """Of the tip's position: (..., 3) -> (..., 3, 3), m."""
+        return self._one(lib.arm3r_arm_jacobian, 3, 3, q=q)
+
+    def geometric_jacobian(self, q: ArrayLike) -> Floats:
+        """(..., 3) -> (..., 6, 3): three linear rows (m), then three angular ones."""
+        return self._one(lib.arm3r_arm_geometric_jacobian, 6, 3, q=q)
+
+    def jacobian_dot(self, q: ArrayLike, qd: ArrayLike) -> Floats:
+        """Time derivative of the Jacobian: (..., 3, 3), m/s."""
+        return self._one(lib.arm3r_arm_jacobian_dot, 3, 3, q=q, qd=qd)
+
+    def mass_matrix(self, q: ArrayLike) -> Floats:
+        """(..., 3) -> (..., 3, 3), kg m^2, armature and payload included."""
+        return self._one(lib.arm3r_arm_mass_matrix, 3, 3, q=q)
+
+    def coriolis_matrix(self, q: ArrayLike, qd: ArrayLike) -> Floats:
+        """Of Christoffel symbols, so that dM/dt - 2C is skew: (..., 3, 3), N m s/rad."""
+        return self._one(lib.arm3r_arm_coriolis_matrix, 3, 3, q=q, qd=qd)
+
+    def velocity_product(self, q: ArrayLike, qd: ArrayLike) -> Floats:
+        """C(q, qd) qd: (..., 3), N m."""
+        return self._one(lib.arm3r_arm_velocity_product, 3, q=q, qd=qd)
+
+    def gravity_torque(self, q: ArrayLike) -> Floats:
+        """The torque that holds the arm, +dU/dq: (..., 3), N m."""
+        return self._one(lib.arm3r_arm_gravity_torque, 3, q=q)
+
+    def operational_space_inertia(self, q: ArrayLike) -> Floats:
+        """(J M^-1 J^T)^-1: (..., 3, 3), kg. Raises UsageError where the pose is singular."""
+        return self._one(lib.arm3r_arm_operational_space_inertia, 3, 3, q=q)
+
+    def effective_mass(self, q: ArrayLike, direction: ArrayLike) -> Floats | float:
+        """Mass felt at the tip along a direction (..., 3) of any length: (...,), kg."""
+        return self._one(lib.arm3r_arm_effective_mass, q=q, direction=direction)
+
+    def manipulability(self, q: ArrayLike) -> Floats | float:
+        """|det J|: (...,), m^3."""
+        return self._one(lib.arm3r_arm_manipulability, q=q)
+
+    def energy(self, q: ArrayLike, qd: ArrayLike) -> tuple[Floats | float, Floats | float]:
+        """Kinetic and potential energy (zero at the base origin): two of shape (...,), J."""
+        kinetic, potential = self._batch(lib.arm3r_arm_energy, (), (), q=q, qd=qd)
+        return kinetic, potential
+
+    def forward_dynamics(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, f_on_tip: ArrayLike | None = None
+    ) -> Floats:
+        """Acceleration under joint torques and a force on the tip (N), with damping and friction: (..., 3), rad/s^2."""
+        return self._one(lib.arm3r_arm_forward_dynamics, 3, q=q, qd=qd, tau=tau, f_on_tip=f_on_tip)
+
+    def inverse_dynamics(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, f_on_tip: ArrayLike | None = None
+    ) -> Floats:
+        """Joint torques that give an acceleration, under a force on the tip (N): (..., 3), N m."""
+        return self._one(lib.arm3r_arm_inverse_dynamics, 3, q=q, qd=qd, qdd=qdd, f_on_tip=f_on_tip)
+
+    def recursion_forward_dynamics(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, f_on_tip: ArrayLike | None = None
+    ) -> Floats:
+        """`forward_dynamics` by the independent Newton-Euler recursion."""
+        return self._one(lib.arm3r_arm_recursion_forward_dynamics, 3, q=q, qd=qd, tau=tau, f_on_tip=f_on_tip)
+
+    def recursion_inverse_dynamics(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, f_on_tip: ArrayLike | None = None
+    ) -> Floats:
+        """`inverse_dynamics` by the independent Newton-Euler recursion."""
+        return self._one(lib.arm3r_arm_recursion_inverse_dynamics, 3, q=q, qd=qd, qdd=qdd, f_on_tip=f_on_tip)
+
+    def tip_sensor(self, q: ArrayLike, qd: ArrayLike) -> tuple[Floats, Floats]:
+        """Position and velocity of the tip by the independent recursion: two of shape (..., 3), m and m/s."""
+        position, velocity = self._batch(lib.arm3r_arm_tip_sensor, (3,), (3,), q=q, qd=qd)
+        return position, velocity
+
+    def inverse_kinematics(self, p: ArrayLike, *, front: bool = True, elbow: Literal["up", "down"] = "up") -> Floats:
+        """Joint angles that put the tip at p (..., 3), m: (..., 3), rad.
+
+        Args:
+            front: joint 1 faces the point; else it faces away and the arm reaches over itself.
+            elbow: on which side of the line from shoulder to tip the elbow lies.
+
+        Raises:
+            UsageError: a point is out of reach; `index` is the first one's.
+        """
+        if elbow not in ("up", "down"):
+            raise ValueError(f"elbow: 'up' or 'down' is needed, got {elbow!r}")
+        leading, (points,) = _native.states(p=p)
+        q = np.empty((*leading, 3))
+        failed = ffi.new("size_t *")
+        count = int(np.prod(leading, dtype=np.intp))
+        status = lib.arm3r_arm_inverse_kinematics(
+            self._handle, count, points, bool(front), elbow == "up", _native.writable(q), failed
+        )
+        if status == lib.ARM3R_E_REACH:
+            index = tuple(int(i) for i in np.unravel_index(failed[0], leading)) if leading else ()
+            raise _native.error(status, detail=f" (p{list(index)})" if index else "", index=index)
+        if status:
+            raise _native.error(status)
+        return q

@@ -1,0 +1,48 @@
+"""Figures of a run. matplotlib is imported when something is drawn, not before."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .plot_lecture import draw_energies, figures, has_wall
+from .plot_style import JOINTS, XYZ, draw, event_legend, finish, panels, style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .run import Run
+
+__all__ = ["lecture", "overview"]
+
+
+def overview(run: Run) -> Figure:
+    """Joint angles, tip position, torques, and the force on the wall (without a wall: the energies), over time.
+
+    run: a finished or partial run. Returns a matplotlib Figure that is not shown. SI units; contact is shaded, make and
+    break are marked at the times at which they were located.
+    """
+    with style():
+        figure, (angles, tip, torques, last) = panels(run, [1.3] * 4)
+        draw(angles, run, [f"q{i}" for i in JOINTS], [f"$q_{i}$" for i in JOINTS])
+        finish(angles, run, "joint angle, rad")
+        draw(tip, run, [f"tip_{c}" for c in XYZ], list(XYZ))
+        finish(tip, run, "tip position, m")
+        draw(torques, run, [f"tau{i}" for i in JOINTS], [rf"$\tau_{i}$" for i in JOINTS])
+        finish(torques, run, "torque, N m")
+        if has_wall(run):
+            draw(last, run, [f"f_on_wall_{c}" for c in XYZ], [f"on wall, {c}" for c in XYZ])
+            finish(last, run, "force, N")
+        else:
+            draw_energies(last, run)
+            finish(last, run, "energy, J")
+        event_legend(figure, run)
+        return figure
+
+
+def lecture(run: Run) -> dict[str, Figure]:
+    """The lecture's figures by name: tip, velocities, torques, energies, strobe, and with a wall: wall, contact.
+
+    run: a finished or partial run. Returns matplotlib Figures that are not shown. SI units.
+    """
+    with style():
+        return {name: figure(run) for name, figure in figures(run).items()}

@@ -1,0 +1,118 @@
+"""arm3r-plot: figures of a run, from its CSV or straight from a scenario."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from .errors import Arm3rError, BudgetError, IncompatibleError, NumericalError, OutputError, ScenarioError, UsageError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .run import Run
+
+FORMATS = ("png", "pdf", "svg")
+SCENARIOS = (".yaml", ".yml")
+EXIT = {
+    UsageError: 2,
+    ScenarioError: 3,
+    NumericalError: 4,
+    BudgetError: 5,
+    OutputError: 6,
+    IncompatibleError: 9,
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Entry point of `arm3r-plot`; argv without the program's name. Returns the exit code, with the meaning it has for `arm3r`."""
+    options = parser().parse_args(argv)
+    try:
+        target = target_of(options)
+        run, failure = read(options.run)
+        save(run, options, target)
+        if failure:
+            raise failure
+    except Arm3rError as error:
+        print(f"arm3r-plot: {error}", file=sys.stderr)
+        return next((code for kind, code in EXIT.items() if isinstance(error, kind)), 1)
+    except KeyboardInterrupt:
+        die_of(signal.SIGINT)
+    return 0
+
+
+def parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="arm3r-plot", description="Draw a run: one overview, or the lecture's figures.")
+    parser.add_argument("run", type=Path, metavar="RUN", help="RUN.csv with RUN.json beside it, RUN.npz, or a scenario.yaml to run")
+    parser.add_argument("--lecture", action="store_true", help="one file a figure: tip, velocities, torques, energies, strobe, wall, contact")
+    parser.add_argument("-o", dest="out", type=Path, metavar="PATH", help="folder, or without --lecture also a file (default: here)")
+    parser.add_argument("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
+    return parser
+
+
+def target_of(options: argparse.Namespace) -> tuple[Path, str]:
+    """What the files' names begin with, and their format."""
+    out = options.out or Path()
+    if out.is_dir() or not out.suffix:
+        return out / options.run.stem, options.format or "png"
+    if options.lecture:
+        raise UsageError(f"-o {out}: with --lecture several files are written; give a folder")
+    if out.suffix[1:] not in FORMATS:
+        raise UsageError(f"-o {out}: cannot write {out.suffix}; use one of {', '.join(FORMATS)}")
+    if options.format not in (None, out.suffix[1:]):
+        raise UsageError(f"-o {out}: is not {options.format}; leave --format away or change the name")
+    return out.with_suffix(""), out.suffix[1:]
+
+
+def read(path: Path) -> tuple[Run, Arm3rError | None]:
+    """The run; and why it is only a partial one, if it is."""
+    from . import Run, Scenario
+
+    if path.suffix not in SCENARIOS:
+        try:
+            return Run.load(path), None
+        except (OSError, ValueError, KeyError) as error:
+            raise UsageError(f"{path}: not a run: {error}; RUN.csv needs RUN.json beside it, as `arm3r run -o RUN.csv` writes them") from error
+    try:
+        return Scenario.load(path).run(), None
+    except Arm3rError as error:
+        if error.run is None:
+            raise
+        return error.run, error
+
+
+def save(run: Run, options: argparse.Namespace, target: tuple[Path, str]) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from .plot import lecture, overview
+    from .plot_style import style
+
+    stem, suffix = target
+    figures: dict[str, Figure] = (
+        {f"{stem}_{name}": figure for name, figure in lecture(run).items()} if options.lecture else {str(stem): overview(run)}
+    )
+    try:
+        stem.parent.mkdir(parents=True, exist_ok=True)
+        for name, figure in figures.items():
+            with style():
+                figure.savefig(f"{name}.{suffix}")
+            print(f"{name}.{suffix}")
+    except OSError as error:
+        raise OutputError(f"cannot write figures: {error}") from error
+
+
+def die_of(number: signal.Signals) -> NoReturn:
+    """End by the signal itself, so that the caller sees what happened."""
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+    raise SystemExit(128 + number)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

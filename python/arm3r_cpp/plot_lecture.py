@@ -1,0 +1,129 @@
+"""The figures that the lecture shows, one function a figure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .plot_strobe import strobe
+from .plot_style import AMBER, BLACK, BLUE, GREEN, JOINTS, PINK, RED, SKY, XYZ, contact_spans, draw, event_legend, finish, panels
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from .run import Run
+
+FLOOR = 1e-17  # m/s and J: where a logarithmic axis puts what is exactly zero
+NEEDLE = 0.1
+
+
+def has_wall(run: Run) -> bool:
+    return "depth" in run.units
+
+
+def figures(run: Run) -> dict[str, Callable[[Run], Figure]]:
+    """The drawing functions that fit the run, by the name of their figure."""
+    always: dict[str, Callable[[Run], Figure]] = {
+        "tip": tip, "velocities": velocities, "torques": torques, "energies": energies, "strobe": strobe,
+    }  # fmt: skip
+    return always | {"wall": wall, "contact": contact} if has_wall(run) else always
+
+
+def tip(run: Run) -> Figure:
+    figure, (ax,) = panels(run, [2.4])
+    draw(ax, run, [f"tip_{c}" for c in XYZ], list(XYZ))
+    finish(ax, run, "tip position, m")
+    event_legend(figure, run)
+    return figure
+
+
+def velocities(run: Run) -> Figure:
+    figure, (*components, residual) = panels(run, [1.2, 1.2, 1.2, 1.4])
+    for ax, c in zip(components, XYZ, strict=True):
+        ax.plot(run.t, run[f"tip_v{c}"], color=SKY, lw=3.2, label="transform sensor")
+        ax.plot(run.t, run[f"tip_jv{c}"], color=BLACK, lw=1.0, label=r"$J\,\dot q$")
+        ax.plot(run.t, run[f"tip_dv{c}"], color=RED, lw=1.4, ls=(0, (1, 2)), label="position differentiated")
+        finish(ax, run, f"$v_{c}$, m/s")
+        if c != "x":
+            ax.get_legend().remove()
+    for name, colour, label in (("tip_jv", BLACK, r"$|J\,\dot q -$ sensor|"), ("tip_dv", RED, "|differentiated − sensor|")):
+        difference = np.linalg.norm(run[name] - run["tip_v"], axis=1)
+        residual.semilogy(run.t, np.maximum(difference, FLOOR), color=colour, lw=0.9, label=label)
+    finish(residual, run, "residual, m/s")
+    event_legend(figure, run)
+    return figure
+
+
+def wall(run: Run) -> Figure:
+    figure, (position, depth) = panels(run, [1.6, 1.4])
+    draw(position, run, [f"wall_{c}" for c in XYZ], list(XYZ))
+    finish(position, run, "wall position, m")
+    depth.plot(run.t, run["depth"], color=BLACK)
+    finish(depth, run, "depth of tip, m")
+    event_legend(figure, run)
+    return figure
+
+
+def contact(run: Run) -> Figure:
+    figure, (force, flag) = panels(run, [2.0, 0.8])
+    draw(force, run, [f"f_on_wall_{c}" for c in XYZ], [f"on wall, {c}" for c in XYZ])
+    finish(force, run, "force, N")
+    times, states = [run.t[0], *(e.t for e in run.events), run.t[-1]], [0, *(int(e.type == "make") for e in run.events)]
+    flag.step(times, [*states, states[-1]], where="post", color=BLACK)
+    flag.set_yticks([0, 1], ["off", "on"])
+    flag.set_ylim(-0.2, 1.2)
+    finish(flag, run, "contact")
+    show_short_contact(flag, run)
+    event_legend(figure, run)
+    return figure
+
+
+def show_short_contact(ax: Axes, run: Run) -> None:
+    """Narrow the time axis where contact takes so little of the run that it would be a needle."""
+    spans = contact_spans(run)
+    if not spans:
+        return
+    start, end = spans[0][0], spans[-1][1]
+    if end - start < NEEDLE * (run.t[-1] - run.t[0]):
+        ax.set_xlim(start - (end - start) / 2, end + (end - start) / 2)
+
+
+def torques(run: Run) -> Figure:
+    figure, axes = panels(run, [1.2] * 3)
+    for ax, i in zip(axes, JOINTS, strict=True):
+        ax.plot(run.t, run[f"tau{i}"], color=BLUE, label="applied")
+        ax.plot(run.t, run[f"tau_g{i}"], color=RED, ls="--", label="would hold the arm")
+        finish(ax, run, rf"$\tau_{i}$, N m")
+        if i != "1":
+            ax.get_legend().remove()
+    event_legend(figure, run)
+    return figure
+
+
+def draw_energies(ax: Axes, run: Run) -> None:
+    """Kinetic and potential energy, and every other term of the balance that is not zero throughout."""
+    terms = (
+        ("work_actuators", AMBER, "-", 3.2, "by actuators"),
+        ("work_wall", PINK, "-", 2.4, "by wall"),
+        ("energy_kinetic", BLUE, "-", 1.4, "kinetic"),
+        ("energy_potential", RED, "--", 1.4, "Δ potential"),
+        ("energy_contact", GREEN, "-.", 1.4, "contact"),
+        ("energy_dissipated", BLACK, ":", 1.4, "dissipated"),
+    )
+    for name, colour, dashes, width, label in terms:
+        energy = run[name] - run[name][0] if name == "energy_potential" else run[name]
+        if np.any(energy) or name == "energy_kinetic":
+            ax.plot(run.t, energy, color=colour, ls=dashes, lw=width, label=label)
+
+
+def energies(run: Run) -> Figure:
+    figure, (terms, residual) = panels(run, [2.0, 1.2])
+    draw_energies(terms, run)
+    finish(terms, run, "energy, J")
+    residual.semilogy(run.t, np.maximum(abs(run["energy_residual"]), FLOOR), color=BLACK, lw=0.9)
+    finish(residual, run, "|residual|, J")
+    event_legend(figure, run)
+    return figure

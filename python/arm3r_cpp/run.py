@@ -1,0 +1,205 @@
+"""Results of a run: columns, events, checks, and files."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import os
+import tempfile
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import _native
+from ._native import Floats, lib
+from .errors import UsageError
+
+
+class Event(NamedTuple):
+    """A contact made or broken."""
+
+    type: str
+    """"make" or "break"."""
+    t: float
+    """s"""
+    q: tuple[float, float, float]
+    """rad"""
+    qd: tuple[float, float, float]
+    """rad/s"""
+    tip: tuple[float, float, float]
+    """m, base axes"""
+
+
+class Run:
+    """A finished or partial run. `run["q1"]` is a column, `run["q"]`, `run["tip"]` are three of them as (rows, 3).
+
+    Columns are read-only arrays of float64, views of the run's own memory, in SI units and radians; `units` names them.
+    """
+
+    def __init__(
+        self, columns: Mapping[str, Floats], units: Mapping[str, str], summary: dict[str, Any], report: str | None
+    ) -> None:
+        """Of data that was stored before; `Scenario.run` and `Run.load` make runs."""
+        self._columns = dict(columns)
+        self._handle = None
+        self.units = dict(units)
+        self.summary = summary
+        self._report = report
+        for column in self._columns.values():
+            column.flags.writeable = False
+
+    @classmethod
+    def _of(cls, handle: Any) -> Run:
+        run = cls.__new__(cls)
+        run._handle = handle
+        run._columns, run.units = _native.columns(handle)
+        run._report = None
+        return run
+
+    def __getitem__(self, name: str) -> Floats:
+        """A column as (rows,); or three at once, such as "q", "tau_g", "tip", "f_on_tip", as a new (rows, 3)."""
+        if name in self._columns:
+            return self._columns[name]
+        for ends in ("123", "xyz"):
+            for joint in ("", "_"):
+                parts = [name + joint + end for end in ends]
+                if all(part in self._columns for part in parts):
+                    return np.stack([self._columns[part] for part in parts], axis=-1)
+        near = difflib.get_close_matches(name, self._columns)
+        raise KeyError(f"no column {name!r}; {'near: ' + ', '.join(near) if near else 'see run.columns'}")
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        return f"<Run {self.summary['name']}: {self.outcome}, {len(self)} rows to t = {self.t[-1]:g} s>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Run, (self._columns, self.units, self.summary, self._text())
+
+    @property
+    def t(self) -> Floats:
+        """Time: (rows,), s."""
+        return self._columns["t"]
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns, in order."""
+        return list(self._columns)
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The summary, as in the JSON file beside a CSV: name, outcome, events, checks, peak_force, hash, ..."""
+        return json.loads(_native.text(lib.arm3r_run_summary, self._handle))
+
+    def report(self) -> str:
+        """The summary for people.
+
+        Raises:
+            UsageError: the run was read from a CSV file, which has none.
+        """
+        text = self._text()
+        if text is None:
+            raise UsageError("a run read from a CSV file has no report; its numbers are in summary", code="usage")
+        return text
+
+    def _text(self) -> str | None:
+        return self._report if self._handle is None else _native.text(lib.arm3r_run_report, self._handle)
+
+    @cached_property
+    def outcome(self) -> str:
+        """ "ok", "stopped", "diverged", ..."""
+        return self.summary["outcome"] if self._handle is None else _native.outcome(self._handle)
+
+    @property
+    def events(self) -> list[Event]:
+        """Contacts made and broken, in time order."""
+        return [
+            Event(e["type"], e["t"], tuple(e["q"]), tuple(e["qd"]), tuple(e["tip"])) for e in self.summary["events"]
+        ]
+
+    @property
+    def checks(self) -> list[dict[str, Any]]:
+        """The scenario's checks: dicts with the keys name, passed, value and limit."""
+        return self.summary["checks"]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check["passed"] for check in self.checks)
+
+    @property
+    def warnings(self) -> list[str]:
+        """Likely slips that were seen."""
+        return self.summary["warnings"]
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write PATH and, beside it, the summary with the suffix .json: each whole or not at all.
+
+        Raises:
+            OutputError: it cannot be written.
+            UsageError: the run was not made in this process; it has been written before, or use `to_npz`.
+        """
+        if self._handle is None:
+            raise UsageError("only a run made in this process is written as CSV; use to_npz", code="usage")
+        _native.call(lib.arm3r_run_save, self._handle, *_native.file_path(path))
+
+    def to_npz(self, path: str | os.PathLike[str]) -> None:
+        """Write everything into one file that `Run.load` and `numpy.load` read: whole or not at all.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        with tempfile.NamedTemporaryFile(dir=Path(path).parent, suffix=".npz.part", delete=False) as part:
+            try:
+                np.savez(
+                    part,
+                    columns=self.columns,
+                    units=list(self.units.values()),
+                    data=np.stack(list(self._columns.values())),
+                    summary=json.dumps(self.summary),
+                    report=self._text() or "",
+                )
+                part.close()
+                os.replace(part.name, path)
+            except BaseException:
+                os.unlink(part.name)
+                raise
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Run:
+        """Read what `to_csv`, `arm3r run -o` (PATH.csv, with PATH.json beside it) or `to_npz` wrote, to the same bits.
+
+        Raises:
+            OSError: a file cannot be read.
+            ValueError: the suffix is neither .csv nor .npz, or the content is not a run's.
+        """
+        path = Path(path)
+        readers = {".csv": _read_csv, ".npz": _read_npz}
+        if path.suffix not in readers:
+            raise ValueError(f"{path}: a file named .csv or .npz is needed, got {path.suffix!r}")
+        return cls(*readers[path.suffix](path))
+
+
+def _read_csv(path: Path) -> tuple[Any, ...]:
+    with path.open(encoding="utf-8") as file:
+        names = file.readline().rstrip("\n").split(",")
+        if names[0] != "t":
+            raise ValueError(f"{path}:1: a header of column names, from t on, is needed, got {names[0]!r}")
+        data = np.loadtxt(file, delimiter=",", ndmin=2)
+    if data.shape[1] != len(names):
+        raise ValueError(f"{path}: {len(names)} names over {data.shape[1]} columns")
+    summary = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+    units = {column["name"]: column["unit"] for column in summary["columns"]}
+    return dict(zip(names, np.ascontiguousarray(data.T), strict=True)), units, summary, None
+
+
+def _read_npz(path: Path) -> tuple[Any, ...]:
+    with np.load(path) as stored:
+        names = stored["columns"].tolist()
+        columns = dict(zip(names, stored["data"], strict=True))
+        units = dict(zip(names, stored["units"].tolist(), strict=True))
+        return columns, units, json.loads(stored["summary"].item()), stored["report"].item() or None

@@ -1,0 +1,166 @@
+"""Scenarios: what is simulated, as text, by path, and as numbers."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _native
+from ._native import Floats, Progress, lib
+from .arm import Arm
+from .errors import class_of_outcome
+from .params import param_count
+from .run import Run
+
+_PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
+
+
+class Scenario:
+    """A scenario: read from YAML, changed by path, validated and run by the library.
+
+    >>> scenario = Scenario.load("scenarios/moving_wall.yaml")
+    >>> scenario["wall.contact.stiffness"] = 500
+    >>> run = scenario.run()
+    """
+
+    def __init__(self, text: str = "format: 1\n", *, file: str = "scenario.yaml") -> None:
+        """Read a scenario from text; `file` is its name in messages.
+
+        Raises:
+            ScenarioError: the text cannot be read as YAML of the kind allowed; what it says is judged when it is used.
+        """
+        self._file = file
+        self._handle = _native.create("scenario", lib.arm3r_scenario_create, *_native.utf8(text), *_native.utf8(file))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Scenario:
+        """Read a scenario from a file.
+
+        Raises:
+            UsageError: the file cannot be read.
+            ScenarioError: as for a text.
+        """
+        return cls._of(_native.create("scenario", lib.arm3r_scenario_load, *_native.file_path(path)), os.fspath(path))
+
+    @classmethod
+    def _of(cls, handle: Any, file: str) -> Scenario:
+        scenario = cls.__new__(cls)
+        scenario._handle, scenario._file = handle, file
+        return scenario
+
+    def copy(self) -> Scenario:
+        """An independent copy."""
+        return self._of(_native.create("scenario", lib.arm3r_scenario_copy, self._handle), self._file)
+
+    def __copy__(self) -> Scenario:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Scenario:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (self.to_yaml(), self._file)
+
+    def __repr__(self) -> str:
+        return f"<Scenario {self._file}>"
+
+    def __getitem__(self, path: str) -> Any:
+        """The value at a dotted path, defaults included, list items by [i]: "wall.contact.stiffness", "initial.q[1]".
+
+        Raises:
+            ScenarioError: there is no such key, or the scenario is not valid.
+        """
+        return _numbers(json.loads(_native.text(lib.arm3r_scenario_get, self._handle, *_native.utf8(path))))
+
+    def __setitem__(self, path: str, value: Any) -> None:
+        """Put a number, text, flag, list, array or map at a path; it is validated when the scenario is next used.
+
+        Angles may be given as text: "30 deg". A new type, method or law drops the keys of the old one.
+        """
+        _native.call(lib.arm3r_scenario_set, self._handle, *_native.utf8(path), *_native.utf8(_flow(value, path)))
+
+    def validate(self) -> None:
+        """Raise ScenarioError, listing all problems, unless the scenario is valid."""
+        _native.call(lib.arm3r_scenario_validate, self._handle)
+
+    @property
+    def name(self) -> str:
+        """Its `name`, by default the file's stem."""
+        return _native.text(lib.arm3r_scenario_name, self._handle)
+
+    @property
+    def params(self) -> Floats:
+        """All numbers of the scenario: shape (param_count(),), SI units and radians; see `param_index`."""
+        params = np.empty(param_count())
+        _native.call(lib.arm3r_scenario_params, self._handle, _native.writable(params), params.size)
+        return params
+
+    @property
+    def arm(self) -> Arm:
+        """The arm it describes."""
+        return Arm(self.params)
+
+    def to_yaml(self, *, annotate: bool = False) -> str:
+        """The whole scenario with all defaults, itself a scenario; `annotate`: each value's origin in a comment."""
+        return _native.text(lib.arm3r_scenario_yaml, self._handle, bool(annotate))
+
+    def run(self, *, progress: Progress | None = None, time_limit: float | None = None) -> Run:
+        """Simulate. Ctrl-C ends the run at once with KeyboardInterrupt.
+
+        Args:
+            progress: called as progress(t, stop, steps) at most every 20 ms; a true result stops the run, and what it
+                raises comes out unchanged.
+            time_limit: s of wall clock.
+
+        Raises:
+            ScenarioError: the scenario is not valid.
+            NumericalError, BudgetError: the run did not reach its end; `error.run` holds it as far as it came.
+            Arm3rError: `progress` stopped the run; `error.run` likewise.
+        """
+        if time_limit is not None and not 0 < time_limit < math.inf:
+            raise ValueError(f"time_limit: a positive number of seconds is needed, got {time_limit}")
+        handle = _native.start(lib.arm3r_scenario_run, self._handle, progress=progress, time_limit=time_limit)
+        run = Run._of(handle)
+        if run.outcome != "ok":
+            raise class_of_outcome(run.outcome)(
+                f"{self._file}: {run.outcome}: {run.summary['message']}", code=f"run.{run.outcome}", run=run
+            )
+        return run
+
+
+def _restore(text: str, file: str) -> Scenario:
+    return Scenario(text, file=file)
+
+
+def _numbers(value: Any) -> Any:
+    """JSON has no infinity: the library writes "inf"."""
+    if isinstance(value, list):
+        return [_numbers(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _numbers(item) for key, item in value.items()}
+    return math.inf if value == "inf" else value
+
+
+def _flow(value: Any, path: str) -> str:
+    """A value in YAML's flow style."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        return value if _PLAIN.fullmatch(value) else json.dumps(value, ensure_ascii=False)
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_flow(item, f'{path}[{i}]') for i, item in enumerate(value))}]"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key}: {_flow(item, f'{path}.{key}')}" for key, item in value.items()) + "}"
+    raise TypeError(f"{path}: a number, text, flag, list, array or map is needed, got {type(value).__name__}")

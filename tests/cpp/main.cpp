@@ -1,0 +1,2 @@
+#define BOOST_TEST_MODULE arm3r
+#include <boost/test/included/unit_test.hpp>

@@ -1,0 +1,82 @@
+"""What the tests share: the installed package, its executable, and the lecture's scenario."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import arm3r_cpp as arm3r
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = Path(arm3r.__file__).parent
+
+Cli = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The repository."""
+    return ROOT
+
+
+@pytest.fixture(scope="session")
+def package() -> Path:
+    """The installed package: lib/, bin/, include/ lie in it."""
+    return PACKAGE
+
+
+@pytest.fixture(scope="session")
+def executable() -> Path:
+    """The C++ program itself, not its Python entry point."""
+    return PACKAGE / "bin" / "arm3r"
+
+
+@pytest.fixture(scope="session")
+def scripts() -> Path:
+    """Where arm3r, arm3r-plot and cmake stand."""
+    return Path(sys.executable).parent
+
+
+@pytest.fixture(scope="session")
+def cli(executable: Path) -> Cli:
+    """cli("run", path, ...): run the executable; text in and out, other arguments as subprocess.run's."""
+
+    def call(*arguments: object, **options: object) -> subprocess.CompletedProcess[str]:
+        options = {"capture_output": True, "text": True, "timeout": 120, **options}
+        return subprocess.run([executable, *map(str, arguments)], **options)
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def python() -> Cli:
+    """python(code, **environment): run code in a fresh interpreter."""
+
+    def call(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, env={**os.environ, **environment}
+        )
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def moving_wall(root: Path) -> Path:
+    """The file of the lecture's moving wall."""
+    return root / "scenarios" / "moving_wall.yaml"
+
+
+@pytest.fixture
+def lecture(moving_wall: Path) -> arm3r.Scenario:
+    """The lecture's moving wall, read afresh."""
+    return arm3r.Scenario.load(moving_wall)
+
+
+@pytest.fixture(scope="session")
+def lecture_run(moving_wall: Path) -> arm3r.Run:
+    """The lecture's moving wall, run once."""
+    return arm3r.Scenario.load(moving_wall).run()

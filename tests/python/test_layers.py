@@ -1,0 +1,87 @@
+"""The parts of the C++ sources know only what lies below them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+# From the bottom up. The parts of one line do not know each other; the files of one part do.
+LAYERS = [
+    ["arm3r", "primitives"],
+    ["elementary", "numbers text"],
+    ["real", "error"],
+    ["dual", "expr", "pack", "schema suggest", "columns"],
+    ["eigen_traits"],
+    ["vectors", "integrators"],
+    ["arm", "wall"],
+    ["kinematics", "recursion", "contact"],
+    ["dynamics"],
+    ["controllers"],
+    ["plant"],
+    ["setup", "sample"],
+    ["validate", "events"],
+    ["simulation"],
+    ["yaml_events", "input", "output"],
+    ["paths"],
+    ["checks results csv"],
+    ["scenario scenario_set scenario_text"],
+    ["reference"],
+    ["c_api c_api_error c_api_numbers c_api_text"],
+    ["cli"],
+]
+HEIGHT = {stem: height for height, layer in enumerate(LAYERS) for part in layer for stem in part.split()}
+PART = {stem: part for layer in LAYERS for part in layer for stem in part.split()}
+
+# What only these parts may include.
+RESERVED = {
+    r"yaml-cpp/.*": {"yaml_events"},
+    r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {"input", "output", "cli"},
+    r"iostream": {"cli"},
+}
+
+
+def _sources(root: Path) -> list[Path]:
+    return [path for path in sorted((root / "cpp").rglob("*")) if path.suffix in (".h", ".hpp", ".cpp")]
+
+
+def _includes(path: Path) -> list[tuple[str, str]]:
+    return re.findall(r'^#include ([<"])(.*)[>"]', path.read_text(), re.M)
+
+
+def _stem(name: str) -> str:
+    stem = Path(name).stem
+    return "cli" if stem.startswith("cli") else stem
+
+
+def test_every_file_has_a_place_and_every_place_a_file(root: Path) -> None:
+    assert {_stem(path.name) for path in _sources(root)} == HEIGHT.keys()
+
+
+def test_no_include_points_up(root: Path) -> None:
+    upward = [
+        f"{path.name} includes {name}"
+        for path in _sources(root)
+        for kind, name in _includes(path)
+        if kind == '"'
+        and PART[_stem(name)] != PART[_stem(path.name)]
+        and HEIGHT[_stem(name)] >= HEIGHT[_stem(path.name)]
+    ]
+    assert upward == []
+
+
+def test_files_and_yaml_stay_where_they_belong(root: Path) -> None:
+    misplaced = [
+        f"{path.name} includes {name}"
+        for path in _sources(root)
+        for kind, name in _includes(path)
+        for reserved, parts in RESERVED.items()
+        if kind == "<" and re.fullmatch(reserved, name) and _stem(path.name) not in parts
+    ]
+    assert misplaced == []
+
+
+def test_the_executable_knows_only_the_c_interface(root: Path) -> None:
+    for path in _sources(root):
+        if _stem(path.name) == "cli":
+            own = [name for kind, name in _includes(path) if kind == '"' and not name.startswith("cli")]
+            assert own == ["arm3r/arm3r.h"] or own == [], path.name
