@@ -10,7 +10,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
 SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md \
            $(shell find cpp cmake python -type f -not -path '*/__pycache__/*')
-CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp' -o -name '*.[ch]')
+CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 
 .PHONY: run test gates bench format lint clean
@@ -32,7 +32,8 @@ gates: $(VENV)/test $(BUILD)/tests
 bench: $(VENV)/test
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
 	$(BIN)/cmake --build $(BUILD) --target arm3r_benchmarks
-	$(BIN)/python benchmarks/run.py
+	mkdir -p out
+	$(BUILD)/arm3r_benchmarks | tee out/benchmarks.csv
 
 format: $(VENV)/dev
 	$(BIN)/clang-format -i $(CODE)

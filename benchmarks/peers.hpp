@@ -19,7 +19,7 @@ struct Numbers {
     double gravity[3];  // m/s^2
 };
 
-class Pinocchio {
+class [[gnu::visibility("default")]] Pinocchio {
 public:
     static std::string build();  // version, compiler and flags
     explicit Pinocchio(const Numbers& numbers);
@@ -31,7 +31,7 @@ private:
     std::unique_ptr<Inside> in_;
 };
 
-class Mujoco {
+class [[gnu::visibility("default")]] Mujoco {
 public:
     static std::string build();
     Mujoco(const Numbers& numbers, double step);

@@ -8,22 +8,19 @@ namespace {
 constexpr double stencil = 1.0 / 64;         // of the step
 constexpr double shortest_stencil = 2e-6;    // s: below it rounding would swamp the difference
 
-Vec3<double> tip_at(const Arm<double>& arm, const Inside& inside, double theta) {
-    const FullState y = inside(theta);
-    return tip_position(arm, pose(angles(y)));
-}
-
 Vec3<double> differentiated_tip(const Arm<double>& arm, const Inside& inside, double theta) {  // (5.4)
     const double d = std::max(inside.h * stencil, shortest_stencil);
-    const double dtheta = d / inside.h;
-    const Vec3<double> far_behind = tip_at(arm, inside, theta - 2 * dtheta), behind = tip_at(arm, inside, theta - dtheta);
-    const Vec3<double> ahead = tip_at(arm, inside, theta + dtheta), far_ahead = tip_at(arm, inside, theta + 2 * dtheta);
+    const double step = d / inside.h;
+    using Four = Pack<4>;  // the four points of the difference, side by side
+    const Four at(Four::Vector{theta - 2 * step, theta - step, theta + step, theta + 2 * step});
+    const Vec3<Four> q(inside.component(0, at), inside.component(1, at), inside.component(2, at));
+    const Vec3<Four> tip = tip_position(arm, pose(q));
     Vec3<double> v;
-    for (int i = 0; i < 3; ++i) v[i] = (8.0 * (ahead[i] - behind[i]) - (far_ahead[i] - far_behind[i])) / (12 * d);
+    for (int i = 0; i < 3; ++i) v[i] = (8.0 * (tip[i][2] - tip[i][1]) - (tip[i][3] - tip[i][0])) / (12 * d);
     return v;
 }
 
-Indentation<double> indentation_of(const Plant<double>& plant, const WallState<double>& wall, const Pose<double>& p, const Vec3<double>& qd) {
+ARM3R_INLINE Indentation<double> indentation_of(const Plant<double>& plant, const WallState<double>& wall, const Pose<double>& p, const Vec3<double>& qd) {
     return indentation(plant.wall, wall, tip_position(plant.arm, p), tip_velocity(plant.arm, p, qd));
 }
 

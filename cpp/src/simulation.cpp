@@ -91,7 +91,11 @@ private:
 
     void log(double t, const FullState& y, const Inside& inside, double theta) {
         const Row row = sample(setup_.plant, setup_.simscape, t, y, mode_, energy_at_start_, inside, theta);
-        for (std::size_t i = 0; i < run_.columns.size(); ++i) run_.data[i * run_.capacity + run_.rows] = row.value[run_.columns[i]];
+        double* cell = run_.data.get() + run_.rows;
+        for (const std::size_t column : run_.columns) {
+            *cell = row.value[column];
+            cell += run_.capacity;
+        }
         run_.rows += 1;
         note_residual(row.value.back());
         if (row.link_behind_wall && link_behind_since_ < 0) link_behind_since_ = t;
@@ -175,12 +179,10 @@ private:
     }
 
     double weighted_norm(const FullState& v) const {
-        double sum = 0;
-        for (std::size_t i = 0; i < motion_size; ++i) {
-            const double ratio = v[i] / (setup_.solver.atol + setup_.solver.rtol * std::abs(y_[i]));
-            sum += ratio * ratio;
-        }
-        return std::sqrt(sum / double(motion_size));
+        double largest = 0;
+        for (std::size_t i = 0; i < motion_size; ++i)
+            largest = std::max(largest, std::abs(v[i]) / (setup_.solver.atol + setup_.solver.rtol * std::abs(y_[i])));
+        return largest;
     }
 
     double first_step() {  // (5.2)
@@ -218,7 +220,7 @@ private:
         }
         stepper_.step(rhs_, t_, y_, f_, h);
         run_.steps.evaluations += 6;
-        const double error = is_finite(stepper_.y1) ? stepper_.error(y_, h, setup_.solver.rtol, setup_.solver.atol) : infinite_;
+        const double error = is_finite(stepper_.y1) && is_finite(stepper_.f1) ? stepper_.error(y_, h, setup_.solver.rtol, setup_.solver.atol) : infinite_;
         if (!(error < 1)) {
             reject(h, error);
             return;

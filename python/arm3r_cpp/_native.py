@@ -23,8 +23,8 @@ def _check_abi() -> None:
     found, expected = lib.arm3r_abi_version(), lib.ARM3R_ABI
     if found != expected:
         raise IncompatibleError(
-            f"libarm3r.so speaks version {found} of the C interface (it is arm3r {version}), the Python extension speaks "
-            f"version {expected}; install arm3r_cpp again, and look for another libarm3r.so in "
+            f"libarm3r.so speaks version {found} of the C interface (it is arm3r {version}), the Python extension "
+            f"speaks version {expected}; install arm3r_cpp again, and look for another libarm3r.so in "
             f"LD_LIBRARY_PATH={os.getenv('LD_LIBRARY_PATH', '')} and LD_PRELOAD={os.getenv('LD_PRELOAD', '')}",
             status=lib.ARM3R_E_ABI,
             code="abi",

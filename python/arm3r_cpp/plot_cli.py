@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, NoReturn
 from .errors import Arm3rError, BudgetError, IncompatibleError, NumericalError, OutputError, ScenarioError, UsageError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from .run import Run
 
 FORMATS = ("png", "pdf", "svg")
@@ -30,7 +28,7 @@ EXIT = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Entry point of `arm3r-plot`; argv without the program's name. Returns the exit code, with the meaning it has for `arm3r`."""
+    """Entry point of `arm3r-plot`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
     options = parser().parse_args(argv)
     try:
         target = target_of(options)
@@ -47,11 +45,14 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="arm3r-plot", description="Draw a run: one overview, or the lecture's figures.")
-    parser.add_argument("run", type=Path, metavar="RUN", help="RUN.csv with RUN.json beside it, RUN.npz, or a scenario.yaml to run")
-    parser.add_argument("--lecture", action="store_true", help="one file a figure: tip, velocities, torques, energies, strobe, wall, contact")
-    parser.add_argument("-o", dest="out", type=Path, metavar="PATH", help="folder, or without --lecture also a file (default: here)")
-    parser.add_argument("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
+    parser = argparse.ArgumentParser(
+        prog="arm3r-plot", description="Draw a run: an overview in one figure, or the lecture's figures."
+    )
+    add = parser.add_argument
+    add("run", type=Path, metavar="RUN", help="RUN.csv with RUN.json beside it, RUN.npz, or a scenario .yaml to run")
+    add("--lecture", action="store_true", help="tip, velocities, torques, energies, wall, contact, strobe: a file each")
+    add("-o", dest="out", type=Path, metavar="PATH", help="folder, or without --lecture also a file (default: here)")
+    add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
     return parser
 
 
@@ -77,7 +78,8 @@ def read(path: Path) -> tuple[Run, Arm3rError | None]:
         try:
             return Run.load(path), None
         except (OSError, ValueError, KeyError) as error:
-            raise UsageError(f"{path}: not a run: {error}; RUN.csv needs RUN.json beside it, as `arm3r run -o RUN.csv` writes them") from error
+            hint = "RUN.csv needs RUN.json beside it, as `arm3r run -o RUN.csv` writes them"
+            raise UsageError(f"{path}: not a run: {error}; {hint}") from error
     try:
         return Scenario.load(path).run(), None
     except Arm3rError as error:
@@ -94,9 +96,10 @@ def save(run: Run, options: argparse.Namespace, target: tuple[Path, str]) -> Non
     from .plot_style import style
 
     stem, suffix = target
-    figures: dict[str, Figure] = (
-        {f"{stem}_{name}": figure for name, figure in lecture(run).items()} if options.lecture else {str(stem): overview(run)}
-    )
+    if options.lecture:
+        figures = {f"{stem}_{name}": figure for name, figure in lecture(run).items()}
+    else:
+        figures = {str(stem): overview(run)}
     try:
         stem.parent.mkdir(parents=True, exist_ok=True)
         for name, figure in figures.items():

@@ -8,16 +8,31 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .plot_strobe import strobe
-from .plot_style import AMBER, BLACK, BLUE, GREEN, JOINTS, PINK, RED, SKY, XYZ, contact_spans, draw, event_legend, finish, panels
+from .plot_style import (
+    AMBER,
+    BLACK,
+    BLUE,
+    GREEN,
+    JOINTS,
+    PINK,
+    RED,
+    SKY,
+    XYZ,
+    contact_spans,
+    draw,
+    event_legend,
+    finish,
+    panels,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from ._native import Floats
     from .run import Run
 
-FLOOR = 1e-17  # m/s and J: where a logarithmic axis puts what is exactly zero
-NEEDLE = 0.1
+NEEDLE = 0.1  # of the run: a contact shorter than this gets a time axis of its own
 
 
 def has_wall(run: Run) -> bool:
@@ -46,15 +61,24 @@ def velocities(run: Run) -> Figure:
         ax.plot(run.t, run[f"tip_v{c}"], color=SKY, lw=3.2, label="transform sensor")
         ax.plot(run.t, run[f"tip_jv{c}"], color=BLACK, lw=1.0, label=r"$J\,\dot q$")
         ax.plot(run.t, run[f"tip_dv{c}"], color=RED, lw=1.4, ls=(0, (1, 2)), label="position differentiated")
-        finish(ax, run, f"$v_{c}$, m/s")
-        if c != "x":
-            ax.get_legend().remove()
-    for name, colour, label in (("tip_jv", BLACK, r"$|J\,\dot q -$ sensor|"), ("tip_dv", RED, "|differentiated − sensor|")):
-        difference = np.linalg.norm(run[name] - run["tip_v"], axis=1)
-        residual.semilogy(run.t, np.maximum(difference, FLOOR), color=colour, lw=0.9, label=label)
+        finish(ax, run, f"$v_{c}$, m/s", legend=c == "x")
+    distance = {
+        r"$J\,\dot q -$ sensor": np.linalg.norm(run["tip_jv"] - run["tip_v"], axis=1),
+        "differentiated − sensor": np.linalg.norm(run["tip_dv"] - run["tip_v"], axis=1),
+    }
+    draw_residuals(residual, run, distance)
     finish(residual, run, "residual, m/s")
     event_legend(figure, run)
     return figure
+
+
+def draw_residuals(ax: Axes, run: Run, values: dict[str, Floats]) -> None:
+    """Sizes on a logarithmic axis; what is exactly zero throughout is said in the legend, as it cannot be drawn."""
+    ax.set_yscale("log", nonpositive="mask")
+    for (label, size), colour in zip(values.items(), (BLACK, RED), strict=False):
+        ax.plot(run.t, size, color=colour, lw=0.9, label=label if np.any(size) else f"{label}: exactly 0")
+    if not any(np.any(size) for size in values.values()):
+        ax.set_yticks([])
 
 
 def wall(run: Run) -> Figure:
@@ -96,9 +120,7 @@ def torques(run: Run) -> Figure:
     for ax, i in zip(axes, JOINTS, strict=True):
         ax.plot(run.t, run[f"tau{i}"], color=BLUE, label="applied")
         ax.plot(run.t, run[f"tau_g{i}"], color=RED, ls="--", label="would hold the arm")
-        finish(ax, run, rf"$\tau_{i}$, N m")
-        if i != "1":
-            ax.get_legend().remove()
+        finish(ax, run, rf"$\tau_{i}$, N m", legend=i == "1")
     event_legend(figure, run)
     return figure
 
@@ -115,7 +137,7 @@ def draw_energies(ax: Axes, run: Run) -> None:
     )
     for name, colour, dashes, width, label in terms:
         energy = run[name] - run[name][0] if name == "energy_potential" else run[name]
-        if np.any(energy) or name == "energy_kinetic":
+        if np.any(energy) or name in ("energy_kinetic", "energy_potential"):
             ax.plot(run.t, energy, color=colour, ls=dashes, lw=width, label=label)
 
 
@@ -123,7 +145,7 @@ def energies(run: Run) -> Figure:
     figure, (terms, residual) = panels(run, [2.0, 1.2])
     draw_energies(terms, run)
     finish(terms, run, "energy, J")
-    residual.semilogy(run.t, np.maximum(abs(run["energy_residual"]), FLOOR), color=BLACK, lw=0.9)
-    finish(residual, run, "|residual|, J")
+    draw_residuals(residual, run, {"what the balance leaves over": abs(run["energy_residual"])})
+    finish(residual, run, "residual, J")
     event_legend(figure, run)
     return figure

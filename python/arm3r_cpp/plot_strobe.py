@@ -83,9 +83,9 @@ def draw_joint_axes(ax: Any, axes: Any, origins: Any, reach: float) -> None:
         name = ax.text(*(end + 0.06 * reach * axis), f"$q_{i}$", color=GREEN, ha="center", va="center", zorder=9)
         name.set_path_effects([withStroke(linewidth=3, foreground="white")])
         side = np.cross(axis, [0, 1, 0] if abs(axis[1]) < 0.9 else [0, 0, 1])
-        side /= np.linalg.norm(side)
+        side *= 0.07 * reach / np.linalg.norm(side)
         angle = np.linspace(0, 1.5 * np.pi, 40)[:, None]
-        circle = origin + 0.22 * reach * axis + 0.07 * reach * (np.cos(angle) * side + np.sin(angle) * np.cross(axis, side))
+        circle = origin + 0.22 * reach * axis + np.cos(angle) * side + np.sin(angle) * np.cross(axis, side)
         ax.plot(*circle.T, color=GREEN, lw=1.4, zorder=6)
         arrow(ax, circle[-3], circle[-1], GREEN, 1.4, head=2.0)
 
@@ -112,11 +112,11 @@ def draw_walls(ax: Any, run: Run, scenario: Any, reach: float) -> None:
     outline = wall_outline(scenario, reach)
     for k, t in enumerate(times):
         corners = outline + [np.interp(t, run.t, origin[:, c]) for c in range(3)]
-        strength = (k + 1) / len(times)
-        face = Poly3DCollection([corners], facecolor=AMBER, edgecolor=BLACK, alpha=0.12 + 0.2 * strength, lw=0.8, zorder=1)
-        ax.add_collection3d(face)
+        alpha = 0.12 + 0.2 * (k + 1) / len(times)
+        ax.add_collection3d(Poly3DCollection([corners], fc=AMBER, ec=BLACK, alpha=alpha, lw=0.8, zorder=1))
         ax.auto_scale_xyz(*corners.T, had_data=True)
-    ax.plot([], [], color=AMBER, alpha=0.4, lw=7, label=f"wall at {', '.join(f'{t:.4g}' for t in times)} s, darker is later")
+    moments = ", ".join(f"{t:.4g}" for t in times)
+    ax.plot([], [], color=AMBER, alpha=0.4, lw=7, label=f"wall at {moments} s, darker is later")
 
 
 def wall_outline(scenario: Any, reach: float) -> NDArray[np.float64]:
@@ -131,9 +131,11 @@ def wall_outline(scenario: Any, reach: float) -> NDArray[np.float64]:
     return np.array([a * half[0] * e1 + b * half[1] * e2 for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 
 
-def arrow(ax: Any, start: Any, end: Any, colour: str, width: float, *, head: float = 0.25, label: str | None = None) -> None:
+def arrow(
+    ax: Any, start: Any, end: Any, colour: str, width: float, *, head: float = 0.25, label: str | None = None
+) -> None:
     ax.auto_scale_xyz(*np.stack([start, end]).T, had_data=True)
-    ax.quiver(*start, *(np.asarray(end) - start), color=colour, lw=width, arrow_length_ratio=head, zorder=7, label=label)
+    ax.quiver(*start, *(end - start), color=colour, lw=width, arrow_length_ratio=head, zorder=7, label=label)
 
 
 def fit(ax: Any, q1: float) -> None:
@@ -148,4 +150,4 @@ def fit(ax: Any, q1: float) -> None:
     ax.set(xlim=limits[0], ylim=limits[1], zlim=limits[2], xlabel="x, m", ylabel="y, m", zlabel="z, m")
     ax.set_box_aspect(spans, zoom=0.92)
     ax.xaxis.labelpad = 9
-    ax.view_init(elev=18, azim=np.degrees(q1) - 62)
+    ax.view_init(elev=20, azim=np.degrees(q1) - 72)

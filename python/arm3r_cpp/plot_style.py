@@ -19,7 +19,7 @@ XYZ, JOINTS = "xyz", "123"
 DASHES = {"make": ":", "break": (0, (4, 2))}
 LABELLED_EVENTS = 4
 
-RC = {
+RC: Any = {
     "font.size": 9,
     "axes.labelsize": 9,
     "axes.grid": True,
@@ -68,13 +68,13 @@ def draw(ax: Axes, run: Run, names: Sequence[str], labels: Sequence[str], **styl
         ax.plot(run.t, run[name], label=label, **{**look, **style})
 
 
-def finish(ax: Axes, run: Run, quantity: str) -> None:
+def finish(ax: Axes, run: Run, quantity: str, *, legend: bool = True) -> None:
     """Label with quantity and unit, shade contact, mark events, and put the legend above the axes."""
     ax.set_ylabel(quantity)
     if ax.get_yscale() == "linear":
         widen_if_flat(ax)
     handles, labels = ax.get_legend_handles_labels()
-    if len(handles) > 1:
+    if handles and legend:
         ax.legend(handles, labels, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.1, ncols=len(handles))
     mark_contact(ax, run)
 
@@ -97,7 +97,8 @@ def mark_contact(ax: Axes, run: Run) -> None:
     for start, end in contact_spans(run):
         ax.axvspan(start, end, color=AMBER, alpha=0.15, lw=0, zorder=0, label="contact")
     for event in run.events:
-        ax.axvline(event.t, color=BLACK, lw=0.8, ls=DASHES[event.type], zorder=1, label=f"{event.type} at {event.t:.4f} s")
+        label = f"{event.type} at {event.t:.4f} s"
+        ax.axvline(event.t, color=BLACK, lw=0.8, ls=DASHES[event.type], zorder=1, label=label)
 
 
 def event_legend(figure: Figure, run: Run) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import json
 import os
-import tempfile
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
@@ -153,21 +152,20 @@ class Run:
         Raises:
             OSError: it cannot be written.
         """
-        with tempfile.NamedTemporaryFile(dir=Path(path).parent, suffix=".npz.part", delete=False) as part:
-            try:
+        part = Path(f"{os.fspath(path)}.{os.getpid()}.part")
+        try:
+            with part.open("xb") as file:
                 np.savez(
-                    part,
+                    file,
                     columns=self.columns,
                     units=list(self.units.values()),
                     data=np.stack(list(self._columns.values())),
                     summary=json.dumps(self.summary),
                     report=self._text() or "",
                 )
-                part.close()
-                os.replace(part.name, path)
-            except BaseException:
-                os.unlink(part.name)
-                raise
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Run:

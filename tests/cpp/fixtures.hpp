@@ -63,8 +63,8 @@ private:
 
 // A link whose every number differs from that of any other.
 inline void randomise_link(Params& params, const std::string& link, Random& random) {
-    const double length = random.in(0.3, 1.5);
-    const Vec3<double> part = random.vector(0.001, 0.05);
+    const double length = random.in(0.3, 1.2);
+    const Vec3<double> part = random.vector(0.005, 0.05);
     params.set(link + ".length", length).set(link + ".mass", random.in(0.3, 3)).set(link + ".com", length * random.in(0.1, 0.9));
     params.set(link + ".inertia", {part[1] + part[2], part[0] + part[2], part[0] + part[1]});
 }
@@ -73,7 +73,7 @@ inline void randomise_link(Params& params, const std::string& link, Random& rand
 inline Params random_params(Random& random) {
     Params params;
     params.choose("arm.convention", "slide").set("arm.base_height", random.in(-1, 1)).set("arm.gravity", random.vector(-10, 10));
-    params.set("arm.link1.mass", random.in(0.3, 3)).set("arm.link1.com", random.in(-0.5, 0.5)).set("arm.link1.inertia_axial", random.in(0.05, 0.5));
+    params.set("arm.link1.mass", random.in(0.3, 3)).set("arm.link1.com", random.in(-0.5, 0.5)).set("arm.link1.inertia_axial", random.in(0.1, 0.5));
     randomise_link(params, "arm.link2", random);
     randomise_link(params, "arm.link3", random);
     params.set("arm.payload.mass", random.in(0, 2)).set("arm.armature", random.vector(0, 0.1));

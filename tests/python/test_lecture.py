@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 NAMES = sorted(str(path.relative_to(SCENARIOS)) for path in SCENARIOS.rglob("*.yaml"))
 LECTURE = [name for name in NAMES if name.startswith("lecture/")]
 D = np.array([1, -1, -1])
+Array = NDArray[np.float64]
 G, G_MOON = 9.80665, 1.62
 
 every_scenario = pytest.mark.parametrize("name", NAMES)
@@ -96,9 +99,7 @@ def test_closed_form_and_recursion_hold_with_the_same_torque(pose: str) -> None:
 def test_partial_compensation_is_the_free_fall_slowed() -> None:
     factor = np.sqrt(6 / 5)
     fall = slowed("format: 1", factor=1)
-    partial = slowed(
-        f"{{format: 1, controller: {{type: gravity_compensation, gravity: {G / 6!r}}}}}", factor=factor
-    )
+    partial = slowed(f"{{format: 1, controller: {{type: gravity_compensation, gravity: {G / 6!r}}}}}", factor=factor)
     assert np.allclose(partial["q"], fall["q"], rtol=0, atol=1e-8)
     assert np.allclose(partial["qd"] * factor, fall["qd"], rtol=0, atol=1e-7)
 
@@ -110,34 +111,96 @@ def test_an_arm_on_the_moon_is_slowed_more() -> None:
     assert np.allclose(moon["q"], fall["q"], rtol=0, atol=1e-8)
 
 
-# ---- what the lecture's holds cannot see, and the unequal arm can ---------------------------------------------------
+# ---- what the lecture's tests cannot see, and unequal links can ------------------------------------------------------
+
+JACOBIAN = (
+    "-s(q1)*(a3*c(q2+q3)+a2*c(q2))", "-c(q1)*(a3*s(q2+q3)+a2*s(q2))", "-a3*s(q2+q3)*c(q1)",
+    "c(q1)*(a3*c(q2+q3)+a2*c(q2))", "-s(q1)*(a3*s(q2+q3)+a2*s(q2))", "-a3*s(q2+q3)*s(q1)",
+    "0", "-(a3*c(q2+q3)+a2*c(q2))", "-a3*c(q2+q3)",
+)  # fmt: skip
+TORQUE = ("0", "-m2*g*(a2/2)*c(q2)-m3*g*(a2*c(q2)+(a3/2)*c(q2+q3))", "-m3*g*(a3/2)*c(q2+q3)")
+SLIPS = (
+    ("a2", "a3"), ("a3", "a2"), ("m2", "m3"), ("m3", "m2"), ("q2+q3", "q2"), ("q2+q3", "q2-q3"),
+    ("s(", "c("), ("c(", "s("), ("q1", "0"), ("q1", "-q1"), ("/2", ""),
+)  # fmt: skip
+EQUAL = {"a2": 1.0, "a3": 1.0, "m2": 0.785, "m3": 0.785}
+UNEQUAL = {"a2": 0.8, "a3": 0.55, "m2": 2.592, "m3": 3.051860913421635}  # of 13 and 14
+
+Mistake = tuple[int, str]
+States = list[tuple[Array, Array]]
 
 
-def length_and_mass(link: dict[str, Any]) -> tuple[float, float]:
-    area = np.prod(link["section"]) if link["shape"] == "brick" else np.pi * link["radius"] ** 2
-    return link["length"], link["length"] * area * link["density"]
+def value(formula: str, q: Array, links: dict[str, float]) -> float:
+    names = {"q1": q[0], "q2": q[1], "q3": q[2], "s": np.sin, "c": np.cos, "g": G}
+    return eval(formula, names | links)
 
 
-def slide_torque(q: np.ndarray, scenario: arm3r.Scenario, *, fault: str = "") -> np.ndarray:
-    """The slide's gravity torque in the lecture's code signs, with one of its misprints planted."""
-    (a2, m2), (a3, m3) = (length_and_mass(scenario[f"arm.link{i}"]) for i in (2, 3))
-    last = a2 / 2 if fault == "a2/2" else a3 / 2
-    c2 = np.cos(q[1])
-    c23 = c2 if fault == "cos q2" else np.cos(q[1] + q[2])
-    t3 = -m3 * G * last * c23
-    t2 = -m2 * G * a2 / 2 * c2 - m3 * G * a2 * c2 + t3
-    return np.array([q[0] if fault == "t1 = q1" else 0.0, t2, t3])
+def mistakes(formulas: tuple[str, ...]) -> Iterator[Mistake]:
+    """One wrong sign, zero, letter, function or angle at a time: the formula's place, and the formula with it."""
+    for place, right in enumerate(formulas):
+        if right != "0":
+            yield from ((place, f"-({right})"), (place, "0"))
+        for letters, slip in SLIPS:
+            for found in re.finditer(re.escape(letters), right):
+                yield place, right[: found.start()] + slip + right[found.end() :]
 
 
-@pytest.mark.parametrize("fault", ["t1 = q1", "a2/2", "cos q2"])
-def test_a_misprint_of_the_slide_hides_in_the_lecture_and_shows_in_13(fault: str) -> None:
-    def error(name: str, fault: str) -> float:
-        scenario = arm3r.Scenario.load(SCENARIOS / "lecture" / name)
-        q = np.array(scenario["initial.q"])
-        return abs(slide_torque(q, scenario, fault=fault) - scenario.arm.gravity_torque(q)).max()
+def seen(formulas: tuple[str, ...], mistake: Mistake, states: States, links: dict[str, float]) -> bool:
+    """Whether an entry times its joint rate is off by 1e-9 in one of the states; a torque has no rate."""
+    place, wrong = mistake
+    return any(
+        abs((value(wrong, q, links) - value(formulas[place], q, links)) * rate[place % 3]) > 1e-9 for q, rate in states
+    )
 
-    assert error("01_hold_pose_a.yaml", "") < 1e-12
-    assert error("13_unequal_hold.yaml", "") < 1e-12
-    assert error("01_hold_pose_a.yaml", fault) < 1e-12
-    assert error("03_hold_pose_b.yaml", fault) < 1e-12
-    assert error("13_unequal_hold.yaml", fault) > 0.1
+
+def random_states() -> States:
+    random = np.random.default_rng(1)
+    return [(random.uniform(-3, 3, 3), random.uniform(-3, 3, 3)) for _ in range(20)]
+
+
+def lecture_fall() -> States:
+    run = run_of("lecture/06_jacobian_by_three_velocities.yaml")
+    return list(zip(run["q"], run["qd"], strict=True))[::20]
+
+
+def lecture_holds() -> States:
+    return [(np.radians(pose), np.ones(3)) for pose in ((0, -30, 60), (0, -45, 90))]
+
+
+def start_of_14() -> States:
+    scenario = arm3r.Scenario.load(SCENARIOS / "lecture/14_unequal_fall.yaml")
+    return [(np.array(scenario["initial.q"]), np.array(scenario["initial.qd"]))]
+
+
+@pytest.mark.parametrize(
+    ("formulas", "lecture", "counts"),
+    [(JACOBIAN, lecture_fall, (73, 26, 60, 73)), (TORQUE, lecture_holds, (22, 13, 15, 22))],
+    ids=["jacobian", "gravity torque"],
+)
+def test_how_many_planted_mistakes_are_seen(
+    formulas: tuple[str, ...], lecture: Callable[[], States], counts: tuple[int, ...]
+) -> None:
+    """The table of docs/lecture.md. A mistake that changes nothing anywhere is none."""
+    planted = [m for m in mistakes(formulas) if seen(formulas, m, random_states(), UNEQUAL)]
+    tests = ((lecture(), EQUAL), (random_states(), EQUAL), (start_of_14(), UNEQUAL))
+    assert (len(planted), *(sum(seen(formulas, m, *test) for m in planted) for test in tests)) == counts
+
+
+@pytest.mark.parametrize("name", ["01_hold_pose_a", "03_hold_pose_b", "13_unequal_hold"])
+def test_the_lectures_own_formulas_are_right(name: str) -> None:
+    scenario = arm3r.Scenario.load(SCENARIOS / f"lecture/{name}.yaml")
+    links = UNEQUAL if name.startswith("13") else EQUAL
+    q = np.array(scenario["initial.q"])
+    assert np.allclose([value(f, q, links) for f in JACOBIAN], scenario.arm.jacobian(q).ravel(), rtol=0, atol=1e-12)
+    assert np.allclose([value(f, q, links) for f in TORQUE], scenario.arm.gravity_torque(q), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("slip", ["t1 = q1", "a3/2 as a2/2", "cos(q2+q3) as cos(q2)"])
+def test_three_slips_of_the_lecture_hide_in_its_holds_and_show_in_13(slip: str) -> None:
+    wrong = {
+        "t1 = q1": (0, "q1"),
+        "a3/2 as a2/2": (2, TORQUE[2].replace("a3/2", "a2/2")),
+        "cos(q2+q3) as cos(q2)": (2, TORQUE[2].replace("q2+q3", "q2")),
+    }[slip]
+    assert not seen(TORQUE, wrong, lecture_holds(), EQUAL)
+    assert seen(TORQUE, wrong, start_of_14(), UNEQUAL)

@@ -15,11 +15,17 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 from arm3r_cpp import plot_cli
+from conftest import Cli
 from matplotlib.figure import Figure
 
 WITHOUT_WALL = {"tip", "velocities", "torques", "energies", "strobe"}
 WITH_WALL = WITHOUT_WALL | {"wall", "contact"}
-BOUNCE = "{format: 1, wall: {point: [1.74, 0, 0], acts_on_arm: true}, controller: {type: gravity_compensation}, time: {stop: 1}}"
+BOUNCE = """
+format: 1
+wall: {point: [1.74, 0, 0], acts_on_arm: true}
+controller: {type: gravity_compensation}
+time: {stop: 1}
+"""
 FALL = "{format: 1, time: {stop: 0.5}}"
 
 
@@ -56,7 +62,7 @@ def legend_covers_data(figure: Figure) -> bool:
     return any(legend.get_window_extent().padded(-2).overlaps(box) for legend in legends for box in boxes)
 
 
-# ---- figures ----------------------------------------------------------------------------------------------------------
+# ---- figures --------------------------------------------------------------------------------------------------------
 
 
 def test_overview_is_a_figure_with_units(bounce: arm3r.Run) -> None:
@@ -122,12 +128,12 @@ def test_drawing_changes_no_settings(fall: arm3r.Run) -> None:
     assert dict(matplotlib.rcParams) == before
 
 
-def test_matplotlib_is_imported_by_drawing_only(python) -> None:
-    done = python(f"import sys, arm3r_cpp as a; a.plot.overview; a.Scenario({FALL!r}).run(); print('matplotlib' in sys.modules)")
+def test_matplotlib_is_imported_by_drawing_only(python: Cli) -> None:
+    done = python(f"import sys, arm3r_cpp as a; a.plot; a.Scenario({FALL!r}).run(); print('matplotlib' in sys.modules)")
     assert done.stdout.strip() == "False", done.stderr
 
 
-# ---- arm3r-plot -------------------------------------------------------------------------------------------------------
+# ---- arm3r-plot -----------------------------------------------------------------------------------------------------
 
 
 def test_overview_of_a_csv_into_a_file(stored: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -173,7 +179,12 @@ def test_what_there_is_of_a_run_that_failed_is_drawn(tmp_path: Path, capsys: pyt
     ],
 )
 def test_failures_say_why_and_exit_like_arm3r(
-    arguments: list[str], code: int, words: str, stored: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: list[str],
+    code: int,
+    words: str,
+    stored: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(stored.parent)
     shutil.copy("bounce.csv", "alone.csv")
@@ -191,5 +202,6 @@ def test_the_installed_command(stored: Path, scripts: Path) -> None:
     assert done.returncode == 0
     assert "--lecture" in done.stdout
     assert subprocess.run([scripts / "arm3r-plot"], capture_output=True, timeout=60).returncode == 2
-    done = subprocess.run([scripts / "arm3r", "plot", stored, "-o", stored.parent], capture_output=True, text=True, timeout=120)
+    plot = [scripts / "arm3r", "plot", stored, "-o", stored.parent]
+    done = subprocess.run(plot, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr

@@ -18,11 +18,15 @@ template <class T, std::size_t N> struct Interpolant {
     T t0, h;
     std::array<State<T, N>, 5> c;
 
+    // One component, at one instant or at several side by side.
+    template <class S> ARM3R_INLINE S component(std::size_t i, const S& theta) const {
+        const S rest = 1.0 - theta;
+        return c[0][i] + theta * (c[1][i] + rest * (c[2][i] + theta * (c[3][i] + rest * c[4][i])));
+    }
+
     State<T, N> operator()(const T& theta) const {
-        const T rest = 1.0 - theta;
         State<T, N> y;
-        for (std::size_t i = 0; i < N; ++i)
-            y[i] = c[0][i] + theta * (c[1][i] + rest * (c[2][i] + theta * (c[3][i] + rest * c[4][i])));
+        for (std::size_t i = 0; i < N; ++i) y[i] = component(i, theta);
         return y;
     }
 };
@@ -86,16 +90,16 @@ template <class T, std::size_t N, std::size_t Norm> struct Dopri5 {
         f(t + h, y1, f1);
     }
 
-    // Root mean square over the motion of the error estimate, in units of the tolerance. A step is good below 1.
+    // The largest error estimate over the motion, in units of its tolerance. A step is good below 1.
+    // The largest, not a mean: a joint that stands still must not loosen the tolerance of one that moves.
     T error(const State<T, N>& y, const T& h, double rtol, double atol) const {
-        T sum(0.0);
+        T largest(0.0);
         for (std::size_t i = 0; i < Norm; ++i) {
             const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] - 17253.0 / 339200 * k[4][i] +
                              22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
-            const T ratio = e / (atol + rtol * max(abs(y[i]), abs(y1[i])));
-            sum = sum + ratio * ratio;
+            largest = max(largest, T(abs(e) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
         }
-        return sqrt(T(sum / double(Norm)));
+        return largest;
     }
 
     Interpolant<T, N> interpolant(const T& t, const State<T, N>& y, const T& h) const {

@@ -18,7 +18,7 @@ template <class T> struct Body {
     Vec3<T> inertia;  // kg m^2, principal, about com
 };
 
-template <class P, class T> std::array<Body<T>, 3> chain(const Arm<P>& arm, const Vec3<T>& q) {
+template <class P, class T> ARM3R_INLINE std::array<Body<T>, 3> chain(const Arm<P>& arm, const Vec3<T>& q) {
     const T o(0.0), l(1.0);
     std::array<Body<T>, 3> bodies;
 
@@ -52,7 +52,7 @@ template <class P, class T> std::array<Body<T>, 3> chain(const Arm<P>& arm, cons
 }
 
 // A vector in the axes of body `i`, turned into base axes.
-template <class T> Vec3<T> to_base(const std::array<Body<T>, 3>& bodies, int i, Vec3<T> v) {
+template <class T> ARM3R_INLINE Vec3<T> to_base(const std::array<Body<T>, 3>& bodies, int i, Vec3<T> v) {
     for (; i >= 0; --i) v = times(bodies[i].R, v);
     return v;
 }
@@ -61,7 +61,7 @@ template <class T> struct TipSensor {
     Vec3<T> position, velocity;  // m, m/s, base axes
 };
 
-template <class P, class T> TipSensor<T> tip_sensor(const Arm<P>& arm, const Vec3<T>& q, const Vec3<T>& qd) {
+template <class P, class T> ARM3R_INLINE TipSensor<T> tip_sensor(const Arm<P>& arm, const Vec3<T>& q, const Vec3<T>& qd) {
     const std::array<Body<T>, 3> bodies = chain(arm, q);
     const T o(0.0);
     Vec3<T> omega(o, o, o), velocity(o, o, o);  // of the body's joint, in its axes

@@ -1,0 +1,71 @@
+#include "ours.hpp"
+
+#include <random>
+
+#include "schema.hpp"
+
+namespace bench {
+
+using namespace arm3r;
+
+namespace {
+
+constexpr double start_time = 5.3;  // s, the lecture's wall is 3 mm from the tip then
+
+Setup setup_of(std::initializer_list<std::pair<const char*, double>> changes) {
+    std::vector<double> params = param_defaults();
+    for (const auto& [path, value] : changes) params[param_index(path)] = value;
+    return make_setup(params);
+}
+
+}  // namespace
+
+const std::vector<Query>& queries() {
+    static const std::vector<Query> made = [] {
+        std::mt19937_64 random(1);
+        std::uniform_real_distribution<double> angle(-3, 3), rate(-1, 1);
+        const auto joints = [&](auto& distribution) { return Joints{distribution(random), distribution(random), distribution(random)}; };
+        std::vector<Query> all(state_count);
+        for (Query& query : all) query = {joints(angle), joints(rate), joints(rate)};
+        return all;
+    }();
+    return made;
+}
+
+Setup free_fall() { return setup_of({}); }
+
+Setup compensated_at_wall() {
+    return setup_of({{"wall", 1}, {"wall.acts_on_arm", 1}, {"controller.type", double(Controls::gravity_compensation)}});
+}
+
+[[gnu::noinline]] void forward_dynamics(const Arm<double>& arm, const Query& query, Joints& qdd) {
+    const Vec3<double> q(query.q[0], query.q[1], query.q[2]), qd(query.qd[0], query.qd[1], query.qd[2]);
+    const Vec3<double> tau(query.tau[0], query.tau[1], query.tau[2]);
+    const Vec3<double> a = joint_acceleration(arm, pose(q), qd, tau);
+    qdd = {a[0], a[1], a[2]};
+}
+
+template <std::size_t Size> Stepper<Size>::Stepper(const Setup& setup) : setup_(setup), rhs_(setup_.plant) {
+    if (setup_.plant.acts_on_arm) rhs_.touch = Touch::each_stage;
+    start();
+}
+
+template <std::size_t Size> void Stepper<Size>::start() {
+    y_ = {};
+    for (int i = 0; i < 3; ++i) y_[i] = setup_.q[i];
+    t_ = start_time;
+    rhs_.begin_step(y_);
+    rhs_(t_, y_, f_);
+}
+
+template <std::size_t Size> void Stepper<Size>::step() {
+    y_ = rk4_step(rhs_, t_, y_, f_, bench::step);
+    t_ += bench::step;
+    rhs_.begin_step(y_);
+    rhs_(t_, y_, f_);
+}
+
+template class Stepper<motion_size>;
+template class Stepper<state_size>;
+
+}  // namespace bench

@@ -1,0 +1,251 @@
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
+#include "arm3r/dynamics.hpp"
+#include "arm3r/recursion.hpp"
+#include "fixtures.hpp"
+
+namespace arm3r {
+
+// What must hold whatever the arm: identities, and derivatives taken by Dual.
+BOOST_AUTO_TEST_SUITE(dynamics)
+
+struct Case {
+    Params params;
+    Arm<double> arm;
+    Vec3<double> q, qd, tau, f;
+    Pose<double> p;
+
+    explicit Case(Random& random)
+        : params(random_params(random)), arm(params.arm()), q(random.vector(-4, 4)), qd(random.vector(-5, 5)),
+          tau(random.vector(-20, 20)), f(random.vector(-30, 30)), p(pose(q)) {}
+};
+
+template <class F> static void for_random_cases(unsigned seed, F check) {
+    Random random(seed);
+    for (int i = 0; i < 1000; ++i) check(Case(random));
+}
+
+static bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double tolerance = 1e-12) {
+    return distance(a, b) <= tolerance * (1 + a.cwiseAbs().maxCoeff());
+}
+
+static bool close(double a, double b) { return std::abs(a - b) <= 1e-12 * (1 + std::abs(a)); }
+
+template <class M> static Eigen::MatrixXd slopes(const M& matrix, int i = 0) {
+    Eigen::MatrixXd result(matrix.rows(), matrix.cols());
+    for (int r = 0; r < matrix.rows(); ++r)
+        for (int c = 0; c < matrix.cols(); ++c) result(r, c) = matrix(r, c).slope[i];
+    return result;
+}
+
+// Columns: derivatives by q1, q2, q3.
+static Eigen::Matrix3d gradient(const Vec3<Dual<3>>& v) {
+    Eigen::Matrix3d columns;
+    for (int j = 0; j < 3; ++j) columns.col(j) = slopes(v, j);
+    return columns;
+}
+
+// ---- kinematics
+
+BOOST_AUTO_TEST_CASE(jacobian_is_the_derivative_of_the_tip) {
+    for_random_cases(1, [](const Case& c) { BOOST_TEST(close(gradient(tip_position(c.arm, pose(variables(c.q)))), jacobian(c.arm, c.p))); });
+}
+
+BOOST_AUTO_TEST_CASE(jacobian_dot_is_the_derivative_of_the_jacobian) {
+    for_random_cases(2, [](const Case& c) {
+        BOOST_TEST(close(slopes(jacobian(c.arm, pose(moving(c.q, c.qd)))), jacobian_dot(c.arm, c.p, c.qd)));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(tip_velocity_is_the_jacobian_times_the_rates) {
+    for_random_cases(3, [](const Case& c) { BOOST_TEST(close(jacobian(c.arm, c.p) * c.qd, tip_velocity(c.arm, c.p, c.qd))); });
+}
+
+static Mat3<Dual<1>> orientation(const Arm<double>& arm, const Vec3<double>& q, const Vec3<double>& qd, int body) {
+    const std::array<Body<Dual<1>>, 3> bodies = chain(arm, moving(q, qd));
+    Mat3<Dual<1>> R = bodies[0].R;
+    for (int i = 1; i <= body; ++i) R = R * bodies[i].R;
+    return R;
+}
+
+static Vec3<double> angular_velocity(const Mat3<Dual<1>>& R) {  // of Rdot R^T = skew(omega)
+    const Eigen::Matrix3d rotation = R.unaryExpr([](const Dual<1>& x) { return x.number; });
+    const Eigen::Matrix3d skew = slopes(R) * rotation.transpose();
+    return {skew(2, 1), skew(0, 2), skew(1, 0)};
+}
+
+BOOST_AUTO_TEST_CASE(angular_jacobian_turns_link_3_as_the_rotation_matrices_do) {
+    for_random_cases(4, [](const Case& c) {
+        BOOST_TEST(close(angular_velocity(orientation(c.arm, c.q, c.qd, 2)), angular_jacobian(c.p) * c.qd));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(manipulability_is_the_determinant_and_the_inverse_inverts) {
+    for_random_cases(5, [](const Case& c) {
+        const Eigen::Matrix3d J = jacobian(c.arm, c.p);
+        BOOST_TEST(close(std::abs(J.determinant()), manipulability(c.arm, c.p)));
+        if (manipulability(c.arm, c.p) > 1e-3) BOOST_TEST(close(Eigen::Matrix3d::Identity(), inverse_jacobian(c.arm, c.p) * J, 1e-11));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) {
+    for_random_cases(6, [](const Case& c) {
+        const Vec3<double> tip = tip_position(c.arm, c.p);
+        const double out = std::hypot(tip[0], tip[1]), up = tip[2] - c.arm.base_height;
+        bool came_back = false;
+        for (const bool front : {true, false}) {
+            for (const bool elbow_up : {true, false}) {
+                const auto [q, cos_q3] = inverse_kinematics(c.arm, tip, front, elbow_up);
+                const Vec3<double> elbow = elbow_position(c.arm, pose(q));
+                const double elbow_out = (elbow[0] * tip[0] + elbow[1] * tip[1]) / out, elbow_at = elbow[2] - c.arm.base_height;
+                BOOST_TEST(std::abs(cos_q3) <= 1 + 1e-14);
+                BOOST_TEST(close(tip, tip_position(c.arm, pose(q))));
+                BOOST_TEST((std::cos(q[0]) * tip[0] + std::sin(q[0]) * tip[1] > 0) == front);
+                BOOST_TEST((elbow_at * out - elbow_out * up > 0) == elbow_up);
+                came_back |= distance((q - c.q).array().sin(), Vec3<double>(0, 0, 0)) < 1e-7 && distance((q - c.q).array().cos(), Vec3<double>(1, 1, 1)) < 1e-7;
+            }
+        }
+        BOOST_TEST(came_back);
+    });
+}
+
+BOOST_AUTO_TEST_CASE(inverse_kinematics_tells_a_point_out_of_reach_from_one_within) {
+    for_random_cases(7, [](const Case& c) {
+        const double a2 = c.arm.link2.length, a3 = c.arm.link3.length;
+        const Vec3<double> shoulder(0, 0, c.arm.base_height), direction = c.f.normalized();
+        const auto cosine_at = [&](double reach) { return inverse_kinematics(c.arm, Vec3<double>(shoulder + reach * direction), true, true).cos_q3; };
+        BOOST_TEST(cosine_at((a2 + a3) * (1 + 1e-9)) > 1);
+        BOOST_TEST(std::abs(cosine_at((a2 + a3) * (1 - 1e-9))) < 1);
+        BOOST_TEST(cosine_at(std::abs(a2 - a3) * (1 - 1e-9)) < -1);
+        BOOST_TEST(std::abs(cosine_at(std::abs(a2 - a3) * (1 + 1e-9))) < 1);
+    });
+}
+
+// ---- dynamics
+
+BOOST_AUTO_TEST_CASE(the_rate_of_M_is_C_plus_its_transpose) {
+    for_random_cases(8, [](const Case& c) {
+        const Eigen::Matrix3d Mdot = slopes(mass_matrix(c.arm, pose(moving(c.q, c.qd))));
+        const Eigen::Matrix3d C = coriolis_matrix(c.arm, c.p, c.qd);
+        const Eigen::Matrix3d N = Mdot - 2 * C;
+        BOOST_TEST(close(Mdot, C + C.transpose()));
+        BOOST_TEST(close(N, -N.transpose()));
+        BOOST_TEST(close(C * c.qd, velocity_product(c.arm, c.p, c.qd)));
+    });
+}
+
+// Christoffel symbols from the derivatives of M: of all C with the same C qd, this one.
+BOOST_AUTO_TEST_CASE(C_is_made_of_christoffel_symbols) {
+    for_random_cases(9, [](const Case& c) {
+        const Mat3<Dual<3>> M = mass_matrix(c.arm, pose(variables(c.q)));
+        Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                for (int k = 0; k < 3; ++k) C(i, j) += 0.5 * (M(i, j).slope[k] + M(i, k).slope[j] - M(j, k).slope[i]) * c.qd[k];
+        BOOST_TEST(close(C, coriolis_matrix(c.arm, c.p, c.qd)));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(gravity_torque_is_the_derivative_of_the_potential_energy) {
+    for_random_cases(10, [](const Case& c) {
+        const Dual<3> U = potential_energy(c.arm, pose(variables(c.q)));
+        BOOST_TEST(close(Vec3<double>(U.slope.data()), gravity_torque(c.arm, c.p)));
+    });
+}
+
+// Both energies once more, summed over bodies: link 3 and the payload apart.
+BOOST_AUTO_TEST_CASE(energies_are_the_sums_over_bodies) {
+    Random random(11);
+    for (int i = 0; i < 1000; ++i) {
+        Case c(random);
+        const double payload = param(c.params, "arm.payload.mass");
+        const Arm<double> bare = c.params.set("arm.payload.mass", 0).arm();
+        const std::array<Body<Dual<1>>, 3> bodies = chain(bare, moving(c.q, c.qd));
+        double kinetic = 0, potential = 0;
+        const auto add_point = [&](double mass, int body, Vec3<Dual<1>> point) {
+            for (int j = body; j >= 0; --j) point = plus(bodies[j].origin, times(bodies[j].R, point));
+            kinetic += 0.5 * mass * slopes(point).squaredNorm();
+            for (int k = 0; k < 3; ++k) potential -= mass * c.arm.gravity[k] * point[k].number;
+        };
+        for (int body = 0; body < 3; ++body) {
+            add_point(bodies[body].mass.number, body, bodies[body].com);
+            const Mat3<Dual<1>> R = orientation(bare, c.q, c.qd, body);
+            const Eigen::Matrix3d to_body = R.unaryExpr([](const Dual<1>& x) { return x.number; }).transpose();
+            const Vec3<double> omega = to_body * angular_velocity(R);
+            for (int k = 0; k < 3; ++k) kinetic += 0.5 * bodies[body].inertia[k].number * omega[k] * omega[k];
+        }
+        add_point(payload, 2, {Dual<1>(bare.link3.length), Dual<1>(0.0), Dual<1>(0.0)});
+        for (int k = 0; k < 3; ++k) kinetic += 0.5 * bare.armature[k] * c.qd[k] * c.qd[k];
+        BOOST_TEST(close(kinetic, kinetic_energy(c.arm, c.p, c.qd)));
+        BOOST_TEST(close(potential, potential_energy(c.arm, c.p)));
+    }
+}
+
+// A point mass pushes back on the tip with its inertia and its weight.
+BOOST_AUTO_TEST_CASE(payload_is_a_force_on_the_bare_arm) {
+    Random random(12);
+    for (int i = 0; i < 1000; ++i) {
+        Case c(random);
+        const double payload = param(c.params, "arm.payload.mass");
+        const Arm<double> bare = c.params.set("arm.payload.mass", 0).arm();
+        const Vec3<double> qdd = c.tau;
+        const Vec3<double> acceleration = jacobian(bare, c.p) * qdd + jacobian_dot(bare, c.p, c.qd) * c.qd;
+        const Vec3<double> push = c.f - payload * (acceleration - bare.gravity);
+        BOOST_TEST(close(recursion_inverse_dynamics(bare, c.q, c.qd, qdd, push), inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f)));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forward_dynamics_inverts_inverse_dynamics) {
+    for_random_cases(13, [](const Case& c) {
+        const Vec3<double> qdd = forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f);
+        BOOST_TEST(close(c.tau, inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f), 1e-11));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(energy_changes_by_what_flows_in) {
+    for_random_cases(14, [](const Case& c) {
+        const Vec3<double> qdd = forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f);
+        const Pose<Dual<1>> p = pose(moving(c.q, c.qd));
+        const double rate = (kinetic_energy(c.arm, p, moving(c.qd, qdd)) + potential_energy(c.arm, p)).slope[0];
+        const double in = dot(c.qd, c.tau) + dot(tip_velocity(c.arm, c.p, c.qd), c.f) - dot(c.qd, friction_torque(c.arm, c.qd));
+        BOOST_TEST(std::abs(rate - in) <= 1e-10 * (1 + std::abs(in)));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(friction_always_takes_energy) {
+    for_random_cases(15, [](const Case& c) {
+        const Vec3<double> tau_f = friction_torque(c.arm, c.qd);
+        for (int i = 0; i < 3; ++i) {
+            BOOST_TEST(tau_f[i] * c.qd[i] > 0);
+            BOOST_TEST(close(tau_f[i], c.arm.damping[i] * c.qd[i] + c.arm.friction[i] * std::tanh(c.qd[i] / c.arm.friction_velocity)));
+        }
+    });
+}
+
+// ---- seen from the tip
+
+BOOST_AUTO_TEST_CASE(a_force_on_the_tip_accelerates_it_by_the_mobility) {
+    for_random_cases(16, [](const Case& c) {
+        const auto acceleration = [&](const Vec3<double>& f) -> Vec3<double> {
+            return jacobian(c.arm, c.p) * forward_dynamics(c.arm, c.p, c.qd, c.tau, f);
+        };
+        const Eigen::Vector3d gained = acceleration(c.f) - acceleration({0, 0, 0});
+        BOOST_TEST(close(gained, tip_mobility(c.arm, c.p) * c.f, 1e-11));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(operational_space_inertia_inverts_the_mobility) {
+    for_random_cases(17, [](const Case& c) {
+        if (manipulability(c.arm, c.p) < 1e-2) return;
+        const Eigen::Matrix3d W = tip_mobility(c.arm, c.p), L = operational_space_inertia(c.arm, c.p);
+        const Vec3<double> n = c.f.normalized();
+        BOOST_TEST(close(Eigen::Matrix3d::Identity(), L * W, 1e-9));
+        BOOST_TEST(close(L, L.transpose()));
+        BOOST_TEST(close(1 / n.dot(W * n), effective_mass(c.arm, c.p, n)));
+    });
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace arm3r

@@ -1,0 +1,162 @@
+#include <boost/test/unit_test.hpp>
+
+#include "arm3r/dynamics.hpp"
+#include "fixtures.hpp"
+
+namespace arm3r {
+
+BOOST_AUTO_TEST_SUITE(setup)
+
+static Lumped<double> random_lumped(Random& random) {
+    return {.A1 = random.in(0, 1), .A2 = random.in(-1, 1), .A3 = random.in(-1, 1), .B = random.in(-1, 1), .B2 = random.in(0, 1),
+            .B3 = random.in(0, 1), .J3 = random.in(0, 0.3), .G2 = 0, .G3 = 0};
+}
+
+static double lower_determinant(const Mat3<double>& M) { return M(1, 1) * M(2, 2) - M(1, 2) * M(2, 1); }
+
+// The closed-form minima against all poses of a grid that holds both ends of every cosine: none is lower, and they are
+// taken where they are said to be.
+BOOST_AUTO_TEST_CASE(weakest_poses_are_those_of_a_search_over_all_poses) {
+    Random random(21);
+    constexpr int steps = 64;
+    for (int i = 0; i < 300; ++i) {
+        Arm<double> arm;
+        arm.lumped = random_lumped(random);
+        double M11 = HUGE_VAL, determinant = HUGE_VAL;
+        for (int j = 0; j <= steps; ++j) {
+            for (int k = 0; k <= 2 * steps; ++k) {
+                const double q2 = M_PI * j / steps, q23 = M_PI * k / steps;
+                const Mat3<double> M = mass_matrix(arm, pose(Vec3<double>(0, q2, q23 - q2)));
+                M11 = std::min(M11, M(0, 0));
+                determinant = std::min(determinant, lower_determinant(M));
+            }
+        }
+        const WorstPose weakest = smallest_M11(arm.lumped), folded = smallest_lower_determinant(arm.lumped);
+        BOOST_TEST(M11 >= weakest.value - 1e-12);
+        BOOST_TEST(M11 <= weakest.value + 2e-3);
+        BOOST_TEST(std::abs(determinant - folded.value) <= 1e-12);
+        BOOST_TEST(std::abs(mass_matrix(arm, pose(Vec3<double>(0.3, weakest.q2, weakest.q3)))(0, 0) - weakest.value) <= 1e-12);
+        BOOST_TEST(std::abs(lower_determinant(mass_matrix(arm, pose(Vec3<double>(0.3, folded.q2, folded.q3)))) - folded.value) <= 1e-12);
+    }
+}
+
+static Problem only_problem(const Params& params) {
+    const std::vector<Problem> problems = validate(params);
+    BOOST_REQUIRE_EQUAL(problems.size(), 1u);
+    return problems.front();
+}
+
+static bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+BOOST_AUTO_TEST_CASE(an_arm_that_nothing_turns_about_the_vertical_is_refused) {
+    Params params = unequal_params();
+    params.choose("arm.link2.shape", "slender").choose("arm.link3.shape", "slender").set("arm.link1.inertia_axial", 0);
+    const Problem problem = only_problem(params);
+    BOOST_TEST(problem.code == "scenario.singular_mass_matrix");
+    BOOST_TEST(problem.path == "arm.link1.inertia_axial");
+    BOOST_TEST(contains(problem.message, "q2 = 90 deg, q3 = 0 deg"));
+    BOOST_TEST(contains(problem.hint, "arm.armature[0]"));
+    BOOST_TEST(validate(params.set("arm.armature", {2e-9, 0, 0})).empty());
+}
+
+BOOST_AUTO_TEST_CASE(an_arm_whose_lower_links_have_no_inertia_is_refused) {
+    Params params = unequal_params();
+    params.set("arm.link2.com", 0).set("arm.link2.inertia", {1e-3, 1e-3, 0}).set("arm.link2.mass", 1);
+    params.set("arm.link3.com", 0.6).set("arm.link3.inertia", {1e-3, 1e-3, 0});
+    const Problem problem = only_problem(params);
+    BOOST_TEST(problem.code == "scenario.singular_mass_matrix");
+    BOOST_TEST(contains(problem.message, "q3 = 180 deg"));
+    BOOST_TEST(validate(params.set("arm.armature", {0, 0.01, 0.01})).empty());
+}
+
+BOOST_AUTO_TEST_CASE(an_inertia_that_no_body_has_is_refused) {
+    const Problem problem = only_problem(unequal_params().set("arm.link3.inertia", {0.1, 0.2, 0.31}));
+    BOOST_TEST(problem.code == "scenario.inertia");
+    BOOST_TEST(validate(unequal_params().set("arm.link3.inertia", {0.1, 0.2, 0.3})).empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_start_deep_in_the_wall_is_refused_and_one_behind_the_plates_rim_is_not) {
+    Params params = unequal_params();
+    const Vec3<double> tip = tip_position(params.arm(), pose(Vec3<double>(0.4, 0.7, -0.9)));
+    params.set("wall", 1).set("wall.point", Vec3<double>(tip - Vec3<double>(0.11, 0, 0)));
+    BOOST_TEST(only_problem(params).code == "scenario.starts_inside_wall");
+    BOOST_TEST(validate(Params(params).set("wall.point", Vec3<double>(tip - Vec3<double>(0.09, 0, 0)))).empty());
+    BOOST_TEST(validate(Params(params).set("wall.point", Vec3<double>(tip - Vec3<double>(0.11, 1, 0))).set("wall.size", {1, 1})).empty());
+}
+
+// ---- what shapes give
+
+BOOST_AUTO_TEST_CASE(shapes_give_mass_centre_and_inertia) {
+    Params params = unequal_params();
+    params.set("arm.link2.section", {0.02, 0.03}).set("arm.link2.density", 1000).set("arm.link2.mass", std::nan(""));
+    params.choose("arm.link3.shape", "cylinder").set("arm.link3.radius", 0.05).set("arm.link3.mass", 2);
+    params.choose("arm.link1.shape", "slender").set("arm.link1.length", 0.4).set("arm.link1.mass", 3).set("arm.link1.com", std::nan(""));
+    const Arm<double> arm = params.arm();
+    const double m = 1000 * 0.8 * 0.02 * 0.03, a = 0.8;
+    BOOST_TEST(arm.link2.mass == m);
+    BOOST_TEST(arm.link2.com == 0.4);
+    BOOST_TEST(arm.link2.inertia[0] == m * (0.03 * 0.03 + 0.02 * 0.02) / 12);
+    BOOST_TEST(arm.link2.inertia[1] == m * (a * a + 0.03 * 0.03) / 12);
+    BOOST_TEST(arm.link2.inertia[2] == m * (a * a + 0.02 * 0.02) / 12);
+    BOOST_TEST(arm.link3.mass == 2);
+    BOOST_TEST(arm.link3.inertia[0] == 2 * 0.05 * 0.05 / 2);
+    BOOST_TEST(arm.link3.inertia[1] == 2 * (3 * 0.05 * 0.05 + 0.6 * 0.6) / 12);
+    BOOST_TEST(arm.link3.inertia[1] == arm.link3.inertia[2]);
+    BOOST_TEST(arm.link1.com == 0.2);
+    BOOST_TEST(arm.link1.inertia_axial == 0.02);
+    BOOST_TEST(params.set("arm.link1.inertia_axial", std::nan("")).arm().link1.inertia_axial == 0);
+}
+
+BOOST_AUTO_TEST_CASE(the_controllers_copy_differs_only_where_it_is_told_to) {
+    Params params = unequal_params();
+    params.choose("controller.type", "gravity_compensation").set("controller.model.link3.mass", 0.9).set("arm.payload.mass", 0.2);
+    const Setup setup = make_setup(params);
+    const Arm<double>&plant = setup.plant.arm, &model = setup.plant.controller.model;
+    BOOST_TEST(model.link3.mass == 0.9 + 0.2);
+    BOOST_TEST(plant.link3.mass == 0.7 + 0.2);
+    BOOST_TEST(model.link2.mass == plant.link2.mass);
+    BOOST_TEST(model.gravity[2] == -9.80665);
+}
+
+// ---- likely slips
+
+static std::vector<std::string> slips(const Params& params) { return likely_slips(params); }
+
+static void check_slip(const Params& params, const std::string& part) {
+    const std::vector<std::string> found = slips(params);
+    BOOST_TEST(found.size() == 1u);
+    BOOST_TEST((!found.empty() && contains(found.front(), part)), part << " in: " << (found.empty() ? "" : found.front()));
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_said_of_an_ordinary_scenario) {
+    BOOST_TEST(slips(unequal_params()).empty());
+    BOOST_TEST(slips(unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1)).empty());
+}
+
+BOOST_AUTO_TEST_CASE(two_gravities_within_a_percent_but_not_equal_are_named) {
+    Params params = unequal_params().choose("controller.type", "gravity_compensation");
+    check_slip(Params(params).set("controller.gravity", 9.8065), "9.8065");
+    check_slip(Params(params).set("controller.gravity", 9.72), "9.72");
+    BOOST_TEST(slips(Params(params).set("controller.gravity", 9.6)).empty());
+}
+
+BOOST_AUTO_TEST_CASE(an_angle_that_looks_like_degrees_is_named) {
+    check_slip(unequal_params().set("initial.q", {0.4, -30, 0.2}), "`30 deg`");
+    BOOST_TEST(slips(unequal_params().set("initial.q", {0.4, 720 * M_PI / 180, 0.2})).empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_wall_that_passes_the_shoulder_is_named) {
+    Params params = unequal_params().set("wall", 1).set("time.stop", 50);
+    check_slip(params, "shoulder");
+    BOOST_TEST(slips(params.set("time.stop", 30)).empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_fixed_step_that_cannot_resolve_the_contact_is_named) {
+    Params params = unequal_params().set("wall", 1).set("wall.acts_on_arm", 1).choose("solver.method", "rk4");
+    check_slip(Params(params).set("wall.contact.stiffness", 1e8), "solver.step");
+    BOOST_TEST(slips(params).empty());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace arm3r
