@@ -70,8 +70,8 @@ private:
 
 struct arm3r_run {
     arm3r::Run run;
-    std::string name;                                // "" where there was no scenario
-    std::string scenario;                            // resolved, as YAML
+    std::string name;      // "" where there was no scenario
+    std::string scenario;  // resolved, as YAML
     std::vector<arm3r::CheckResult> checks;
     arm3r::Texts texts;
 };
@@ -80,7 +80,7 @@ struct arm3r_scenario {
     arm3r::Scenario scenario;
     arm3r::Texts texts;
 
-    const arm3r::Resolved& resolved() const;         // made once after each change
+    const arm3r::Resolved& resolved() const;  // made once after each change
     void changed();
 
 private:

@@ -43,17 +43,19 @@ const char* class_of(arm3r_status status) {
 }
 
 std::string json(const Problem& p) {
-    return "{\"code\": " + json_string(p.code) + ", \"message\": " + json_string(p.message) + ", \"file\": " + json_string(p.file) +
-           ", \"line\": " + std::to_string(p.line) + ", \"column\": " + std::to_string(p.column) + ", \"path\": " + json_string(p.path) +
-           ", \"got\": " + json_string(p.got) + ", \"allowed\": " + json_string(p.allowed) + ", \"hint\": " + json_string(p.hint) + "}";
+    return "{\"code\": " + json_string(p.code) + ", \"message\": " + json_string(p.message) +
+           ", \"file\": " + json_string(p.file) + ", \"line\": " + std::to_string(p.line) +
+           ", \"column\": " + std::to_string(p.column) + ", \"path\": " + json_string(p.path) +
+           ", \"got\": " + json_string(p.got) + ", \"allowed\": " + json_string(p.allowed) +
+           ", \"hint\": " + json_string(p.hint) + "}";
 }
 
 std::string json(const Error& error) {
     const std::string code = error.problems().empty() ? class_of(error.status()) : error.problems().front().code;
     std::string problems;
     for (const Problem& problem : error.problems()) problems += (problems.empty() ? "" : ", ") + json(problem);
-    return "{\"status\": " + std::to_string(error.status()) + ", \"code\": " + json_string(code) + ", \"message\": " +
-           json_string(error.what()) + ", \"problems\": [" + problems + "]}";
+    return "{\"status\": " + std::to_string(error.status()) + ", \"code\": " + json_string(code) +
+           ", \"message\": " + json_string(error.what()) + ", \"problems\": [" + problems + "]}";
 }
 
 }  // namespace
@@ -84,7 +86,9 @@ void need(const void* pointer, const char* name) {
 std::string text_in(const char* text, std::size_t size, const char* name, std::size_t most) {
     need(text, name);
     const std::string argument = "the argument `" + std::string(name) + "`";
-    if (size > most) throw Error(ARM3R_E_SIZE, argument + " has " + std::to_string(size) + " bytes; at most " + std::to_string(most));
+    if (size > most)
+        throw Error(ARM3R_E_SIZE,
+                    argument + " has " + std::to_string(size) + " bytes; at most " + std::to_string(most));
     std::string copy(text, size);
     if (copy.find('\0') != copy.npos) throw Error(ARM3R_E_VALUE, argument + " holds a NUL byte");
     if (!is_utf8(copy)) throw Error(ARM3R_E_VALUE, argument + " is not UTF-8");
@@ -117,6 +121,8 @@ using namespace arm3r;
 const char* arm3r_error_message(void) { return last.fixed_message ? last.fixed_message : last.message.c_str(); }
 
 const char* arm3r_error_json(void) {
-    if (last.fixed_message) return "{\"status\": -402, \"code\": \"memory\", \"message\": \"out of memory\", \"problems\": []}";
-    return last.json.empty() ? "{\"status\": 0, \"code\": \"\", \"message\": \"\", \"problems\": []}" : last.json.c_str();
+    if (last.fixed_message)
+        return "{\"status\": -402, \"code\": \"memory\", \"message\": \"out of memory\", \"problems\": []}";
+    return last.json.empty() ? "{\"status\": 0, \"code\": \"\", \"message\": \"\", \"problems\": []}"
+                             : last.json.c_str();
 }

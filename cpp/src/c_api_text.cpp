@@ -71,7 +71,8 @@ void arm3r_scenario::changed() {
 
 // ---- scenarios
 
-int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* file, size_t file_size, arm3r_scenario** scenario) {
+int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* file, size_t file_size,
+                              arm3r_scenario** scenario) {
     return guard([&] {
         need(text, "text");
         need(scenario, "scenario");
@@ -99,7 +100,8 @@ int32_t arm3r_scenario_copy(const arm3r_scenario* scenario, arm3r_scenario** cop
     });
 }
 
-int32_t arm3r_scenario_set(arm3r_scenario* scenario, const char* path, size_t path_size, const char* value, size_t value_size) {
+int32_t arm3r_scenario_set(arm3r_scenario* scenario, const char* path, size_t path_size, const char* value,
+                           size_t value_size) {
     return guard([&] {
         need(scenario, "scenario");
         Scenario edited = scenario->scenario;
@@ -139,7 +141,8 @@ int32_t arm3r_scenario_yaml(const arm3r_scenario* scenario, int32_t annotate, co
         need(scenario, "scenario");
         need(yaml, "yaml");
         const Resolved& resolved = scenario->resolved();
-        *yaml = scenario->texts.get(annotate ? "annotated" : "yaml", [&] { return to_yaml(resolved.tree, annotate != 0); });
+        *yaml =
+            scenario->texts.get(annotate ? "annotated" : "yaml", [&] { return to_yaml(resolved.tree, annotate != 0); });
     });
 }
 
@@ -148,7 +151,8 @@ int32_t arm3r_scenario_params(const arm3r_scenario* scenario, double* params, si
         need(scenario, "scenario");
         need(params, "params");
         if (count != param_count())
-            throw Error(ARM3R_E_SIZE, "`count` is " + std::to_string(count) + ", there are " + std::to_string(param_count()) + " parameters");
+            throw Error(ARM3R_E_SIZE, "`count` is " + std::to_string(count) + ", there are " +
+                                          std::to_string(param_count()) + " parameters");
         const Resolved& resolved = scenario->resolved();
         std::copy(resolved.params.begin(), resolved.params.end(), params);
     });

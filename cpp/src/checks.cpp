@@ -40,7 +40,9 @@ std::string did_you_mean(std::string_view word, const Words& words) {
     return near.empty() ? "" : "did you mean " + near + "?";
 }
 
-bool is_in(const Words& words, std::string_view word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+bool is_in(const Words& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 Words columns_of(std::span<const double> params) {
     Words names;
@@ -68,14 +70,19 @@ public:
 private:
     void problem(const Mark& at, std::string_view key, std::string code, std::string message, std::string got = {},
                  std::string allowed = {}, std::string hint = {}) {
-        problems_.push_back(located({.code = "check." + std::move(code), .path = key.empty() ? path_ : join(path_, key),
-                                     .message = std::move(message), .got = std::move(got), .allowed = std::move(allowed),
-                                     .hint = std::move(hint)}, at, file_));
+        problems_.push_back(located({.code = "check." + std::move(code),
+                                     .path = key.empty() ? path_ : join(path_, key),
+                                     .message = std::move(message),
+                                     .got = std::move(got),
+                                     .allowed = std::move(allowed),
+                                     .hint = std::move(hint)},
+                                    at, file_));
     }
 
     bool read_subject(Check& check) {
         if (node_.type != Node::map) {
-            problem(node_.mark, "", "type", "a check is a map", shape_of(node_), "", "{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}");
+            problem(node_.mark, "", "type", "a check is a map", shape_of(node_), "",
+                    "{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}");
             return false;
         }
         int found = 0;
@@ -87,8 +94,10 @@ private:
         if (found == 1) return true;
         std::string hint;
         for (const Node& child : node_.children)
-            if (hint.empty() && !is_in(limits, child.key) && child.key != "name") hint = did_you_mean(child.key, subjects);
-        problem(node_.mark, "", "subject", found ? "a check has one subject" : "a check needs a subject", "", "one of " + listed(subjects), hint);
+            if (hint.empty() && !is_in(limits, child.key) && child.key != "name")
+                hint = did_you_mean(child.key, subjects);
+        problem(node_.mark, "", "subject", found ? "a check has one subject" : "a check needs a subject", "",
+                "one of " + listed(subjects), hint);
         return false;
     }
 
@@ -96,8 +105,9 @@ private:
         const Words keys = keys_of(subject);
         for (const Node& child : node_.children)
             if (!is_in(keys, child.key))
-                problem(child.key_mark, child.key, "unknown_key", "a check of a " + subjects[subject] + " has no such key", "",
-                        listed(keys), did_you_mean(child.key, keys));
+                problem(child.key_mark, child.key, "unknown_key",
+                        "a check of a " + subjects[subject] + " has no such key", "", listed(keys),
+                        did_you_mean(child.key, keys));
     }
 
     std::string word(const std::string& key, const Words& words, std::string code) {
@@ -105,7 +115,8 @@ private:
         if (!node || node->type == Node::hole) return {};
         if (node->type == Node::scalar && is_in(words, node->text)) return node->text;
         problem(node->mark, key, std::move(code), "must be one of the words", shape_of(*node),
-                words.size() <= 8 ? listed(words) : "the columns of this run (arm3r columns)", did_you_mean(node->text, words));
+                words.size() <= 8 ? listed(words) : "the columns of this run (arm3r columns)",
+                did_you_mean(node->text, words));
         return {};
     }
 
@@ -113,11 +124,17 @@ private:
         const Node* node = node_.find(key);
         if (!node || node->type == Node::hole) return {};
         NumberFault fault{"number.type", "expects a number", ""};
-        if (node->type == Node::scalar && node->quoted) fault = {"number.quoted", "a number has no quotes", "write " + node->text};
+        if (node->type == Node::scalar && node->quoted)
+            fault = {"number.quoted", "a number has no quotes", "write " + node->text};
         if (node->type == Node::scalar && !node->quoted)
             if (const auto value = read_number(node->text, {.whole = whole}, fault)) return value;
-        problems_.push_back(located({.code = fault.code, .path = join(path_, key), .message = fault.message, .got = shape_of(*node),
-                                     .allowed = "", .hint = fault.hint}, node->mark, file_));
+        problems_.push_back(located({.code = fault.code,
+                                     .path = join(path_, key),
+                                     .message = fault.message,
+                                     .got = shape_of(*node),
+                                     .allowed = "",
+                                     .hint = fault.hint},
+                                    node->mark, file_));
         return {};
     }
 
@@ -132,7 +149,8 @@ private:
         } else {
             check.what = word(subject, event_types, "event");
             const double index = number("index", true).value_or(0);
-            if (index < 0 || index > 4096) problem(node_.find("index")->mark, "index", "index", "must be 0 or more", shortest(index));
+            if (index < 0 || index > 4096)
+                problem(node_.find("index")->mark, "index", "index", "must be 0 or more", shortest(index));
             else check.index = static_cast<std::size_t>(index);
         }
     }
@@ -141,10 +159,12 @@ private:
         const Words here = columns_of(params_);
         const Node* node = node_.find(key);
         const auto& all = column_table();
-        const bool needs_wall = node->type == Node::scalar && !is_in(here, node->text) &&
-                                std::any_of(all.begin(), all.end(), [&](const Column& c) { return c.name == node->text; });
+        const bool needs_wall =
+            node->type == Node::scalar && !is_in(here, node->text) &&
+            std::any_of(all.begin(), all.end(), [&](const Column& c) { return c.name == node->text; });
         if (!needs_wall) return word(key, here, "column");
-        problem(node->mark, key, "column", "this column is only there with a wall", node->text, "", "add `wall: {}` or take the check out");
+        problem(node->mark, key, "column", "this column is only there with a wall", node->text, "",
+                "add `wall: {}` or take the check out");
         return {};
     }
 
@@ -152,7 +172,8 @@ private:
         check.of = word("of", reductions, "of");
         const Node* at = node_.find("at");
         if (bool(at) == bool(node_.find("of")))
-            return problem(node_.mark, "", "row", at ? "has both `at` and `of`" : "needs `at` or `of`", "", "at: TIME, or of: " + listed(reductions));
+            return problem(node_.mark, "", "row", at ? "has both `at` and `of`" : "needs `at` or `of`", "",
+                           "at: TIME, or of: " + listed(reductions));
         if (const auto time = number("at")) {
             check.at = *time;
             if (!is_row(*time))
@@ -191,18 +212,17 @@ private:
 
     void read_name(Check& check) {
         const Node* node = node_.find("name");
-        if (node && node->type == Node::scalar && !node->text.empty())
-            check.name = node->text;
+        if (node && node->type == Node::scalar && !node->text.empty()) check.name = node->text;
         else if (node && node->type != Node::hole)
             problem(node->mark, "name", "name", "must be a text", shape_of(*node));
-        else
-            check.name = subject_text(check);
+        else check.name = subject_text(check);
     }
 
     static std::string subject_text(const Check& check) {
         const std::string minus = check.minus.empty() ? "" : " - " + check.minus;
         switch (check.subject) {
-            case Check::column: return check.what + minus + (check.of.empty() ? " at " + shortest(check.at) : ", " + check.of);
+            case Check::column:
+                return check.what + minus + (check.of.empty() ? " at " + shortest(check.at) : ", " + check.of);
             case Check::event: return "time of " + check.what + " " + std::to_string(check.index);
             case Check::count: return "number of " + check.what + " events";
             default: return check.what;
@@ -277,7 +297,9 @@ Measured measure(const Check& check, const Run& run, double log_every) {
 
 std::string limit_text(const Check& check) {
     std::string out;
-    const auto add = [&](const char* word, double value) { out += (out.empty() ? "" : ", ") + std::string(word) + shortest(value); };
+    const auto add = [&](const char* word, double value) {
+        out += (out.empty() ? "" : ", ") + std::string(word) + shortest(value);
+    };
     if (check.equals) {
         add("equals ", *check.equals);
         if (check.abs > 0) add("abs ", check.abs);
@@ -298,8 +320,12 @@ bool holds(const Check& check, double value) {
 
 CheckResult evaluate_one(const Check& check, const Run& run, double log_every) {
     const Measured measured = measure(check, run, log_every);
-    CheckResult result{.name = check.name, .passed = measured.value && holds(check, *measured.value), .value = measured.value,
-                       .limit = limit_text(check), .deviation = {}, .reason = measured.reason};
+    CheckResult result{.name = check.name,
+                       .passed = measured.value && holds(check, *measured.value),
+                       .value = measured.value,
+                       .limit = limit_text(check),
+                       .deviation = {},
+                       .reason = measured.reason};
     if (measured.value && check.equals) result.deviation = std::abs(*measured.value - *check.equals);
     return result;
 }
@@ -310,8 +336,12 @@ std::vector<Check> read_checks(const Node& list, std::span<const double> params,
                                std::vector<Problem>& problems) {
     std::vector<Check> checks;
     if (list.type != Node::list && list.type != Node::hole)
-        problems.push_back(located({.code = "check.type", .path = "checks", .message = "expects a list of checks", .got = shape_of(list),
-                                    .allowed = "", .hint = "checks: [{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}]"},
+        problems.push_back(located({.code = "check.type",
+                                    .path = "checks",
+                                    .message = "expects a list of checks",
+                                    .got = shape_of(list),
+                                    .allowed = "",
+                                    .hint = "checks: [{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}]"},
                                    list.mark, file));
     if (list.type != Node::list) return checks;
     for (std::size_t i = 0; i < list.children.size(); ++i)

@@ -15,13 +15,13 @@ namespace arm3r {
 struct Check {
     enum Subject { column, event, count, summary } subject = column;
     std::string name;
-    std::string what;             // the column, "make" or "break", or the field of the summary
-    std::string minus;            // a second column, taken off row by row; or ""
-    std::string of;               // min | max | max_abs | range | final; or "": the row at `at`
-    double at = 0;                // s
-    std::size_t index = 0;        // of the event
+    std::string what;       // the column, "make" or "break", or the field of the summary
+    std::string minus;      // a second column, taken off row by row; or ""
+    std::string of;         // min | max | max_abs | range | final; or "": the row at `at`
+    double at = 0;          // s
+    std::size_t index = 0;  // of the event
     std::optional<double> equals, below, above;
-    double abs = 0, rel = 0;      // tolerances of `equals`: either suffices
+    double abs = 0, rel = 0;  // tolerances of `equals`: either suffices
 };
 
 struct CheckResult {

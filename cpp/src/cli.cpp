@@ -93,24 +93,29 @@ bool is_directory(const std::string& path) {
 
 bool is_same_file(const std::string& a, const std::string& b) {
     struct stat one{}, other{};
-    return stat(a.c_str(), &one) == 0 && stat(b.c_str(), &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+    return stat(a.c_str(), &one) == 0 && stat(b.c_str(), &other) == 0 && one.st_dev == other.st_dev &&
+           one.st_ino == other.st_ino;
 }
 
 // A file for each scenario, checked before the first run; "-" is standard output, "" nowhere.
 std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vector<ScenarioHandle>& scenarios) {
     const std::string& output = arguments.output;
     if (output.empty() || output == "-") {
-        if (output == "-" && scenarios.size() > 1) throw Exit{exit_usage, "arm3r: error[usage]: -o - takes one scenario"};
+        if (output == "-" && scenarios.size() > 1)
+            throw Exit{exit_usage, "arm3r: error[usage]: -o - takes one scenario"};
         return std::vector<std::string>(scenarios.size(), output);
     }
     const bool directory = is_directory(output);
     if (scenarios.size() > 1 && !directory)
-        throw Exit{exit_output, output + ": error[output]: not a directory; for several scenarios -o names one that exists"};
+        throw Exit{exit_output,
+                   output + ": error[output]: not a directory; for several scenarios -o names one that exists"};
     std::vector<std::string> paths;
     std::set<std::string> seen;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
-        const std::string path = directory ? output + (output.ends_with('/') ? "" : "/") + name_of(scenarios[i]) + ".csv" : output;
-        if (!seen.insert(path).second) throw Exit{exit_usage, path + ": error[usage]: two scenarios would write this file; give them names"};
+        const std::string path =
+            directory ? output + (output.ends_with('/') ? "" : "/") + name_of(scenarios[i]) + ".csv" : output;
+        if (!seen.insert(path).second)
+            throw Exit{exit_usage, path + ": error[usage]: two scenarios would write this file; give them names"};
         for (const std::string& file : arguments.files)
             if (is_same_file(file, path)) throw Exit{exit_usage, path + ": error[usage]: this is the scenario itself"};
         require(arm3r_output_probe(path.data(), path.size()));
@@ -236,7 +241,8 @@ std::vector<std::string> own_directories(const std::string& called) {
     std::string path = called;
     if (called.find('/') == called.npos)
         for (const std::string& directory : search_path())
-            if (path == called && access((directory + "/" + called).c_str(), X_OK) == 0) path = directory + "/" + called;
+            if (path == called && access((directory + "/" + called).c_str(), X_OK) == 0)
+                path = directory + "/" + called;
     if (path.find('/') == path.npos) return {};
     std::vector<std::string> directories = {directory_of(path)};
     const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr), std::free);
@@ -260,7 +266,8 @@ int main(int count, char** words) {
     if (count > 1 && words[1][0] != '-' && !is_call(words[1])) become(words[1], words);
     const Arguments arguments = read_arguments({words + std::min(count, 1), words + count});
     if (arguments.help) return print(help(arguments.call)), exit_ok;
-    if (arguments.version) return print("arm3r " + std::string(arm3r_version()) + "\n" + arm3r_build_info() + "\n"), exit_ok;
+    if (arguments.version)
+        return print("arm3r " + std::string(arm3r_version()) + "\n" + arm3r_build_info() + "\n"), exit_ok;
     return call(arguments);
 }
 

@@ -26,8 +26,10 @@ struct Option {
 };
 
 constexpr Option options[] = {
-    {"--output", "-o", "OUT", "run", "write OUT and, beside it, the summary as .json; - is standard output; for several files a directory"},
-    {"--set", "", "PATH=VALUE", "run check", "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
+    {"--output", "-o", "OUT", "run",
+     "write OUT and, beside it, the summary as .json; - is standard output; for several files a directory"},
+    {"--set", "", "PATH=VALUE", "run check",
+     "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
     {"--json", "", "", "run", "print the summary as JSON: one object, or an array for several files"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
     {"--format", "", "md", "schema columns", "print a Markdown page instead"},
@@ -42,18 +44,22 @@ constexpr std::string_view exit_codes =
 [[noreturn]] void usage_error(const std::string& message) { throw Exit{exit_usage, "arm3r: error[usage]: " + message}; }
 
 const Call* find_call(std::string_view name) {
-    const auto found = std::find_if(std::begin(calls), std::end(calls), [&](const Call& call) { return call.name == name; });
+    const auto found =
+        std::find_if(std::begin(calls), std::end(calls), [&](const Call& call) { return call.name == name; });
     return found == std::end(calls) ? nullptr : found;
 }
 
 bool takes(std::string_view call, const Option& option) {
-    return option.calls.empty() || (" " + std::string(option.calls) + " ").find(" " + std::string(call) + " ") != std::string::npos;
+    return option.calls.empty() ||
+           (" " + std::string(option.calls) + " ").find(" " + std::string(call) + " ") != std::string::npos;
 }
 
 // One slip of the fingers: what differs, between a common head and a common tail, is at most two letters long.
 bool is_slip(std::string_view typed, std::string_view meant) {
-    while (!typed.empty() && !meant.empty() && typed.front() == meant.front()) typed.remove_prefix(1), meant.remove_prefix(1);
-    while (!typed.empty() && !meant.empty() && typed.back() == meant.back()) typed.remove_suffix(1), meant.remove_suffix(1);
+    while (!typed.empty() && !meant.empty() && typed.front() == meant.front())
+        typed.remove_prefix(1), meant.remove_prefix(1);
+    while (!typed.empty() && !meant.empty() && typed.back() == meant.back())
+        typed.remove_suffix(1), meant.remove_suffix(1);
     return typed.size() <= 2 && meant.size() <= 2;
 }
 
@@ -131,10 +137,13 @@ void check_fit(const Arguments& arguments, const Used& used) {
     const Call* call = find_call(arguments.call);
     if (!call) usage_error(arguments.call.empty() ? "no call given; see arm3r --help" : unknown_call(arguments.call));
     for (const Option* option : used.options)
-        if (!takes(call->name, *option)) usage_error("arm3r " + arguments.call + " has no option " + std::string(option->name));
-    if (arguments.files.size() < call->least) usage_error("arm3r " + arguments.call + " needs " + std::string(call->operands));
+        if (!takes(call->name, *option))
+            usage_error("arm3r " + arguments.call + " has no option " + std::string(option->name));
+    if (arguments.files.size() < call->least)
+        usage_error("arm3r " + arguments.call + " needs " + std::string(call->operands));
     if (arguments.files.size() > call->most)
-        usage_error("arm3r " + arguments.call + (call->most ? " takes one file" : " takes no operand") + ", got " + printable(arguments.files[call->most]));
+        usage_error("arm3r " + arguments.call + (call->most ? " takes one file" : " takes no operand") + ", got " +
+                    printable(arguments.files[call->most]));
 }
 
 std::string two_columns(const std::string& left, std::string_view right) {
@@ -150,7 +159,8 @@ std::string option_line(const Option& option) {
 
 std::string program_help() {
     std::string out = "usage: arm3r CALL ...\n\n";
-    for (const Call& call : calls) out += two_columns(std::string(call.name) + " " + std::string(call.operands), call.does);
+    for (const Call& call : calls)
+        out += two_columns(std::string(call.name) + " " + std::string(call.operands), call.does);
     out += two_columns("NAME ...", "runs arm3r-NAME, found beside this program or on PATH");
     return out + "\narm3r CALL --help tells more; arm3r --version prints the version.\n\n" + std::string(exit_codes);
 }
@@ -160,7 +170,8 @@ std::string program_help() {
 bool is_call(std::string_view name) { return find_call(name) != nullptr; }
 
 std::string unknown_call(const std::string& name) {
-    return "unknown call " + printable(name) + ", and no program arm3r-" + printable(name) + did_you_mean(name, calls) + " See arm3r --help";
+    return "unknown call " + printable(name) + ", and no program arm3r-" + printable(name) + did_you_mean(name, calls) +
+           " See arm3r --help";
 }
 
 Arguments read_arguments(const std::vector<std::string>& words) {
@@ -184,7 +195,8 @@ Arguments read_arguments(const std::vector<std::string>& words) {
 std::string help(std::string_view name) {
     const Call* call = find_call(name);
     if (!call) return program_help();
-    std::string out = "usage: arm3r " + std::string(name) + " " + std::string(call->operands) + " [options]\n\n  " + std::string(call->does) + "\n\n";
+    std::string out = "usage: arm3r " + std::string(name) + " " + std::string(call->operands) + " [options]\n\n  " +
+                      std::string(call->does) + "\n\n";
     for (const Option& option : options)
         if (takes(name, option)) out += option_line(option);
     return out + "\n" + std::string(exit_codes);

@@ -9,8 +9,16 @@
 namespace cli {
 
 enum ExitCode {
-    exit_ok = 0, exit_internal = 1, exit_usage = 2, exit_scenario = 3, exit_numeric = 4, exit_budget = 5, exit_output = 6,
-    exit_callback = 8, exit_incompatible = 9, exit_check = 10
+    exit_ok = 0,
+    exit_internal = 1,
+    exit_usage = 2,
+    exit_scenario = 3,
+    exit_numeric = 4,
+    exit_budget = 5,
+    exit_output = 6,
+    exit_callback = 8,
+    exit_incompatible = 9,
+    exit_check = 10
 };
 
 // Ends the program with this code, after `message` on stderr.
@@ -20,17 +28,17 @@ struct Exit {
 };
 
 struct Arguments {
-    std::string call;                                        // "" for `arm3r --help` and `arm3r --version`
+    std::string call;  // "" for `arm3r --help` and `arm3r --version`
     std::vector<std::string> files;
     std::vector<std::pair<std::string, std::string>> edits;  // PATH, VALUE
     std::string output, format;
-    double time_limit = 0;                                   // s; 0: none
+    double time_limit = 0;  // s; 0: none
     bool json = false, help = false, version = false;
 };
 
-bool is_call(std::string_view name);                    // one of the executable's own
+bool is_call(std::string_view name);                              // one of the executable's own
 Arguments read_arguments(const std::vector<std::string>& words);  // throws Exit
-std::string help(std::string_view call);                // "" for the program itself
-std::string unknown_call(const std::string& name);      // the message, with the likely call
+std::string help(std::string_view call);                          // "" for the program itself
+std::string unknown_call(const std::string& name);                // the message, with the likely call
 
 }  // namespace cli

@@ -1,7 +1,7 @@
 #include "cli_terminal.hpp"
 
-#include <csignal>
 #include <unistd.h>
+#include <csignal>
 
 #include <algorithm>
 #include <cerrno>
@@ -30,9 +30,7 @@ void catch_one(int number) {
     if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);
 }
 
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
@@ -54,7 +52,8 @@ void print(std::string_view text) {
     while (!text.empty()) {
         const ssize_t size = write(STDOUT_FILENO, text.data(), text.size());
         if (size < 0 && errno == EINTR && !stop_requested()) continue;
-        if (size < 0) throw Exit{exit_output, "arm3r: error[output]: standard output: " + std::string(std::strerror(errno))};
+        if (size < 0)
+            throw Exit{exit_output, "arm3r: error[output]: standard output: " + std::string(std::strerror(errno))};
         text.remove_prefix(static_cast<std::size_t>(size));
     }
 }
@@ -86,7 +85,8 @@ std::int32_t Progress::callback(void* self, double t, double stop_time, std::int
 void Progress::draw(double seconds, double fraction) {
     constexpr int width = 30;
     const int done = std::clamp(static_cast<int>(fraction * width), 0, width);
-    const std::string bar = std::string(static_cast<std::size_t>(done), '#') + std::string(static_cast<std::size_t>(width - done), '.');
+    const std::string bar =
+        std::string(static_cast<std::size_t>(done), '#') + std::string(static_cast<std::size_t>(width - done), '.');
     complain("\r" + name_ + " [" + bar + "] " + std::to_string(static_cast<int>(fraction * 100)) + " %  " +
              std::to_string(static_cast<int>(seconds)) + " s\x1b[K");
     drawn_ = true;

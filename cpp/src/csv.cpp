@@ -48,7 +48,9 @@ public:
     }
 
 private:
-    static double value(const Run& run, std::size_t column, std::size_t row) { return run.data[column * run.capacity + row]; }
+    static double value(const Run& run, std::size_t column, std::size_t row) {
+        return run.data[column * run.capacity + row];
+    }
 
     std::size_t end_of_repeats(const Run& run, std::size_t row, std::size_t i) const {
         const auto bits = [&](std::size_t r) { return std::bit_cast<std::uint64_t>(value(run, i, r)); };

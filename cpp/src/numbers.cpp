@@ -91,12 +91,19 @@ struct Unit {
 };
 
 constexpr Unit units[] = {
-    {"mm", 1000, "m"},      {"cm", 100, "m"},    {"m", 1, "m"},         {"km", 1e-3, "m"},   {"g", 1000, "kg"},
-    {"kg", 1, "kg"},        {"t", 1e-3, "kg"},   {"us", 1e6, "s"},      {"ms", 1000, "s"},   {"s", 1, "s"},
-    {"sec", 1, "s"},        {"N", 1, "N"},       {"kN", 1e-3, "N"},     {"Nm", 1, "N m"},    {"N/m", 1, "N/m"},
-    {"N/mm", 1e-3, "N/m"},  {"kN/m", 1e-3, "N/m"}, {"Hz", 1, "Hz"},     {"kHz", 1e-3, "Hz"}, {"rad", 1, "rad"},
-    {"m/s", 1, "m/s"},      {"mm/s", 1000, "m/s"}, {"rad/s", 1, "rad/s"}, {"m/s^2", 1, "m/s^2"}, {"kg/m^3", 1, "kg/m^3"},
-    {"g/cm^3", 1e-3, "kg/m^3"},
+    {"mm", 1000, "m"},       {"cm", 100, "m"},
+    {"m", 1, "m"},           {"km", 1e-3, "m"},
+    {"g", 1000, "kg"},       {"kg", 1, "kg"},
+    {"t", 1e-3, "kg"},       {"us", 1e6, "s"},
+    {"ms", 1000, "s"},       {"s", 1, "s"},
+    {"sec", 1, "s"},         {"N", 1, "N"},
+    {"kN", 1e-3, "N"},       {"Nm", 1, "N m"},
+    {"N/m", 1, "N/m"},       {"N/mm", 1e-3, "N/m"},
+    {"kN/m", 1e-3, "N/m"},   {"Hz", 1, "Hz"},
+    {"kHz", 1e-3, "Hz"},     {"rad", 1, "rad"},
+    {"m/s", 1, "m/s"},       {"mm/s", 1000, "m/s"},
+    {"rad/s", 1, "rad/s"},   {"m/s^2", 1, "m/s^2"},
+    {"kg/m^3", 1, "kg/m^3"}, {"g/cm^3", 1e-3, "kg/m^3"},
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -119,7 +126,9 @@ std::string unit_hint(std::string_view number, std::string_view unit, const Numb
         NumberFault ignored;
         if (known.name != unit) continue;
         const std::optional<double> value = convert(number, parts_of(number), ignored);
-        if (value) return "numbers are plain SI: write " + shortest(*value / known.divisor) + " (" + std::string(known.si) + ")";
+        if (value)
+            return "numbers are plain SI: write " + shortest(*value / known.divisor) + " (" + std::string(known.si) +
+                   ")";
     }
     return {};
 }
@@ -128,7 +137,10 @@ std::string based_hint(std::string_view text) {
     const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-');
     if (text.size() < sign + 3 || text[sign] != '0') return {};
     const char letter = text[sign + 1];
-    const int base = letter == 'x' || letter == 'X' ? 16 : letter == 'o' || letter == 'O' ? 8 : letter == 'b' || letter == 'B' ? 2 : 0;
+    const int base = letter == 'x' || letter == 'X'   ? 16
+                     : letter == 'o' || letter == 'O' ? 8
+                     : letter == 'b' || letter == 'B' ? 2
+                                                      : 0;
     long long value = 0;
     const char* end = text.data() + text.size();
     if (base == 0 || std::from_chars(text.data() + sign + 2, end, value, base).ptr != end) return {};
@@ -146,8 +158,10 @@ std::string likely_fix(std::string_view text, std::size_t good, const NumberRule
     const std::string_view rest = text.substr(good);
     if (const std::string hint = based_hint(text); !hint.empty()) return hint;
     if (text.find("\u2212") != text.npos) return "write the minus sign as -";
-    const std::string_view word = text.substr(text.find_first_not_of("+-.") == text.npos ? 0 : text.find_first_not_of("+-."));
-    if (word == "inf" || word == "Inf" || word == "INF" || word == "nan" || word == "NaN" || word == "NAN" || word == "infinity")
+    const std::string_view word =
+        text.substr(text.find_first_not_of("+-.") == text.npos ? 0 : text.find_first_not_of("+-."));
+    if (word == "inf" || word == "Inf" || word == "INF" || word == "nan" || word == "NaN" || word == "NAN" ||
+        word == "infinity")
         return rules.infinity ? "write inf for no limit" : "the value must be finite";
     if (good == 0) return {};
     if (rest[0] == ',') return "use a point: " + std::string(text.substr(0, good)) + "." + std::string(rest.substr(1));

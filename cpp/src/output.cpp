@@ -15,8 +15,13 @@ namespace arm3r {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& message, std::string hint = {}) {
-    throw Error(ARM3R_E_OUTPUT, {{.code = "output", .path = "", .message = "cannot be written: " + message, .got = "", .allowed = "",
-                                  .hint = std::move(hint), .file = path}});
+    throw Error(ARM3R_E_OUTPUT, {{.code = "output",
+                                  .path = "",
+                                  .message = "cannot be written: " + message,
+                                  .got = "",
+                                  .allowed = "",
+                                  .hint = std::move(hint),
+                                  .file = path}});
 }
 
 std::string directory_of(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
@@ -26,7 +31,8 @@ void check_target(const std::string& path) {
     if (path.empty() || path.ends_with('/')) refuse(path, std::strerror(EISDIR), "name a file");
     if (lstat(path.c_str(), &about) != 0) return;
     if (S_ISDIR(about.st_mode)) refuse(path, std::strerror(EISDIR), "name a file");
-    if (!S_ISREG(about.st_mode) && !S_ISLNK(about.st_mode)) refuse(path, "not a regular file", "`-o -` writes to standard output");
+    if (!S_ISREG(about.st_mode) && !S_ISLNK(about.st_mode))
+        refuse(path, "not a regular file", "`-o -` writes to standard output");
 }
 
 int create_beside(const std::string& path, std::string& temporary) {

@@ -10,7 +10,11 @@ namespace arm3r {
 namespace {
 
 [[noreturn]] void refuse(std::string_view path, std::string message) {
-    throw Error(ARM3R_E_INDEX, {{.code = "path.syntax", .path = std::string(path), .message = std::move(message), .got = "", .allowed = "",
+    throw Error(ARM3R_E_INDEX, {{.code = "path.syntax",
+                                 .path = std::string(path),
+                                 .message = std::move(message),
+                                 .got = "",
+                                 .allowed = "",
                                  .hint = "write it like wall.contact.stiffness or initial.q[1]"}});
 }
 
@@ -32,7 +36,8 @@ std::vector<Step> parse_path(std::string_view path) {
             Step step;
             const char* last = path.data() + path.size();
             const auto [stop, error] = std::from_chars(path.data() + at + 1, last, step.index);
-            if (error != std::errc() || stop == last || *stop != ']') refuse(path, "the number of an item must stand in [ ]");
+            if (error != std::errc() || stop == last || *stop != ']')
+                refuse(path, "the number of an item must stand in [ ]");
             steps.push_back(step);
             at = static_cast<std::size_t>(stop + 1 - path.data());
         }

@@ -10,7 +10,7 @@
 namespace arm3r {
 
 struct Step {
-    std::string key;        // empty: an item of a list
+    std::string key;  // empty: an item of a list
     std::size_t index = 0;
 };
 
@@ -21,8 +21,8 @@ const Node* find(const Node& root, const std::vector<Step>& steps);
 // Where the value at a path stands; where it is missing, the deepest section that is there.
 Mark locate(const Node& root, const std::vector<Step>& steps);
 
-std::string join(std::string_view prefix, std::string_view key);           // "a" + "b" = "a.b"
-std::string item(std::string_view path, std::size_t index);                // "a" + 1 = "a[1]"
+std::string join(std::string_view prefix, std::string_view key);  // "a" + "b" = "a.b"
+std::string item(std::string_view path, std::size_t index);       // "a" + 1 = "a[1]"
 
 // The names that the schema and the reader know directly below a section, in their order; "" is the top.
 std::vector<std::string> names_below(std::string_view section);

@@ -38,7 +38,8 @@ std::string number_schema(const Key& key) {
     const std::string type = key.kind == Kind::integer ? "integer" : "number";
     const std::string number = "{\"type\": \"" + type + "\"" + bound("minimum", key.bounds.low, key.bounds.open_low) +
                                bound("maximum", key.bounds.high, key.bounds.open_high) + "}";
-    if (key.kind == Kind::angle) return "{\"anyOf\": [" + number + ", {\"type\": \"string\", \"pattern\": \"^[-+.0-9e]+ +deg$\"}]}";
+    if (key.kind == Kind::angle)
+        return "{\"anyOf\": [" + number + ", {\"type\": \"string\", \"pattern\": \"^[-+.0-9e]+ +deg$\"}]}";
     if (key.allow_infinity) return "{\"anyOf\": [" + number + ", {\"const\": \"inf\"}]}";
     return number;
 }
@@ -51,7 +52,8 @@ std::string value_schema(const Key& key) {
         return "{\"enum\": [" + listed(words, ", ") + "]}";
     }
     const std::string size = std::to_string(key.size), number = number_schema(key);
-    const std::string list = "{\"type\": \"array\", \"items\": " + number + ", \"minItems\": " + size + ", \"maxItems\": " + size + "}";
+    const std::string list =
+        "{\"type\": \"array\", \"items\": " + number + ", \"minItems\": " + size + ", \"maxItems\": " + size + "}";
     switch (key.form) {
         case Form::vector_or_word: return "{\"anyOf\": [" + list + ", {\"const\": " + json_string(key.word) + "}]}";
         case Form::number_or_vector:
@@ -84,13 +86,15 @@ std::string section_schema(const std::string& section, const std::string& indent
         const Key* key = find_key(path);
         std::string schema;
         if (path == "format") schema = "{\"description\": \"Version of this format.\", \"const\": 1}";
-        else if (path == "name") schema = "{\"description\": \"Default: the file's stem.\", \"type\": [\"string\", \"number\"]}";
+        else if (path == "name")
+            schema = "{\"description\": \"Default: the file's stem.\", \"type\": [\"string\", \"number\"]}";
         else if (path == "checks") schema = checks_schema();
         else if (!is_section(path)) schema = described(value_schema(*key), sentence(*key));
         else schema = key ? described(section_schema(path, inner), sentence(*key)) : section_schema(path, inner);
         properties.push_back(inner + json_string(name) + ": " + schema);
     }
-    return "{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\n" + listed(properties, ",\n") + "\n" + indent + "}}";
+    return "{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\n" + listed(properties, ",\n") +
+           "\n" + indent + "}}";
 }
 
 // ---- Markdown
@@ -117,8 +121,8 @@ std::string range_text(const Key& key) {
     if (key.kind == Kind::choice) return listed(key.choices, ", ");
     if (key.kind == Kind::flag) return "true, false";
     if (key.kind == Kind::section) return "a map";
-    std::string out = (key.bounds.open_low ? "> " : "") + shortest(key.bounds.low) + " to " + (key.bounds.open_high ? "< " : "") +
-                      shortest(key.bounds.high);
+    std::string out = (key.bounds.open_low ? "> " : "") + shortest(key.bounds.low) + " to " +
+                      (key.bounds.open_high ? "< " : "") + shortest(key.bounds.high);
     if (key.allow_infinity) out += ", inf";
     if (key.form == Form::vector_or_word) out += ", " + key.word;
     return out;
@@ -140,7 +144,10 @@ std::string numbers_text(const Key& key) {
     switch (key.form) {
         case Form::number_or_vector: return "1 or " + std::to_string(key.size);
         case Form::by_choice: return "1 for " + key.when.front() + ", else " + std::to_string(key.size);
-        default: return key.kind == Kind::choice || key.kind == Kind::section || key.kind == Kind::flag ? "" : std::to_string(key.size);
+        default:
+            return key.kind == Kind::choice || key.kind == Kind::section || key.kind == Kind::flag
+                       ? ""
+                       : std::to_string(key.size);
     }
 }
 
@@ -232,8 +239,9 @@ std::string columns_text() {
 }
 
 std::string columns_markdown() {
-    std::string out = "# Columns of a run\n\nCSV: one header line of bare names, comma, LF. SI units, radians; no NaN.\n\n" +
-                      table_head({"Column", "Unit", "Meaning"});
+    std::string out =
+        "# Columns of a run\n\nCSV: one header line of bare names, comma, LF. SI units, radians; no NaN.\n\n" +
+        table_head({"Column", "Unit", "Meaning"});
     for (const Column& column : column_table())
         out += row({"`" + std::string(column.name) + "`", std::string(column.unit),
                     std::string(column.doc) + (column.only_with_wall ? " Only with a wall." : "")});

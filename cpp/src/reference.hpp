@@ -5,7 +5,7 @@
 
 namespace arm3r {
 
-std::string schema_json();       // JSON Schema, draft 2020-12
+std::string schema_json();  // JSON Schema, draft 2020-12
 std::string schema_markdown();
 std::string columns_text();
 std::string columns_markdown();

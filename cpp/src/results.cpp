@@ -39,19 +39,21 @@ std::string list(const std::vector<std::string>& items, const char* between = ",
     return "[" + out + "]";
 }
 
-std::string json(const std::array<double, 3>& v) { return list({json_number(v[0]), json_number(v[1]), json_number(v[2])}); }
+std::string json(const std::array<double, 3>& v) {
+    return list({json_number(v[0]), json_number(v[1]), json_number(v[2])});
+}
 
 std::string json(const std::optional<double>& value) { return value ? json_number(*value) : "null"; }
 
 std::string json(const Event& event) {
-    return std::string("{\"type\": \"") + type_name(event) + "\", \"t\": " + json_number(event.t) + ", \"q\": " + json(event.q) +
-           ", \"qd\": " + json(event.qd) + ", \"tip\": " + json(event.tip) + "}";
+    return std::string("{\"type\": \"") + type_name(event) + "\", \"t\": " + json_number(event.t) +
+           ", \"q\": " + json(event.q) + ", \"qd\": " + json(event.qd) + ", \"tip\": " + json(event.tip) + "}";
 }
 
 std::string json(const CheckResult& check) {
     return "{\"name\": " + json_string(check.name) + ", \"passed\": " + (check.passed ? "true" : "false") +
-           ", \"value\": " + json(check.value) + ", \"limit\": " + json_string(check.limit) + ", \"deviation\": " + json(check.deviation) +
-           ", \"reason\": " + json_string(check.reason) + "}";
+           ", \"value\": " + json(check.value) + ", \"limit\": " + json_string(check.limit) +
+           ", \"deviation\": " + json(check.deviation) + ", \"reason\": " + json_string(check.reason) + "}";
 }
 
 std::string json(const Steps& steps) {
@@ -105,7 +107,8 @@ double last(const Run& run, std::string_view name) {
 }
 
 bool has_wall(const Run& run) {
-    return std::any_of(run.columns.begin(), run.columns.end(), [](std::size_t i) { return column_table()[i].only_with_wall; });
+    return std::any_of(run.columns.begin(), run.columns.end(),
+                       [](std::size_t i) { return column_table()[i].only_with_wall; });
 }
 
 std::string event_lines(const Run& run) {
@@ -116,7 +119,8 @@ std::string event_lines(const Run& run) {
         out += line(event.type == Event::make ? "contact" : "contact lost",
                     "at " + fixed(event.t, 12) + " s, tip " + vector_text(event.tip) + " m");
     }
-    if (run.events.size() > most) out += line("", "... and " + std::to_string(run.events.size() - most) + " more events");
+    if (run.events.size() > most)
+        out += line("", "... and " + std::to_string(run.events.size() - most) + " more events");
     if (run.events.empty() && has_wall(run)) out += line("contact", "none");
     return out;
 }
@@ -124,7 +128,8 @@ std::string event_lines(const Run& run) {
 std::string force_line(const Run& run) {
     if (!has_wall(run)) return {};
     const std::array<double, 3> force = {last(run, "f_on_wall_x"), last(run, "f_on_wall_y"), last(run, "f_on_wall_z")};
-    return line("force on wall", vector_text(force) + " N at " + rounded(run.t_end, 9) + " s, peak " + rounded(run.peak_force, 10) + " N");
+    return line("force on wall", vector_text(force) + " N at " + rounded(run.t_end, 9) + " s, peak " +
+                                     rounded(run.peak_force, 10) + " N");
 }
 
 // Lines of cells, each column as wide as its widest cell.
@@ -175,7 +180,9 @@ std::string summary_json(const Results& results) {
     const Run& run = results.run;
     std::vector<std::string> columns = each(run.columns, [](std::size_t i) { return json_column(column_table()[i]); });
     std::string out = "{\n  \"name\": " + json_string(results.name);
-    const auto field = [&](const char* name, const std::string& value) { out += ",\n  \"" + std::string(name) + "\": " + value; };
+    const auto field = [&](const char* name, const std::string& value) {
+        out += ",\n  \"" + std::string(name) + "\": " + value;
+    };
     field("outcome", json_string(arm3r_outcome_name(run.outcome)));
     field("message", json_string(run.message));
     field("t_end", json_number(run.t_end));
@@ -202,8 +209,8 @@ std::string report(const Results& results) {
     out += event_lines(run);
     out += force_line(run);
     out += line("energy residual", rounded(run.energy_residual_max, 3) + " J at most");
-    out += line("steps", std::to_string(run.steps.accepted) + " accepted, " + std::to_string(run.steps.rejected) + " rejected, " +
-                             std::to_string(run.steps.evaluations) + " evaluations");
+    out += line("steps", std::to_string(run.steps.accepted) + " accepted, " + std::to_string(run.steps.rejected) +
+                             " rejected, " + std::to_string(run.steps.evaluations) + " evaluations");
     out += line("wall clock", elapsed_text(run.elapsed_s));
     for (const std::string& warning : run.warnings) out += line("warning", visible(warning, 400));
     return out + aligned(each(results.checks, check_cells));

@@ -16,7 +16,7 @@ namespace arm3r {
 struct Results {
     const Run& run;
     const std::string& name;
-    const std::string& scenario;               // YAML; "" where the run came from bare parameters
+    const std::string& scenario;  // YAML; "" where the run came from bare parameters
     const std::vector<CheckResult>& checks;
 };
 

@@ -1,48 +1,127 @@
 #include "sample.hpp"
 
-#include "columns.hpp"
+#include "arm3r/eigen_traits.hpp"
+#include "arm3r/pack.hpp"
 
 namespace arm3r {
 namespace {
 
-constexpr double stencil = 1.0 / 64;         // of the step
-constexpr double shortest_stencil = 2e-6;    // s: below it rounding would swamp the difference
+constexpr double stencil = 1.0 / 64;       // of the step
+constexpr double shortest_stencil = 2e-6;  // s: below it rounding would swamp the difference
 
-Vec3<double> differentiated_tip(const Arm<double>& arm, const Inside& inside, double theta) {  // (5.4)
+template <class S> ARM3R_INLINE Vec3<S> tip_at(const Arm<double>& arm, const Inside& inside, const S& theta) {
+    return tip_position(arm, pose(Vec3<S>(inside.component(0, theta), inside.component(1, theta), inside.component(2, theta))));
+}
+
+// The tip at the four points of the difference around theta, at steps of -2, -1, +1 and +2.
+template <class T> ARM3R_INLINE std::array<Vec3<T>, 4> tip_around(const Arm<double>& arm, const Inside& inside, const T& theta, double step) {
+    return {tip_at(arm, inside, T(theta - 2 * step)), tip_at(arm, inside, T(theta - step)), tip_at(arm, inside, T(theta + step)),
+            tip_at(arm, inside, T(theta + 2 * step))};
+}
+
+ARM3R_INLINE std::array<Vec3<double>, 4> tip_around(const Arm<double>& arm, const Inside& inside, double theta, double step) {
+    using Four = Pack<4>;
+    const Vec3<Four> tip = tip_at(arm, inside, Four(Four::Vector{theta - 2 * step, theta - step, theta + step, theta + 2 * step}));
+    std::array<Vec3<double>, 4> points;
+    for (int i = 0; i < 4; ++i) points[i] = {tip[0][i], tip[1][i], tip[2][i]};
+    return points;
+}
+
+template <class T> ARM3R_INLINE Vec3<T> differentiated_tip(const Arm<double>& arm, const Inside& inside, const T& theta) {  // (5.4)
     const double d = std::max(inside.h * stencil, shortest_stencil);
-    const double step = d / inside.h;
-    using Four = Pack<4>;  // the four points of the difference, side by side
-    const Four at(Four::Vector{theta - 2 * step, theta - step, theta + step, theta + 2 * step});
-    const Vec3<Four> q(inside.component(0, at), inside.component(1, at), inside.component(2, at));
-    const Vec3<Four> tip = tip_position(arm, pose(q));
-    Vec3<double> v;
-    for (int i = 0; i < 3; ++i) v[i] = (8.0 * (tip[i][2] - tip[i][1]) - (tip[i][3] - tip[i][0])) / (12 * d);
+    const std::array<Vec3<T>, 4> tip = tip_around(arm, inside, theta, d / inside.h);
+    Vec3<T> v;
+    for (int i = 0; i < 3; ++i) v[i] = (8.0 * (tip[2][i] - tip[1][i]) - (tip[3][i] - tip[0][i])) / (12 * d);
     return v;
 }
 
-ARM3R_INLINE Indentation<double> indentation_of(const Plant<double>& plant, const WallState<double>& wall, const Pose<double>& p, const Vec3<double>& qd) {
+template <class T>
+ARM3R_INLINE Indentation<T> indentation_of(const Plant<double>& plant, const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd) {
     return indentation(plant.wall, wall, tip_position(plant.arm, p), tip_velocity(plant.arm, p, qd));
 }
 
-ContactForce<double> force_of(const Plant<double>& plant, const Indentation<double>& in, Mode mode) {
-    return only_where(mode == Mode::contact && in.depth > 0, contact_force(plant.wall, plant.contact, in));
+template <class T> ARM3R_INLINE ContactForce<T> force_of(const Plant<double>& plant, const Indentation<T>& in, Mode mode) {
+    if (mode != Mode::contact) return no_contact<T>();
+    return only_where(in.depth > T(0.0), contact_force(plant.wall, plant.contact, in));
 }
 
-// Does the straight piece from a (in front of the face) to b (behind it) pass through the plate?
-bool passes_through(const Wall<double>& wall, const WallState<double>& state, const Vec3<double>& a, const Vec3<double>& b) {
-    const Vec3<double> still(0, 0, 0);
-    const Indentation<double> from = indentation(wall, state, a, still), to = indentation(wall, state, b, still);
-    if ((from.depth > 0) == (to.depth > 0)) return false;
-    const double share = from.depth / (from.depth - to.depth);
-    const Vec3<double> point(a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2]));
-    return inside_outline(wall, indentation(wall, state, point, still)) >= 0;
+// 1 where the straight piece from a to b passes through the plate, else 0.
+template <class T>
+ARM3R_INLINE T passes_through(const Wall<double>& wall, const WallState<T>& state, const Vec3<T>& a, const Vec3<T>& b) {
+    const T o(0.0), l(1.0);
+    const Vec3<T> still(o, o, o);
+    const Indentation<T> from = indentation(wall, state, a, still), to = indentation(wall, state, b, still);
+    const T share = from.depth / (from.depth - to.depth);
+    const Vec3<T> point(a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2]));
+    const T inside = inside_outline(wall, indentation(wall, state, point, still));
+    const T from_behind = select(from.depth > o, l, o), to_behind = select(to.depth > o, l, o);
+    return select(from_behind != to_behind, select(inside >= o, l, o), o);
 }
 
-bool link_behind(const Plant<double>& plant, const WallState<double>& wall, const Pose<double>& p, bool tip_touches) {
-    const Vec3<double> shoulder(0, 0, plant.arm.base_height);
-    const Vec3<double> elbow = elbow_position(plant.arm, p);
-    return passes_through(plant.wall, wall, shoulder, elbow) ||
-           (!tip_touches && passes_through(plant.wall, wall, elbow, tip_position(plant.arm, p)));
+// 1 where link 2, or a link 3 whose tip does not touch, passes through the plate, else 0.
+template <class T>
+ARM3R_INLINE T link_behind(const Plant<double>& plant, const WallState<T>& wall, const Pose<T>& p, const T& touches) {
+    const Vec3<T> shoulder(T(0.0), T(0.0), T(plant.arm.base_height));
+    const Vec3<T> elbow = elbow_position(plant.arm, p);
+    const T link3 = passes_through(plant.wall, wall, elbow, tip_position(plant.arm, p));
+    return max(passes_through(plant.wall, wall, shoulder, elbow), T(link3 - touches));
+}
+
+template <class T> struct Sampled {
+    std::array<T, column_count> value;
+    T link_behind_wall;
+};
+
+template <class T>
+ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, state_size>& y, const T& theta, Sampled<T>& row) {
+    const Plant<double>& plant = scene.plant;
+    const Arm<double>& arm = plant.arm;
+    const T o(0.0);
+    const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
+    const Pose<T> p = pose(q);
+
+    WallState<T> wall{{o, o, o}, {o, o, o}, {o, o, o}};
+    Indentation<T> in{o, o, o, o, o, o};
+    ContactForce<T> force = no_contact<T>();
+    T touches = o;
+    row.link_behind_wall = o;
+    if (plant.has_wall) {
+        wall = wall_at(plant.wall, t);
+        in = indentation_of(plant, wall, p, qd);
+        force = force_of(plant, in, scene.mode);
+        if (scene.mode == Mode::contact) touches = select(in.depth > o, T(1.0), o);
+        row.link_behind_wall = link_behind(plant, wall, p, touches);
+    }
+    const Vec3<T> felt = plant.acts_on_arm ? force.on_tip : Vec3<T>(o, o, o);
+    const Vec3<T> tau = limited(arm, control(plant.controller, q, p));
+    const TipSensor<T> sensor = tip_sensor(arm, q, qd);
+    const T kinetic = kinetic_energy(arm, p, qd), potential = potential_energy(arm, p);
+    const T stored = plant.acts_on_arm ? force.stored : o;
+
+    std::size_t column = 0;
+    const auto put = [&](const T& value) ARM3R_LAMBDA_INLINE { row.value[column++] = value + 0.0; };  // + 0.0: no negative zero
+    const auto put_vector = [&](const Vec3<T>& v) ARM3R_LAMBDA_INLINE { for (int i = 0; i < 3; ++i) put(v[i]); };
+    const auto put_joints = [&](const Vec3<T>& v) ARM3R_LAMBDA_INLINE { put_vector(scene.simscape ? flipped(v) : v); };
+    put(t);
+    put_joints(q);
+    put_joints(qd);
+    put_joints(forward_dynamics(arm, p, qd, tau, felt));
+    put_joints(tau);
+    put_joints(gravity_torque(arm, p));
+    put_vector(sensor.position);
+    put_vector(sensor.velocity);
+    put_vector(times(jacobian(arm, p), qd));
+    put_vector(differentiated_tip(arm, scene.inside, theta));
+    put_vector(wall.position);
+    put(in.depth);
+    put(touches);
+    put_vector(force.on_tip);
+    put_vector({-force.on_tip[0], -force.on_tip[1], -force.on_tip[2]});
+    put(kinetic);
+    put(potential);
+    put(stored);
+    for (std::size_t i = motion_size; i < state_size; ++i) put(y[i]);
+    put(energy_residual(y, T(kinetic + potential + stored), scene.energy_at_start));
 }
 
 }  // namespace
@@ -55,58 +134,24 @@ Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode
     return {kinetic_energy(plant.arm, p, rates(y)), potential_energy(plant.arm, p), stored};
 }
 
-double energy_residual(const FullState& y, double energy, double energy_at_start) {
-    return (energy - energy_at_start) - (y[6] + y[7] - y[8]);
+Row sample(const Scene& scene, double t, const FullState& y, double theta) {
+    Sampled<double> row;
+    sample_into(scene, t, y, theta, row);
+    return {row.value, row.link_behind_wall > 0};
 }
 
-Row sample(const Plant<double>& plant, bool simscape, double t, const FullState& y, Mode mode, double energy_at_start,
-           const Inside& inside, double theta) {
-    const Arm<double>& arm = plant.arm;
-    const Vec3<double> q = angles(y), qd = rates(y);
-    const Pose<double> p = pose(q);
-
-    WallState<double> wall{};
-    Indentation<double> in{};
-    ContactForce<double> force = no_contact<double>();
-    if (plant.has_wall) {
-        wall = wall_at(plant.wall, t);
-        in = indentation_of(plant, wall, p, qd);
-        force = force_of(plant, in, mode);
-    }
-    const bool touches = mode == Mode::contact && in.depth > 0;
-    const Vec3<double> felt = plant.acts_on_arm ? force.on_tip : Vec3<double>(0, 0, 0);
-    const Vec3<double> tau = limited(arm, control(plant.controller, q, p));
-    const Vec3<double> qdd = forward_dynamics(arm, p, qd, tau, felt);
-    const TipSensor<double> sensor = tip_sensor(arm, q, qd);
-    const Energies energy{kinetic_energy(arm, p, qd), potential_energy(arm, p), plant.acts_on_arm ? force.stored : 0.0};
-
-    Row row;
-    std::size_t column = 0;
-    const auto put = [&](double value) { row.value[column++] = value + 0.0; };  // + 0.0: no negative zero
-    const auto put_vector = [&](const Vec3<double>& v) { for (int i = 0; i < 3; ++i) put(v[i]); };
-    const auto put_joints = [&](const Vec3<double>& v) { put_vector(simscape ? flipped(v) : v); };
-    put(t);
-    put_joints(q);
-    put_joints(qd);
-    put_joints(qdd);
-    put_joints(tau);
-    put_joints(gravity_torque(arm, p));
-    put_vector(sensor.position);
-    put_vector(sensor.velocity);
-    put_vector(times(jacobian(arm, p), qd));
-    put_vector(differentiated_tip(arm, inside, theta));
-    put_vector(wall.position);
-    put(in.depth);
-    put(touches ? 1.0 : 0.0);
-    put_vector(force.on_tip);
-    put_vector(-force.on_tip);
-    put(energy.kinetic);
-    put(energy.potential);
-    put(energy.contact);
-    for (std::size_t i = motion_size; i < state_size; ++i) put(y[i]);
-    put(energy_residual(y, energy.sum(), energy_at_start));
-    row.link_behind_wall = plant.has_wall && link_behind(plant, wall, p, touches);
-    return row;
+ARM3R_WIDEST void sample_together(const Scene& scene, const double* t, Rows& rows) {
+    using Eight = Pack<together>;
+    const Eight at = Eight::load(t);
+    const Eight theta = (at - scene.inside.t0) / scene.inside.h;
+    State<Eight, state_size> y;
+    for (std::size_t i = 0; i < state_size; ++i) y[i] = scene.inside.component(i, theta);
+    Sampled<Eight> sampled;
+    sample_into(scene, at, y, theta, sampled);
+    for (std::size_t i = 0; i < column_count; ++i) sampled.value[i].store(rows.value[i]);
+    rows.first_link_behind_wall = together;
+    for (int i = together - 1; i >= 0; --i)
+        if (sampled.link_behind_wall[i] > 0) rows.first_link_behind_wall = i;
 }
 
 }  // namespace arm3r

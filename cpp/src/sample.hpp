@@ -23,16 +23,38 @@ struct Energies {
 Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode mode);
 
 // What the balance leaves over (4.9).
-double energy_residual(const FullState& y, double energy, double energy_at_start);
+template <class T> ARM3R_INLINE T energy_residual(const State<T, state_size>& y, const T& energy, double energy_at_start) {
+    return (energy - energy_at_start) - (y[6] + y[7] - y[8]);
+}
 
 // The columns of columns.cpp in their order, wall columns included; joint vectors in the convention of the faces.
+constexpr std::size_t column_count = 46;
+
 struct Row {
-    std::array<double, 46> value;
+    std::array<double, column_count> value;
     bool link_behind_wall;  // the elbow, or a link that is not in contact itself, lies behind the plate
 };
 
-// `theta` is where t lies within `inside`, along which the tip position is differentiated (5.4).
-Row sample(const Plant<double>& plant, bool simscape, double t, const FullState& y, Mode mode, double energy_at_start,
-           const Inside& inside, double theta);
+// What all rows within a step have in common.
+struct Scene {
+    const Plant<double>& plant;
+    bool simscape;
+    double energy_at_start;
+    Mode mode;
+    const Inside& inside;  // the tip position is differentiated along it (5.4)
+};
+
+// `theta` is where t lies within the step.
+Row sample(const Scene& scene, double t, const FullState& y, double theta);
+
+// Eight rows on the solution within the step, side by side: value[column][row], the same bits as one by one.
+constexpr int together = 8;
+
+struct Rows {
+    alignas(64) double value[column_count][together];
+    int first_link_behind_wall;  // the row where Row::link_behind_wall first holds; `together` for none
+};
+
+void sample_together(const Scene& scene, const double* t, Rows& rows);
 
 }  // namespace arm3r

@@ -80,17 +80,23 @@ std::string as_name(std::string_view file) {
         if (c < 0) ++at;
         name += c < 0 || is_control(c) || is_bidi_control(c) ? "_" : std::string(stem.substr(begin, at - begin));
     }
-    return name.empty() || name == "-" || name.starts_with('.') ? "scenario" : name;
+    const bool usable =
+        !name.empty() && name.size() <= 200 && std::string_view(".-<").find(name[0]) == std::string_view::npos;
+    return usable ? name : "scenario";
 }
 
 class Resolver {
 public:
     explicit Resolver(const Scenario& scenario)
-        : scenario_(scenario), root_(scenario.document.root), problems_(scenario.document.problems), origin_(schema().size()) {}
+        : scenario_(scenario),
+          root_(scenario.document.root),
+          problems_(scenario.document.problems),
+          origin_(schema().size()) {}
 
     Resolved resolve() {
         if (root_.type == Node::nothing)
-            refuse(ARM3R_E_SCENARIO, {"scenario.empty", "", "the scenario is empty", "", "", "`arm3r template` prints one to start from"});
+            refuse(ARM3R_E_SCENARIO, {"scenario.empty", "", "the scenario is empty", "", "",
+                                      "`arm3r template` prints one to start from"});
         if (root_.type == Node::map) {
             read_format();
             read_name();
@@ -100,7 +106,8 @@ public:
             if (const Node* checks = root_.find("checks"))
                 result_.checks = read_checks(*checks, result_.params, scenario_.file, problems_);
         } else if (root_.type != Node::hole) {
-            problem(root_.mark, {"scenario.type", "", "a scenario is a map of keys", shape_of(root_), "", "start with `format: 1`"});
+            problem(root_.mark, {"scenario.type", "", "a scenario is a map of keys", shape_of(root_), "",
+                                 "start with `format: 1`"});
         }
         finish();
         build_tree();
@@ -108,7 +115,9 @@ public:
     }
 
 private:
-    void problem(const Mark& at, Problem problem) { problems_.push_back(arm3r::located(std::move(problem), at, scenario_.file)); }
+    void problem(const Mark& at, Problem problem) {
+        problems_.push_back(arm3r::located(std::move(problem), at, scenario_.file));
+    }
 
     [[noreturn]] void refuse(arm3r_status status, Problem problem) const {
         throw Error(status, std::vector{arm3r::located(std::move(problem), root_.mark, scenario_.file)});
@@ -117,7 +126,8 @@ private:
     void finish() {
         if (problems_.empty()) return;
         const auto place = [](const Problem& p) { return std::tuple(p.line == 0, p.line, p.column); };
-        std::stable_sort(problems_.begin(), problems_.end(), [&](const Problem& a, const Problem& b) { return place(a) < place(b); });
+        std::stable_sort(problems_.begin(), problems_.end(),
+                         [&](const Problem& a, const Problem& b) { return place(a) < place(b); });
         throw Error(ARM3R_E_SCENARIO, problems_);
     }
 
@@ -126,14 +136,20 @@ private:
     void read_format() {
         const Node* node = root_.find("format");
         if (!node)
-            return problem(root_.mark, {"scenario.format", "format", "the version of the format is missing", "", "", "write `format: 1` as the first line"});
+            return problem(root_.mark, {"scenario.format", "format", "the version of the format is missing", "", "",
+                                        "write `format: 1` as the first line"});
         NumberFault fault;
-        const auto value = node->type == Node::scalar && !node->quoted ? read_number(node->text, {.whole = true}, fault) : std::nullopt;
+        const auto value = node->type == Node::scalar && !node->quoted ? read_number(node->text, {.whole = true}, fault)
+                                                                       : std::nullopt;
         if (!value)
             problem(node->mark, {"scenario.format", "format", "expects a whole number", shape_of(*node), "1", ""});
         else if (*value != format)
-            throw Error(ARM3R_E_FORMAT, {arm3r::located({"scenario.format", "format", "written for format " + shortest(*value) + ", this is " +
-                                         std::to_string(format), "", "", ""}, node->mark, scenario_.file)});
+            throw Error(
+                ARM3R_E_FORMAT,
+                {arm3r::located(
+                    {"scenario.format", "format",
+                     "written for format " + shortest(*value) + ", this is " + std::to_string(format), "", "", ""},
+                    node->mark, scenario_.file)});
     }
 
     void read_name() {
@@ -141,11 +157,13 @@ private:
         result_.name = as_name(scenario_.file);
         if (!node || node->type == Node::hole) return;
         const std::string& text = node->text;
-        const bool usable = node->type == Node::scalar && !text.empty() && text.size() <= 200 && text.find('/') == text.npos &&
-                            text[0] != '.' && text[0] != '-' && visible(text, 200) == text;
+        const bool usable = node->type == Node::scalar && !text.empty() && text.size() <= 200 &&
+                            text.find('/') == text.npos && text[0] != '.' && text[0] != '-' &&
+                            visible(text, 200) == text;
         if (usable) result_.name = text;
-        else problem(node->mark, {"scenario.name", "name", "a name must serve as a file name", shape_of(*node),
-                                  "1 to 200 characters without / and control characters, not starting with . or -", ""});
+        else
+            problem(node->mark, {"scenario.name", "name", "a name must serve as a file name", shape_of(*node),
+                                 "1 to 200 characters without / and control characters, not starting with . or -", ""});
     }
 
     // ---- choices first: they say which keys there are, and which defaults
@@ -172,8 +190,8 @@ private:
             return set_origin(key, node);
         }
         unknown_choices_.insert(key.path);
-        problem(node.mark, {"scenario.unknown_word", key.path, "must be one of the words", shape_of(node), listed(key.choices),
-                            did_you_mean(node.text, key.choices)});
+        problem(node.mark, {"scenario.unknown_word", key.path, "must be one of the words", shape_of(node),
+                            listed(key.choices), did_you_mean(node.text, key.choices)});
     }
 
     // ---- the file, key by key
@@ -201,8 +219,8 @@ private:
         const Words elsewhere = sections_of(node.key);
         std::string hint = did_you_mean(node.key, here);
         if (!elsewhere.empty()) hint = "`" + visible(node.key) + "` belongs to " + listed(elsewhere, " or ");
-        problem(node.key_mark, {"scenario.unknown_key", join(section, node.key), section.empty() ? "no such key" : "no such key in " + section,
-                                "", listed(here), hint});
+        problem(node.key_mark, {"scenario.unknown_key", join(section, node.key),
+                                section.empty() ? "no such key" : "no such key in " + section, "", listed(here), hint});
     }
 
     void read_value(const Key& key, const Node& node) {
@@ -215,28 +233,34 @@ private:
             std::fill_n(at(key), key.size, std::numeric_limits<double>::infinity());
             return set_origin(key, node);
         }
-        if (is_list_here(key) && node.type == Node::list && node.children.size() == key.size) return read_list(key, node);
+        if (is_list_here(key) && node.type == Node::list && node.children.size() == key.size)
+            return read_list(key, node);
         wrong_shape(key, node);
     }
 
     // A key of another choice: "`section` belongs to shape brick; here the shape is cylinder".
     void not_here(const Key& key, const Node& node) {
         const Key* missing = &key;
-        while (std::find(missing->when.begin(), missing->when.end(), choice_of(result_.params, missing->when_key)) != missing->when.end())
+        while (std::find(missing->when.begin(), missing->when.end(), choice_of(result_.params, missing->when_key)) !=
+               missing->when.end())
             missing = find_key(missing->when_key);
         if (unknown_choices_.contains(missing->when_key)) return;
         const std::string choice = last_name(missing->when_key);
-        problem(node.key_mark, {"scenario.other_choice", key.path, "`" + last_name(key.path) + "` belongs to " + choice + " " +
-                                listed(missing->when, " or ") + "; here the " + choice + " is " + choice_of(result_.params, missing->when_key),
-                                "", "", "take it out, or set " + missing->when_key});
+        problem(node.key_mark,
+                {"scenario.other_choice", key.path,
+                 "`" + last_name(key.path) + "` belongs to " + choice + " " + listed(missing->when, " or ") +
+                     "; here the " + choice + " is " + choice_of(result_.params, missing->when_key),
+                 "", "", "take it out, or set " + missing->when_key});
     }
 
     void wrong_shape(const Key& key, const Node& node) {
         std::string hint;
         if (node.type == Node::nothing) hint = "leave the key out for its default";
-        if (key.form == Form::by_choice) hint = last_name(key.when_key) + " is " + choice_of(result_.params, key.when_key);
+        if (key.form == Form::by_choice)
+            hint = last_name(key.when_key) + " is " + choice_of(result_.params, key.when_key);
         if (key.form == Form::vector_or_word && node.type == Node::scalar) hint = did_you_mean(node.text, {key.word});
-        problem(node.mark, {"scenario.type", key.path, "expects " + expected(key, result_.params), shape_of(node), "", hint});
+        problem(node.mark,
+                {"scenario.type", key.path, "expects " + expected(key, result_.params), shape_of(node), "", hint});
     }
 
     bool is_number_here(const Key& key, const Node& node) const {
@@ -253,13 +277,15 @@ private:
     void read_flag(const Key& key, const Node& node) {
         const bool is_true = node.text == "true";
         if (node.type != Node::scalar || node.quoted || (!is_true && node.text != "false"))
-            return problem(node.mark, {"scenario.type", key.path, "expects true or false", shape_of(node), "", flag_hint(node.text)});
+            return problem(node.mark, {"scenario.type", key.path, "expects true or false", shape_of(node), "",
+                                       flag_hint(node.text)});
         *at(key) = is_true;
         set_origin(key, node);
     }
 
     static std::string flag_hint(std::string text) {
-        std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+        std::transform(text.begin(), text.end(), text.begin(),
+                       [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
         const Words yes = {"yes", "y", "on", "1", "true"}, no = {"no", "n", "off", "0", "false"};
         if (std::find(yes.begin(), yes.end(), text) != yes.end()) return "write true";
         return std::find(no.begin(), no.end(), text) != no.end() ? "write false" : "";
@@ -273,7 +299,8 @@ private:
 
     void read_list(const Key& key, const Node& node) {
         for (std::size_t i = 0; i < key.size; ++i)
-            if (node.children[i].type != Node::hole) read_number_into(key, node.children[i], item(key.path, i), at(key)[static_cast<long>(i)]);
+            if (node.children[i].type != Node::hole)
+                read_number_into(key, node.children[i], item(key.path, i), at(key)[static_cast<long>(i)]);
         set_origin(key, node);
     }
 
@@ -282,7 +309,9 @@ private:
         if (node.type == Node::scalar && node.quoted) {
             fault = {"number.quoted", "a number has no quotes", "write " + node.text};
         } else if (node.type == Node::scalar) {
-            const NumberRules rules{.degrees = key.kind == Kind::angle, .infinity = key.allow_infinity, .whole = key.kind == Kind::integer,
+            const NumberRules rules{.degrees = key.kind == Kind::angle,
+                                    .infinity = key.allow_infinity,
+                                    .whole = key.kind == Kind::integer,
                                     .unit = key.unit};
             if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
         }
@@ -300,7 +329,8 @@ private:
     bool already_refused(std::string_view path) const {
         return std::any_of(problems_.begin(), problems_.end(), [&](const Problem& known) {
             return !known.path.empty() && path.starts_with(known.path) &&
-                   (path.size() == known.path.size() || path[known.path.size()] == '.' || path[known.path.size()] == '[');
+                   (path.size() == known.path.size() || path[known.path.size()] == '.' ||
+                    path[known.path.size()] == '[');
         });
     }
 
@@ -308,12 +338,15 @@ private:
 
     // ---- origins, and the tree of everything
 
-    std::vector<double>::iterator at(const Key& key) { return result_.params.begin() + static_cast<std::ptrdiff_t>(key.offset); }
+    std::vector<double>::iterator at(const Key& key) {
+        return result_.params.begin() + static_cast<std::ptrdiff_t>(key.offset);
+    }
 
     std::string& origin(const Key& key) { return origin_[static_cast<std::size_t>(&key - schema().data())]; }
 
     void set_origin(const Key& key, const Node& node) {
-        const bool edited = std::any_of(node.children.begin(), node.children.end(), [](const Node& n) { return n.mark.line == 0; });
+        const bool edited =
+            std::any_of(node.children.begin(), node.children.end(), [](const Node& n) { return n.mark.line == 0; });
         const std::string line = visible(scenario_.file, 200) + ":" + std::to_string(node.start().line);
         const bool all_edited = node.mark.line == 0;
         origin(key) = all_edited ? "--set" : edited && key.kind != Kind::section ? line + ", --set" : line;
@@ -322,7 +355,8 @@ private:
     // Whether the key has a place in the resolved scenario.
     bool is_there(const Key& key) {
         for (const Key& section : schema())
-            if (section.kind == Kind::section && key.path.starts_with(section.path + ".") && *at(section) == 0) return false;
+            if (section.kind == Kind::section && key.path.starts_with(section.path + ".") && *at(section) == 0)
+                return false;
         return key.kind == Kind::section ? *at(key) != 0 : key_exists(key, result_.params);
     }
 
@@ -334,7 +368,8 @@ private:
         tree.children.back().quoted = true;
         for (const Key& key : schema())
             if (is_there(key)) insert(tree, key);
-        if (const Node* checks = root_.find("checks"); checks && checks->type == Node::list) tree.children.push_back(*checks);
+        if (const Node* checks = root_.find("checks"); checks && checks->type == Node::list)
+            tree.children.push_back(*checks);
     }
 
     static Node leaf(std::string key, std::string text, std::string note) {

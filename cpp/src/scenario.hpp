@@ -12,7 +12,7 @@ namespace arm3r {
 
 struct Scenario {
     Document document;
-    std::string file;   // its name in messages
+    std::string file;  // its name in messages
 };
 
 // Syntax only; what the text says is judged by resolve().
@@ -25,7 +25,7 @@ struct Resolved {
     std::string name;
     std::vector<double> params;
     std::vector<Check> checks;
-    Node tree;          // every value there is, each with its origin as note
+    Node tree;  // every value there is, each with its origin as note
 };
 
 // Throws Error with every problem of the scenario.

@@ -36,8 +36,13 @@ Document read_value(std::string_view path, const std::string& value) {
 }
 
 [[noreturn]] void refuse(std::string_view path, std::string code, std::string message, std::string hint) {
-    throw Error(ARM3R_E_SCENARIO, {{.code = std::move(code), .path = std::string(path), .message = std::move(message), .got = "",
-                                    .allowed = "", .hint = std::move(hint), .file = "--set"}});
+    throw Error(ARM3R_E_SCENARIO, {{.code = std::move(code),
+                                    .path = std::string(path),
+                                    .message = std::move(message),
+                                    .got = "",
+                                    .allowed = "",
+                                    .hint = std::move(hint),
+                                    .file = "--set"}});
 }
 
 // A list of which only single items are set: the others keep their defaults.
@@ -50,7 +55,8 @@ std::vector<Node> open_items(std::string_view path) {
 
 Node& child(Node& node, const std::string& path, const std::string& name) {
     if (node.type == Node::nothing || node.type == Node::hole) node.type = Node::map;
-    if (node.type != Node::map) refuse(join(path, name), "path.section", "`" + path + "` is " + shape_of(node) + ", not a section", "");
+    if (node.type != Node::map)
+        refuse(join(path, name), "path.section", "`" + path + "` is " + shape_of(node) + ", not a section", "");
     if (Node* found = node.find(name)) return *found;
     Node fresh;
     fresh.type = Node::hole;
@@ -65,10 +71,12 @@ Node& child(Node& node, const std::string& path, std::size_t index) {
         node.type = Node::list;
         node.children = open_items(path);
     }
-    if (node.type != Node::list) refuse(item(path, index), "path.list", "`" + path + "` is " + shape_of(node) + ", not a list", "");
+    if (node.type != Node::list)
+        refuse(item(path, index), "path.list", "`" + path + "` is " + shape_of(node) + ", not a list", "");
     if (index == node.children.size()) node.children.emplace_back();
     if (index > node.children.size())
-        refuse(item(path, index), "path.index", "`" + path + "` has " + std::to_string(node.children.size()) + " items", "");
+        refuse(item(path, index), "path.index", "`" + path + "` has " + std::to_string(node.children.size()) + " items",
+               "");
     return node.children[index];
 }
 
@@ -79,7 +87,8 @@ void remove(Node& root, const std::vector<Step>& steps) {
     if (steps.back().key.empty() && steps.back().index < from->children.size())
         from->children.erase(from->children.begin() + static_cast<std::ptrdiff_t>(steps.back().index));
     else
-        std::erase_if(from->children, [&](const Node& node) { return !node.key.empty() && node.key == steps.back().key; });
+        std::erase_if(from->children,
+                      [&](const Node& node) { return !node.key.empty() && node.key == steps.back().key; });
 }
 
 bool fits(const Key& key, const std::string& word, const Node& root) {
@@ -114,7 +123,8 @@ void set(Scenario& scenario, std::string_view path, const std::string& value) {
     document.root.key = node->key;
     document.root.key_mark = {0, 1};
     *node = std::move(document.root);
-    scenario.document.problems.insert(scenario.document.problems.end(), document.problems.begin(), document.problems.end());
+    scenario.document.problems.insert(scenario.document.problems.end(), document.problems.begin(),
+                                      document.problems.end());
 
     const Key* key = find_key(path);
     if (key && key->kind == Kind::choice) drop_others(root, key->path, node->text);

@@ -19,8 +19,9 @@ bool is_plain_word(const std::string& text) {
     std::string lower = text;
     for (char& c : lower)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
-    const bool reserved = lower == "null" || lower == "true" || lower == "false" || lower == "yes" || lower == "no" || lower == "on" ||
-                          lower == "off" || lower == "y" || lower == "n" || lower == "inf" || lower == "nan";
+    const bool reserved = lower == "null" || lower == "true" || lower == "false" || lower == "yes" || lower == "no" ||
+                          lower == "on" || lower == "off" || lower == "y" || lower == "n" || lower == "inf" ||
+                          lower == "nan";
     return !text.empty() && letter(text[0]) && std::all_of(text.begin(), text.end(), inner) && !reserved;
 }
 
@@ -30,7 +31,8 @@ bool is_number(const Node& node) {
 }
 
 std::string scalar_yaml(const Node& node) {
-    const bool literal = !node.quoted && (is_number(node) || node.text == "true" || node.text == "false" || node.text == "inf" || node.text == "-inf");
+    const bool literal = !node.quoted && (is_number(node) || node.text == "true" || node.text == "false" ||
+                                          node.text == "inf" || node.text == "-inf");
     return literal || is_plain_word(node.text) ? node.text : json_string(node.text);
 }
 
@@ -39,7 +41,8 @@ std::string flow_yaml(const Node& node) {
     if (node.type != Node::list && node.type != Node::map) return "null";
     std::string out;
     for (const Node& child : node.children)
-        out += (out.empty() ? "" : ", ") + (node.type == Node::map ? child.key + ": " : std::string()) + flow_yaml(child);
+        out +=
+            (out.empty() ? "" : ", ") + (node.type == Node::map ? child.key + ": " : std::string()) + flow_yaml(child);
     return node.type == Node::map ? "{" + out + "}" : "[" + out + "]";
 }
 
@@ -53,8 +56,9 @@ public:
     explicit YamlWriter(bool notes) : notes_(notes) {}
 
     void section(const Node& map, const std::string& indent) {
-        const bool has_value = std::any_of(map.children.begin(), map.children.end(),
-                                           [](const Node& n) { return n.type != Node::map && n.type != Node::nothing; });
+        const bool has_value = std::any_of(map.children.begin(), map.children.end(), [](const Node& n) {
+            return n.type != Node::map && n.type != Node::nothing;
+        });
         for (const Node& node : map.children) {
             if (node.type == Node::map && says_something(node)) {
                 text += indent + node.key + ":\n";
@@ -62,7 +66,8 @@ public:
             } else if (node.key == "checks") {
                 checks(node);
             } else if (node.type == Node::nothing) {
-                if (notes_ && has_value && !node.note.empty()) text += indent + "# " + node.key + ": " + node.note + "\n";
+                if (notes_ && has_value && !node.note.empty())
+                    text += indent + "# " + node.key + ": " + node.note + "\n";
             } else if (node.type != Node::map) {
                 line(indent + node.key + ": " + flow_yaml(node), node.note);
             }
@@ -114,7 +119,8 @@ std::string to_json(const Node& node) {
             for (const Node& child : node.children) out += (out.empty() ? "" : ", ") + to_json(child);
             return "[" + out + "]";
         case Node::map:
-            for (const Node& child : node.children) out += (out.empty() ? "" : ", ") + json_string(child.key) + ": " + to_json(child);
+            for (const Node& child : node.children)
+                out += (out.empty() ? "" : ", ") + json_string(child.key) + ": " + to_json(child);
             return "{" + out + "}";
         default: return "null";
     }
@@ -125,8 +131,12 @@ std::string json_at(const Resolved& resolved, std::string_view path) {
     if (const Node* node = find(resolved.tree, steps)) return to_json(*node);
     if (path == "checks") return "[]";
     if (is_known(path)) return "null";
-    throw Error(ARM3R_E_INDEX, {{.code = "path.unknown", .path = std::string(path), .message = "there is no such value", .got = "",
-                                 .allowed = "", .hint = unknown_path_hint(path)}});
+    throw Error(ARM3R_E_INDEX, {{.code = "path.unknown",
+                                 .path = std::string(path),
+                                 .message = "there is no such value",
+                                 .got = "",
+                                 .allowed = "",
+                                 .hint = unknown_path_hint(path)}});
 }
 
 }  // namespace arm3r

@@ -77,20 +77,21 @@ private:
         run_.data = std::make_unique_for_overwrite<double[]>(run_.capacity * run_.columns.size());
     }
 
-    double next_row_time() const { return double(run_.rows) * setup_.log_every; }
+    double row_time(std::size_t row) const { return double(row) * setup_.log_every; }
 
     // All rows before `until`, from the solution within the step.
     void log_until(double until, const Inside& inside) {
-        const double last = setup_.stop - 1e-9 * setup_.log_every;
-        for (double t = next_row_time(); t < until && t < last && run_.outcome == ARM3R_RUN_OK; t = next_row_time()) {
-            const double theta = (t - inside.t0) / inside.h;
-            log(t, inside(theta), inside, theta);
-            poll();
+        const double end = std::min(until, setup_.stop - 1e-9 * setup_.log_every);
+        const Scene scene{setup_.plant, setup_.simscape, energy_at_start_, mode_, inside};
+        while (row_time(run_.rows + together - 1) < end && poll()) log_together(scene);
+        while (row_time(run_.rows) < end && poll()) {
+            const double t = row_time(run_.rows), theta = (t - inside.t0) / inside.h;
+            log(scene, t, inside(theta), theta);
         }
     }
 
-    void log(double t, const FullState& y, const Inside& inside, double theta) {
-        const Row row = sample(setup_.plant, setup_.simscape, t, y, mode_, energy_at_start_, inside, theta);
+    void log(const Scene& scene, double t, const FullState& y, double theta) {
+        const Row row = sample(scene, t, y, theta);
         double* cell = run_.data.get() + run_.rows;
         for (const std::size_t column : run_.columns) {
             *cell = row.value[column];
@@ -99,6 +100,21 @@ private:
         run_.rows += 1;
         note_residual(row.value.back());
         if (row.link_behind_wall && link_behind_since_ < 0) link_behind_since_ = t;
+    }
+
+    void log_together(const Scene& scene) {
+        double t[together];
+        for (int i = 0; i < together; ++i) t[i] = row_time(run_.rows + i);
+        Rows rows;
+        sample_together(scene, t, rows);
+        double* cells = run_.data.get() + run_.rows;
+        for (const std::size_t column : run_.columns) {
+            std::copy_n(rows.value[column], together, cells);
+            cells += run_.capacity;
+        }
+        run_.rows += together;
+        for (const double residual : rows.value[column_count - 1]) note_residual(residual);
+        if (rows.first_link_behind_wall < together && link_behind_since_ < 0) link_behind_since_ = t[rows.first_link_behind_wall];
     }
 
     // ---- the books
@@ -348,7 +364,7 @@ private:
 
     void finish() {
         if (run_.outcome == ARM3R_RUN_OK) {
-            log(t_, y_, inside_, theta_);
+            log({setup_.plant, setup_.simscape, energy_at_start_, mode_, inside_}, t_, y_, theta_);
             judge_books();
         }
         if (link_behind_since_ >= 0)

@@ -93,12 +93,9 @@ std::string visible(std::string_view text, std::size_t limit) {
         if (count == limit) return out += "...";
         const std::size_t begin = at;
         const std::int32_t c = next_code_point(text, at);
-        if (c < 0)
-            out += "\\x" + hex(static_cast<unsigned char>(text[at++]), 2);
-        else if (is_control(c) || is_bidi_control(c))
-            out += escape(c);
-        else
-            out += text.substr(begin, at - begin);
+        if (c < 0) out += "\\x" + hex(static_cast<unsigned char>(text[at++]), 2);
+        else if (is_control(c) || is_bidi_control(c)) out += escape(c);
+        else out += text.substr(begin, at - begin);
     }
     return out;
 }

@@ -15,7 +15,8 @@ namespace arm3r {
 
 namespace {
 
-constexpr std::size_t most_bytes = 1 << 20, most_nodes = 50'000, longest_scalar = 64 << 10, deepest = 64, most_keys = 1000;
+constexpr std::size_t most_bytes = 1 << 20, most_nodes = 50'000, longest_scalar = 64 << 10, deepest = 64,
+                      most_keys = 1000;
 
 [[noreturn]] void refuse(Problem problem) { throw Error(ARM3R_E_SCENARIO, std::vector{std::move(problem)}); }
 
@@ -31,14 +32,18 @@ public:
 
     Mark mark(const YAML::Mark& mark) const {
         const std::size_t line = std::min<std::size_t>(mark.line < 0 ? 0 : mark.line, lines_.size() - 1);
-        const std::size_t bytes = mark.column < 0 ? 0 : mark.column;
-        return {static_cast<int>(line) + 1, static_cast<int>(count_characters(lines_[line].substr(0, bytes))) + 1};
+        const std::size_t bytes = std::min<std::size_t>(mark.column < 0 ? 0 : mark.column, lines_[line].size());
+        if (line != line_ || bytes < bytes_) line_ = line, bytes_ = characters_ = 0;
+        characters_ += count_characters(lines_[line].substr(bytes_, bytes - bytes_));
+        bytes_ = bytes;
+        return {static_cast<int>(line) + 1, static_cast<int>(characters_) + 1};
     }
 
     std::string_view line(int number) const { return lines_[static_cast<std::size_t>(number) - 1]; }
 
 private:
     std::vector<std::string_view> lines_;
+    mutable std::size_t line_ = 0, bytes_ = 0, characters_ = 0;  // the last place: the next one mostly lies behind it
 };
 
 class Builder : public YAML::EventHandler {
@@ -58,21 +63,25 @@ public:
         leaf(alias);
     }
 
-    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  const std::string& value) override {
         Node scalar = node(Node::scalar, mark, tag == "!" ? "" : tag, anchor);
         if (value.size() > longest_scalar)
-            fatal(scalar.mark, "yaml.scalar_length", "a value is longer than 64 KiB", std::to_string(value.size()) + " bytes");
+            fatal(scalar.mark, "yaml.scalar_length", "a value is longer than 64 KiB",
+                  std::to_string(value.size()) + " bytes");
         scalar.quoted = tag == "!";
         scalar.text = value;
         leaf(std::move(scalar));
     }
 
-    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                         YAML::EmitterStyle::value) override {
         open(node(Node::list, mark, tag, anchor));
     }
     void OnSequenceEnd() override { close(); }
 
-    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                    YAML::EmitterStyle::value) override {
         open(node(Node::map, mark, tag, anchor));
     }
     void OnMapEnd() override { close(); }
@@ -91,7 +100,8 @@ private:
         node.mark = lines_.mark(at);
         if (++nodes_ > most_nodes) fatal(node.mark, "yaml.nodes", "more than 50000 values in one file", "");
         if (anchor) problem(node.mark, "yaml.anchor", "anchors and aliases are not supported", "write the value out");
-        if (!tag.empty() && tag != "?") problem(node.mark, "yaml.tag", "tags are not supported", "take '" + tag + "' out");
+        if (!tag.empty() && tag != "?")
+            problem(node.mark, "yaml.tag", "tags are not supported", "take '" + tag + "' out");
         return node;
     }
 
@@ -107,14 +117,10 @@ private:
     }
 
     void leaf(Node node) {
-        if (stack_.empty())
-            document.root = std::move(node);
-        else if (stack_.back().node.type == Node::list)
-            stack_.back().node.children.push_back(std::move(node));
-        else if (stack_.back().has_key)
-            add_value(std::move(node));
-        else
-            take_key(std::move(node));
+        if (stack_.empty()) document.root = std::move(node);
+        else if (stack_.back().node.type == Node::list) stack_.back().node.children.push_back(std::move(node));
+        else if (stack_.back().has_key) add_value(std::move(node));
+        else take_key(std::move(node));
     }
 
     void take_key(Node node) {
@@ -130,16 +136,16 @@ private:
 
     void add_value(Node node) {
         Frame& frame = stack_.back();
-        frame.has_key = false;
-        node.key = std::move(frame.key);
+        node.key = frame.key;
         node.key_mark = frame.key_mark;
         if (const Node* first = frame.node.find(node.key); first && !node.key.empty() && node.key != "<<")
             problem(node.key_mark, "yaml.duplicate_key",
-                    "the key '" + node.key + "' stands here and on line " + std::to_string(first->key_mark.line), "keep one of the two");
+                    "the key '" + node.key + "' stands here and on line " + std::to_string(first->key_mark.line),
+                    "keep one of the two");
         else if (frame.node.children.size() == most_keys)
             fatal(node.key_mark, "yaml.keys", "more than 1000 keys in one map", "");
-        else if (!node.key.empty() && node.key != "<<")
-            frame.node.children.push_back(std::move(node));
+        else if (!node.key.empty() && node.key != "<<") frame.node.children.push_back(std::move(node));
+        frame.has_key = false;
     }
 
     std::string path() const {
@@ -152,13 +158,23 @@ private:
     }
 
     void problem(Mark at, std::string code, std::string message, std::string hint) {
-        document.problems.push_back(located({.code = std::move(code), .path = path(), .message = std::move(message), .got = "",
-                                             .allowed = "", .hint = std::move(hint)}, at, file_));
+        document.problems.push_back(located({.code = std::move(code),
+                                             .path = path(),
+                                             .message = std::move(message),
+                                             .got = "",
+                                             .allowed = "",
+                                             .hint = std::move(hint)},
+                                            at, file_));
     }
 
     [[noreturn]] void fatal(Mark at, std::string code, std::string message, std::string got) const {
-        refuse(located({.code = std::move(code), .path = "", .message = std::move(message), .got = std::move(got), .allowed = "",
-                        .hint = ""}, at, file_));
+        refuse(located({.code = std::move(code),
+                        .path = "",
+                        .message = std::move(message),
+                        .got = std::move(got),
+                        .allowed = "",
+                        .hint = ""},
+                       at, file_));
     }
 
     const Lines& lines_;
@@ -182,11 +198,17 @@ Problem syntax_problem(const YAML::Exception& error, const Lines& lines, const s
     const Mark at = lines.mark(error.mark);
     const bool anchor = error.msg.find("anchor") != std::string::npos || error.msg.find("alias") != std::string::npos;
     const bool deep = error.msg.find("depth") != std::string::npos || error.msg.find("nesting") != std::string::npos;
-    const std::string what = anchor ? "anchors and aliases are not supported" : deep ? "nesting deeper than 64"
+    const std::string what = anchor ? "anchors and aliases are not supported"
+                             : deep ? "nesting deeper than 64"
                                     : "not valid YAML at or before this place: " + error.msg;
-    Problem problem{.code = anchor ? "yaml.alias" : deep ? "yaml.depth" : "yaml.syntax", .path = "",
-                    .message = what, .got = "",
-                    .allowed = "", .hint = tab_hint(lines, at.line)};
+    Problem problem{.code = anchor ? "yaml.alias"
+                            : deep ? "yaml.depth"
+                                   : "yaml.syntax",
+                    .path = "",
+                    .message = what,
+                    .got = "",
+                    .allowed = "",
+                    .hint = tab_hint(lines, at.line)};
     return located(std::move(problem), at, file);
 }
 
@@ -195,8 +217,13 @@ class NoDocument : public YAML::EventHandler {
 public:
     NoDocument(const Lines& lines, const std::string& file) : lines_(lines), file_(file) {}
     void OnDocumentStart(const YAML::Mark& mark) override {
-        refuse(located({.code = "yaml.documents", .path = "", .message = "a second document starts here; one document per file",
-                        .got = "", .allowed = "", .hint = "split the file at '---'"}, lines_.mark(mark), file_));
+        refuse(located({.code = "yaml.documents",
+                        .path = "",
+                        .message = "a second document starts here; one document per file",
+                        .got = "",
+                        .allowed = "",
+                        .hint = "split the file at '---'"},
+                       lines_.mark(mark), file_));
     }
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
@@ -212,12 +239,18 @@ private:
     const std::string& file_;
 };
 
-[[noreturn]] void refuse_bytes(std::string_view text, std::size_t at, const std::string& file, std::string what, std::string hint) {
+[[noreturn]] void refuse_bytes(std::string_view text, std::size_t at, const std::string& file, std::string what,
+                               std::string hint) {
     const std::string_view before = text.substr(0, at);
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const auto column = 1 + count_characters(before.substr(before.rfind('\n') + 1));
-    refuse(located({.code = "yaml.encoding", .path = "", .message = std::move(what) + " at byte " + std::to_string(at), .got = "",
-                    .allowed = "", .hint = std::move(hint)}, {static_cast<int>(line), static_cast<int>(column)}, file));
+    refuse(located({.code = "yaml.encoding",
+                    .path = "",
+                    .message = std::move(what) + " at byte " + std::to_string(at),
+                    .got = "",
+                    .allowed = "",
+                    .hint = std::move(hint)},
+                   {static_cast<int>(line), static_cast<int>(column)}, file));
 }
 
 void check_characters(std::string_view text, const std::string& file) {
@@ -230,7 +263,8 @@ void check_characters(std::string_view text, const std::string& file) {
         if (c == '\r' && !text.substr(at).starts_with('\n'))
             refuse_bytes(text, begin, file, "a carriage return without line feed", "end lines with LF or CR LF");
         if (c == '\t' || c == '\n' || c == '\r') continue;
-        if (is_bidi_control(c)) refuse_bytes(text, begin, file, "a character that changes the direction of text", "take it out");
+        if (is_bidi_control(c))
+            refuse_bytes(text, begin, file, "a character that changes the direction of text", "take it out");
         if (is_control(c)) refuse_bytes(text, begin, file, "a control character", "take it out");
     }
 }
@@ -263,8 +297,12 @@ std::string shape_of(const Node& node) {
 
 std::string checked_text(std::string text, const std::string& file) {
     if (text.size() > most_bytes)
-        refuse({.code = "file.size", .path = "", .message = "larger than a scenario may be",
-                .got = "more than " + std::to_string(most_bytes) + " bytes", .allowed = "at most 1048576 bytes (1 MiB)", .hint = "",
+        refuse({.code = "file.size",
+                .path = "",
+                .message = "larger than a scenario may be",
+                .got = "more than " + std::to_string(most_bytes) + " bytes",
+                .allowed = "at most 1048576 bytes (1 MiB)",
+                .hint = "",
                 .file = file});
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         refuse_bytes(text, 0, file, "UTF-16 or UTF-32, not UTF-8", "save the file as UTF-8");
@@ -283,7 +321,9 @@ Document parse_yaml(const std::string& text, const std::string& file) {
         NoDocument none(lines, file);
         parser.HandleNextDocument(none);
     } catch (const YAML::Exception& error) {
-        refuse(syntax_problem(error, lines, file));
+        std::vector<Problem> problems = std::move(builder.document.problems);
+        problems.push_back(syntax_problem(error, lines, file));
+        throw Error(ARM3R_E_SCENARIO, std::move(problems));
     }
     return std::move(builder.document);
 }

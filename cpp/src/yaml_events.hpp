@@ -20,15 +20,15 @@ struct Node {
         scalar,
         list,
         map,
-        hole,     // says nothing: an item left open by --set, or something already refused
+        hole,  // says nothing: an item left open by --set, or something already refused
     };
     Type type = nothing;
-    std::string key;              // in a map: its key
-    std::string text;             // of a scalar
+    std::string key;   // in a map: its key
+    std::string text;  // of a scalar
     bool quoted = false;
     Mark key_mark, mark;
     std::vector<Node> children;
-    std::string note;             // printed as a comment
+    std::string note;  // printed as a comment
 
     const Node* find(std::string_view name) const;
     Node* find(std::string_view name);

@@ -5,6 +5,15 @@
 
 // Wide registers must never cross a function call: a callee built for an older CPU would pass them differently.
 #define ARM3R_INLINE [[gnu::always_inline]] inline
+#define ARM3R_LAMBDA_INLINE __attribute__((always_inline))
+
+// A function of packs that is built for several instruction sets, the widest that the CPU has being taken at run time.
+// All that it calls must be inlined into it. Every variant gives the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#else
+#define ARM3R_WIDEST
+#endif
 #define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace arm3r {

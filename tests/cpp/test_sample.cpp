@@ -1,0 +1,44 @@
+#include <boost/test/unit_test.hpp>
+
+#include "fixtures.hpp"
+#include "sample.hpp"
+
+using namespace arm3r;
+
+BOOST_AUTO_TEST_SUITE(sample_rows)
+
+BOOST_AUTO_TEST_CASE(there_are_as_many_columns_as_the_table_says) { BOOST_TEST(column_table().size() == column_count); }
+
+// Rows taken eight at once, in whatever instruction set, are those taken one by one.
+BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
+    Random random(7);
+    for (int trial = 0; trial < 200; ++trial) {
+        Params params = random_params(random);
+        params.set("wall", 1).set("wall.point", random.vector(-1, 1)).set("wall.normal", random.vector(-1, 1));
+        params.choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.1).set("wall.motion.frequency", 2).set("wall.motion.phase", 1);
+        params.set("wall.acts_on_arm", trial % 2).choose("controller.type", trial % 3 ? "gravity_compensation" : "none");
+        params.choose("controller.algorithm", trial % 5 ? "closed_form" : "recursion");
+        const Setup setup = make_setup(params);
+
+        FullState y0, f0, y1, f1;
+        for (State<double, state_size>* state : {&y0, &f0, &y1, &f1})
+            for (double& x : *state) x = random.in(-2, 2);
+        const Inside inside = hermite(3.0, 0.2, y0, f0, y1, f1);
+        const Scene scene{setup.plant, trial % 4 < 2, 0.5, static_cast<Mode>(trial % 3), inside};
+        double t[together];
+        for (int i = 0; i < together; ++i) t[i] = 3.0 + 0.025 * i;
+        Rows rows;
+        sample_together(scene, t, rows);
+        int first_behind = together;
+        for (int i = 0; i < together; ++i) {
+            const double theta = (t[i] - inside.t0) / inside.h;
+            const Row row = sample(scene, t[i], inside(theta), theta);
+            for (std::size_t c = 0; c < column_count; ++c)
+                BOOST_TEST(same_bits(row.value[c], rows.value[c][i]), column_table()[c].name << " of row " << i << ", trial " << trial);
+            if (row.link_behind_wall) first_behind = std::min(first_behind, i);
+        }
+        BOOST_TEST(first_behind == rows.first_link_behind_wall);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
