@@ -32,8 +32,7 @@ gates: $(VENV)/test $(BUILD)/tests
 bench: $(VENV)/test
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
 	$(BIN)/cmake --build $(BUILD) --target arm3r_benchmarks
-	mkdir -p out
-	$(BUILD)/arm3r_benchmarks | tee out/benchmarks.csv
+	$(BIN)/python benchmarks/run.py $(BUILD)/arm3r_benchmarks
 
 format: $(VENV)/dev
 	$(BIN)/clang-format -i $(CODE)

@@ -19,7 +19,7 @@ using namespace bench;
 using Clock = std::chrono::steady_clock;
 
 constexpr int rounds = 400, warm_up_rounds = 20;
-constexpr double batch_ns = 2e5;  // short beside a time slice: most batches run undisturbed
+constexpr double batch_ns = 5e5;  // short beside a time slice: most batches run undisturbed
 
 double nanoseconds(const Work& work, int times) {
     const Clock::time_point begin = Clock::now();
@@ -60,8 +60,8 @@ std::string cpu() {
 }
 
 void print_row(const Contender& contender, const std::string& numbers) {
-    std::printf("\"%s\",\"%s\",%s,\"%s\",\"%s\"\n", contender.job.c_str(), contender.who.c_str(), numbers.c_str(), cpu().c_str(),
-                contender.build.c_str());
+    std::printf("\"%s\",\"%s\",%s,\"%s\",\"%s\"\n", contender.job.c_str(), contender.who.c_str(), numbers.c_str(),
+                cpu().c_str(), contender.build.c_str());
 }
 
 std::string numbers_of(double median, double least, double ratio) {
@@ -109,7 +109,8 @@ int main(int count, char** words) try {
     const std::vector<Contender> all = contenders();
     if (count == 1) race_all(all);
     else if (count == 2 && std::strcmp(words[1], "--list") == 0) list(all);
-    else if (count == 4 && std::strcmp(words[1], "--only") == 0) all.at(std::strtoul(words[2], nullptr, 10)).prepare()(std::atoi(words[3]));
+    else if (count == 4 && std::strcmp(words[1], "--only") == 0)
+        all.at(std::strtoul(words[2], nullptr, 10)).prepare()(std::atoi(words[3]));
     else return usage();
     return 0;
 } catch (const std::exception& error) {

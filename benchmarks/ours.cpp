@@ -3,6 +3,7 @@
 #include <random>
 
 #include "schema.hpp"
+#include "simulation.hpp"
 
 namespace bench {
 
@@ -10,12 +11,10 @@ using namespace arm3r;
 
 namespace {
 
-constexpr double start_time = 5.3;  // s, the lecture's wall is 3 mm from the tip then
-
-Setup setup_of(std::initializer_list<std::pair<const char*, double>> changes) {
+std::vector<double> params_of(std::initializer_list<std::pair<const char*, double>> changes) {
     std::vector<double> params = param_defaults();
     for (const auto& [path, value] : changes) params[param_index(path)] = value;
-    return make_setup(params);
+    return params;
 }
 
 }  // namespace
@@ -24,7 +23,9 @@ const std::vector<Query>& queries() {
     static const std::vector<Query> made = [] {
         std::mt19937_64 random(1);
         std::uniform_real_distribution<double> angle(-3, 3), rate(-1, 1);
-        const auto joints = [&](auto& distribution) { return Joints{distribution(random), distribution(random), distribution(random)}; };
+        const auto joints = [&](auto& distribution) {
+            return Joints{distribution(random), distribution(random), distribution(random)};
+        };
         std::vector<Query> all(state_count);
         for (Query& query : all) query = {joints(angle), joints(rate), joints(rate)};
         return all;
@@ -32,10 +33,13 @@ const std::vector<Query>& queries() {
     return made;
 }
 
-Setup free_fall() { return setup_of({}); }
+std::vector<double> free_fall() { return params_of({}); }
 
-Setup compensated_at_wall() {
-    return setup_of({{"wall", 1}, {"wall.acts_on_arm", 1}, {"controller.type", double(Controls::gravity_compensation)}});
+std::vector<double> compensated_at_wall() {
+    return params_of({{"wall", 1},
+                      {"wall.point[0]", 1.735},  // 3 mm from the tip
+                      {"wall.acts_on_arm", 1},
+                      {"controller.type", double(Controls::gravity_compensation)}});
 }
 
 [[gnu::noinline]] void forward_dynamics(const Arm<double>& arm, const Query& query, Joints& qdd) {
@@ -45,27 +49,45 @@ Setup compensated_at_wall() {
     qdd = {a[0], a[1], a[2]};
 }
 
-template <std::size_t Size> Stepper<Size>::Stepper(const Setup& setup) : setup_(setup), rhs_(setup_.plant) {
+template <std::size_t Size>
+Stepper<Size>::Stepper(const std::vector<double>& params) : setup_(make_setup(params)), rhs_(setup_.plant) {
     if (setup_.plant.acts_on_arm) rhs_.touch = Touch::each_stage;
     start();
 }
 
-template <std::size_t Size> void Stepper<Size>::start() {
+template <std::size_t Size>
+void Stepper<Size>::start() {
     y_ = {};
     for (int i = 0; i < 3; ++i) y_[i] = setup_.q[i];
-    t_ = start_time;
+    t_ = 0;
     rhs_.begin_step(y_);
     rhs_(t_, y_, f_);
 }
 
-template <std::size_t Size> void Stepper<Size>::step() {
-    y_ = rk4_step(rhs_, t_, y_, f_, bench::step);
-    t_ += bench::step;
-    rhs_.begin_step(y_);
-    rhs_(t_, y_, f_);
+template <std::size_t Size>
+void Stepper<Size>::advance(int steps) {
+    State<double, Size> y = y_, f = f_;
+    double t = t_;
+    for (int i = 0; i < steps; ++i) {
+        y = rk4_step(rhs_, t, y, f, step);
+        t += step;
+        rhs_.begin_step(y);
+        rhs_(t, y, f);
+    }
+    y_ = y;
+    f_ = f;
+    t_ = t;
 }
 
 template class Stepper<motion_size>;
 template class Stepper<state_size>;
+
+void run_fixed_steps(const std::vector<double>& params, int steps) {
+    std::vector<double> run = params;
+    run[param_index("solver.method")] = Solver::rk4;
+    run[param_index("solver.step")] = step;
+    run[param_index("time.stop")] = run[param_index("time.log_every")] = steps * step;
+    simulate(run, {});
+}
 
 }  // namespace bench

@@ -8,8 +8,8 @@
 
 namespace bench {
 
-inline constexpr double step = 1e-3;           // s
-inline constexpr int steps_per_run = 1000;     // then from the start again
+inline constexpr double step = 1e-3;        // s
+inline constexpr int steps_per_run = 1000;  // then from the start again
 inline constexpr std::size_t state_count = 1024;
 
 using Joints = std::array<double, 3>;
@@ -20,17 +20,19 @@ struct Query {
 
 const std::vector<Query>& queries();  // the same ones for everyone, spread over the workspace
 
-arm3r::Setup free_fall();          // the lecture's arm, let go
-arm3r::Setup compensated_at_wall();  // held up, and pushed by the moving wall
+std::vector<double> free_fall();            // the lecture's arm, let go
+std::vector<double> compensated_at_wall();  // held up, and pushed by the moving wall
 
 void forward_dynamics(const arm3r::Arm<double>& arm, const Query& query, Joints& qdd);
 
-// The motion from the setup's start, as the simulator steps it. `Size` components of the state: with or without the books.
-template <std::size_t Size> class Stepper {
+// The motion from the setup's start, stepped by RK4, and nothing beside it. `Size` components of the state: with or
+// without the books.
+template <std::size_t Size>
+class Stepper {
 public:
-    explicit Stepper(const arm3r::Setup& setup);
+    explicit Stepper(const std::vector<double>& params);
     void start();
-    void step();
+    void advance(int steps);
     const arm3r::State<double, Size>& state() const { return y_; }
 
 private:
@@ -39,5 +41,8 @@ private:
     arm3r::State<double, Size> y_, f_;
     double t_;
 };
+
+// The same steps within a whole run: contact watched, books kept and the state judged after each, two rows logged.
+void run_fixed_steps(const std::vector<double>& params, int steps);
 
 }  // namespace bench

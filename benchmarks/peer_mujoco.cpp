@@ -30,8 +30,10 @@ std::string mjcf(const Numbers& n, double step) {
         << "<worldbody>\n<body>\n<joint axis='0 0 1'/>\n"
         << "<inertial mass='1' pos='0 0 0' diaginertia='" << n.turret_inertia << ' ' << n.turret_inertia << ' '
         << n.turret_inertia << "'/>\n"
-        << "<body pos='0 0 " << n.base_height << "'>\n<joint axis='0 -1 0'/>\n" << Inertial{n.link2} << '\n'
-        << "<body pos='" << n.link2.length << " 0 0'>\n<joint axis='0 -1 0'/>\n" << Inertial{n.link3} << '\n'
+        << "<body pos='0 0 " << n.base_height << "'>\n<joint axis='0 -1 0'/>\n"
+        << Inertial{n.link2} << '\n'
+        << "<body pos='" << n.link2.length << " 0 0'>\n<joint axis='0 -1 0'/>\n"
+        << Inertial{n.link3} << '\n'
         << "</body>\n</body>\n</body>\n</worldbody>\n</mujoco>\n";
     return xml.str();
 }
@@ -40,7 +42,8 @@ mjModel* model_of(const std::string& xml) {
     char why[500] = "";
     mjSpec* spec = mj_parseXMLString(xml.c_str(), nullptr, why, sizeof why);
     mjModel* model = spec ? mj_compile(spec, nullptr) : nullptr;
-    if (!model) throw std::runtime_error("MuJoCo does not take the arm: " + std::string(spec ? mjs_getError(spec) : why));
+    if (!model)
+        throw std::runtime_error("MuJoCo does not take the arm: " + std::string(spec ? mjs_getError(spec) : why));
     mj_deleteSpec(spec);
     return model;
 }
@@ -74,7 +77,9 @@ void Mujoco::start(const double* q, const double* qd) {
     std::copy_n(qd, 3, in_->data->qvel);
 }
 
-void Mujoco::step() { mj_step(in_->model, in_->data); }
+void Mujoco::advance(int steps) {
+    for (int i = 0; i < steps; ++i) mj_step(in_->model, in_->data);
+}
 
 const double* Mujoco::q() const { return in_->data->qpos; }
 const double* Mujoco::qd() const { return in_->data->qvel; }

@@ -10,7 +10,8 @@ namespace pin = pinocchio;
 namespace {
 
 pin::Inertia inertia_of(const Body& body) {
-    return {body.mass, {body.com, 0, 0}, Eigen::Vector3d(body.inertia[0], body.inertia[1], body.inertia[2]).asDiagonal()};
+    return {
+        body.mass, {body.com, 0, 0}, Eigen::Vector3d(body.inertia[0], body.inertia[1], body.inertia[2]).asDiagonal()};
 }
 
 pin::Model model_of(const Numbers& numbers) {

@@ -38,7 +38,7 @@ public:
     ~Mujoco();
     void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);
     void start(const double* q, const double* qd);
-    void step();  // RK4
+    void advance(int steps);  // by RK4
     const double* q() const;
     const double* qd() const;
 

@@ -9,6 +9,7 @@
 
 #include "c_api.hpp"
 #include "columns.hpp"
+#include "numbers.hpp"
 #include "schema.hpp"
 #include "setup.hpp"
 

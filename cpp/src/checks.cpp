@@ -9,6 +9,7 @@
 #include "paths.hpp"
 #include "results.hpp"
 #include "schema.hpp"
+#include "text.hpp"
 
 namespace arm3r {
 
@@ -27,17 +28,6 @@ Words keys_of(Check::Subject subject) {
     if (subject == Check::event) keys.push_back("index");
     keys.insert(keys.end(), limits.begin(), limits.end());
     return keys;
-}
-
-std::string listed(const Words& words) {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-    return out;
-}
-
-std::string did_you_mean(std::string_view word, const Words& words) {
-    const std::string near = nearest(word, words);
-    return near.empty() ? "" : "did you mean " + near + "?";
 }
 
 bool is_in(const Words& words, std::string_view word) {

@@ -12,7 +12,6 @@ struct NumberRules {
     bool degrees = false;   // `VALUE deg` is VALUE*pi/180
     bool infinity = false;  // `inf` is a value
     bool whole = false;     // no fraction and no exponent
-    std::string_view unit = {};
 };
 
 struct NumberFault {

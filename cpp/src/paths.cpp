@@ -99,10 +99,15 @@ bool is_known(std::string_view path) {
     return key && steps.back().key.empty() && steps.back().index < key->size && key->size > 1;
 }
 
-std::string nearest_path(std::string_view path) {
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& words) {
+    const std::string near = nearest(word, words);
+    return near.empty() ? "" : "did you mean " + near + "?";
+}
+
+std::vector<std::string> all_paths() {
     std::vector<std::string> paths = {"format", "name", "checks"};
     for (const Key& key : schema()) paths.push_back(key.path);
-    return nearest(path, paths);
+    return paths;
 }
 
 }  // namespace arm3r

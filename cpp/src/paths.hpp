@@ -29,7 +29,8 @@ std::vector<std::string> names_below(std::string_view section);
 bool is_section(std::string_view path);
 bool is_known(std::string_view path);  // a section, a key, or an item of a key that has several numbers
 
-// "initial.qq" -> the nearest path there is, or ""
-std::string nearest_path(std::string_view path);
+// "did you mean stiffness?", or "" where no word is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& words);
+std::vector<std::string> all_paths();
 
 }  // namespace arm3r

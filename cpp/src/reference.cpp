@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "columns.hpp"
+#include "numbers.hpp"
 #include "paths.hpp"
 #include "scenario.hpp"
 #include "schema.hpp"
@@ -12,12 +13,6 @@
 namespace arm3r {
 
 namespace {
-
-std::string listed(const std::vector<std::string>& words, const char* between) {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
-    return out;
-}
 
 std::string when_text(const Key& key) {
     return key.when_key.empty() ? "" : "only where " + key.when_key + " is " + listed(key.when, " or ");
@@ -75,7 +70,7 @@ std::string described(const std::string& schema, const std::string& description)
 }
 
 std::string checks_schema() {
-    return "{\"description\": \"Claims that are held against the run.\", \"type\": \"array\", \"items\": {\"type\": \"object\"}}";
+    return R"({"description": "Claims that are held against the run.", "type": "array", "items": {"type": "object"}})";
 }
 
 std::string section_schema(const std::string& section, const std::string& indent) {
@@ -161,11 +156,13 @@ bool is_copy(const Key& key) { return key.unset == "as the plant"; }
 
 const char* const markdown_head = R"(# Scenario keys
 
-A scenario is one YAML document of at most 1 MiB. `format: 1` is required; every other key has a default, except those marked
-*required*, which are needed where they exist at all. `name` (default: the file's stem) names the run and its files.
+A scenario is one YAML document of at most 1 MiB. `format: 1` is required; every other key has a default, except those
+marked *required*, which are needed where they exist at all. `name` (default: the file's stem) names the run and its
+files.
 
-Numbers are decimal: `[+-]digits[.digits][e[+-]digits]`, also `.5`; no quotes, no leading zeros. They are SI and radians; where the
-unit says so, `VALUE deg` is VALUE*pi/180. Anchors, aliases, tags, merge keys, duplicate keys and second documents are errors.
+Numbers are decimal: `[+-]digits[.digits][e[+-]digits]`, also `.5`; no quotes, no leading zeros. They are SI and
+radians; where the unit says so, `VALUE deg` is VALUE*pi/180. Anchors, aliases, tags, merge keys, duplicate keys and
+second documents are errors.
 
 The source of a default: *lecture* says it, *inferred* follows from what the lecture says, *our choice* is neither.
 
@@ -174,8 +171,8 @@ The source of a default: *lecture* says it, *inferred* follows from what the lec
 const char* const markdown_tail = R"(
 ## The controller's copy of the arm
 
-`controller.model` takes the keys of `arm` except `convention` and `gravity`. A key given there is what the controller believes;
-the others are as the plant.
+`controller.model` takes the keys of `arm` except `convention` and `gravity`. A key given there is what the controller
+believes; the others are as the plant.
 
 ## checks
 
@@ -190,8 +187,8 @@ A list of claims, each held against the run; a claim that fails makes the execut
 | `count: make` or `break` | the number of such events |
 | `summary: FIELD` | a number of the summary, e.g. `peak_force`, `steps.accepted` |
 
-The limit is `equals: X` with `abs: A` and `rel: R` (either tolerance suffices; none: exactly), or `below: X`, `above: X` or both.
-`name` is what the report calls the check.
+The limit is `equals: X` with `abs: A` and `rel: R` (either tolerance suffices; none: exactly), or `below: X`,
+`above: X` or both. `name` is what the report calls the check.
 )";
 
 // ---- template
@@ -208,7 +205,8 @@ void take_docs(Node& node, const std::string& path) {
 }  // namespace
 
 std::string schema_json() {
-    return "{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\", \"title\": \"arm3r scenario\", \"required\": [\"format\"], " +
+    return R"({"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "arm3r scenario", )"
+           R"("required": ["format"], )" +
            section_schema("", "").substr(1) + "\n";
 }
 

@@ -117,7 +117,7 @@ std::string event_lines(const Run& run) {
     for (std::size_t i = 0; i < std::min(run.events.size(), most); ++i) {
         const Event& event = run.events[i];
         out += line(event.type == Event::make ? "contact" : "contact lost",
-                    "at " + fixed(event.t, 12) + " s, tip " + vector_text(event.tip) + " m");
+                    "at " + fixed(event.t, 6) + " s (" + rounded(event.t, 16) + "), tip " + vector_text(event.tip) + " m");
     }
     if (run.events.size() > most)
         out += line("", "... and " + std::to_string(run.events.size() - most) + " more events");

@@ -99,9 +99,9 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, sta
     const T stored = plant.acts_on_arm ? force.stored : o;
 
     std::size_t column = 0;
-    const auto put = [&](const T& value) ARM3R_LAMBDA_INLINE { row.value[column++] = value + 0.0; };  // + 0.0: no negative zero
-    const auto put_vector = [&](const Vec3<T>& v) ARM3R_LAMBDA_INLINE { for (int i = 0; i < 3; ++i) put(v[i]); };
-    const auto put_joints = [&](const Vec3<T>& v) ARM3R_LAMBDA_INLINE { put_vector(scene.simscape ? flipped(v) : v); };
+    const auto put = [&](const T& value) ARM3R_INLINE_LAMBDA { row.value[column++] = value + 0.0; };  // + 0.0: no negative zero
+    const auto put_vector = [&](const Vec3<T>& v) ARM3R_INLINE_LAMBDA { for (int i = 0; i < 3; ++i) put(v[i]); };
+    const auto put_joints = [&](const Vec3<T>& v) ARM3R_INLINE_LAMBDA { put_vector(scene.simscape ? flipped(v) : v); };
     put(t);
     put_joints(q);
     put_joints(qd);

@@ -19,18 +19,7 @@ using Words = std::vector<std::string>;
 constexpr int format = 1;
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
-std::string listed(const Words& words, const char* between = ", ") {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
-    return out;
-}
-
 std::string last_name(std::string_view path) { return std::string(path.substr(path.rfind('.') + 1)); }
-
-std::string did_you_mean(std::string_view word, const Words& words) {
-    const std::string near = nearest(word, words);
-    return near.empty() ? "" : "did you mean " + near + "?";
-}
 
 std::string with_unit(std::string value, const Key& key) { return key.unit.empty() ? value : value + " " + key.unit; }
 
@@ -311,8 +300,7 @@ private:
         } else if (node.type == Node::scalar) {
             const NumberRules rules{.degrees = key.kind == Kind::angle,
                                     .infinity = key.allow_infinity,
-                                    .whole = key.kind == Kind::integer,
-                                    .unit = key.unit};
+                                    .whole = key.kind == Kind::integer};
             if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
         }
         problem(node.mark, {fault.code, path, fault.message, shape_of(node), "", fault.hint});

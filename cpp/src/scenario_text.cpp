@@ -93,11 +93,6 @@ private:
     bool notes_;
 };
 
-std::string unknown_path_hint(std::string_view path) {
-    const std::string near = nearest_path(path);
-    return near.empty() ? "`arm3r check` prints every path" : "did you mean " + near + "?";
-}
-
 }  // namespace
 
 std::string to_yaml(const Node& tree, bool notes) {
@@ -136,7 +131,7 @@ std::string json_at(const Resolved& resolved, std::string_view path) {
                                  .message = "there is no such value",
                                  .got = "",
                                  .allowed = "",
-                                 .hint = unknown_path_hint(path)}});
+                                 .hint = did_you_mean(path, all_paths())}});
 }
 
 }  // namespace arm3r

@@ -82,7 +82,4 @@ std::vector<Problem> validate(std::span<const double> params);
 // Levenshtein distance with transpositions; the nearest of `words` within 2 (or a third of the length), or "".
 std::string nearest(std::string_view word, const std::vector<std::string>& words);
 
-// A double in the shortest form that reads back to the same bits; "inf".
-std::string shortest(double value);
-
 }  // namespace arm3r

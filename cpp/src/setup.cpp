@@ -247,7 +247,7 @@ WorstPose smallest_M11(const Lumped<double>& l) {  // (3.10)
     const double B = std::abs(l.B), toward = l.B > 0 ? -1 : 1;
     WorstPose worst{l.A1, pi / 2, 0};
     const auto consider = [&](double form, double C2, double C23) {
-        if (l.A1 + form < worst.value) worst = {l.A1 + form, std::acos(C2), std::acos(C23) - std::acos(C2)};
+        if (l.A1 + form < worst.value) worst = {l.A1 + form, acos(C2), acos(C23) - acos(C2)};
     };
     consider(l.A2 + l.A3 - 2 * B, 1, toward);
     if (l.A3 > B) consider(l.A2 - B * B / l.A3, 1, toward * B / l.A3);

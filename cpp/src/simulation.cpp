@@ -60,28 +60,37 @@ private:
     // ---- rows
 
     void reserve_rows() {
-        const double ticks = std::ceil(setup_.stop / setup_.log_every - 1e-9);
         const std::vector<Column>& table = column_table();
         for (std::size_t i = 0; i < table.size(); ++i)
             if (setup_.plant.has_wall || !table[i].only_with_wall) run_.columns.push_back(i);
-        const double bytes = (ticks + 1) * double(run_.columns.size() * sizeof(double));
-        if (bytes > most_bytes)
-            throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.rows", .path = "time.log_every", .message = "the run would need too many rows",
-                        .got = shortest(ticks + 1) + " rows, " + shortest(std::ceil(bytes / 1e6)) + " MB", .allowed = "2000 MB", .hint = "log less often"}});
-        const double fixed_steps = setup_.stop / setup_.solver.step;
-        if (setup_.solver.method == Solver::rk4 && fixed_steps > std::min(most_fixed_steps, setup_.solver.max_steps))
-            throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.steps", .path = "solver.step", .message = "the run would need too many steps",
-                        .got = shortest(std::ceil(fixed_steps)), .allowed = shortest(std::min(most_fixed_steps, setup_.solver.max_steps)),
-                        .hint = "take a larger step, or raise solver.max_steps"}});
-        run_.capacity = static_cast<std::size_t>(std::max(ticks, 0.0)) + 1;
+        const double intervals = setup_.stop / setup_.log_every;
+        const double most_rows = most_bytes / double(run_.columns.size() * sizeof(double));
+        if (intervals > most_rows) refuse("budget.rows", "time.log_every", "the run would need too many rows", intervals, most_rows, "log less often");
+        if (setup_.solver.method == Solver::rk4) {
+            const double steps = setup_.stop / setup_.solver.step, most_steps = std::min(most_fixed_steps, setup_.solver.max_steps);
+            if (steps > most_steps)
+                refuse("budget.steps", "solver.step", "the run would need too many steps", steps, most_steps, "take a larger step, or raise solver.max_steps");
+        }
+        run_.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
+        while (row_time(run_.capacity) < last_row_time()) run_.capacity += 1;
+        run_.capacity += 1;  // the end
         run_.data = std::make_unique_for_overwrite<double[]>(run_.capacity * run_.columns.size());
     }
 
+    static void refuse(std::string code, std::string path, std::string message, double needed, double most, std::string hint) {
+        throw Error(ARM3R_E_SIZE_CAP, {{.code = std::move(code), .path = std::move(path), .message = std::move(message),
+                    .got = "about " + shortest(rounded(needed)), .allowed = "at most " + shortest(rounded(most)), .hint = std::move(hint)}});
+    }
+
+    static double rounded(double count) { return count < 1e15 ? nearest_integer(count) : count; }
+
+    // Rows stand before it; the end of the run is a row of its own.
+    double last_row_time() const { return setup_.stop - 1e-9 * setup_.log_every; }
     double row_time(std::size_t row) const { return double(row) * setup_.log_every; }
 
     // All rows before `until`, from the solution within the step.
     void log_until(double until, const Inside& inside) {
-        const double end = std::min(until, setup_.stop - 1e-9 * setup_.log_every);
+        const double end = std::min(until, last_row_time());
         const Scene scene{setup_.plant, setup_.simscape, energy_at_start_, mode_, inside};
         while (row_time(run_.rows + together - 1) < end && poll()) log_together(scene);
         while (row_time(run_.rows) < end && poll()) {
@@ -252,13 +261,10 @@ private:
         if (run_.outcome != ARM3R_RUN_OK) return;
         theta_ = theta;
         y_ = crossing ? inside_(theta) : stepper_.y1;
-        accept(t1);
-        if (crossing) {
-            change_mode(t1, y_, *crossing);
-            derive();
-        } else {
-            carry_over();
-        }
+        const bool came_to_rest = accept(t1);
+        if (crossing) change_mode(t1, y_, *crossing);
+        if (crossing || came_to_rest) derive();
+        else carry_over();
         close_books();
         const double factor = step_factor(error);
         h_ = h * (just_rejected_ ? std::min(factor, 1.0) : factor);
@@ -319,14 +325,20 @@ private:
         close_books();
     }
 
-    void accept(double t1) {
-        for (std::size_t i = 3; i < motion_size; ++i)
-            if (std::abs(y_[i]) < smallest_rate) y_[i] = 0;
+    // Returns whether a rate that was next to nothing has been made nothing.
+    bool accept(double t1) {
+        bool came_to_rest = false;
+        for (std::size_t i = 3; i < motion_size; ++i) {
+            if (y_[i] == 0 || std::abs(y_[i]) >= smallest_rate) continue;
+            y_[i] = 0;
+            came_to_rest = true;
+        }
         t_ = t1;
         run_.steps.accepted += 1;
         for (int i = 0; i < 3; ++i)
             if (std::abs(y_[i]) > largest_angle) end(ARM3R_RUN_DIVERGED, "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(t_) + " s");
         if (!well_conditioned()) end(ARM3R_RUN_ILL_CONDITIONED, "the mass matrix is no longer positive definite to rounding at t = " + shortest(t_) + " s");
+        return came_to_rest;
     }
 
     bool well_conditioned() const {

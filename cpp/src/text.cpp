@@ -100,4 +100,10 @@ std::string visible(std::string_view text, std::size_t limit) {
     return out;
 }
 
+std::string listed(const std::vector<std::string>& words, std::string_view between) {
+    std::string out;
+    for (const std::string& word : words) (out += out.empty() ? "" : between) += word;
+    return out;
+}
+
 }  // namespace arm3r

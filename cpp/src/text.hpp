@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace arm3r {
 
@@ -22,5 +23,8 @@ std::string json_number(double value);           // NaN: null, infinity: "inf"
 
 // For messages: control characters escaped, at most `limit` characters.
 std::string visible(std::string_view text, std::size_t limit = 80);
+
+// "a, b, c"
+std::string listed(const std::vector<std::string>& words, std::string_view between = ", ");
 
 }  // namespace arm3r

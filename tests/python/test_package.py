@@ -72,11 +72,20 @@ def test_console_entry_is_the_executable(scripts: Path, cli: Any) -> None:
     assert (entry.returncode, entry.stdout) == (0, cli("--version").stdout)
 
 
-def test_c_program_builds_through_find_package(root: Path, package: Path, scripts: Path, tmp_path: Path) -> None:
+@pytest.fixture
+def build(scripts: Path) -> Any:
+    """build("cmake", ...): run a tool, looked for beside Python first."""
     environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
 
+    def run(*command: object) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(list(map(str, command)), capture_output=True, text=True, env=environment)
+
+    return run
+
+
+def test_c_program_builds_through_find_package(root: Path, package: Path, build: Any, tmp_path: Path) -> None:
     def run(*command: object) -> str:
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env=environment)
+        done = build(*command)
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
 
@@ -88,11 +97,8 @@ def test_c_program_builds_through_find_package(root: Path, package: Path, script
     assert "t [s]: 51 rows to 0.5" in output
 
 
-def test_fast_math_is_refused(root: Path, scripts: Path, tmp_path: Path) -> None:
-    cmake = scripts / "cmake"
-    done = subprocess.run(
-        [cmake, "-S", root, "-B", tmp_path, "-DCMAKE_CXX_FLAGS=-ffast-math"], capture_output=True, text=True
-    )
+def test_fast_math_is_refused(root: Path, build: Any, tmp_path: Path) -> None:
+    done = build("cmake", "-S", root, "-B", tmp_path, "-DCMAKE_CXX_FLAGS=-ffast-math")
     assert done.returncode != 0
     assert "CMAKE_CXX_FLAGS holds -ffast-math" in done.stderr
 

@@ -56,6 +56,8 @@ struct Dual {
         return chain(copysign(magnitude.number, sign.number), magnitude, flip);
     }
 
+    friend Dual nearest_integer(const Dual& x) { return Dual(arm3r::nearest_integer(x.number)); }  // flat but for its jumps
+
     friend Dual sqrt(const Dual& x) {
         const double root = sqrt(x.number);
         return chain(root, x, 0.5 / root);

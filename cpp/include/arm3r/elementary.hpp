@@ -9,6 +9,11 @@ namespace arm3r {
 // Adding it rounds a number below 2^51 to an integer, which then stands in the low bits.
 inline constexpr double round_magic = 0x1.8p52;
 
+template <class T>
+ARM3R_INLINE T nearest_integer(const T& x) {
+    return (x + round_magic) - round_magic;
+}
+
 // For |x| <= 1e5 rad. The angle is n quarter turns and a rest r within pi/4. pi/2 stands in three parts of 37, 37 and
 // 53 bits, so that n times the first two is exact. The quarter turns enter as an exact rotation by (cos, sin) of
 // n pi/2, which are 0 or +-1. The shape of the sums keeps the chain of dependent operations short.

@@ -5,7 +5,6 @@
 
 // Wide registers must never cross a function call: a callee built for an older CPU would pass them differently.
 #define ARM3R_INLINE [[gnu::always_inline]] inline
-#define ARM3R_LAMBDA_INLINE __attribute__((always_inline))
 
 // A function of packs that is built for several instruction sets, the widest that the CPU has being taken at run time.
 // All that it calls must be inlined into it. Every variant gives the same bits.

@@ -21,11 +21,6 @@ template <class T> struct WallState {
     Vec3<T> position, velocity, acceleration;  // of the frame's origin: m, m/s, m/s^2
 };
 
-template <class T> ARM3R_INLINE T nearest_integer(const T& x) {  // |x| < 2^51
-    constexpr double magic = 0x1.8p52;
-    return (x + magic) - magic;
-}
-
 template <class P, class T> ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
     const T o(0.0);
     WallState<T> state{{T(wall.point[0]), T(wall.point[1]), T(wall.point[2])}, {o, o, o}, {o, o, o}};

@@ -1,0 +1,91 @@
+"""The lecture's moving wall with 10 001 rows as whole processes, ours beside MuJoCo's Python API. CSV out.
+
+python benchmarks/whole_process.py [RUNS]
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+import time
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import arm3r_cpp
+from table import Table
+
+HERE = Path(__file__).parent
+SCENARIO = HERE.parent / "scenarios" / "moving_wall.yaml"
+EXECUTABLE = next(path for place in arm3r_cpp.__path__ if (path := Path(place, "bin", "arm3r")).is_file())
+PEER_RUNS = 5
+
+
+def timed(*command: str | Path) -> tuple[float, str]:
+    """Wall time in ms from starting a process to its end, and what it printed."""
+    words = [str(word) for word in command]
+    with tempfile.TemporaryFile("w+") as out:
+        begun = time.perf_counter()
+        process = os.posix_spawn(words[0], words, os.environ, file_actions=[(os.POSIX_SPAWN_DUP2, out.fileno(), 1)])
+        _, status = os.waitpid(process, 0)
+        ended = time.perf_counter()
+        if status:
+            raise SystemExit(f"{' '.join(words)}: ended with wait status {status}")
+        out.seek(0)
+        return (ended - begun) * 1e3, out.read()
+
+
+def ours(runs: int, out: Path) -> dict[str, list[float]]:
+    parts: dict[str, list[float]] = {name: [] for name in ("whole", "without -o", "start", "loop")}
+    for _ in range(runs):
+        _, summary = timed(EXECUTABLE, "run", SCENARIO, "--json")
+        parts["whole"].append(timed(EXECUTABLE, "run", SCENARIO, "-o", out)[0])
+        parts["without -o"].append(timed(EXECUTABLE, "run", SCENARIO)[0])
+        parts["start"].append(timed(EXECUTABLE, "--version")[0])
+        parts["loop"].append(json.loads(summary)["elapsed_s"] * 1e3)
+    slow_beside_slow = zip(sorted(parts["whole"]), sorted(parts["without -o"]), strict=True)
+    return parts | {"text": [whole - silent for whole, silent in slow_beside_slow]}
+
+
+def mujocos(out: Path) -> dict[str, list[float]]:
+    parts: dict[str, list[float]] = {name: [] for name in ("whole", "import", "loop", "text")}
+    for _ in range(PEER_RUNS):
+        whole, printed = timed(sys.executable, HERE / "mujoco_moving_wall.py", out)
+        parts["whole"].append(whole)
+        for name, seconds in json.loads(printed).items():
+            parts[name].append(seconds * 1e3)
+    return parts
+
+
+def main() -> None:
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    table = Table()
+    job, build = (
+        "moving wall, 10 001 rows, whole process",
+        timed(EXECUTABLE, "--version")[1].replace("\n", ", ").rstrip(", "),
+    )
+    with tempfile.TemporaryDirectory() as place:
+        out = Path(place, "out.csv")
+        mine = ours(runs, out)
+        table.row(job, "arm3r", build, "ms", mine["whole"])
+        try:
+            peer = "MuJoCo " + version("mujoco") + ", Python API"
+        except PackageNotFoundError:
+            table.row(job, "MuJoCo", "not installed", "ms", [])
+            theirs = {}
+        else:
+            theirs = mujocos(out)
+            table.row(job, "MuJoCo", peer, "ms", theirs["whole"])
+    for name, (our_part, their_part) in {
+        "start": ("start", "import"),
+        "loop": ("loop", "loop"),
+        "CSV (ours: and JSON)": ("text", "text"),
+        "without -o": ("without -o", ""),
+    }.items():
+        table.row(f"{job}: {name}", "arm3r", build, "ms", mine[our_part])
+        if their_part in theirs:
+            table.row(f"{job}: {name}", "MuJoCo", peer, "ms", theirs[their_part])
+
+
+main()

@@ -1,0 +1,261 @@
+#include <boost/test/unit_test.hpp>
+
+#include "arm3r/plant.hpp"
+#include "fixtures.hpp"
+
+namespace arm3r {
+
+// When contact begins and ends, and what the books say of it.
+BOOST_AUTO_TEST_SUITE(contact)
+
+static Vec3<double> start_of(const Params& params) {
+    const Setup setup = make_setup(params);
+    return tip_position(setup.plant.arm, pose(setup.q));
+}
+
+// An arm held by gravity compensation before an infinite wall, `gap` away, whose normal is in no special direction.
+static Params held(double gap, const Vec3<double>& normal = {-0.8, -0.5, 0.3}) {
+    Params params = unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1).set("wall.normal", normal);
+    return params.set("wall.point", Vec3<double>(start_of(params) - gap * normal.normalized()));
+}
+
+struct Sinusoid {
+    double amplitude = 0.04, frequency = 1.3, phase = -0.5;
+
+    Params before(double gap) const {
+        Params params = held(gap).choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", amplitude);
+        return params.set("wall.motion.frequency", frequency).set("wall.motion.phase", phase).set("time.stop", 3);
+    }
+    double deepest(double gap) const { return amplitude * (1 - std::sin(phase)) - gap; }
+    // Half the time in contact, of each period; and the first time of greatest depth.
+    double half_stay(double gap) const { return std::acos(1 - deepest(gap) / amplitude) / (2 * M_PI * frequency); }
+    double first_peak() const { return (M_PI / 2 - phase) / (2 * M_PI * frequency); }
+};
+
+static void check_events(const Run& run, const Sinusoid& wall, double gap, double tolerance) {
+    BOOST_REQUIRE_EQUAL(run.events.size(), 8u);
+    for (std::size_t i = 0; i < run.events.size(); ++i) {
+        const bool make = i % 2 == 0;
+        const double t = wall.first_peak() + double(i / 2) / wall.frequency + (make ? -1 : 1) * wall.half_stay(gap);
+        BOOST_TEST((run.events[i].type == Event::make) == make);
+        BOOST_TEST(std::abs(run.events[i].t - t) <= tolerance, run.events[i].t << " is not " << t);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_wall_that_comes_at_constant_speed_arrives_when_it_must) {
+    const Run run = held(0.123).set("wall.motion.velocity", 0.05).set("time.stop", 4).run();
+    BOOST_REQUIRE_EQUAL(run.events.size(), 1u);
+    BOOST_TEST(std::abs(run.events[0].t - 0.123 / 0.05) <= 1e-12);
+    BOOST_TEST(std::abs(run.peak_force - 1000 * (0.05 * 4 - 0.123)) <= 1e-9);
+    BOOST_TEST(last(run, "contact") == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_swinging_wall_makes_and_breaks_at_the_roots_of_its_sine) {
+    const Sinusoid wall;
+    const Run run = wall.before(0.05).run();
+    check_events(run, wall, 0.05, 1e-12);
+    BOOST_TEST(std::abs(run.peak_force - 1000 * wall.deepest(0.05)) <= 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(fixed_steps_find_the_same_instants_to_their_order) {
+    const Sinusoid wall;
+    check_events(wall.before(0.05).choose("solver.method", "rk4").run(), wall, 0.05, 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(a_touch_of_ten_nanometres_is_found_and_a_miss_of_ten_is_none) {
+    const Sinusoid wall;
+    const double just_touching = wall.deepest(0);
+    check_events(wall.before(just_touching - 1e-8).run(), wall, just_touching - 1e-8, 1e-9);
+    BOOST_TEST(wall.before(just_touching + 1e-8).run().events.empty());
+}
+
+// How far a falling arm swings towards -normal at the most, from a parabola through the three highest rows.
+static double farthest_swing(const Run& run, const Vec3<double>& n) {
+    const auto x = column(run, "tip_x"), y = column(run, "tip_y"), z = column(run, "tip_z");
+    const auto towards = [&](std::size_t i) { return -(n[0] * x[i] + n[1] * y[i] + n[2] * z[i]); };
+    std::size_t top = 1;
+    for (std::size_t i = 1; i + 1 < run.rows; ++i)
+        if (towards(i) > towards(top)) top = i;
+    BOOST_REQUIRE(towards(top) > towards(0));
+    BOOST_REQUIRE(towards(top) > towards(run.rows - 1));
+    const double before = towards(top - 1), at = towards(top), after = towards(top + 1);
+    return at + (after - before) * (after - before) / (8 * (2 * at - before - after));
+}
+
+BOOST_AUTO_TEST_CASE(a_falling_arm_that_grazes_a_wall_by_ten_nanometres_is_found) {
+    const Vec3<double> n = Vec3<double>(-0.3, 0.2, 0.9).normalized();
+    Params params = unequal_params().set("initial.qd", {0.5, -0.4, 0.3}).set("arm.link1.inertia_axial", 0.3).set("time.stop", 1).set("time.log_every", 1e-4);
+    const double farthest = farthest_swing(params.run(), n);
+    params.set("wall", 1).set("wall.normal", n).choose("wall.motion.type", "fixed");
+    const auto events_at = [&](double distance) { return params.set("wall.point", Vec3<double>(-distance * n)).run().events; };
+    BOOST_TEST(events_at(farthest + 1e-8).empty());
+    const std::vector<Event> grazed = events_at(farthest - 1e-8);
+    BOOST_REQUIRE_EQUAL(grazed.size(), 2u);
+    BOOST_TEST(grazed[0].type == Event::make);
+    BOOST_TEST(grazed[1].type == Event::brk);
+    BOOST_TEST(grazed[1].t - grazed[0].t > 1e-6);
+    BOOST_TEST(grazed[1].t - grazed[0].t < 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(an_event_holds_the_state_at_its_instant) {
+    Params params = unequal_params().set("initial.qd", {0.5, -0.4, 0.3}).set("arm.link1.inertia_axial", 0.3).set("time.stop", 0.5);
+    params.set("wall", 1).set("wall.normal", {0, 0, 1}).set("wall.point", {0, 0, 0.2}).choose("wall.motion.type", "fixed");
+    const Run run = params.run();
+    BOOST_REQUIRE(!run.events.empty());
+    const Event& event = run.events[0];
+    const Run until = params.set("time.stop", event.t).set("wall", 0).run();
+    for (int i = 0; i < 3; ++i) {
+        BOOST_TEST(std::abs(event.q[i] - last(until, "q" + std::to_string(i + 1))) <= 1e-9);
+        BOOST_TEST(std::abs(event.qd[i] - last(until, "qd" + std::to_string(i + 1))) <= 1e-7);
+    }
+    BOOST_TEST(std::abs(event.tip[2] - 0.2) <= 1e-12);
+}
+
+// ---- the start
+
+BOOST_AUTO_TEST_CASE(a_start_inside_is_a_make_at_zero) {
+    const Run run = held(-0.002).choose("wall.motion.type", "fixed").set("time.stop", 1).run();
+    BOOST_REQUIRE_EQUAL(run.events.size(), 1u);
+    BOOST_TEST(run.events[0].type == Event::make);
+    BOOST_TEST(run.events[0].t == 0);
+    BOOST_TEST(column(run, "contact")[0] == 1);
+    BOOST_TEST(std::abs(run.peak_force - 2) <= 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(touching_exactly_is_not_contact) {
+    const Run still = held(0, {-1, 0, 0}).choose("wall.motion.type", "fixed").set("time.stop", 0).run();
+    BOOST_TEST(last(still, "depth") == 0);
+    BOOST_TEST(last(still, "contact") == 0);
+    BOOST_TEST(still.events.empty());
+    const Run coming = held(0, {-1, 0, 0}).set("time.stop", 1).run();
+    BOOST_REQUIRE_EQUAL(coming.events.size(), 1u);
+    BOOST_TEST(coming.events[0].t <= 1e-12);
+}
+
+// ---- the rim of the plate
+
+// The plate of 1 m slides away sideways, along e1, from under a tip that is 2 mm deep.
+BOOST_AUTO_TEST_CASE(leaving_over_the_edge_is_a_break) {
+    for (const char* method : {"dopri5", "rk4"}) {
+        Params params = held(-0.002, {-1, 0, 0}).set("wall.size", {1, 1}).set("wall.contact.stiffness", 1e4).choose("solver.method", method);
+        const Run run = params.set("wall.motion.velocity", {0, 0.1, 0}).set("time.stop", 8).run();
+        BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+        BOOST_TEST(run.events[1].type == Event::brk);
+        BOOST_TEST(std::abs(run.events[1].t - 5) <= 1e-9);
+        const auto t = column(run, "t"), f = column(run, "f_on_wall_x"), depth = column(run, "depth"), flag = column(run, "contact");
+        for (std::size_t i = 0; i < run.rows; ++i) {
+            if (std::abs(t[i] - 5) < 1e-9) continue;
+            BOOST_TEST(std::abs(f[i] - (t[i] < 5 ? 20.0 : 0.0)) <= 1e-9);
+            BOOST_TEST(flag[i] == (t[i] < 5 ? 1.0 : 0.0));
+            BOOST_TEST(std::abs(depth[i] - 0.002) <= 1e-12);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_plate_that_comes_in_from_the_side_pushes_nothing) {
+    for (const double up : {0.0, 1.0}) {
+        Params params = held(-0.002, {-1, 0, 0}).set("wall.size", {1, 1});
+        const Vec3<double> sideways(0, 1 - up, up), point = start_of(params) - Vec3<double>(0.002, 0, 0) - 0.8 * sideways;
+        const Run run = params.set("wall.point", point).set("wall.motion.velocity", Vec3<double>(0.1 * sideways)).set("time.stop", 10).run();
+        BOOST_TEST(run.events.empty());
+        BOOST_TEST(run.peak_force == 0);
+    }
+}
+
+// A spinning arm carries its tip in over the rim of a plate that swings to and fro: no force before it has once been in
+// front. The rows are compared with a table of modes of their own.
+BOOST_AUTO_TEST_CASE(beside_the_plate_nothing_pushes_until_the_tip_has_been_in_front) {
+    Params params = held(-0.02, {-1, 0, 0}).set("initial.qd", {0.1, 0, 0}).set("wall.size", {1, 1}).set("arm.link1.inertia_axial", 0.5);
+    params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.02, 0.505, 0))).choose("wall.motion.type", "sinusoid");
+    params.set("wall.motion.amplitude", 0.05).set("wall.motion.frequency", 2).set("wall.motion.phase", -0.5);
+    const Run run = params.set("time.stop", 1).set("time.log_every", 1e-3).run();
+    const auto depth = column(run, "depth"), y = column(run, "tip_y"), plate = column(run, "wall_y"), flag = column(run, "contact");
+    bool free = false, touching = false, within_but_unfelt = false;
+    for (std::size_t i = 0; i < run.rows; ++i) {
+        const bool within = std::abs(y[i] - plate[i]) < 0.5;
+        touching = depth[i] > 0 && within && (touching || free);
+        free = depth[i] <= 0;
+        within_but_unfelt |= within && depth[i] > 0 && !touching;
+        BOOST_TEST(flag[i] == double(touching));
+    }
+    BOOST_TEST(within_but_unfelt);
+    BOOST_TEST(touching + run.events.size() >= 2u);
+    BOOST_TEST(run.events.at(0).type == Event::make);
+}
+
+// ---- both ways
+
+static Params bouncing() {
+    return held(0.01).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 1e4).set("wall.motion.velocity", 0.3).set("time.stop", 0.3);
+}
+
+BOOST_AUTO_TEST_CASE(a_bounce_leaves_at_twice_the_walls_speed_and_the_books_close) {
+    const Run run = bouncing().set("wall.contact.stiffness", 1e6).set("time.stop", 0.05).run();
+    BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
+    BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+    const Setup setup = make_setup(bouncing());
+    const Vec3<double> n = setup.plant.wall.n;
+    const double m_n = effective_mass(setup.plant.arm, pose(setup.q), n);
+    const Event& left = run.events[1];
+    const Vec3<double> q(left.q.data()), qd(left.qd.data());
+    BOOST_TEST(std::abs(dot(n, tip_velocity(setup.plant.arm, pose(q), qd)) - 0.6) <= 2e-3);
+    BOOST_TEST(std::abs(left.t - run.events[0].t - M_PI * std::sqrt(m_n / 1e6)) <= 2e-5);
+    BOOST_TEST(std::abs(last(run, "work_wall") - 2 * m_n * 0.09) <= 1e-3);
+    BOOST_TEST(run.energy_residual_max <= 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(the_books_close_over_many_contacts_with_everything_at_work) {
+    Params params = held(0.02).set("wall.acts_on_arm", 1).set("arm.damping", {0.3, 0.2, 0.1}).set("arm.friction", {0.05, 0.04, 0.03});
+    params.set("arm.friction_velocity", 0.05).set("controller.gravity", 8).set("arm.payload.mass", 0.2).set("arm.armature", {0.02, 0.01, 0.03});
+    params.choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.15).set("wall.motion.frequency", 1.5).set("wall.contact.stiffness", 3000);
+    const Run run = params.set("time.stop", 3).run();
+    BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
+    BOOST_TEST(run.events.size() >= 4u);
+    BOOST_TEST(last(run, "energy_dissipated") > 0.1);
+    BOOST_TEST(std::abs(last(run, "work_wall")) > 0.1);
+    BOOST_TEST(std::abs(last(run, "work_actuators")) > 0.1);
+    BOOST_TEST(run.energy_residual_max <= 1e-8);
+}
+
+BOOST_AUTO_TEST_CASE(what_the_spring_holds_at_the_edge_is_booked_as_lost) {
+    Params params = held(-0.001, {-1, 0, 0}).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 1e4).set("wall.size", {1, 1});
+    params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.001, 0.4, 0))).set("wall.motion.velocity", {0, 20, 0});
+    const Run run = params.set("time.stop", 0.02).set("time.log_every", 1e-4).run();
+    BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
+    BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+    const Event& left = run.events[1];
+    const double depth = left.tip[0] - (start_of(params)[0] - 0.001);
+    BOOST_TEST(std::abs(left.t - 0.005) <= 1e-4);
+    BOOST_TEST(depth > 1e-4);
+    BOOST_TEST(std::abs(last(run, "energy_dissipated") - 0.5 * 1e4 * depth * depth) <= 1e-12);
+    BOOST_TEST(last(run, "energy_contact") == 0);
+    BOOST_TEST(run.energy_residual_max <= 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(one_way_contact_leaves_the_arm_and_its_books_alone) {
+    const Run with = bouncing().set("wall.acts_on_arm", 0).run(), without = bouncing().set("wall", 0).run();
+    BOOST_TEST(last(with, "f_on_wall_x") > 1);
+    for (const char* name : {"q1", "q2", "q3", "qd1", "qd2", "qd3", "work_actuators", "energy_residual"})
+        BOOST_TEST(same_bits(last(with, name), last(without, name)), name);
+    for (const char* name : {"energy_contact", "work_wall", "energy_dissipated"}) BOOST_TEST(last(with, name) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(fixed_steps_meet_the_same_bounce) {
+    const Run adaptive = bouncing().run(), fixed = bouncing().choose("solver.method", "rk4").set("solver.step", 1e-4).run();
+    BOOST_REQUIRE_EQUAL(fixed.events.size(), adaptive.events.size());
+    for (std::size_t i = 0; i < fixed.events.size(); ++i) BOOST_TEST(std::abs(fixed.events[i].t - adaptive.events[i].t) <= 1e-6);
+    BOOST_TEST(std::abs(fixed.peak_force / adaptive.peak_force - 1) <= 1e-5);
+    for (const char* name : {"qd1", "qd2", "qd3"}) BOOST_TEST(std::abs(last(fixed, name) - last(adaptive, name)) <= 1e-4);
+}
+
+BOOST_AUTO_TEST_CASE(both_forces_sum_to_zero_at_every_row) {
+    const Run run = bouncing().run();
+    for (const char* axis : {"x", "y", "z"}) {
+        const auto on_tip = column(run, std::string("f_on_tip_") + axis), on_wall = column(run, std::string("f_on_wall_") + axis);
+        for (std::size_t i = 0; i < run.rows; ++i) BOOST_TEST(on_tip[i] + on_wall[i] == 0);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace arm3r

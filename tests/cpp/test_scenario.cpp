@@ -1,0 +1,128 @@
+// The parts of the text face that live in the core: numbers, suggestions, messages. The reader as a whole is judged
+// by tests/python/test_attacks_scenario.py, through the executable and the library.
+
+#include <bit>
+#include <boost/test/unit_test.hpp>
+#include <cfloat>
+#include <cmath>
+#include <random>
+
+#include "error.hpp"
+#include "numbers.hpp"
+#include "schema.hpp"
+#include "text.hpp"
+
+BOOST_AUTO_TEST_SUITE(scenario)
+
+using namespace arm3r;
+
+static std::optional<double> read(std::string_view text, NumberRules rules = {}) {
+    NumberFault fault;
+    return read_number(text, rules, fault);
+}
+
+static NumberFault refused(std::string_view text, NumberRules rules = {}) {
+    NumberFault fault;
+    BOOST_TEST(!read_number(text, rules, fault).has_value(), text);
+    return fault;
+}
+
+BOOST_AUTO_TEST_CASE(every_legal_form_reads) {
+    for (const char* half : {"0.5", ".5", "+.5", "5e-1", "50e-02", "+0.5e+0", "0.05e1"})
+        BOOST_TEST(read(half).value() == 0.5, half);
+    BOOST_TEST(read("1e-05").value() == 1e-5);
+    BOOST_TEST(read("0").value() == 0);
+    BOOST_TEST(read("0e999999999999").value() == 0);
+}
+
+BOOST_AUTO_TEST_CASE(random_doubles_read_back_to_the_same_bits) {
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 100'000; ++i) {
+        const auto value = std::bit_cast<double>(random());
+        if (!std::isnormal(value)) continue;
+        BOOST_REQUIRE(std::bit_cast<std::uint64_t>(read(shortest(value)).value()) ==
+                      std::bit_cast<std::uint64_t>(value));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(degrees_are_one_product_and_one_quotient) {
+    BOOST_TEST(read("-30 deg", {.degrees = true}).value() == -30.0 * 3.14159265358979323846 / 180);
+    BOOST_TEST(refused("-30 deg").hint.find("degrees") != std::string::npos);
+    BOOST_TEST(refused("-30deg", {.degrees = true}).hint == "write -30 deg");
+}
+
+BOOST_AUTO_TEST_CASE(zero_has_no_sign) {
+    for (const char* zero : {"-0", "-0.0", "-.0e5"}) BOOST_TEST(!std::signbit(read(zero).value()), zero);
+    BOOST_TEST(shortest(-0.0) == "0");
+}
+
+BOOST_AUTO_TEST_CASE(the_ends_of_the_range) {
+    BOOST_TEST(read("1.7976931348623157e308").value() == DBL_MAX);
+    BOOST_TEST(read("2.2250738585072014e-308").value() == DBL_MIN);
+    for (const char* large : {"1.7976931348623159e308", "-1e309", "1e99999999999999999999"})
+        BOOST_TEST(refused(large).message == "out of double range", large);
+    for (const char* small : {"2.2250738585072009e-308", "4.9e-324", "-1e-999", "1e-99999999999999999999"})
+        BOOST_TEST(refused(small).message == "underflows: too small for a double", small);
+    BOOST_TEST(refused("0." + std::string(400, '0') + "1").message == "underflows: too small for a double");
+    BOOST_TEST(refused("1" + std::string(400, '0')).message == "out of double range");
+    BOOST_TEST(read("1" + std::string(400, '0') + "e-400").value() == 1);
+}
+
+BOOST_AUTO_TEST_CASE(what_only_looks_like_a_number_is_refused) {
+    for (const char* text :
+         {"",     "+",   ".",   "-.",   "e5",  "1e", "1e+", "1.",  "1.e5", "1E5", "0x10", "0b1",   "1_000",   "1,5",
+          "1:30", "nan", "inf", ".inf", "1 2", " 1", "1 ",  "--1", "+-1",  "1f",  "010",  "-01.5", "\u22121", "\u0661"})
+        refused(text);
+    BOOST_TEST(refused("010").hint == "write 10");
+    BOOST_TEST(refused("-0x10").hint == "only decimal numbers: this would be -16");
+    BOOST_TEST(refused("35 cm").hint == "numbers are plain SI: write 0.35 (m)");
+}
+
+BOOST_AUTO_TEST_CASE(infinity_and_whole_numbers_only_by_rule) {
+    BOOST_TEST(read("inf", {.infinity = true}).value() == HUGE_VAL);
+    BOOST_TEST(read("12", {.whole = true}).value() == 12);
+    for (const char* text : {"1.0", "1e3", ".5"})
+        BOOST_TEST(refused(text, {.whole = true}).code == "number.whole", text);
+}
+
+BOOST_AUTO_TEST_CASE(the_nearest_word_is_within_two_slips) {
+    const std::vector<std::string> words = {"stiffness", "law", "length", "type"};
+    BOOST_TEST(nearest("stifness", words) == "stiffness");
+    BOOST_TEST(nearest("lenght", words) == "length");
+    BOOST_TEST(nearest("tpye", words) == "type");
+    BOOST_TEST(nearest("damping", words) == "");
+    BOOST_TEST(nearest("x", words) == "");
+    BOOST_TEST(nearest(std::string(100'000, 'x'), words) == "");
+}
+
+BOOST_AUTO_TEST_CASE(a_problem_is_one_line_and_harmless) {
+    const Problem problem{.code = "c",
+                          .path = "a.b",
+                          .message = "wrong\n",
+                          .got = "\x1b[31m" + std::string(500, 'x'),
+                          .allowed = "1",
+                          .hint = "h",
+                          .file = "f.yaml",
+                          .line = 3,
+                          .column = 7};
+    const std::string text = describe(problem);
+    BOOST_TEST(text.starts_with("f.yaml:3:7: error[c]: a.b: wrong\\n, got \\u001b[31m"));
+    BOOST_TEST(text.ends_with(", allowed 1; h"));
+    BOOST_TEST(text.find('\x1b') == std::string::npos);
+    BOOST_TEST(text.size() < 200u);
+}
+
+BOOST_AUTO_TEST_CASE(an_error_shows_20_problems_at_most) {
+    const Error error(ARM3R_E_SCENARIO, std::vector<Problem>(50, Problem{"c", "p", "m", "", "", ""}));
+    BOOST_TEST(error.problems().size() == 20u);
+}
+
+BOOST_AUTO_TEST_CASE(bytes_that_are_not_utf8_are_told_from_those_that_are) {
+    for (const char* good : {"", "a", "\u00e9", "\u20ac", "\U0001F600"}) BOOST_TEST(is_utf8(good));
+    for (const char* bad : {"\xff", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\x80"})
+        BOOST_TEST(!is_utf8(bad));
+    BOOST_TEST(count_characters("a\u20acb") == 3u);
+    BOOST_TEST(json_string("a\"\\\n\x01") == "\"a\\\"\\\\\\n\\u0001\"");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
