@@ -17,9 +17,7 @@
 
 namespace arm3r {
 
-inline bool same_bits(double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
+inline bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 class Random {
 public:
@@ -65,19 +63,27 @@ private:
 inline void randomise_link(Params& params, const std::string& link, Random& random) {
     const double length = random.in(0.3, 1.2);
     const Vec3<double> part = random.vector(0.005, 0.05);
-    params.set(link + ".length", length).set(link + ".mass", random.in(0.3, 3)).set(link + ".com", length * random.in(0.1, 0.9));
+    params.set(link + ".length", length)
+        .set(link + ".mass", random.in(0.3, 3))
+        .set(link + ".com", length * random.in(0.1, 0.9));
     params.set(link + ".inertia", {part[1] + part[2], part[0] + part[2], part[0] + part[1]});
 }
 
 // All that an arm can have: armature, damping, dry friction, payload, base height, oblique gravity.
 inline Params random_params(Random& random) {
     Params params;
-    params.choose("arm.convention", "slide").set("arm.base_height", random.in(-1, 1)).set("arm.gravity", random.vector(-10, 10));
-    params.set("arm.link1.mass", random.in(0.3, 3)).set("arm.link1.com", random.in(-0.5, 0.5)).set("arm.link1.inertia_axial", random.in(0.1, 0.5));
+    params.choose("arm.convention", "slide")
+        .set("arm.base_height", random.in(-1, 1))
+        .set("arm.gravity", random.vector(-10, 10));
+    params.set("arm.link1.mass", random.in(0.3, 3))
+        .set("arm.link1.com", random.in(-0.5, 0.5))
+        .set("arm.link1.inertia_axial", random.in(0.1, 0.5));
     randomise_link(params, "arm.link2", random);
     randomise_link(params, "arm.link3", random);
     params.set("arm.payload.mass", random.in(0, 2)).set("arm.armature", random.vector(0, 0.1));
-    params.set("arm.damping", random.vector(0, 0.5)).set("arm.friction", random.vector(0, 0.5)).set("arm.friction_velocity", 0.1);
+    params.set("arm.damping", random.vector(0, 0.5))
+        .set("arm.friction", random.vector(0, 0.5))
+        .set("arm.friction_velocity", 0.1);
     return params;
 }
 
@@ -86,7 +92,10 @@ inline Params unequal_params() {
     Params params;
     params.choose("arm.convention", "slide").set("arm.base_height", 0.3);
     params.set("arm.link1.inertia_axial", 0.02).set("arm.link2.length", 0.8).set("arm.link2.mass", 1.3);
-    params.set("arm.link3.length", 0.6).set("arm.link3.mass", 0.7).set("initial.q", {0.4, 0.7, -0.9}).set("initial.qd", {0, 0, 0});
+    params.set("arm.link3.length", 0.6)
+        .set("arm.link3.mass", 0.7)
+        .set("initial.q", {0.4, 0.7, -0.9})
+        .set("initial.qd", {0, 0, 0});
     params.set("wall.size", {HUGE_VAL, HUGE_VAL});
     return params;
 }

@@ -15,7 +15,8 @@ static Vec3<double> start_of(const Params& params) {
 
 // An arm held by gravity compensation before an infinite wall, `gap` away, whose normal is in no special direction.
 static Params held(double gap, const Vec3<double>& normal = {-0.8, -0.5, 0.3}) {
-    Params params = unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1).set("wall.normal", normal);
+    Params params =
+        unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1).set("wall.normal", normal);
     return params.set("wall.point", Vec3<double>(start_of(params) - gap * normal.normalized()));
 }
 
@@ -84,10 +85,16 @@ static double farthest_swing(const Run& run, const Vec3<double>& n) {
 
 BOOST_AUTO_TEST_CASE(a_falling_arm_that_grazes_a_wall_by_ten_nanometres_is_found) {
     const Vec3<double> n = Vec3<double>(-0.3, 0.2, 0.9).normalized();
-    Params params = unequal_params().set("initial.qd", {0.5, -0.4, 0.3}).set("arm.link1.inertia_axial", 0.3).set("time.stop", 1).set("time.log_every", 1e-4);
+    Params params = unequal_params()
+                        .set("initial.qd", {0.5, -0.4, 0.3})
+                        .set("arm.link1.inertia_axial", 0.3)
+                        .set("time.stop", 1)
+                        .set("time.log_every", 1e-4);
     const double farthest = farthest_swing(params.run(), n);
     params.set("wall", 1).set("wall.normal", n).choose("wall.motion.type", "fixed");
-    const auto events_at = [&](double distance) { return params.set("wall.point", Vec3<double>(-distance * n)).run().events; };
+    const auto events_at = [&](double distance) {
+        return params.set("wall.point", Vec3<double>(-distance * n)).run().events;
+    };
     BOOST_TEST(events_at(farthest + 1e-8).empty());
     const std::vector<Event> grazed = events_at(farthest - 1e-8);
     BOOST_REQUIRE_EQUAL(grazed.size(), 2u);
@@ -98,8 +105,12 @@ BOOST_AUTO_TEST_CASE(a_falling_arm_that_grazes_a_wall_by_ten_nanometres_is_found
 }
 
 BOOST_AUTO_TEST_CASE(an_event_holds_the_state_at_its_instant) {
-    Params params = unequal_params().set("initial.qd", {0.5, -0.4, 0.3}).set("arm.link1.inertia_axial", 0.3).set("time.stop", 0.5);
-    params.set("wall", 1).set("wall.normal", {0, 0, 1}).set("wall.point", {0, 0, 0.2}).choose("wall.motion.type", "fixed");
+    Params params =
+        unequal_params().set("initial.qd", {0.5, -0.4, 0.3}).set("arm.link1.inertia_axial", 0.3).set("time.stop", 0.5);
+    params.set("wall", 1)
+        .set("wall.normal", {0, 0, 1})
+        .set("wall.point", {0, 0, 0.2})
+        .choose("wall.motion.type", "fixed");
     const Run run = params.run();
     BOOST_REQUIRE(!run.events.empty());
     const Event& event = run.events[0];
@@ -137,12 +148,16 @@ BOOST_AUTO_TEST_CASE(touching_exactly_is_not_contact) {
 // The plate of 1 m slides away sideways, along e1, from under a tip that is 2 mm deep.
 BOOST_AUTO_TEST_CASE(leaving_over_the_edge_is_a_break) {
     for (const char* method : {"dopri5", "rk4"}) {
-        Params params = held(-0.002, {-1, 0, 0}).set("wall.size", {1, 1}).set("wall.contact.stiffness", 1e4).choose("solver.method", method);
+        Params params = held(-0.002, {-1, 0, 0})
+                            .set("wall.size", {1, 1})
+                            .set("wall.contact.stiffness", 1e4)
+                            .choose("solver.method", method);
         const Run run = params.set("wall.motion.velocity", {0, 0.1, 0}).set("time.stop", 8).run();
         BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
         BOOST_TEST(run.events[1].type == Event::brk);
         BOOST_TEST(std::abs(run.events[1].t - 5) <= 1e-9);
-        const auto t = column(run, "t"), f = column(run, "f_on_wall_x"), depth = column(run, "depth"), flag = column(run, "contact");
+        const auto t = column(run, "t"), f = column(run, "f_on_wall_x"), depth = column(run, "depth"),
+                   flag = column(run, "contact");
         for (std::size_t i = 0; i < run.rows; ++i) {
             if (std::abs(t[i] - 5) < 1e-9) continue;
             BOOST_TEST(std::abs(f[i] - (t[i] < 5 ? 20.0 : 0.0)) <= 1e-9);
@@ -155,8 +170,12 @@ BOOST_AUTO_TEST_CASE(leaving_over_the_edge_is_a_break) {
 BOOST_AUTO_TEST_CASE(a_plate_that_comes_in_from_the_side_pushes_nothing) {
     for (const double up : {0.0, 1.0}) {
         Params params = held(-0.002, {-1, 0, 0}).set("wall.size", {1, 1});
-        const Vec3<double> sideways(0, 1 - up, up), point = start_of(params) - Vec3<double>(0.002, 0, 0) - 0.8 * sideways;
-        const Run run = params.set("wall.point", point).set("wall.motion.velocity", Vec3<double>(0.1 * sideways)).set("time.stop", 10).run();
+        const Vec3<double> sideways(0, 1 - up, up),
+            point = start_of(params) - Vec3<double>(0.002, 0, 0) - 0.8 * sideways;
+        const Run run = params.set("wall.point", point)
+                            .set("wall.motion.velocity", Vec3<double>(0.1 * sideways))
+                            .set("time.stop", 10)
+                            .run();
         BOOST_TEST(run.events.empty());
         BOOST_TEST(run.peak_force == 0);
     }
@@ -165,11 +184,16 @@ BOOST_AUTO_TEST_CASE(a_plate_that_comes_in_from_the_side_pushes_nothing) {
 // A spinning arm carries its tip in over the rim of a plate that swings to and fro: no force before it has once been in
 // front. The rows are compared with a table of modes of their own.
 BOOST_AUTO_TEST_CASE(beside_the_plate_nothing_pushes_until_the_tip_has_been_in_front) {
-    Params params = held(-0.02, {-1, 0, 0}).set("initial.qd", {0.1, 0, 0}).set("wall.size", {1, 1}).set("arm.link1.inertia_axial", 0.5);
-    params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.02, 0.505, 0))).choose("wall.motion.type", "sinusoid");
+    Params params = held(-0.02, {-1, 0, 0})
+                        .set("initial.qd", {0.1, 0, 0})
+                        .set("wall.size", {1, 1})
+                        .set("arm.link1.inertia_axial", 0.5);
+    params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.02, 0.505, 0)))
+        .choose("wall.motion.type", "sinusoid");
     params.set("wall.motion.amplitude", 0.05).set("wall.motion.frequency", 2).set("wall.motion.phase", -0.5);
     const Run run = params.set("time.stop", 1).set("time.log_every", 1e-3).run();
-    const auto depth = column(run, "depth"), y = column(run, "tip_y"), plate = column(run, "wall_y"), flag = column(run, "contact");
+    const auto depth = column(run, "depth"), y = column(run, "tip_y"), plate = column(run, "wall_y"),
+               flag = column(run, "contact");
     bool free = false, touching = false, within_but_unfelt = false;
     for (std::size_t i = 0; i < run.rows; ++i) {
         const bool within = std::abs(y[i] - plate[i]) < 0.5;
@@ -186,7 +210,11 @@ BOOST_AUTO_TEST_CASE(beside_the_plate_nothing_pushes_until_the_tip_has_been_in_f
 // ---- both ways
 
 static Params bouncing() {
-    return held(0.01).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 1e4).set("wall.motion.velocity", 0.3).set("time.stop", 0.3);
+    return held(0.01)
+        .set("wall.acts_on_arm", 1)
+        .set("wall.contact.stiffness", 1e4)
+        .set("wall.motion.velocity", 0.3)
+        .set("time.stop", 0.3);
 }
 
 BOOST_AUTO_TEST_CASE(a_bounce_leaves_at_twice_the_walls_speed_and_the_books_close) {
@@ -205,9 +233,18 @@ BOOST_AUTO_TEST_CASE(a_bounce_leaves_at_twice_the_walls_speed_and_the_books_clos
 }
 
 BOOST_AUTO_TEST_CASE(the_books_close_over_many_contacts_with_everything_at_work) {
-    Params params = held(0.02).set("wall.acts_on_arm", 1).set("arm.damping", {0.3, 0.2, 0.1}).set("arm.friction", {0.05, 0.04, 0.03});
-    params.set("arm.friction_velocity", 0.05).set("controller.gravity", 8).set("arm.payload.mass", 0.2).set("arm.armature", {0.02, 0.01, 0.03});
-    params.choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.15).set("wall.motion.frequency", 1.5).set("wall.contact.stiffness", 3000);
+    Params params = held(0.02)
+                        .set("wall.acts_on_arm", 1)
+                        .set("arm.damping", {0.3, 0.2, 0.1})
+                        .set("arm.friction", {0.05, 0.04, 0.03});
+    params.set("arm.friction_velocity", 0.05)
+        .set("controller.gravity", 8)
+        .set("arm.payload.mass", 0.2)
+        .set("arm.armature", {0.02, 0.01, 0.03});
+    params.choose("wall.motion.type", "sinusoid")
+        .set("wall.motion.amplitude", 0.15)
+        .set("wall.motion.frequency", 1.5)
+        .set("wall.contact.stiffness", 3000);
     const Run run = params.set("time.stop", 3).run();
     BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
     BOOST_TEST(run.events.size() >= 4u);
@@ -218,8 +255,10 @@ BOOST_AUTO_TEST_CASE(the_books_close_over_many_contacts_with_everything_at_work)
 }
 
 BOOST_AUTO_TEST_CASE(what_the_spring_holds_at_the_edge_is_booked_as_lost) {
-    Params params = held(-0.001, {-1, 0, 0}).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 1e4).set("wall.size", {1, 1});
-    params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.001, 0.4, 0))).set("wall.motion.velocity", {0, 20, 0});
+    Params params =
+        held(-0.001, {-1, 0, 0}).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 1e4).set("wall.size", {1, 1});
+    params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.001, 0.4, 0)))
+        .set("wall.motion.velocity", {0, 20, 0});
     const Run run = params.set("time.stop", 0.02).set("time.log_every", 1e-4).run();
     BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
     BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
@@ -241,17 +280,21 @@ BOOST_AUTO_TEST_CASE(one_way_contact_leaves_the_arm_and_its_books_alone) {
 }
 
 BOOST_AUTO_TEST_CASE(fixed_steps_meet_the_same_bounce) {
-    const Run adaptive = bouncing().run(), fixed = bouncing().choose("solver.method", "rk4").set("solver.step", 1e-4).run();
+    const Run adaptive = bouncing().run(),
+              fixed = bouncing().choose("solver.method", "rk4").set("solver.step", 1e-4).run();
     BOOST_REQUIRE_EQUAL(fixed.events.size(), adaptive.events.size());
-    for (std::size_t i = 0; i < fixed.events.size(); ++i) BOOST_TEST(std::abs(fixed.events[i].t - adaptive.events[i].t) <= 1e-6);
+    for (std::size_t i = 0; i < fixed.events.size(); ++i)
+        BOOST_TEST(std::abs(fixed.events[i].t - adaptive.events[i].t) <= 1e-6);
     BOOST_TEST(std::abs(fixed.peak_force / adaptive.peak_force - 1) <= 1e-5);
-    for (const char* name : {"qd1", "qd2", "qd3"}) BOOST_TEST(std::abs(last(fixed, name) - last(adaptive, name)) <= 1e-4);
+    for (const char* name : {"qd1", "qd2", "qd3"})
+        BOOST_TEST(std::abs(last(fixed, name) - last(adaptive, name)) <= 1e-4);
 }
 
 BOOST_AUTO_TEST_CASE(both_forces_sum_to_zero_at_every_row) {
     const Run run = bouncing().run();
     for (const char* axis : {"x", "y", "z"}) {
-        const auto on_tip = column(run, std::string("f_on_tip_") + axis), on_wall = column(run, std::string("f_on_wall_") + axis);
+        const auto on_tip = column(run, std::string("f_on_tip_") + axis),
+                   on_wall = column(run, std::string("f_on_wall_") + axis);
         for (std::size_t i = 0; i < run.rows; ++i) BOOST_TEST(on_tip[i] + on_wall[i] == 0);
     }
 }

@@ -17,11 +17,17 @@ struct Case {
     Pose<double> p;
 
     explicit Case(Random& random)
-        : params(random_params(random)), arm(params.arm()), q(random.vector(-4, 4)), qd(random.vector(-5, 5)),
-          tau(random.vector(-20, 20)), f(random.vector(-30, 30)), p(pose(q)) {}
+        : params(random_params(random)),
+          arm(params.arm()),
+          q(random.vector(-4, 4)),
+          qd(random.vector(-5, 5)),
+          tau(random.vector(-20, 20)),
+          f(random.vector(-30, 30)),
+          p(pose(q)) {}
 };
 
-template <class F> static void for_random_cases(unsigned seed, F check) {
+template <class F>
+static void for_random_cases(unsigned seed, F check) {
     Random random(seed);
     for (int i = 0; i < 1000; ++i) check(Case(random));
 }
@@ -32,7 +38,8 @@ static bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double tol
 
 static bool close(double a, double b) { return std::abs(a - b) <= 1e-12 * (1 + std::abs(a)); }
 
-template <class M> static Eigen::MatrixXd slopes(const M& matrix, int i = 0) {
+template <class M>
+static Eigen::MatrixXd slopes(const M& matrix, int i = 0) {
     Eigen::MatrixXd result(matrix.rows(), matrix.cols());
     for (int r = 0; r < matrix.rows(); ++r)
         for (int c = 0; c < matrix.cols(); ++c) result(r, c) = matrix(r, c).slope[i];
@@ -49,7 +56,9 @@ static Eigen::Matrix3d gradient(const Vec3<Dual<3>>& v) {
 // ---- kinematics
 
 BOOST_AUTO_TEST_CASE(jacobian_is_the_derivative_of_the_tip) {
-    for_random_cases(1, [](const Case& c) { BOOST_TEST(close(gradient(tip_position(c.arm, pose(variables(c.q)))), jacobian(c.arm, c.p))); });
+    for_random_cases(1, [](const Case& c) {
+        BOOST_TEST(close(gradient(tip_position(c.arm, pose(variables(c.q)))), jacobian(c.arm, c.p)));
+    });
 }
 
 BOOST_AUTO_TEST_CASE(jacobian_dot_is_the_derivative_of_the_jacobian) {
@@ -59,7 +68,8 @@ BOOST_AUTO_TEST_CASE(jacobian_dot_is_the_derivative_of_the_jacobian) {
 }
 
 BOOST_AUTO_TEST_CASE(tip_velocity_is_the_jacobian_times_the_rates) {
-    for_random_cases(3, [](const Case& c) { BOOST_TEST(close(jacobian(c.arm, c.p) * c.qd, tip_velocity(c.arm, c.p, c.qd))); });
+    for_random_cases(
+        3, [](const Case& c) { BOOST_TEST(close(jacobian(c.arm, c.p) * c.qd, tip_velocity(c.arm, c.p, c.qd))); });
 }
 
 static Mat3<Dual<1>> orientation(const Arm<double>& arm, const Vec3<double>& q, const Vec3<double>& qd, int body) {
@@ -85,7 +95,8 @@ BOOST_AUTO_TEST_CASE(manipulability_is_the_determinant_and_the_inverse_inverts) 
     for_random_cases(5, [](const Case& c) {
         const Eigen::Matrix3d J = jacobian(c.arm, c.p);
         BOOST_TEST(close(std::abs(J.determinant()), manipulability(c.arm, c.p)));
-        if (manipulability(c.arm, c.p) > 1e-3) BOOST_TEST(close(Eigen::Matrix3d::Identity(), inverse_jacobian(c.arm, c.p) * J, 1e-11));
+        if (manipulability(c.arm, c.p) > 1e-3)
+            BOOST_TEST(close(Eigen::Matrix3d::Identity(), inverse_jacobian(c.arm, c.p) * J, 1e-11));
     });
 }
 
@@ -98,12 +109,14 @@ BOOST_AUTO_TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) 
             for (const bool elbow_up : {true, false}) {
                 const auto [q, cos_q3] = inverse_kinematics(c.arm, tip, front, elbow_up);
                 const Vec3<double> elbow = elbow_position(c.arm, pose(q));
-                const double elbow_out = (elbow[0] * tip[0] + elbow[1] * tip[1]) / out, elbow_at = elbow[2] - c.arm.base_height;
+                const double elbow_out = (elbow[0] * tip[0] + elbow[1] * tip[1]) / out,
+                             elbow_at = elbow[2] - c.arm.base_height;
                 BOOST_TEST(std::abs(cos_q3) <= 1 + 1e-14);
                 BOOST_TEST(close(tip, tip_position(c.arm, pose(q))));
                 BOOST_TEST((std::cos(q[0]) * tip[0] + std::sin(q[0]) * tip[1] > 0) == front);
                 BOOST_TEST((elbow_at * out - elbow_out * up > 0) == elbow_up);
-                came_back |= distance((q - c.q).array().sin(), Vec3<double>(0, 0, 0)) < 1e-7 && distance((q - c.q).array().cos(), Vec3<double>(1, 1, 1)) < 1e-7;
+                came_back |= distance((q - c.q).array().sin(), Vec3<double>(0, 0, 0)) < 1e-7 &&
+                             distance((q - c.q).array().cos(), Vec3<double>(1, 1, 1)) < 1e-7;
             }
         }
         BOOST_TEST(came_back);
@@ -114,7 +127,9 @@ BOOST_AUTO_TEST_CASE(inverse_kinematics_tells_a_point_out_of_reach_from_one_with
     for_random_cases(7, [](const Case& c) {
         const double a2 = c.arm.link2.length, a3 = c.arm.link3.length;
         const Vec3<double> shoulder(0, 0, c.arm.base_height), direction = c.f.normalized();
-        const auto cosine_at = [&](double reach) { return inverse_kinematics(c.arm, Vec3<double>(shoulder + reach * direction), true, true).cos_q3; };
+        const auto cosine_at = [&](double reach) {
+            return inverse_kinematics(c.arm, Vec3<double>(shoulder + reach * direction), true, true).cos_q3;
+        };
         BOOST_TEST(cosine_at((a2 + a3) * (1 + 1e-9)) > 1);
         BOOST_TEST(std::abs(cosine_at((a2 + a3) * (1 - 1e-9))) < 1);
         BOOST_TEST(cosine_at(std::abs(a2 - a3) * (1 - 1e-9)) < -1);
@@ -142,7 +157,8 @@ BOOST_AUTO_TEST_CASE(C_is_made_of_christoffel_symbols) {
         Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
-                for (int k = 0; k < 3; ++k) C(i, j) += 0.5 * (M(i, j).slope[k] + M(i, k).slope[j] - M(j, k).slope[i]) * c.qd[k];
+                for (int k = 0; k < 3; ++k)
+                    C(i, j) += 0.5 * (M(i, j).slope[k] + M(i, k).slope[j] - M(j, k).slope[i]) * c.qd[k];
         BOOST_TEST(close(C, coriolis_matrix(c.arm, c.p, c.qd)));
     });
 }
@@ -192,7 +208,8 @@ BOOST_AUTO_TEST_CASE(payload_is_a_force_on_the_bare_arm) {
         const Vec3<double> qdd = c.tau;
         const Vec3<double> acceleration = jacobian(bare, c.p) * qdd + jacobian_dot(bare, c.p, c.qd) * c.qd;
         const Vec3<double> push = c.f - payload * (acceleration - bare.gravity);
-        BOOST_TEST(close(recursion_inverse_dynamics(bare, c.q, c.qd, qdd, push), inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f)));
+        BOOST_TEST(close(recursion_inverse_dynamics(bare, c.q, c.qd, qdd, push),
+                         inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f)));
     }
 }
 
@@ -208,7 +225,8 @@ BOOST_AUTO_TEST_CASE(energy_changes_by_what_flows_in) {
         const Vec3<double> qdd = forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f);
         const Pose<Dual<1>> p = pose(moving(c.q, c.qd));
         const double rate = (kinetic_energy(c.arm, p, moving(c.qd, qdd)) + potential_energy(c.arm, p)).slope[0];
-        const double in = dot(c.qd, c.tau) + dot(tip_velocity(c.arm, c.p, c.qd), c.f) - dot(c.qd, friction_torque(c.arm, c.qd));
+        const double in =
+            dot(c.qd, c.tau) + dot(tip_velocity(c.arm, c.p, c.qd), c.f) - dot(c.qd, friction_torque(c.arm, c.qd));
         BOOST_TEST(std::abs(rate - in) <= 1e-10 * (1 + std::abs(in)));
     });
 }
@@ -218,7 +236,8 @@ BOOST_AUTO_TEST_CASE(friction_always_takes_energy) {
         const Vec3<double> tau_f = friction_torque(c.arm, c.qd);
         for (int i = 0; i < 3; ++i) {
             BOOST_TEST(tau_f[i] * c.qd[i] > 0);
-            BOOST_TEST(close(tau_f[i], c.arm.damping[i] * c.qd[i] + c.arm.friction[i] * std::tanh(c.qd[i] / c.arm.friction_velocity)));
+            BOOST_TEST(close(tau_f[i], c.arm.damping[i] * c.qd[i] +
+                                           c.arm.friction[i] * std::tanh(c.qd[i] / c.arm.friction_velocity)));
         }
     });
 }

@@ -18,7 +18,8 @@ struct Swell {
 
 // A fixed step of either method: the end, and the solution within.
 struct Rk4 {
-    template <std::size_t N, class F> static auto step(F& f, double t, const State<double, N>& y, double h) {
+    template <std::size_t N, class F>
+    static auto step(F& f, double t, const State<double, N>& y, double h) {
         State<double, N> f0, f1;
         f.begin_step(y);
         f(t, y, f0);
@@ -29,7 +30,8 @@ struct Rk4 {
 };
 
 struct Dp5 {
-    template <std::size_t N, class F> static auto step(F& f, double t, const State<double, N>& y, double h) {
+    template <std::size_t N, class F>
+    static auto step(F& f, double t, const State<double, N>& y, double h) {
         State<double, N> f0;
         Dopri5<double, N, N> stepper;
         f.begin_step(y);
@@ -39,7 +41,8 @@ struct Dp5 {
     }
 };
 
-template <class Method, std::size_t N, class F> static State<double, N> end_of(F f, State<double, N> y, double stop, int steps) {
+template <class Method, std::size_t N, class F>
+static State<double, N> end_of(F f, State<double, N> y, double stop, int steps) {
     const double h = stop / steps;
     for (int i = 0; i < steps; ++i) y = Method::step(f, i * h, y, h).first;
     return y;
@@ -56,9 +59,11 @@ static double order(const std::vector<double>& errors) {
     return sum / weight;
 }
 
-template <class Method> static double order_on_the_scalar() {
+template <class Method>
+static double order_on_the_scalar() {
     std::vector<double> errors;
-    for (int steps = 40; steps <= 320; steps *= 2) errors.push_back(std::abs(end_of<Method, 1>(Swell(), {1.0}, 3.0, steps)[0] - Swell::exact(3.0)));
+    for (int steps = 40; steps <= 320; steps *= 2)
+        errors.push_back(std::abs(end_of<Method, 1>(Swell(), {1.0}, 3.0, steps)[0] - Swell::exact(3.0)));
     return order(errors);
 }
 
@@ -69,14 +74,16 @@ BOOST_AUTO_TEST_CASE(order_on_a_scalar_of_known_solution) {
 }
 
 // Largest error within one step that starts on the solution: one order above that of the interpolant.
-template <class Method> static double order_within_a_step() {
+template <class Method>
+static double order_within_a_step() {
     std::vector<double> errors;
     for (double h = 0.2; h > 0.02; h /= 2) {
         double largest = 0;
         for (double t = 0; t < 6; t += 0.1) {
             Swell f;
             const auto inside = Method::step(f, t, Scalar{Swell::exact(t)}, h).second;
-            for (const double theta : {0.2, 0.4, 0.6, 0.8}) largest = std::max(largest, std::abs(inside(theta)[0] - Swell::exact(t + theta * h)));
+            for (const double theta : {0.2, 0.4, 0.6, 0.8})
+                largest = std::max(largest, std::abs(inside(theta)[0] - Swell::exact(t + theta * h)));
         }
         errors.push_back(largest);
     }
@@ -115,7 +122,9 @@ BOOST_AUTO_TEST_CASE(the_error_estimate_is_of_order_5_and_counts_the_motion_alon
     }
     BOOST_TEST(std::abs(order(estimates) - 5) <= 0.1, "estimate: " << order(estimates));
 
-    const auto rough_book = [](double t, const State<double, 2>& y, State<double, 2>& dy) { dy = {y[0], 1e9 * std::sin(1e3 * t)}; };
+    const auto rough_book = [](double t, const State<double, 2>& y, State<double, 2>& dy) {
+        dy = {y[0], 1e9 * std::sin(1e3 * t)};
+    };
     Dopri5<double, 2, 1> stepper;
     stepper.step(rough_book, 0.0, {1.0, 0.0}, {1.0, 0.0}, 0.01);
     BOOST_TEST(stepper.error({1.0, 0.0}, 0.01, 1e-6, 1e-6) < 1);
@@ -126,14 +135,20 @@ BOOST_AUTO_TEST_CASE(the_error_estimate_is_of_order_5_and_counts_the_motion_alon
 using Motion6 = State<double, motion_size>;
 
 static Plant<double> swinging_arm() {
-    Params params = unequal_params().set("arm.damping", {0.1, 0.05, 0.02}).set("arm.gravity", {0.3, -0.6, -3}).set("arm.link1.inertia_axial", 0.3);
+    Params params = unequal_params()
+                        .set("arm.damping", {0.1, 0.05, 0.02})
+                        .set("arm.gravity", {0.3, -0.6, -3})
+                        .set("arm.link1.inertia_axial", 0.3);
     return make_setup(params).plant;
 }
 
-template <class Method> static double observed_order(int coarsest) {
+template <class Method>
+static double observed_order(int coarsest) {
     const Plant<double> plant = swinging_arm();
     const Motion6 start{0.4, 0.7, -0.9, 0.6, -0.5, 0.8};
-    const auto end = [&]<class M>(M, int steps) { return end_of<M, motion_size>(RightHandSide<double, double>(plant), start, 1.0, steps); };
+    const auto end = [&]<class M>(M, int steps) {
+        return end_of<M, motion_size>(RightHandSide<double, double>(plant), start, 1.0, steps);
+    };
     const Motion6 truth = end(Dp5(), 5000);
     std::vector<double> errors;
     for (int i = 0; i < 4; ++i) {
@@ -154,7 +169,8 @@ BOOST_AUTO_TEST_CASE(order_on_the_arm) {
 // ---- step control
 
 BOOST_AUTO_TEST_CASE(the_next_step_follows_the_fifth_root_of_the_error_between_its_bounds) {
-    for (const double error : {1e-4, 1e-2, 0.3, 1.0, 7.0, 1000.0}) BOOST_TEST(std::abs(step_factor(error) - 0.9 / std::pow(error, 0.2)) <= 1e-14);
+    for (const double error : {1e-4, 1e-2, 0.3, 1.0, 7.0, 1000.0})
+        BOOST_TEST(std::abs(step_factor(error) - 0.9 / std::pow(error, 0.2)) <= 1e-14);
     BOOST_TEST(step_factor(0.0) == 10);
     BOOST_TEST(step_factor(1e-300) == 10);
     BOOST_TEST(step_factor(1e9) == 0.2);
@@ -163,7 +179,12 @@ BOOST_AUTO_TEST_CASE(the_next_step_follows_the_fifth_root_of_the_error_between_i
 
 BOOST_AUTO_TEST_CASE(a_tolerance_a_hundred_thousand_times_finer_takes_ten_times_the_steps) {
     const auto steps = [](double rtol) {
-        const Run run = unequal_params().set("solver.rtol", rtol).set("solver.atol", rtol / 100).set("time.stop", 5).set("arm.link1.inertia_axial", 0.3).run();
+        const Run run = unequal_params()
+                            .set("solver.rtol", rtol)
+                            .set("solver.atol", rtol / 100)
+                            .set("time.stop", 5)
+                            .set("arm.link1.inertia_axial", 0.3)
+                            .run();
         BOOST_TEST(run.steps.rejected < run.steps.accepted / 3);
         BOOST_TEST(run.steps.evaluations == 2 + 6 * (run.steps.accepted + run.steps.rejected));
         return double(run.steps.accepted);

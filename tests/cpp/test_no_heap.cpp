@@ -29,9 +29,16 @@ static long allocations_of(const Params& params) {
 }
 
 static Params touched(const char* method, const char* algorithm) {
-    Params params = unequal_params().choose("controller.type", "gravity_compensation").choose("controller.algorithm", algorithm);
-    params.set("wall", 1).set("wall.acts_on_arm", 1).set("wall.point", {1.3, 0, 0}).choose("wall.motion.type", "sinusoid");
-    params.set("wall.motion.amplitude", 0.3).set("wall.motion.frequency", 2).set("arm.damping", {1, 1, 1}).choose("solver.method", method);
+    Params params =
+        unequal_params().choose("controller.type", "gravity_compensation").choose("controller.algorithm", algorithm);
+    params.set("wall", 1)
+        .set("wall.acts_on_arm", 1)
+        .set("wall.point", {1.3, 0, 0})
+        .choose("wall.motion.type", "sinusoid");
+    params.set("wall.motion.amplitude", 0.3)
+        .set("wall.motion.frequency", 2)
+        .set("arm.damping", {1, 1, 1})
+        .choose("solver.method", method);
     return params;
 }
 

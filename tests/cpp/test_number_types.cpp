@@ -10,15 +10,28 @@ BOOST_AUTO_TEST_SUITE(number_types)
 
 using Numbers = std::vector<double>;
 
-template <class T> static Vec3<T> three(const T* x) { return {x[0], x[1], x[2]}; }
-template <class T> static void put(std::vector<T>& out, const Vec3<T>& v) { out.insert(out.end(), {v[0], v[1], v[2]}); }
-template <class T> static void put(std::vector<T>& out, const Mat3<T>& m) { out.insert(out.end(), m.data(), m.data() + 9); }
-template <class T, std::size_t N> static void put(std::vector<T>& out, const State<T, N>& y) { out.insert(out.end(), y.begin(), y.end()); }
+template <class T>
+static Vec3<T> three(const T* x) {
+    return {x[0], x[1], x[2]};
+}
+template <class T>
+static void put(std::vector<T>& out, const Vec3<T>& v) {
+    out.insert(out.end(), {v[0], v[1], v[2]});
+}
+template <class T>
+static void put(std::vector<T>& out, const Mat3<T>& m) {
+    out.insert(out.end(), m.data(), m.data() + 9);
+}
+template <class T, std::size_t N>
+static void put(std::vector<T>& out, const State<T, N>& y) {
+    out.insert(out.end(), y.begin(), y.end());
+}
 
 // The closed form at the state x = (q, qd, tau, f).
 constexpr int state_numbers = 12;
 
-template <class P, class T> static std::vector<T> closed_form(const Arm<P>& arm, const T* x) {
+template <class P, class T>
+static std::vector<T> closed_form(const Arm<P>& arm, const T* x) {
     const Vec3<T> q = three(x), qd = three(x + 3), tau = three(x + 6), f = three(x + 9);
     const Pose<T> p = pose(q);
     std::vector<T> out;
@@ -39,7 +52,8 @@ template <class P, class T> static std::vector<T> closed_form(const Arm<P>& arm,
     return out;
 }
 
-template <class P, class T> static std::vector<T> by_recursion(const Arm<P>& arm, const T* x) {
+template <class P, class T>
+static std::vector<T> by_recursion(const Arm<P>& arm, const T* x) {
     const Vec3<T> q = three(x), qd = three(x + 3), tau = three(x + 6), f = three(x + 9);
     std::vector<T> out;
     put(out, tip_sensor(arm, q, qd).position);
@@ -50,7 +64,8 @@ template <class P, class T> static std::vector<T> by_recursion(const Arm<P>& arm
 }
 
 // One step of each method, with the books, from t = x[6], on a plant where contact is decided at every stage.
-template <class T> static std::vector<T> stepped(const Plant<double>& plant, const T* x) {
+template <class T>
+static std::vector<T> stepped(const Plant<double>& plant, const T* x) {
     RightHandSide<double, T> f(plant);
     f.touch = Touch::each_stage;
     const State<T, state_size> y{x[0], x[1], x[2], x[3], x[4], x[5], T(0.0), T(0.0), T(0.0)};
@@ -79,39 +94,49 @@ static Numbers random_state(Random& random) {
 
 // A wall that about half of all tips are behind.
 static Plant<double> plant_with_wall(Random& random) {
-    Params params = random_params(random).set("wall", 1).set("wall.acts_on_arm", 1).set("wall.point", random.vector(-0.5, 0.5));
+    Params params =
+        random_params(random).set("wall", 1).set("wall.acts_on_arm", 1).set("wall.point", random.vector(-0.5, 0.5));
     params.set("wall.normal", random.vector(-1, 1)).set("wall.size", {1.5, 1.5}).choose("wall.motion.type", "sinusoid");
     params.set("wall.motion.amplitude", 0.2).set("wall.motion.frequency", 3).set("wall.motion.phase", 0.4);
-    params.choose("controller.type", "gravity_compensation").set("controller.model.link3.mass", 0.9).set("arm.torque_limit", {5, 20, 10});
+    params.choose("controller.type", "gravity_compensation")
+        .set("controller.model.link3.mass", 0.9)
+        .set("arm.torque_limit", {5, 20, 10});
     return make_setup(params).plant;
 }
 
-static bool same(const Numbers& a, const Numbers& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_bits); }
+static bool same(const Numbers& a, const Numbers& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_bits);
+}
 
 // ---- Pack
 
-template <int N> static std::vector<Pack<N>> packed(const std::vector<Numbers>& lanes) {
+template <int N>
+static std::vector<Pack<N>> packed(const std::vector<Numbers>& lanes) {
     std::vector<Pack<N>> result(lanes[0].size());
     for (std::size_t i = 0; i < result.size(); ++i)
         for (int lane = 0; lane < N; ++lane) result[i].set(lane, lanes[std::size_t(lane)][i]);
     return result;
 }
 
-template <int N> static Numbers lane_of(const std::vector<Pack<N>>& packs, int lane) {
+template <int N>
+static Numbers lane_of(const std::vector<Pack<N>>& packs, int lane) {
     Numbers result;
     for (const Pack<N>& pack : packs) result.push_back(pack[lane]);
     return result;
 }
 
 // formula(x) of N states at once, and of each alone.
-template <int N, class F> static void check_lanes(Random& random, F formula) {
+template <int N, class F>
+static void check_lanes(Random& random, F formula) {
     std::vector<Numbers> lanes;
     for (int lane = 0; lane < N; ++lane) lanes.push_back(random_state(random));
     const std::vector<Pack<N>> together = formula(packed<N>(lanes).data());
-    for (int lane = 0; lane < N; ++lane) BOOST_TEST(same(lane_of(together, lane), formula(lanes[std::size_t(lane)].data())));
+    for (int lane = 0; lane < N; ++lane)
+        BOOST_TEST(same(lane_of(together, lane), formula(lanes[std::size_t(lane)].data())));
 }
 
-template <class F> static void check_all_widths(Random& random, F formula) {
+template <class F>
+static void check_all_widths(Random& random, F formula) {
     check_lanes<2>(random, formula);
     check_lanes<4>(random, formula);
     check_lanes<8>(random, formula);
@@ -139,7 +164,8 @@ BOOST_AUTO_TEST_CASE(each_lane_of_a_step_with_contact_equals_the_double) {
 }
 
 // The arm's own numbers may be packs as well: as many arms as lanes.
-template <int N> static Arm<Pack<N>> packed_arm(const std::vector<Arm<double>>& arms) {
+template <int N>
+static Arm<Pack<N>> packed_arm(const std::vector<Arm<double>>& arms) {
     Arm<Pack<N>> result;
     const auto pack = [&](auto number) {
         Pack<N> all;
@@ -147,15 +173,18 @@ template <int N> static Arm<Pack<N>> packed_arm(const std::vector<Arm<double>>& 
         return all;
     };
     const auto pack3 = [&](auto vector) -> Vec3<Pack<N>> {
-        return {pack([&](const auto& arm) { return vector(arm)[0]; }), pack([&](const auto& arm) { return vector(arm)[1]; }),
+        return {pack([&](const auto& arm) { return vector(arm)[0]; }),
+                pack([&](const auto& arm) { return vector(arm)[1]; }),
                 pack([&](const auto& arm) { return vector(arm)[2]; })};
     };
     const auto link = [&](auto of) -> Link<Pack<N>> {
-        return {pack([&](const auto& arm) { return of(arm).length; }), pack([&](const auto& arm) { return of(arm).mass; }),
-                pack([&](const auto& arm) { return of(arm).com; }), pack3([&](const auto& arm) { return of(arm).inertia; })};
+        return {pack([&](const auto& arm) { return of(arm).length; }),
+                pack([&](const auto& arm) { return of(arm).mass; }), pack([&](const auto& arm) { return of(arm).com; }),
+                pack3([&](const auto& arm) { return of(arm).inertia; })};
     };
     result.base_height = pack([](const auto& arm) { return arm.base_height; });
-    result.link1 = {pack([](const auto& arm) { return arm.link1.mass; }), pack([](const auto& arm) { return arm.link1.com; }),
+    result.link1 = {pack([](const auto& arm) { return arm.link1.mass; }),
+                    pack([](const auto& arm) { return arm.link1.com; }),
                     pack([](const auto& arm) { return arm.link1.inertia_axial; })};
     result.link2 = link([](const auto& arm) { return arm.link2; });
     result.link3 = link([](const auto& arm) { return arm.link3; });
@@ -180,7 +209,8 @@ BOOST_AUTO_TEST_CASE(each_lane_may_have_its_own_arm) {
             lanes.push_back(random_state(random));
         }
         const Arm<Pack<N>> together = packed_arm<N>(arms);
-        const std::vector<Pack<N>> x = packed<N>(lanes), closed = closed_form(together, x.data()), recursion = by_recursion(together, x.data());
+        const std::vector<Pack<N>> x = packed<N>(lanes), closed = closed_form(together, x.data()),
+                                   recursion = by_recursion(together, x.data());
         for (std::size_t lane = 0; lane < N; ++lane) {
             BOOST_TEST(same(lane_of(closed, int(lane)), closed_form(arms[lane], lanes[lane].data())));
             BOOST_TEST(same(lane_of(recursion, int(lane)), by_recursion(arms[lane], lanes[lane].data())));
@@ -190,7 +220,8 @@ BOOST_AUTO_TEST_CASE(each_lane_may_have_its_own_arm) {
 
 // ---- Dual
 
-template <class F> static void check_slopes(const Numbers& x, F formula, double tolerance) {
+template <class F>
+static void check_slopes(const Numbers& x, F formula, double tolerance) {
     using Slopes = Dual<state_numbers>;
     std::vector<Slopes> variables;
     for (int i = 0; i < state_numbers; ++i) variables.push_back(Slopes::variable(x[std::size_t(i)], i));
@@ -205,7 +236,8 @@ template <class F> static void check_slopes(const Numbers& x, F formula, double 
         for (std::size_t k = 0; k < plain.size(); ++k) {
             const double difference = (high[k] - low[k]) / (2 * h);
             BOOST_TEST(same_bits(result[k].number, plain[k]));
-            BOOST_TEST(std::abs(result[k].slope[i] - difference) <= tolerance * (1 + std::abs(difference)), "result " << k << " by input " << i);
+            BOOST_TEST(std::abs(result[k].slope[i] - difference) <= tolerance * (1 + std::abs(difference)),
+                       "result " << k << " by input " << i);
         }
     }
 }
@@ -217,7 +249,8 @@ BOOST_AUTO_TEST_CASE(slopes_of_the_dynamics_are_the_differences) {
         Numbers x = random_state(random);
         x[2] = random.in(0.5, 2.5);  // away from the singular poses, where differences fail
         check_slopes(x, [&]<class T>(const T* x) { return by_recursion(arm, x); }, 1e-4);
-        if (manipulability(arm, pose(three(x.data()))) > 0.1) check_slopes(x, [&]<class T>(const T* x) { return closed_form(arm, x); }, 1e-4);
+        if (manipulability(arm, pose(three(x.data()))) > 0.1)
+            check_slopes(x, [&]<class T>(const T* x) { return closed_form(arm, x); }, 1e-4);
     }
 }
 
@@ -247,13 +280,23 @@ BOOST_AUTO_TEST_CASE(slopes_by_a_mass_are_the_differences) {
         const Arm<double> arm = random_params(random).arm();
         const Numbers x = random_state(random);
         const auto acceleration = [&]<class P>(const P& mass) {
-            Lumped<P> l{arm.lumped.A1, arm.lumped.A2, arm.lumped.A3, arm.lumped.B, arm.lumped.B2, arm.lumped.B3, arm.lumped.J3, arm.lumped.G2, arm.lumped.G3};
-            Arm<P> heavier{P(0.0), {}, {arm.link2.length, arm.link2.mass, arm.link2.com, lifted<P>(arm.link2.inertia)},
-                           {arm.link3.length, mass, arm.link3.com, lifted<P>(arm.link3.inertia)}, lifted<P>(arm.gravity), lifted<P>(arm.armature),
-                           lifted<P>(arm.damping), lifted<P>(arm.friction), P(arm.friction_velocity), lifted<P>(arm.damping), l};
+            Lumped<P> l{arm.lumped.A1, arm.lumped.A2, arm.lumped.A3, arm.lumped.B, arm.lumped.B2,
+                        arm.lumped.B3, arm.lumped.J3, arm.lumped.G2, arm.lumped.G3};
+            Arm<P> heavier{P(0.0),
+                           {},
+                           {arm.link2.length, arm.link2.mass, arm.link2.com, lifted<P>(arm.link2.inertia)},
+                           {arm.link3.length, mass, arm.link3.com, lifted<P>(arm.link3.inertia)},
+                           lifted<P>(arm.gravity),
+                           lifted<P>(arm.armature),
+                           lifted<P>(arm.damping),
+                           lifted<P>(arm.friction),
+                           P(arm.friction_velocity),
+                           lifted<P>(arm.damping),
+                           l};
             heavier.link1.inertia_axial = P(arm.link1.inertia_axial);
             heavier.lumped = lump(heavier);
-            const Vec3<P> q = lifted<P>(three(x.data())), qd = lifted<P>(three(x.data() + 3)), tau = lifted<P>(three(x.data() + 6));
+            const Vec3<P> q = lifted<P>(three(x.data())), qd = lifted<P>(three(x.data() + 3)),
+                          tau = lifted<P>(three(x.data() + 6));
             return joint_acceleration(heavier, pose(q), qd, tau);
         };
         const double m = arm.link3.mass, h = 1e-6;
@@ -310,7 +353,8 @@ BOOST_AUTO_TEST_CASE(a_recorded_step_with_contact_plays_back_to_the_same_bits_of
         Numbers played(motion_size);
         tape.play<double>(x, played);
         const Numbers direct = stepped(plant, x.data());
-        for (std::size_t k = 0; k < motion_size; ++k) BOOST_TEST(std::abs(played[k] - direct[state_size + k]) <= 1e-9 * (1 + std::abs(played[k])));
+        for (std::size_t k = 0; k < motion_size; ++k)
+            BOOST_TEST(std::abs(played[k] - direct[state_size + k]) <= 1e-9 * (1 + std::abs(played[k])));
     }
 }
 

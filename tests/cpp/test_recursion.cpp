@@ -12,7 +12,8 @@ BOOST_AUTO_TEST_SUITE(recursion)
 // The largest error of each quantity, relative to 1 + its largest entry.
 class Worst {
 public:
-    template <class M> void compare(const char* what, const M& a, const M& b) {
+    template <class M>
+    void compare(const char* what, const M& a, const M& b) {
         note(what, (a - b).cwiseAbs().maxCoeff() / (1 + a.cwiseAbs().maxCoeff()));
     }
     void check(double limit) const {
@@ -35,13 +36,16 @@ static Arm<double> without_friction(Arm<double> arm) {
     return arm;
 }
 
-static Mat3<double> mass_matrix_by_recursion(const Arm<double>& arm, const Vec3<double>& q, const Vec3<double>& at_rest) {
+static Mat3<double> mass_matrix_by_recursion(const Arm<double>& arm, const Vec3<double>& q,
+                                             const Vec3<double>& at_rest) {
     Mat3<double> M;
-    for (int j = 0; j < 3; ++j) M.col(j) = recursion_inverse_dynamics<double, double>(arm, q, zero, Vec3<double>::Unit(j), zero) - at_rest;
+    for (int j = 0; j < 3; ++j)
+        M.col(j) = recursion_inverse_dynamics<double, double>(arm, q, zero, Vec3<double>::Unit(j), zero) - at_rest;
     return M;
 }
 
-static void compare_state(Worst& worst, const Arm<double>& arm, const Arm<double>& frictionless, const Vec3<double>& q, Random& random) {
+static void compare_state(Worst& worst, const Arm<double>& arm, const Arm<double>& frictionless, const Vec3<double>& q,
+                          Random& random) {
     const Vec3<double> qd = random.vector(-3, 3), u = random.vector(-20, 20), f = random.vector(-20, 20);
     const Pose<double> p = pose(q);
     const Vec3<double> at_rest = recursion_gravity_torque(frictionless, q);
@@ -51,13 +55,15 @@ static void compare_state(Worst& worst, const Arm<double>& arm, const Arm<double
     worst.compare("tip velocity", sensor.velocity, tip_velocity(arm, p, qd));
     worst.compare("tau_g", at_rest, gravity_torque(arm, p));
     worst.compare("M", mass_matrix_by_recursion(frictionless, q, at_rest), mass_matrix(arm, p));
-    worst.compare("C qd", minus(recursion_inverse_dynamics(frictionless, q, qd, zero, zero), at_rest), velocity_product(arm, p, qd));
+    worst.compare("C qd", minus(recursion_inverse_dynamics(frictionless, q, qd, zero, zero), at_rest),
+                  velocity_product(arm, p, qd));
     worst.compare("inverse dynamics", recursion_inverse_dynamics(arm, q, qd, u, f), inverse_dynamics(arm, p, qd, u, f));
     worst.compare("forward dynamics", recursion_forward_dynamics(arm, q, qd, u, f), forward_dynamics(arm, p, qd, u, f));
 }
 
 // 1000 states of each of 1000 arms; `angles` draws q.
-template <class F> static void compare_a_million(double limit, F angles) {
+template <class F>
+static void compare_a_million(double limit, F angles) {
     Random random(11);
     Worst worst;
     for (int i = 0; i < 1000; ++i) {
@@ -90,7 +96,8 @@ BOOST_AUTO_TEST_CASE(centres_and_elbow_are_where_the_chain_puts_them) {
             return point;
         };
         const Mat3<double> rows = centres(arm, pose(q));
-        for (int body = 0; body < 3; ++body) worst.compare("centre", placed(body, bodies[body].com), Vec3<double>(rows.row(body).transpose()));
+        for (int body = 0; body < 3; ++body)
+            worst.compare("centre", placed(body, bodies[body].com), Vec3<double>(rows.row(body).transpose()));
         worst.compare("elbow", placed(2, zero), elbow_position(arm, pose(q)));
     }
     worst.check(1e-14);

@@ -8,8 +8,15 @@ namespace arm3r {
 BOOST_AUTO_TEST_SUITE(setup)
 
 static Lumped<double> random_lumped(Random& random) {
-    return {.A1 = random.in(0, 1), .A2 = random.in(-1, 1), .A3 = random.in(-1, 1), .B = random.in(-1, 1), .B2 = random.in(0, 1),
-            .B3 = random.in(0, 1), .J3 = random.in(0, 0.3), .G2 = 0, .G3 = 0};
+    return {.A1 = random.in(0, 1),
+            .A2 = random.in(-1, 1),
+            .A3 = random.in(-1, 1),
+            .B = random.in(-1, 1),
+            .B2 = random.in(0, 1),
+            .B3 = random.in(0, 1),
+            .J3 = random.in(0, 0.3),
+            .G2 = 0,
+            .G3 = 0};
 }
 
 static double lower_determinant(const Mat3<double>& M) { return M(1, 1) * M(2, 2) - M(1, 2) * M(2, 1); }
@@ -35,8 +42,10 @@ BOOST_AUTO_TEST_CASE(weakest_poses_are_those_of_a_search_over_all_poses) {
         BOOST_TEST(M11 >= weakest.value - 1e-12);
         BOOST_TEST(M11 <= weakest.value + 2e-3);
         BOOST_TEST(std::abs(determinant - folded.value) <= 1e-12);
-        BOOST_TEST(std::abs(mass_matrix(arm, pose(Vec3<double>(0.3, weakest.q2, weakest.q3)))(0, 0) - weakest.value) <= 1e-12);
-        BOOST_TEST(std::abs(lower_determinant(mass_matrix(arm, pose(Vec3<double>(0.3, folded.q2, folded.q3)))) - folded.value) <= 1e-12);
+        BOOST_TEST(std::abs(mass_matrix(arm, pose(Vec3<double>(0.3, weakest.q2, weakest.q3)))(0, 0) - weakest.value) <=
+                   1e-12);
+        BOOST_TEST(std::abs(lower_determinant(mass_matrix(arm, pose(Vec3<double>(0.3, folded.q2, folded.q3)))) -
+                            folded.value) <= 1e-12);
     }
 }
 
@@ -81,7 +90,10 @@ BOOST_AUTO_TEST_CASE(a_start_deep_in_the_wall_is_refused_and_one_behind_the_plat
     params.set("wall", 1).set("wall.point", Vec3<double>(tip - Vec3<double>(0.11, 0, 0)));
     BOOST_TEST(only_problem(params).code == "scenario.starts_inside_wall");
     BOOST_TEST(validate(Params(params).set("wall.point", Vec3<double>(tip - Vec3<double>(0.09, 0, 0)))).empty());
-    BOOST_TEST(validate(Params(params).set("wall.point", Vec3<double>(tip - Vec3<double>(0.11, 1, 0))).set("wall.size", {1, 1})).empty());
+    BOOST_TEST(
+        validate(
+            Params(params).set("wall.point", Vec3<double>(tip - Vec3<double>(0.11, 1, 0))).set("wall.size", {1, 1}))
+            .empty());
 }
 
 // ---- what shapes give
@@ -90,7 +102,10 @@ BOOST_AUTO_TEST_CASE(shapes_give_mass_centre_and_inertia) {
     Params params = unequal_params();
     params.set("arm.link2.section", {0.02, 0.03}).set("arm.link2.density", 1000).set("arm.link2.mass", std::nan(""));
     params.choose("arm.link3.shape", "cylinder").set("arm.link3.radius", 0.05).set("arm.link3.mass", 2);
-    params.choose("arm.link1.shape", "slender").set("arm.link1.length", 0.4).set("arm.link1.mass", 3).set("arm.link1.com", std::nan(""));
+    params.choose("arm.link1.shape", "slender")
+        .set("arm.link1.length", 0.4)
+        .set("arm.link1.mass", 3)
+        .set("arm.link1.com", std::nan(""));
     const Arm<double> arm = params.arm();
     const double m = 1000 * 0.8 * 0.02 * 0.03, a = 0.8;
     BOOST_TEST(arm.link2.mass == m);
@@ -109,7 +124,9 @@ BOOST_AUTO_TEST_CASE(shapes_give_mass_centre_and_inertia) {
 
 BOOST_AUTO_TEST_CASE(the_controllers_copy_differs_only_where_it_is_told_to) {
     Params params = unequal_params();
-    params.choose("controller.type", "gravity_compensation").set("controller.model.link3.mass", 0.9).set("arm.payload.mass", 0.2);
+    params.choose("controller.type", "gravity_compensation")
+        .set("controller.model.link3.mass", 0.9)
+        .set("arm.payload.mass", 0.2);
     const Setup setup = make_setup(params);
     const Arm<double>&plant = setup.plant.arm, &model = setup.plant.controller.model;
     BOOST_TEST(model.link3.mass == 0.9 + 0.2);
@@ -125,7 +142,8 @@ static std::vector<std::string> slips(const Params& params) { return likely_slip
 static void check_slip(const Params& params, const std::string& part) {
     const std::vector<std::string> found = slips(params);
     BOOST_TEST(found.size() == 1u);
-    BOOST_TEST((!found.empty() && contains(found.front(), part)), part << " in: " << (found.empty() ? "" : found.front()));
+    BOOST_TEST((!found.empty() && contains(found.front(), part)),
+               part << " in: " << (found.empty() ? "" : found.front()));
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_said_of_an_ordinary_scenario) {

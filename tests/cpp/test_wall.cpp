@@ -11,7 +11,9 @@ static Wall<double> wall_of(const Params& params) { return make_setup(params).pl
 
 static Params walled() { return unequal_params().set("wall", 1).set("wall.point", {2, 0.3, -0.4}); }
 
-static bool close(const Vec3<double>& a, const Vec3<double>& b, double tolerance = 1e-15) { return distance(a, b) <= tolerance; }
+static bool close(const Vec3<double>& a, const Vec3<double>& b, double tolerance = 1e-15) {
+    return distance(a, b) <= tolerance;
+}
 
 // ---- the frame
 
@@ -57,7 +59,8 @@ static void check_motion(const Wall<double>& wall, double t) {
     }
     constexpr double h = 1e-4;
     const WallState<double> before = wall_at(wall, t - h), at = wall_at(wall, t), after = wall_at(wall, t + h);
-    const Vec3<double> v = (after.position - before.position) / (2 * h), a = (after.velocity - before.velocity) / (2 * h);
+    const Vec3<double> v = (after.position - before.position) / (2 * h),
+                       a = (after.velocity - before.velocity) / (2 * h);
     BOOST_TEST(distance(v, at.velocity) <= 1e-6);
     BOOST_TEST(distance(a, at.acceleration) <= 1e-5);
 }
@@ -80,7 +83,8 @@ BOOST_AUTO_TEST_CASE(each_motion_starts_at_the_point_and_goes_where_it_says) {
     const auto at = [](const Params& params, double t) -> Vec3<double> { return wall_at(wall_of(params), t).position; };
     BOOST_TEST(close(at(Params(oblique).choose("wall.motion.type", "fixed"), 3), point, 0));
     BOOST_TEST(close(at(oblique, 3), point + 0.05 * 3 * n));
-    BOOST_TEST(close(at(Params(oblique).set("wall.motion.velocity", {0.1, -0.2, 0.3}), 3), point + 3 * Vec3<double>(0.1, -0.2, 0.3)));
+    BOOST_TEST(close(at(Params(oblique).set("wall.motion.velocity", {0.1, -0.2, 0.3}), 3),
+                     point + 3 * Vec3<double>(0.1, -0.2, 0.3)));
     Params sinusoid = Params(oblique).choose("wall.motion.type", "sinusoid");
     sinusoid.set("wall.motion.amplitude", 0.03).set("wall.motion.frequency", 0.25).set("wall.motion.phase", M_PI / 6);
     BOOST_TEST(close(at(sinusoid, 0), point, 0));
@@ -105,11 +109,13 @@ BOOST_AUTO_TEST_CASE(a_sinusoid_is_still_on_its_curve_after_1e9_periods) {
 BOOST_AUTO_TEST_CASE(depth_and_its_rate_are_those_of_the_point_behind_the_face) {
     Random random(32);
     for (int i = 0; i < 1000; ++i) {
-        Params params = walled().set("wall.normal", random.vector(-3, 3)).set("wall.motion.velocity", random.vector(-1, 1));
+        Params params =
+            walled().set("wall.normal", random.vector(-3, 3)).set("wall.motion.velocity", random.vector(-1, 1));
         const Wall<double> wall = wall_of(params.set("wall.face_offset", 0.07).set("wall.size", {0.8, 0.5}));
         const Vec3<double> x = random.vector(-2, 2), v = random.vector(-2, 2);
         const double t = random.in(0, 3);
-        const Indentation<Dual<1>> in = indentation(wall, wall_at(wall, Dual<1>::variable(t, 0)), moving(x, v), moving(v, {0, 0, 0}));
+        const Indentation<Dual<1>> in =
+            indentation(wall, wall_at(wall, Dual<1>::variable(t, 0)), moving(x, v), moving(v, {0, 0, 0}));
         const Vec3<double> from_frame = x - wall_at(wall, t).position;
         BOOST_TEST(std::abs(in.depth.number - (0.07 - wall.n.dot(from_frame))) <= 1e-14);
         BOOST_TEST(std::abs(in.depth.slope[0] - in.rate.number) <= 1e-14);
@@ -140,7 +146,8 @@ BOOST_AUTO_TEST_CASE(a_diagonal_stiffness_is_the_lectures_force_on_the_wall) {
     const Wall<double> wall = wall_of(walled());
     const Contact<double> diagonal{Law::diagonal, {1000, 200, 30}};
     const Vec3<double> origin = wall_at(wall, 1.0).position, x = origin + Vec3<double>(0.002, 0.05, -0.07);
-    const ContactForce<double> force = contact_force(wall, diagonal, indentation(wall, wall_at(wall, 1.0), x, Vec3<double>(0, 0, 0)));
+    const ContactForce<double> force =
+        contact_force(wall, diagonal, indentation(wall, wall_at(wall, 1.0), x, Vec3<double>(0, 0, 0)));
     BOOST_TEST(close(-force.on_tip, {1000 * 0.002, 200 * 0.05, 30 * -0.07}, 1e-12));
 }
 

@@ -220,6 +220,7 @@ def test_bounce_of_a_stiff_wall_is_that_of_the_closed_form(convention: str) -> N
 
 def test_deviation_from_the_closed_form_falls_with_the_root_of_the_stiffness(convention: str) -> None:
     deviation = [
-        1 - bounce(convention, stiffness)[1]["duration"] / (np.pi * np.sqrt(MASS / stiffness)) for stiffness in (1e4, 1e6)
+        1 - bounce(convention, stiffness)[1]["duration"] / (np.pi * np.sqrt(MASS / stiffness))
+        for stiffness in (1e4, 1e6)
     ]
     assert deviation[0] / deviation[1] == pytest.approx(10, rel=0.02)

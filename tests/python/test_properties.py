@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 D = np.array([1, -1, -1])
-K = np.array([0.0, 0.0, 1.0])
 
 
 def arm_of(convention: str, **keys: Any) -> tuple[arm3r.Scenario, arm3r.Arm]:
@@ -39,7 +38,7 @@ def states() -> dict[str, np.ndarray]:
     return {name: rng.uniform(-size, size, (200, 3)) for name, size in [("q", 4), ("qd", 5), ("u", 20), ("f", 30)]}
 
 
-# ---- the two conventions ----------------------------------------------------------------------------------------------
+# ---- the two conventions ---------------------------------------------------------------------------------------------
 
 
 def test_conventions_are_each_other_mirrored(states: dict[str, np.ndarray]) -> None:
@@ -55,8 +54,9 @@ def test_conventions_are_each_other_mirrored(states: dict[str, np.ndarray]) -> N
     assert same(simscape.coriolis_matrix(q, qd), D[:, None] * slide.coriolis_matrix(D * q, D * qd) * D)
     assert same(simscape.velocity_product(q, qd), D * slide.velocity_product(D * q, D * qd))
     assert same(simscape.gravity_torque(q), D * slide.gravity_torque(D * q))
-    assert same(simscape.inverse_dynamics(q, qd, u, f_on_tip=f), D * slide.inverse_dynamics(D * q, D * qd, D * u, f_on_tip=f))
-    assert same(simscape.forward_dynamics(q, qd, u, f_on_tip=f), D * slide.forward_dynamics(D * q, D * qd, D * u, f_on_tip=f))
+    for name in ("inverse_dynamics", "forward_dynamics", "recursion_inverse_dynamics", "recursion_forward_dynamics"):
+        ours, mirrored = getattr(simscape, name), getattr(slide, name)
+        assert same(ours(q, qd, u, f_on_tip=f), D * mirrored(D * q, D * qd, D * u, f_on_tip=f)), name
     assert same(simscape.energy(q, qd), slide.energy(D * q, D * qd))
     regular = q[simscape.manipulability(q) > 0.02]
     assert same(simscape.operational_space_inertia(regular), slide.operational_space_inertia(D * regular))
@@ -68,7 +68,7 @@ def test_conventions_are_each_other_mirrored(states: dict[str, np.ndarray]) -> N
 
 
 def test_simscape_has_the_formulas_of_the_lectures_code(states: dict[str, np.ndarray]) -> None:
-    """In its own angles: M and C as in the slide's, the Jacobian's third row negated, joint axes 2 and 3 turned round."""
+    """In its own angles: M and C as in the slide's, the Jacobian's third row negated, joint axes turned round."""
     q, qd = states["q"], states["qd"]
     slide, simscape = arm_of("slide")[1], arm_of("simscape")[1]
 
@@ -80,7 +80,8 @@ def test_simscape_has_the_formulas_of_the_lectures_code(states: dict[str, np.nda
     assert close(simscape.coriolis_matrix(q, qd), slide.coriolis_matrix(q, qd))
     assert close(simscape.jacobian(q), rows * slide.jacobian(q))
     assert close(simscape.jacobian_dot(q, qd), rows * slide.jacobian_dot(q, qd))
-    angular = np.stack([np.broadcast_to(K, q.shape), *[np.stack([-np.sin(q[:, 0]), np.cos(q[:, 0]), 0 * q[:, 0]], -1)] * 2], -1)
+    sideways = np.stack([-np.sin(q[:, 0]), np.cos(q[:, 0]), 0 * q[:, 0]], axis=-1)
+    angular = np.stack([np.broadcast_to([0, 0, 1], q.shape), sideways, sideways], axis=-1)
     assert close(simscape.geometric_jacobian(q)[:, 3:], angular)
     a2, a3 = 0.8, 0.6
     reach = a2 * np.cos(q[:, 1]) + a3 * np.cos(q[:, 1] + q[:, 2])
@@ -88,7 +89,7 @@ def test_simscape_has_the_formulas_of_the_lectures_code(states: dict[str, np.nda
     assert close(simscape.tip_position(q)[:, 2], 0.3 - a2 * np.sin(q[:, 1]) - a3 * np.sin(q[:, 1] + q[:, 2]))
 
 
-def test_gravity_torque_changes_sign_between_conventions_only_when_gravity_is_vertical(states: dict[str, np.ndarray]) -> None:
+def test_conventions_negate_the_gravity_torque_only_where_gravity_is_vertical(states: dict[str, np.ndarray]) -> None:
     q = states["q"]
     vertical = [arm_of(c, arm__gravity=[0, 0, -9.8])[1].gravity_torque(q) for c in ("slide", "simscape")]
     oblique = [arm_of(c)[1].gravity_torque(q) for c in ("slide", "simscape")]
@@ -102,7 +103,8 @@ def test_gravity_torque_changes_sign_between_conventions_only_when_gravity_is_ve
 def test_gravity_torque_is_the_slope_of_the_potential_energy(states: dict[str, np.ndarray]) -> None:
     _, arm = arm_of("simscape")
     q, h = states["q"], 1e-5
-    slope = np.stack([(arm.energy(q + h * e, 0 * q)[1] - arm.energy(q - h * e, 0 * q)[1]) / (2 * h) for e in np.eye(3)], -1)
+    rises = [arm.energy(q + h * e, 0 * q)[1] - arm.energy(q - h * e, 0 * q)[1] for e in np.eye(3)]
+    slope = np.stack(rises, axis=-1) / (2 * h)
     assert np.allclose(arm.gravity_torque(q), slope, rtol=0, atol=1e-8)
 
 
@@ -129,11 +131,11 @@ def test_turning_arm_and_gravity_about_the_vertical_changes_nothing_else(states:
     q, qd, u, f = states.values()
     _, here = arm_of("simscape")
     _, there = arm_of("simscape", arm__gravity=(R @ [1, -2, -9]).tolist())
-    turned = q + [turn, 0, 0]
+    turned = q + np.array([turn, 0, 0])
     assert np.allclose(there.gravity_torque(turned), here.gravity_torque(q), rtol=0, atol=1e-12)
     assert np.allclose(there.tip_position(turned), here.tip_position(q) @ R.T, rtol=0, atol=1e-12)
-    there_qdd, here_qdd = there.forward_dynamics(turned, qd, u, f_on_tip=f @ R.T), here.forward_dynamics(q, qd, u, f_on_tip=f)
-    assert np.allclose(there_qdd, here_qdd, rtol=1e-11, atol=1e-9)
+    accelerations = there.forward_dynamics(turned, qd, u, f_on_tip=f @ R.T), here.forward_dynamics(q, qd, u, f_on_tip=f)
+    assert np.allclose(*accelerations, rtol=1e-11, atol=1e-9)
 
 
 # ---- runs -----------------------------------------------------------------------------------------------------------
@@ -145,7 +147,8 @@ def juggled(convention: str, turn: float = 0.0) -> arm3r.Scenario:
     R = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     scenario, _ = arm_of(convention, arm__gravity=[0, 0, -9.80665])
     scenario["controller"] = {"type": "gravity_compensation"}
-    scenario["initial.q"] = (np.array([0.4, *({"slide": 1, "simscape": -1}[convention] * np.array([0.7, -0.9]))]) + [turn, 0, 0]).tolist()
+    up = {"slide": 1, "simscape": -1}[convention]
+    scenario["initial.q"] = [0.4 + turn, 0.7 * up, -0.9 * up]
     scenario["initial.qd"] = [0.0, 0.0, 0.0]
     scenario["wall"] = {
         "point": (R @ [1.25, 0.5, 0.4]).tolist(),
@@ -167,7 +170,7 @@ def test_both_conventions_take_the_tip_along_the_same_path() -> None:
 def test_turning_arm_and_wall_about_the_vertical_turns_the_run() -> None:
     here, there = juggled("simscape").run(), juggled("simscape", turn=np.deg2rad(37)).run()
     assert [event.type for event in here.events] == [event.type for event in there.events] != []
-    assert np.allclose(here["q"] + [np.deg2rad(37), 0, 0], there["q"], rtol=0, atol=1e-8)
+    assert np.allclose(here["q"] + np.array([np.deg2rad(37), 0, 0]), there["q"], rtol=0, atol=1e-8)
     assert np.allclose(here["depth"], there["depth"], rtol=0, atol=1e-8)
     force = [np.linalg.norm(run["f_on_wall"], axis=1) for run in (here, there)]
     assert np.allclose(*force, rtol=0, atol=1e-4)

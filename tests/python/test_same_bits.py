@@ -17,10 +17,20 @@ import pytest
 TEXTS = {
     "bounce": """
 format: 1
-arm: {link2: {length: 0.8}, link3: {length: 0.6}, payload: {mass: 0.2}, damping: [0.1, 0.2, 0.1], armature: [0.02, 0.01, 0.01]}
+arm:
+  link2: {length: 0.8}
+  link3: {length: 0.6}
+  payload: {mass: 0.2}
+  damping: [0.1, 0.2, 0.1]
+  armature: [0.02, 0.01, 0.01]
 initial: {q: [20 deg, -40 deg, 70 deg], qd: [0.3, -0.2, 0.4]}
-wall: {point: [1.2, 0.3, 0], normal: [-0.9, -0.3, 0.2], size: infinite, motion: {type: sinusoid, amplitude: 0.2, frequency: 1.3},
-       contact: {law: spring, stiffness: 3000}, acts_on_arm: true}
+wall:
+  point: [1.2, 0.3, 0]
+  normal: [-0.9, -0.3, 0.2]
+  size: infinite
+  motion: {type: sinusoid, amplitude: 0.2, frequency: 1.3}
+  contact: {law: spring, stiffness: 3000}
+  acts_on_arm: true
 controller: {type: gravity_compensation, gravity: 9.5}
 time: {stop: 3.0}
 """,
