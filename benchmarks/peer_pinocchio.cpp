@@ -46,7 +46,7 @@ Pinocchio::~Pinocchio() = default;
 void Pinocchio::forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd) {
     using In = Eigen::Map<const Eigen::Vector3d>;
     Eigen::Map<Eigen::Vector3d> out(qdd);
-    out = pin::aba(in_->model, in_->data, In(q), In(qd), In(tau), pin::Convention::LOCAL);
+    out = pin::aba(in_->model, in_->data, In(q), In(qd), In(tau), pin::Convention::WORLD);
 }
 
 }  // namespace peers

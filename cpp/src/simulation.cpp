@@ -5,13 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "columns.hpp"
 #include "error.hpp"
 #include "events.hpp"
+#include "ledger.hpp"
 #include "numbers.hpp"
-#include "sample.hpp"
+#include "row_log.hpp"
 #include "schema.hpp"
-#include "setup.hpp"
 
 namespace arm3r {
 namespace {
@@ -21,7 +20,6 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double largest_angle = 1e5;     // rad: beyond it sincos is no longer exact to the last bits
 constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 constexpr std::size_t most_events = 4096;
-constexpr double most_bytes = 2e9;        // of rows
 constexpr double most_fixed_steps = 1e9;
 constexpr int most_bad_trials = 30;       // steps in a row that are not even finite
 constexpr int looks_per_adaptive_step = 9, looks_per_fixed_step = 2;
@@ -34,14 +32,32 @@ bool is_finite(const FullState& y) {
     return std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
 }
 
+// The state at t = 0.
+FullState start_of(const Setup& setup) {
+    FullState y{};
+    for (int i = 0; i < 3; ++i) {
+        y[i] = setup.q[i];
+        y[3 + i] = setup.qd[i];
+    }
+    return y;
+}
+
+void refuse_too_many_steps(const Setup& setup) {
+    const double steps = setup.stop / setup.solver.step, most = std::min(most_fixed_steps, setup.solver.max_steps);
+    if (setup.solver.method == Solver::rk4 && steps > most)
+        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.steps", .path = "solver.step", .message = "the run would need too many steps",
+                                        .got = "about " + shortest(steps), .allowed = "at most " + shortest(most), .hint = "take a larger step, or raise solver.max_steps"}});
+}
+
 std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
 
 class Simulator {
 public:
     Simulator(std::span<const double> params, const RunOptions& options)
         : setup_(make_setup(params)), options_(options), rhs_(setup_.plant),
-          watch_(setup_.plant, setup_.solver.method == Solver::dopri5 ? looks_per_adaptive_step : looks_per_fixed_step) {
-        reserve_rows();
+          watch_(setup_.plant, setup_.solver.method == Solver::dopri5 ? looks_per_adaptive_step : looks_per_fixed_step),
+          rows_(setup_, run_), y_(start_of(setup_)), mode_(watch_.mode_at_start(y_)), ledger_(setup_, y_, mode_) {
+        refuse_too_many_steps(setup_);
         run_.events.reserve(most_events);
         run_.warnings = likely_slips(params);
     }
@@ -57,94 +73,10 @@ public:
     }
 
 private:
-    // ---- rows
+    Scene scene() const { return {setup_.plant, setup_.simscape, ledger_.energy_at_start(), mode_, inside_}; }
 
-    void reserve_rows() {
-        const std::vector<Column>& table = column_table();
-        for (std::size_t i = 0; i < table.size(); ++i)
-            if (setup_.plant.has_wall || !table[i].only_with_wall) run_.columns.push_back(i);
-        const double intervals = setup_.stop / setup_.log_every;
-        const double most_rows = most_bytes / double(run_.columns.size() * sizeof(double));
-        if (intervals > most_rows) refuse("budget.rows", "time.log_every", "the run would need too many rows", intervals, most_rows, "log less often");
-        if (setup_.solver.method == Solver::rk4) {
-            const double steps = setup_.stop / setup_.solver.step, most_steps = std::min(most_fixed_steps, setup_.solver.max_steps);
-            if (steps > most_steps)
-                refuse("budget.steps", "solver.step", "the run would need too many steps", steps, most_steps, "take a larger step, or raise solver.max_steps");
-        }
-        run_.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
-        while (row_time(run_.capacity) < last_row_time()) run_.capacity += 1;
-        run_.capacity += 1;  // the end
-        run_.data = std::make_unique_for_overwrite<double[]>(run_.capacity * run_.columns.size());
-    }
-
-    static void refuse(std::string code, std::string path, std::string message, double needed, double most, std::string hint) {
-        throw Error(ARM3R_E_SIZE_CAP, {{.code = std::move(code), .path = std::move(path), .message = std::move(message),
-                    .got = "about " + shortest(rounded(needed)), .allowed = "at most " + shortest(rounded(most)), .hint = std::move(hint)}});
-    }
-
-    static double rounded(double count) { return count < 1e15 ? nearest_integer(count) : count; }
-
-    // Rows stand before it; the end of the run is a row of its own.
-    double last_row_time() const { return setup_.stop - 1e-9 * setup_.log_every; }
-    double row_time(std::size_t row) const { return double(row) * setup_.log_every; }
-
-    // All rows before `until`, from the solution within the step.
-    void log_until(double until, const Inside& inside) {
-        const double end = std::min(until, last_row_time());
-        const Scene scene{setup_.plant, setup_.simscape, energy_at_start_, mode_, inside};
-        while (row_time(run_.rows + together - 1) < end && poll()) log_together(scene);
-        while (row_time(run_.rows) < end && poll()) {
-            const double t = row_time(run_.rows), theta = (t - inside.t0) / inside.h;
-            log(scene, t, inside(theta), theta);
-        }
-    }
-
-    void log(const Scene& scene, double t, const FullState& y, double theta) {
-        const Row row = sample(scene, t, y, theta);
-        double* cell = run_.data.get() + run_.rows;
-        for (const std::size_t column : run_.columns) {
-            *cell = row.value[column];
-            cell += run_.capacity;
-        }
-        run_.rows += 1;
-        note_residual(row.value.back());
-        if (row.link_behind_wall && link_behind_since_ < 0) link_behind_since_ = t;
-    }
-
-    void log_together(const Scene& scene) {
-        double t[together];
-        for (int i = 0; i < together; ++i) t[i] = row_time(run_.rows + i);
-        Rows rows;
-        sample_together(scene, t, rows);
-        double* cells = run_.data.get() + run_.rows;
-        for (const std::size_t column : run_.columns) {
-            std::copy_n(rows.value[column], together, cells);
-            cells += run_.capacity;
-        }
-        run_.rows += together;
-        for (const double residual : rows.value[column_count - 1]) note_residual(residual);
-        if (rows.first_link_behind_wall < together && link_behind_since_ < 0) link_behind_since_ = t[rows.first_link_behind_wall];
-    }
-
-    // ---- the books
-
-    void note_residual(double residual) { run_.energy_residual_max = std::max(run_.energy_residual_max, std::abs(residual)); }
-
-    void close_books() {
-        const Energies now = energies(setup_.plant, t_, y_, mode_);
-        note_residual(energy_residual(y_, now.sum(), energy_at_start_));
-        exchanged_ = std::max({exchanged_, std::abs(y_[6]), std::abs(y_[7]), std::abs(y_[8]), now.kinetic, std::abs(now.potential - potential_at_start_)});
-        held_ = std::max(held_, std::abs(now.kinetic) + std::abs(now.potential) + std::abs(now.contact));
-    }
-
-    void judge_books() {
-        const bool adaptive = setup_.solver.method == Solver::dopri5;
-        const double rtol = adaptive ? setup_.solver.rtol : 1e-6;
-        const double limit = 100 * rtol * exchanged_ + 1e-12 * held_;
-        if (!(run_.energy_residual_max > limit)) return;
-        const std::string text = "the energy balance does not close: " + shortest(run_.energy_residual_max) + " J are left over, the limit is " + shortest(limit) + " J";
-        if (adaptive && rtol <= 1e-6) end(ARM3R_RUN_ENERGY, text);
-        else run_.warnings.push_back(text);
+    void log_until(double t) {
+        rows_.log_until(t, scene(), [this] { return poll(); });
     }
 
     // ---- contact
@@ -178,16 +110,7 @@ private:
     // ---- steps
 
     void start() {
-        for (int i = 0; i < 3; ++i) {
-            y_[i] = setup_.q[i];
-            y_[3 + i] = setup_.qd[i];
-        }
-        mode_ = watch_.mode_at_start(y_);
         if (mode_ == Mode::contact) record(Event::make, 0.0, y_);
-        const Energies energy = energies(setup_.plant, 0.0, y_, mode_);
-        energy_at_start_ = energy.sum();
-        potential_at_start_ = energy.potential;
-        held_ = std::abs(energy.kinetic) + std::abs(energy.potential) + std::abs(energy.contact);
         derive();
         h_ = first_step();
         FullState ahead;  // what stands in for the solution when there is no step
@@ -236,9 +159,9 @@ private:
 
     void adaptive_step() {
         const double rest = setup_.stop - t_;
-        double h = std::min(h_, largest_step());
-        const bool last = h >= rest * 0.99;  // no sliver of a step at the end
-        if (last) h = rest;
+        const double wanted = std::min(h_, largest_step());
+        const bool last = wanted >= rest;
+        const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // no sliver of a step at the end
         if (h < 16 * epsilon * std::max(t_, 1e-3) && !last) {
             end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(t_) + " s: the motion changes faster than the clock resolves");
             return;
@@ -257,7 +180,7 @@ private:
         note_depth(deepest);
         const double theta = crossing ? crossing->theta : 1;
         const double t1 = crossing ? t_ + theta * h : last ? setup_.stop : t_ + h;
-        log_until(t1, inside_);
+        log_until(t1);
         if (run_.outcome != ARM3R_RUN_OK) return;
         theta_ = theta;
         y_ = crossing ? inside_(theta) : stepper_.y1;
@@ -265,7 +188,7 @@ private:
         if (crossing) change_mode(t1, y_, *crossing);
         if (crossing || came_to_rest) derive();
         else carry_over();
-        close_books();
+        ledger_.close(t_, y_, mode_, run_);
         const double factor = step_factor(error);
         h_ = h * (just_rejected_ ? std::min(factor, 1.0) : factor);
         just_rejected_ = false;
@@ -313,16 +236,16 @@ private:
         bool changed = false;
         while (const std::optional<Crossing> crossing = watch_.next(inside_, from, mode_, deepest)) {
             const double t = t0 + crossing->theta * h;
-            log_until(t, inside_);
+            log_until(t);
             change_mode(t, inside_(crossing->theta), *crossing);
             changed = true;
             from = crossing->theta;
             if (run_.outcome != ARM3R_RUN_OK || from >= 1) break;
         }
         note_depth(deepest);
-        log_until(t_, inside_);
+        log_until(t_);
         if (changed) derive();
-        close_books();
+        ledger_.close(t_, y_, mode_, run_);
     }
 
     // Returns whether a rate that was next to nothing has been made nothing.
@@ -374,13 +297,20 @@ private:
         if (answer > 0) end(ARM3R_RUN_STOPPED, "stopped at t = " + shortest(t_) + " s");
     }
 
+    void judge() {
+        const std::optional<std::string> complaint = ledger_.complaint(run_);
+        if (!complaint) return;
+        if (ledger_.is_strict()) end(ARM3R_RUN_ENERGY, *complaint);
+        else run_.warnings.push_back(*complaint);
+    }
+
     void finish() {
         if (run_.outcome == ARM3R_RUN_OK) {
-            log({setup_.plant, setup_.simscape, energy_at_start_, mode_, inside_}, t_, y_, theta_);
-            judge_books();
+            rows_.log(scene(), t_, y_, theta_);
+            judge();
         }
-        if (link_behind_since_ >= 0)
-            run_.warnings.push_back("a link other than at its tip is behind the wall from t = " + shortest(link_behind_since_) + " s on; only the tip feels the wall");
+        if (rows_.link_behind_wall_since() >= 0)
+            run_.warnings.push_back("a link other than at its tip is behind the wall from t = " + shortest(rows_.link_behind_wall_since()) + " s on; only the tip feels the wall");
         run_.t_end = t_;
         run_.elapsed_s = seconds_since(begun_);
     }
@@ -394,18 +324,17 @@ private:
     RightHandSide<double, double> rhs_;
     ContactWatch watch_;
     Dopri5<double, state_size, motion_size> stepper_;
+    RowLog rows_;
 
     double t_ = 0, h_ = 0;
-    FullState y_{}, f_{};
-    Mode mode_ = Mode::free;
+    FullState y_, f_{};
+    Mode mode_;
+    Ledger ledger_;
     Inside inside_;      // the solution within the last step
     double theta_ = 0;   // where t_ lies in it
     bool just_rejected_ = false;
     int bad_trials_ = 0;
 
-    double energy_at_start_ = 0, potential_at_start_ = 0;
-    double exchanged_ = 0, held_ = 0;  // J, the largest flows and stocks of the run
-    double link_behind_since_ = -1;
     unsigned polls_ = 0;
     double next_report_ = 0;
 };

@@ -3,12 +3,12 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "arm3r/arm3r.h"
+#include "row_memory.hpp"
 
 namespace arm3r {
 
@@ -28,7 +28,7 @@ struct Run {
     std::string message;                 // why, when the outcome is not ok; "" else
     std::vector<std::size_t> columns;    // indices into column_table() (columns.hpp), in order
     std::size_t rows = 0, capacity = 0;
-    std::unique_ptr<double[]> data;
+    RowMemory data;
     std::vector<Event> events;
     std::vector<std::string> warnings;
     Steps steps;

@@ -7,7 +7,7 @@ from pathlib import Path
 
 # From the bottom up. The parts of one line do not know each other; the files of one part do.
 LAYERS = [
-    ["arm3r", "primitives"],
+    ["arm3r", "primitives", "row_memory"],
     ["elementary", "numbers text"],
     ["real", "error"],
     ["dual", "expr", "pack", "schema suggest", "columns"],
@@ -20,7 +20,7 @@ LAYERS = [
     ["plant"],
     ["setup", "sample"],
     ["validate", "events"],
-    ["simulation"],
+    ["simulation ledger row_log"],
     ["yaml_events", "input", "output"],
     ["paths"],
     ["checks results csv"],
@@ -35,7 +35,7 @@ PART = {stem: part for layer in LAYERS for part in layer for stem in part.split(
 # What only these parts may include.
 RESERVED = {
     r"yaml-cpp/.*": {"yaml_events"},
-    r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {"input", "output", "cli"},
+    r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {"input", "output", "cli", "row_memory"},
     r"iostream": {"cli"},
 }
 

@@ -12,9 +12,12 @@ template <class T> struct Pose {
 };
 
 template <class T> ARM3R_INLINE Pose<T> pose(const Vec3<T>& q) {
+    const T sum = q[1] + q[2];
+    const T added = sum - q[1];
+    const T lost = (q[1] - (sum - added)) + (q[2] - added);  // by rounding the sum, exactly; it is turned back in
     const SinCos<T> first = sincos(q[0]);
-    const auto [second, third] = sincos_pair(q[1], T(q[1] + q[2]));
-    return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
+    const auto [second, third] = sincos_pair(q[1], sum);
+    return {first.sin, first.cos, second.sin, second.cos, third.sin + lost * third.cos, third.cos - lost * third.sin};
 }
 
 template <class P, class T> ARM3R_INLINE T radius(const Arm<P>& arm, const Pose<T>& p) {  // r (2.2)

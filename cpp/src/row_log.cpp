@@ -1,0 +1,64 @@
+#include "row_log.hpp"
+
+#include <algorithm>
+
+#include "columns.hpp"
+#include "error.hpp"
+#include "numbers.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr double most_bytes = 2e9;
+
+double rounded(double count) { return count < 1e15 ? nearest_integer(count) : count; }
+
+}  // namespace
+
+RowLog::RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {
+    const std::vector<Column>& table = column_table();
+    for (std::size_t i = 0; i < table.size(); ++i)
+        if (setup.plant.has_wall || !table[i].only_with_wall) run.columns.push_back(i);
+    const double intervals = setup.stop / setup.log_every;
+    const double most = most_bytes / double(run.columns.size() * sizeof(double));
+    if (intervals > most)
+        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.rows", .path = "time.log_every", .message = "the run would need too many rows",
+                                        .got = "about " + shortest(rounded(intervals)), .allowed = "at most " + shortest(rounded(most)), .hint = "log less often"}});
+    run.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
+    while (time_of(run.capacity) < last_time()) run.capacity += 1;
+    run.capacity += 1;  // the end
+    run.data = allocate_rows(run.capacity * run.columns.size());
+}
+
+void RowLog::log(const Scene& scene, double t, const FullState& y, double theta) {
+    const Row row = sample(scene, t, y, theta);
+    double* cell = run_.data.get() + run_.rows;
+    for (const std::size_t column : run_.columns) {
+        *cell = row.value[column];
+        cell += run_.capacity;
+    }
+    run_.rows += 1;
+    note_residual(run_, row.value.back());
+    if (row.link_behind_wall) note_link_behind_wall(t);
+}
+
+void RowLog::log_together(const Scene& scene) {
+    double t[together];
+    for (int i = 0; i < together; ++i) t[i] = time_of(run_.rows + i);
+    Rows rows;
+    sample_together(scene, t, rows);
+    double* cells = run_.data.get() + run_.rows;
+    for (const std::size_t column : run_.columns) {
+        std::copy_n(rows.value[column], together, cells);
+        cells += run_.capacity;
+    }
+    run_.rows += together;
+    for (const double residual : rows.value[column_count - 1]) note_residual(run_, residual);
+    if (rows.first_link_behind_wall < together) note_link_behind_wall(t[rows.first_link_behind_wall]);
+}
+
+void RowLog::note_link_behind_wall(double t) {
+    if (link_behind_wall_since_ < 0) link_behind_wall_since_ = t;
+}
+
+}  // namespace arm3r
