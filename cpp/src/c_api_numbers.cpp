@@ -22,9 +22,9 @@ struct arm3r_arm {
 
 namespace {
 
-constexpr double largest_angle = 1e5;    // rad
+constexpr double largest_angle = 1e5;     // rad
 constexpr double largest_number = 1e100;  // its square and cube are still numbers
-constexpr double least_sine = 1e-3;       // of joint 3, or of the tip's distance from joint 1's axis over the arm's length
+constexpr double least_sine = 1e-3;  // of joint 3, or of the tip's distance from joint 1's axis over the arm's length
 constexpr std::size_t most_states = std::numeric_limits<std::size_t>::max() / (18 * sizeof(double));
 
 struct Input {
@@ -44,9 +44,14 @@ Input joint_angles(const double* q) { return {q, 3, "q", largest_angle}; }
 Input numbers(const double* data, const char* name) { return {data, 3, name, largest_number}; }
 
 Error bad_value(const Input& in, std::size_t at) {
-    const std::string where = std::string(in.name) + "[" + std::to_string(at / in.width) + "][" + std::to_string(at % in.width) + "]";
-    return Error(ARM3R_E_VALUE, {{.code = "argument.value", .path = where, .message = "not a number that this function takes",
-                                  .got = shortest(in.data[at]), .allowed = "finite, at most " + shortest(in.limit) + " either way", .hint = ""}});
+    const std::string where =
+        std::string(in.name) + "[" + std::to_string(at / in.width) + "][" + std::to_string(at % in.width) + "]";
+    return Error(ARM3R_E_VALUE, {{.code = "argument.value",
+                                  .path = where,
+                                  .message = "not a number that this function takes",
+                                  .got = shortest(in.data[at]),
+                                  .allowed = "finite, at most " + shortest(in.limit) + " either way",
+                                  .hint = ""}});
 }
 
 void check_pointer(const void* data, const char* name) {
@@ -75,7 +80,8 @@ void check_overlap(const Output& out, const double* other, int width, const char
 }
 
 // All that is checked before a model function writes its first number.
-void check(const arm3r_arm* arm, std::size_t n, std::initializer_list<Input> inputs, std::initializer_list<Output> outputs) {
+void check(const arm3r_arm* arm, std::size_t n, std::initializer_list<Input> inputs,
+           std::initializer_list<Output> outputs) {
     need(arm, "arm");
     for (const Input& in : inputs) check_pointer(in.data, in.name);
     for (const Output& out : outputs) check_pointer(out.data, out.name);
@@ -120,8 +126,15 @@ Mat3<double> joints_out(const arm3r_arm& arm, Mat3<double> m) {
 }
 
 Error singular(std::size_t i, const char* what) {
-    return Error(ARM3R_E_SINGULAR, {{.code = "argument.singular", .path = "q[" + std::to_string(i) + "]", .message = what, .got = "",
-                                     .allowed = "", .hint = "|sin q3| and the tip's distance from the joint-1 axis over the arm's length must be at least 1e-3"}});
+    return Error(
+        ARM3R_E_SINGULAR,
+        {{.code = "argument.singular",
+          .path = "q[" + std::to_string(i) + "]",
+          .message = what,
+          .got = "",
+          .allowed = "",
+          .hint =
+              "|sin q3| and the tip's distance from the joint-1 axis over the arm's length must be at least 1e-3"}});
 }
 
 void refuse_singular(const Arm<double>& arm, const Pose<double>& p, std::size_t i) {
@@ -135,14 +148,19 @@ constexpr double no_force[3] = {0, 0, 0};
 
 // An absent force is one of zero for every state.
 template <class Body>
-int32_t with_force(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd, const char* third_name, const double* third,
-                   const double* f_on_tip, Output out, Body body) {
+int32_t with_force(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd, const char* third_name,
+                   const double* third, const double* f_on_tip, Output out, Body body) {
     return guard([&] {
-        if (f_on_tip) check(arm, n, {joint_angles(q), numbers(qd, "qd"), numbers(third, third_name), numbers(f_on_tip, "f_on_tip")}, {out});
+        if (f_on_tip)
+            check(arm, n,
+                  {joint_angles(q), numbers(qd, "qd"), numbers(third, third_name), numbers(f_on_tip, "f_on_tip")},
+                  {out});
         else check(arm, n, {joint_angles(q), numbers(qd, "qd"), numbers(third, third_name)}, {out});
         for (std::size_t i = 0; i < n; ++i)
-            store_joints(*arm, body(load_joints(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third, i),
-                                    f_on_tip ? load(f_on_tip, i) : load(no_force, 0)), out.data, i);
+            store_joints(*arm,
+                         body(load_joints(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third, i),
+                              f_on_tip ? load(f_on_tip, i) : load(no_force, 0)),
+                         out.data, i);
     });
 }
 
@@ -156,7 +174,8 @@ int32_t of_pose(const arm3r_arm* arm, std::size_t n, const double* q, Output out
 }
 
 template <class Write>
-int32_t of_motion(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd, std::initializer_list<Output> outs, Write write) {
+int32_t of_motion(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd,
+                  std::initializer_list<Output> outs, Write write) {
     return guard([&] {
         check(arm, n, {joint_angles(q), numbers(qd, "qd")}, outs);
         for (std::size_t i = 0; i < n; ++i) write(pose(load_joints(*arm, q, i)), load_joints(*arm, qd, i), i);
@@ -166,7 +185,8 @@ int32_t of_motion(const arm3r_arm* arm, std::size_t n, const double* q, const do
 std::span<const double> params_in(const double* params, std::size_t count) {
     need(params, "params");
     if (count != param_count())
-        throw Error(ARM3R_E_SIZE, "params has " + std::to_string(count) + " numbers; a scenario has " + std::to_string(param_count()));
+        throw Error(ARM3R_E_SIZE, "params has " + std::to_string(count) + " numbers; a scenario has " +
+                                      std::to_string(param_count()));
     return {params, count};
 }
 
@@ -176,7 +196,9 @@ void refuse_invalid(std::span<const double> params) {
 }
 
 void check_index(std::size_t index, std::size_t count, const char* what) {
-    if (index >= count) throw Error(ARM3R_E_INDEX, "there is no " + std::string(what) + " " + std::to_string(index) + "; there are " + std::to_string(count));
+    if (index >= count)
+        throw Error(ARM3R_E_INDEX, "there is no " + std::string(what) + " " + std::to_string(index) + "; there are " +
+                                       std::to_string(count));
 }
 
 const std::vector<std::string>& param_names() {
@@ -197,7 +219,8 @@ const char* arm3r_version(void) { return ARM3R_VERSION; }
 const char* arm3r_build_info(void) { return ARM3R_BUILD_INFO; }
 
 const char* arm3r_outcome_name(int32_t outcome) {
-    static const char* const names[] = {"ok", "stopped", "diverged", "step_collapse", "event_storm", "ill_conditioned", "energy", "budget"};
+    static const char* const names[] = {"ok",          "stopped",         "diverged", "step_collapse",
+                                        "event_storm", "ill_conditioned", "energy",   "budget"};
     return outcome >= 0 && outcome < int32_t(std::size(names)) ? names[outcome] : "";
 }
 
@@ -242,20 +265,24 @@ int32_t arm3r_arm_create(const double* params, size_t count, arm3r_arm** arm) {
 void arm3r_arm_free(arm3r_arm* arm) { delete arm; }
 
 int32_t arm3r_arm_tip_position(const arm3r_arm* arm, size_t n, const double* q, double* tip) {
-    return of_pose(arm, n, q, {tip, 3, "tip"}, [&](const Pose<double>& p, std::size_t i) { store(tip_position(arm->arm, p), tip, i); });
+    return of_pose(arm, n, q, {tip, 3, "tip"},
+                   [&](const Pose<double>& p, std::size_t i) { store(tip_position(arm->arm, p), tip, i); });
 }
 
 int32_t arm3r_arm_elbow_position(const arm3r_arm* arm, size_t n, const double* q, double* elbow) {
-    return of_pose(arm, n, q, {elbow, 3, "elbow"}, [&](const Pose<double>& p, std::size_t i) { store(elbow_position(arm->arm, p), elbow, i); });
+    return of_pose(arm, n, q, {elbow, 3, "elbow"},
+                   [&](const Pose<double>& p, std::size_t i) { store(elbow_position(arm->arm, p), elbow, i); });
 }
 
 int32_t arm3r_arm_centres(const arm3r_arm* arm, size_t n, const double* q, double* out) {
-    return of_pose(arm, n, q, {out, 9, "centres"}, [&](const Pose<double>& p, std::size_t i) { store(centres(arm->arm, p), out + 9 * i); });
+    return of_pose(arm, n, q, {out, 9, "centres"},
+                   [&](const Pose<double>& p, std::size_t i) { store(centres(arm->arm, p), out + 9 * i); });
 }
 
 int32_t arm3r_arm_jacobian(const arm3r_arm* arm, size_t n, const double* q, double* out) {
-    return of_pose(arm, n, q, {out, 9, "jacobian"},
-                   [&](const Pose<double>& p, std::size_t i) { store(columns_out(*arm, jacobian(arm->arm, p)), out + 9 * i); });
+    return of_pose(arm, n, q, {out, 9, "jacobian"}, [&](const Pose<double>& p, std::size_t i) {
+        store(columns_out(*arm, jacobian(arm->arm, p)), out + 9 * i);
+    });
 }
 
 int32_t arm3r_arm_geometric_jacobian(const arm3r_arm* arm, size_t n, const double* q, double* out) {
@@ -266,61 +293,73 @@ int32_t arm3r_arm_geometric_jacobian(const arm3r_arm* arm, size_t n, const doubl
 }
 
 int32_t arm3r_arm_jacobian_dot(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* out) {
-    return of_motion(arm, n, q, qd, {{out, 9, "jacobian_dot"}}, [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
-        store(columns_out(*arm, jacobian_dot(arm->arm, p, w)), out + 9 * i);
-    });
+    return of_motion(arm, n, q, qd, {{out, 9, "jacobian_dot"}},
+                     [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
+                         store(columns_out(*arm, jacobian_dot(arm->arm, p, w)), out + 9 * i);
+                     });
 }
 
 int32_t arm3r_arm_mass_matrix(const arm3r_arm* arm, size_t n, const double* q, double* mass) {
-    return of_pose(arm, n, q, {mass, 9, "mass"},
-                   [&](const Pose<double>& p, std::size_t i) { store(joints_out(*arm, mass_matrix(arm->arm, p)), mass + 9 * i); });
+    return of_pose(arm, n, q, {mass, 9, "mass"}, [&](const Pose<double>& p, std::size_t i) {
+        store(joints_out(*arm, mass_matrix(arm->arm, p)), mass + 9 * i);
+    });
 }
 
 int32_t arm3r_arm_coriolis_matrix(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* coriolis) {
-    return of_motion(arm, n, q, qd, {{coriolis, 9, "coriolis"}}, [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
-        store(joints_out(*arm, coriolis_matrix(arm->arm, p, w)), coriolis + 9 * i);
-    });
+    return of_motion(arm, n, q, qd, {{coriolis, 9, "coriolis"}},
+                     [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
+                         store(joints_out(*arm, coriolis_matrix(arm->arm, p, w)), coriolis + 9 * i);
+                     });
 }
 
 int32_t arm3r_arm_velocity_product(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* product) {
-    return of_motion(arm, n, q, qd, {{product, 3, "product"}}, [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
-        store_joints(*arm, velocity_product(arm->arm, p, w), product, i);
-    });
+    return of_motion(arm, n, q, qd, {{product, 3, "product"}},
+                     [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
+                         store_joints(*arm, velocity_product(arm->arm, p, w), product, i);
+                     });
 }
 
 int32_t arm3r_arm_gravity_torque(const arm3r_arm* arm, size_t n, const double* q, double* tau_g) {
-    return of_pose(arm, n, q, {tau_g, 3, "tau_g"},
-                   [&](const Pose<double>& p, std::size_t i) { store_joints(*arm, gravity_torque(arm->arm, p), tau_g, i); });
+    return of_pose(arm, n, q, {tau_g, 3, "tau_g"}, [&](const Pose<double>& p, std::size_t i) {
+        store_joints(*arm, gravity_torque(arm->arm, p), tau_g, i);
+    });
 }
 
 int32_t arm3r_arm_operational_space_inertia(const arm3r_arm* arm, size_t n, const double* q, double* lambda) {
     return guard([&] {
         check(arm, n, {joint_angles(q)}, {{lambda, 9, "lambda"}});
         for (std::size_t i = 0; i < n; ++i) refuse_singular(arm->arm, pose(load_joints(*arm, q, i)), i);
-        for (std::size_t i = 0; i < n; ++i) store(operational_space_inertia(arm->arm, pose(load_joints(*arm, q, i))), lambda + 9 * i);
+        for (std::size_t i = 0; i < n; ++i)
+            store(operational_space_inertia(arm->arm, pose(load_joints(*arm, q, i))), lambda + 9 * i);
     });
 }
 
-int32_t arm3r_arm_effective_mass(const arm3r_arm* arm, size_t n, const double* q, const double* direction, double* mass) {
+int32_t arm3r_arm_effective_mass(const arm3r_arm* arm, size_t n, const double* q, const double* direction,
+                                 double* mass) {
     return guard([&] {
         check(arm, n, {joint_angles(q), numbers(direction, "direction")}, {{mass, 1, "mass"}});
         std::vector<double> found(n);
         for (std::size_t i = 0; i < n; ++i) {
             const Vec3<double> d = load(direction, i);
             const double length = std::sqrt(dot(d, d));
-            if (!(length > 1e-100)) throw bad_value({direction, 3, "direction (a direction needs a length)", largest_number}, 3 * i);
-            found[i] = effective_mass(arm->arm, pose(load_joints(*arm, q, i)), Vec3<double>(d[0] / length, d[1] / length, d[2] / length));
-            if (!(std::isfinite(found[i]) && found[i] > 0)) throw singular(i, "the tip cannot move along this direction");
+            if (!(length > 1e-100))
+                throw bad_value({direction, 3, "direction (a direction needs a length)", largest_number}, 3 * i);
+            found[i] = effective_mass(arm->arm, pose(load_joints(*arm, q, i)),
+                                      Vec3<double>(d[0] / length, d[1] / length, d[2] / length));
+            if (!(std::isfinite(found[i]) && found[i] > 0))
+                throw singular(i, "the tip cannot move along this direction");
         }
         std::copy(found.begin(), found.end(), mass);
     });
 }
 
 int32_t arm3r_arm_manipulability(const arm3r_arm* arm, size_t n, const double* q, double* out) {
-    return of_pose(arm, n, q, {out, 1, "manipulability"}, [&](const Pose<double>& p, std::size_t i) { out[i] = manipulability(arm->arm, p); });
+    return of_pose(arm, n, q, {out, 1, "manipulability"},
+                   [&](const Pose<double>& p, std::size_t i) { out[i] = manipulability(arm->arm, p); });
 }
 
-int32_t arm3r_arm_energy(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* kinetic, double* potential) {
+int32_t arm3r_arm_energy(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* kinetic,
+                         double* potential) {
     return of_motion(arm, n, q, qd, {{kinetic, 1, "kinetic"}, {potential, 1, "potential"}},
                      [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
                          kinetic[i] = kinetic_energy(arm->arm, p, w) + 0.0;
@@ -328,31 +367,38 @@ int32_t arm3r_arm_energy(const arm3r_arm* arm, size_t n, const double* q, const 
                      });
 }
 
-int32_t arm3r_arm_forward_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* tau, const double* f_on_tip, double* qdd) {
-    return with_force(arm, n, q, qd, "tau", tau, f_on_tip, {qdd, 3, "qdd"}, [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& torque, const Vec3<double>& f) {
-        return forward_dynamics(arm->arm, pose(angles), w, torque, f);
-    });
+int32_t arm3r_arm_forward_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* tau,
+                                   const double* f_on_tip, double* qdd) {
+    return with_force(arm, n, q, qd, "tau", tau, f_on_tip, {qdd, 3, "qdd"},
+                      [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& torque,
+                          const Vec3<double>& f) { return forward_dynamics(arm->arm, pose(angles), w, torque, f); });
 }
 
-int32_t arm3r_arm_inverse_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* qdd, const double* f_on_tip, double* tau) {
-    return with_force(arm, n, q, qd, "qdd", qdd, f_on_tip, {tau, 3, "tau"}, [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& a, const Vec3<double>& f) {
-        return inverse_dynamics(arm->arm, pose(angles), w, a, f);
-    });
+int32_t arm3r_arm_inverse_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* qdd,
+                                   const double* f_on_tip, double* tau) {
+    return with_force(arm, n, q, qd, "qdd", qdd, f_on_tip, {tau, 3, "tau"},
+                      [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& a,
+                          const Vec3<double>& f) { return inverse_dynamics(arm->arm, pose(angles), w, a, f); });
 }
 
-int32_t arm3r_arm_recursion_inverse_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* qdd, const double* f_on_tip, double* tau) {
-    return with_force(arm, n, q, qd, "qdd", qdd, f_on_tip, {tau, 3, "tau"}, [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& a, const Vec3<double>& f) {
-        return recursion_inverse_dynamics(arm->arm, angles, w, a, f);
-    });
+int32_t arm3r_arm_recursion_inverse_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd,
+                                             const double* qdd, const double* f_on_tip, double* tau) {
+    return with_force(arm, n, q, qd, "qdd", qdd, f_on_tip, {tau, 3, "tau"},
+                      [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& a,
+                          const Vec3<double>& f) { return recursion_inverse_dynamics(arm->arm, angles, w, a, f); });
 }
 
-int32_t arm3r_arm_recursion_forward_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* tau, const double* f_on_tip, double* qdd) {
-    return with_force(arm, n, q, qd, "tau", tau, f_on_tip, {qdd, 3, "qdd"}, [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& torque, const Vec3<double>& f) {
-        return recursion_forward_dynamics(arm->arm, angles, w, torque, f);
-    });
+int32_t arm3r_arm_recursion_forward_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd,
+                                             const double* tau, const double* f_on_tip, double* qdd) {
+    return with_force(
+        arm, n, q, qd, "tau", tau, f_on_tip, {qdd, 3, "qdd"},
+        [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& torque, const Vec3<double>& f) {
+            return recursion_forward_dynamics(arm->arm, angles, w, torque, f);
+        });
 }
 
-int32_t arm3r_arm_tip_sensor(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* position, double* velocity) {
+int32_t arm3r_arm_tip_sensor(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* position,
+                             double* velocity) {
     return guard([&] {
         check(arm, n, {joint_angles(q), numbers(qd, "qd")}, {{position, 3, "position"}, {velocity, 3, "velocity"}});
         for (std::size_t i = 0; i < n; ++i) {
@@ -363,11 +409,13 @@ int32_t arm3r_arm_tip_sensor(const arm3r_arm* arm, size_t n, const double* q, co
     });
 }
 
-int32_t arm3r_arm_inverse_kinematics(const arm3r_arm* arm, size_t n, const double* tip, int32_t front, int32_t elbow_up, double* q, size_t* failed) {
+int32_t arm3r_arm_inverse_kinematics(const arm3r_arm* arm, size_t n, const double* tip, int32_t front, int32_t elbow_up,
+                                     double* q, size_t* failed) {
     return guard([&] {
         check(arm, n, {numbers(tip, "tip")}, {{q, 3, "q"}});
         for (const int32_t flag : {front, elbow_up})
-            if (flag != 0 && flag != 1) throw Error(ARM3R_E_VALUE, "front and elbow_up are 0 or 1, not " + std::to_string(flag));
+            if (flag != 0 && flag != 1)
+                throw Error(ARM3R_E_VALUE, "front and elbow_up are 0 or 1, not " + std::to_string(flag));
         constexpr double rounding = 1e-12;  // a stretched arm may come out this much beyond its reach
         for (std::size_t i = 0; i < n; ++i) {
             const double C3 = inverse_kinematics(arm->arm, load(tip, i), front, elbow_up).cos_q3;
@@ -375,10 +423,16 @@ int32_t arm3r_arm_inverse_kinematics(const arm3r_arm* arm, size_t n, const doubl
             if (failed) *failed = i;
             const double a2 = arm->arm.link2.length, a3 = arm->arm.link3.length;
             const double distance = std::sqrt(std::max(0.0, a2 * a2 + a3 * a3 + 2 * a2 * a3 * C3));
-            throw Error(ARM3R_E_REACH, {{.code = "argument.reach", .path = "tip[" + std::to_string(i) + "]", .message = "the point is out of reach",
-                                         .got = shortest(distance) + " m from the shoulder", .allowed = "[" + shortest(std::abs(a2 - a3)) + ", " + shortest(a2 + a3) + "] m", .hint = ""}});
+            throw Error(ARM3R_E_REACH,
+                        {{.code = "argument.reach",
+                          .path = "tip[" + std::to_string(i) + "]",
+                          .message = "the point is out of reach",
+                          .got = shortest(distance) + " m from the shoulder",
+                          .allowed = "[" + shortest(std::abs(a2 - a3)) + ", " + shortest(a2 + a3) + "] m",
+                          .hint = ""}});
         }
-        for (std::size_t i = 0; i < n; ++i) store_joints(*arm, inverse_kinematics(arm->arm, load(tip, i), front, elbow_up).q, q, i);
+        for (std::size_t i = 0; i < n; ++i)
+            store_joints(*arm, inverse_kinematics(arm->arm, load(tip, i), front, elbow_up).q, q, i);
     });
 }
 
@@ -413,7 +467,8 @@ int32_t arm3r_run_shape(const arm3r_run* run, size_t* rows, size_t* columns) {
     });
 }
 
-int32_t arm3r_run_column(const arm3r_run* run, size_t index, const char** name, const char** unit, const double** data) {
+int32_t arm3r_run_column(const arm3r_run* run, size_t index, const char** name, const char** unit,
+                         const double** data) {
     return guard([&] {
         need(run, "run");
         need(name, "name");

@@ -12,7 +12,8 @@ constexpr double finest = 1e-14;  // s
 // A bracket of two instants that the clock can hardly tell apart.
 bool is_narrow(const Inside& inside, double a, double b) {
     const double t = std::abs(inside.t0 + inside.h * b);
-    return (b - a) * inside.h <= std::max(finest, 4 * std::numeric_limits<double>::epsilon() * t) || 0.5 * (a + b) == a || 0.5 * (a + b) == b;
+    return (b - a) * inside.h <= std::max(finest, 4 * std::numeric_limits<double>::epsilon() * t) ||
+           0.5 * (a + b) == a || 0.5 * (a + b) == b;
 }
 
 }  // namespace
@@ -20,7 +21,8 @@ bool is_narrow(const Inside& inside, double a, double b) {
 Mode ContactWatch::mode_at_start(const FullState& y) const {
     if (!plant_.has_wall) return Mode::free;
     const Pose<double> p = pose(angles(y));
-    const Indentation<double> in = indentation(plant_.wall, wall_at(plant_.wall, 0.0), tip_position(plant_.arm, p), tip_velocity(plant_.arm, p, rates(y)));
+    const Indentation<double> in = indentation(plant_.wall, wall_at(plant_.wall, 0.0), tip_position(plant_.arm, p),
+                                               tip_velocity(plant_.arm, p, rates(y)));
     if (!(in.depth > 0)) return Mode::free;
     return inside_outline(plant_.wall, in) >= 0 ? Mode::contact : Mode::embedded;
 }
@@ -29,7 +31,8 @@ ContactWatch::Look ContactWatch::look(const Inside& inside, double theta) const 
     const FullState y = inside(theta);
     const Pose<double> p = pose(angles(y));
     const WallState<double> wall = wall_at(plant_.wall, inside.t0 + theta * inside.h);
-    const Indentation<double> in = indentation(plant_.wall, wall, tip_position(plant_.arm, p), tip_velocity(plant_.arm, p, rates(y)));
+    const Indentation<double> in =
+        indentation(plant_.wall, wall, tip_position(plant_.arm, p), tip_velocity(plant_.arm, p, rates(y)));
     const double half1 = plant_.wall.half1, half2 = plant_.wall.half2;
     return {{in.depth, half1 - in.across1, half1 + in.across1, half2 - in.across2, half2 + in.across2},
             {in.rate, -in.slip1, in.slip1, -in.slip2, in.slip2}};
@@ -58,10 +61,12 @@ double ContactWatch::turning_point(const Inside& inside, const Falling& falling,
     return b;
 }
 
-std::optional<double> ContactWatch::first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b, const Look& at_b) const {
+std::optional<double> ContactWatch::first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a,
+                                               double b, const Look& at_b) const {
     const int i = falling.signal;
     if (has_fallen(falling, at_b)) return root(inside, falling, a, b);
-    if (falling.sign * at_a.rate[i] < 0 && falling.sign * at_b.rate[i] > 0) {  // it may have dipped below zero in between
+    if (falling.sign * at_a.rate[i] < 0 &&
+        falling.sign * at_b.rate[i] > 0) {  // it may have dipped below zero in between
         const double lowest = turning_point(inside, falling, a, b);
         if (has_fallen(falling, look(inside, lowest))) return root(inside, falling, a, lowest);
     }
@@ -79,7 +84,8 @@ std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mo
         std::optional<Crossing> first;
         const auto consider = [&](const Falling& falling) {
             const std::optional<double> theta = first_fall(inside, falling, a, at_a, b, at_b);
-            if (theta && (!first || *theta < first->theta)) first = {*theta, falling.next, falling.signal != depth_signal};
+            if (theta && (!first || *theta < first->theta))
+                first = {*theta, falling.next, falling.signal != depth_signal};
         };
         if (mode == Mode::free) {
             consider({depth_signal, -1, Mode::contact});
@@ -96,7 +102,9 @@ std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mo
                 const Look at_end = first ? look(inside, end) : at_b;
                 deepest = std::max({deepest, at_a.value[depth_signal], at_end.value[depth_signal]});
                 if (at_a.rate[depth_signal] > 0 && at_end.rate[depth_signal] < 0)
-                    deepest = std::max(deepest, look(inside, turning_point(inside, {depth_signal, -1, mode}, a, end)).value[depth_signal]);
+                    deepest = std::max(
+                        deepest,
+                        look(inside, turning_point(inside, {depth_signal, -1, mode}, a, end)).value[depth_signal]);
             }
         }
         if (first) return first;

@@ -31,13 +31,14 @@ private:
     };
     struct Falling {
         int signal;
-        double sign;     // the event is where sign*value falls below zero
+        double sign;  // the event is where sign*value falls below zero
         Mode next;
     };
 
     static bool has_fallen(const Falling& falling, const Look& here);
     Look look(const Inside& inside, double theta) const;
-    std::optional<double> first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b, const Look& at_b) const;
+    std::optional<double> first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b,
+                                     const Look& at_b) const;
     double turning_point(const Inside& inside, const Falling& falling, double a, double b) const;
     double root(const Inside& inside, const Falling& falling, double a, double b) const;
 

@@ -33,6 +33,8 @@ private:
     double exchanged_ = 0, held_ = 0;  // J, the largest flow and the largest stock of the run
 };
 
-inline void note_residual(Run& run, double residual) { run.energy_residual_max = std::max(run.energy_residual_max, std::abs(residual)); }
+inline void note_residual(Run& run, double residual) {
+    run.energy_residual_max = std::max(run.energy_residual_max, std::abs(residual));
+}
 
 }  // namespace arm3r

@@ -116,8 +116,9 @@ std::string event_lines(const Run& run) {
     std::string out;
     for (std::size_t i = 0; i < std::min(run.events.size(), most); ++i) {
         const Event& event = run.events[i];
-        out += line(event.type == Event::make ? "contact" : "contact lost",
-                    "at " + fixed(event.t, 6) + " s (" + rounded(event.t, 16) + "), tip " + vector_text(event.tip) + " m");
+        out +=
+            line(event.type == Event::make ? "contact" : "contact lost",
+                 "at " + fixed(event.t, 6) + " s (" + rounded(event.t, 16) + "), tip " + vector_text(event.tip) + " m");
     }
     if (run.events.size() > most)
         out += line("", "... and " + std::to_string(run.events.size() - most) + " more events");

@@ -22,8 +22,12 @@ RowLog::RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {
     const double intervals = setup.stop / setup.log_every;
     const double most = most_bytes / double(run.columns.size() * sizeof(double));
     if (intervals > most)
-        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.rows", .path = "time.log_every", .message = "the run would need too many rows",
-                                        .got = "about " + shortest(rounded(intervals)), .allowed = "at most " + shortest(rounded(most)), .hint = "log less often"}});
+        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.rows",
+                                        .path = "time.log_every",
+                                        .message = "the run would need too many rows",
+                                        .got = "about " + shortest(rounded(intervals)),
+                                        .allowed = "at most " + shortest(rounded(most)),
+                                        .hint = "log less often"}});
     run.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
     while (time_of(run.capacity) < last_time()) run.capacity += 1;
     run.capacity += 1;  // the end

@@ -11,7 +11,8 @@ public:
     RowLog(const Setup& setup, Run& run);
 
     // All rows before `until`, from the solution within the step, while go_on() holds.
-    template <class GoOn> void log_until(double until, const Scene& scene, GoOn go_on) {
+    template <class GoOn>
+    void log_until(double until, const Scene& scene, GoOn go_on) {
         const double end = std::min(until, last_time());
         while (time_of(run_.rows + together - 1) < end && go_on()) log_together(scene);
         while (time_of(run_.rows) < end && go_on()) {
@@ -27,7 +28,9 @@ public:
 
 private:
     double time_of(std::size_t row) const { return double(row) * setup_.log_every; }
-    double last_time() const { return setup_.stop - 1e-9 * setup_.log_every; }  // the end of the run is a row of its own
+    double last_time() const {
+        return setup_.stop - 1e-9 * setup_.log_every;
+    }  // the end of the run is a row of its own
     void log_together(const Scene& scene);
     void note_link_behind_wall(double t);
 

@@ -9,25 +9,32 @@ namespace {
 constexpr double stencil = 1.0 / 64;       // of the step
 constexpr double shortest_stencil = 2e-6;  // s: below it rounding would swamp the difference
 
-template <class S> ARM3R_INLINE Vec3<S> tip_at(const Arm<double>& arm, const Inside& inside, const S& theta) {
-    return tip_position(arm, pose(Vec3<S>(inside.component(0, theta), inside.component(1, theta), inside.component(2, theta))));
+template <class S>
+ARM3R_INLINE Vec3<S> tip_at(const Arm<double>& arm, const Inside& inside, const S& theta) {
+    return tip_position(
+        arm, pose(Vec3<S>(inside.component(0, theta), inside.component(1, theta), inside.component(2, theta))));
 }
 
 // The tip at the four points of the difference around theta, at steps of -2, -1, +1 and +2.
-template <class T> ARM3R_INLINE std::array<Vec3<T>, 4> tip_around(const Arm<double>& arm, const Inside& inside, const T& theta, double step) {
-    return {tip_at(arm, inside, T(theta - 2 * step)), tip_at(arm, inside, T(theta - step)), tip_at(arm, inside, T(theta + step)),
-            tip_at(arm, inside, T(theta + 2 * step))};
+template <class T>
+ARM3R_INLINE std::array<Vec3<T>, 4> tip_around(const Arm<double>& arm, const Inside& inside, const T& theta,
+                                               double step) {
+    return {tip_at(arm, inside, T(theta - 2 * step)), tip_at(arm, inside, T(theta - step)),
+            tip_at(arm, inside, T(theta + step)), tip_at(arm, inside, T(theta + 2 * step))};
 }
 
-ARM3R_INLINE std::array<Vec3<double>, 4> tip_around(const Arm<double>& arm, const Inside& inside, double theta, double step) {
+ARM3R_INLINE std::array<Vec3<double>, 4> tip_around(const Arm<double>& arm, const Inside& inside, double theta,
+                                                    double step) {
     using Four = Pack<4>;
-    const Vec3<Four> tip = tip_at(arm, inside, Four(Four::Vector{theta - 2 * step, theta - step, theta + step, theta + 2 * step}));
+    const Vec3<Four> tip =
+        tip_at(arm, inside, Four(Four::Vector{theta - 2 * step, theta - step, theta + step, theta + 2 * step}));
     std::array<Vec3<double>, 4> points;
     for (int i = 0; i < 4; ++i) points[i] = {tip[0][i], tip[1][i], tip[2][i]};
     return points;
 }
 
-template <class T> ARM3R_INLINE Vec3<T> differentiated_tip(const Arm<double>& arm, const Inside& inside, const T& theta) {  // (5.4)
+template <class T>
+ARM3R_INLINE Vec3<T> differentiated_tip(const Arm<double>& arm, const Inside& inside, const T& theta) {  // (5.4)
     const double d = std::max(inside.h * stencil, shortest_stencil);
     const std::array<Vec3<T>, 4> tip = tip_around(arm, inside, theta, d / inside.h);
     Vec3<T> v;
@@ -36,11 +43,13 @@ template <class T> ARM3R_INLINE Vec3<T> differentiated_tip(const Arm<double>& ar
 }
 
 template <class T>
-ARM3R_INLINE Indentation<T> indentation_of(const Plant<double>& plant, const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd) {
+ARM3R_INLINE Indentation<T> indentation_of(const Plant<double>& plant, const WallState<T>& wall, const Pose<T>& p,
+                                           const Vec3<T>& qd) {
     return indentation(plant.wall, wall, tip_position(plant.arm, p), tip_velocity(plant.arm, p, qd));
 }
 
-template <class T> ARM3R_INLINE ContactForce<T> force_of(const Plant<double>& plant, const Indentation<T>& in, Mode mode) {
+template <class T>
+ARM3R_INLINE ContactForce<T> force_of(const Plant<double>& plant, const Indentation<T>& in, Mode mode) {
     if (mode != Mode::contact) return no_contact<T>();
     return only_where(in.depth > T(0.0), contact_force(plant.wall, plant.contact, in));
 }
@@ -67,13 +76,15 @@ ARM3R_INLINE T link_behind(const Plant<double>& plant, const WallState<T>& wall,
     return max(passes_through(plant.wall, wall, shoulder, elbow), T(link3 - touches));
 }
 
-template <class T> struct Sampled {
+template <class T>
+struct Sampled {
     std::array<T, column_count> value;
     T link_behind_wall;
 };
 
 template <class T>
-ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, state_size>& y, const T& theta, Sampled<T>& row) {
+ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, state_size>& y, const T& theta,
+                              Sampled<T>& row) {
     const Plant<double>& plant = scene.plant;
     const Arm<double>& arm = plant.arm;
     const T o(0.0);
@@ -99,8 +110,11 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, sta
     const T stored = plant.acts_on_arm ? force.stored : o;
 
     std::size_t column = 0;
-    const auto put = [&](const T& value) ARM3R_INLINE_LAMBDA { row.value[column++] = value + 0.0; };  // + 0.0: no negative zero
-    const auto put_vector = [&](const Vec3<T>& v) ARM3R_INLINE_LAMBDA { for (int i = 0; i < 3; ++i) put(v[i]); };
+    const auto put = [&](const T& value)
+                         ARM3R_INLINE_LAMBDA { row.value[column++] = value + 0.0; };  // + 0.0: no negative zero
+    const auto put_vector = [&](const Vec3<T>& v) ARM3R_INLINE_LAMBDA {
+        for (int i = 0; i < 3; ++i) put(v[i]);
+    };
     const auto put_joints = [&](const Vec3<T>& v) ARM3R_INLINE_LAMBDA { put_vector(scene.simscape ? flipped(v) : v); };
     put(t);
     put_joints(q);

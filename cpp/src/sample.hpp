@@ -23,7 +23,8 @@ struct Energies {
 Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode mode);
 
 // What the balance leaves over (4.9).
-template <class T> ARM3R_INLINE T energy_residual(const State<T, state_size>& y, const T& energy, double energy_at_start) {
+template <class T>
+ARM3R_INLINE T energy_residual(const State<T, state_size>& y, const T& energy, double energy_at_start) {
     return (energy - energy_at_start) - (y[6] + y[7] - y[8]);
 }
 

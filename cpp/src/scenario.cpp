@@ -298,9 +298,8 @@ private:
         if (node.type == Node::scalar && node.quoted) {
             fault = {"number.quoted", "a number has no quotes", "write " + node.text};
         } else if (node.type == Node::scalar) {
-            const NumberRules rules{.degrees = key.kind == Kind::angle,
-                                    .infinity = key.allow_infinity,
-                                    .whole = key.kind == Kind::integer};
+            const NumberRules rules{
+                .degrees = key.kind == Kind::angle, .infinity = key.allow_infinity, .whole = key.kind == Kind::integer};
             if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
         }
         problem(node.mark, {fault.code, path, fault.message, shape_of(node), "", fault.hint});

@@ -38,31 +38,31 @@ struct Bounds {
 };
 
 struct Key {
-    std::string path;                  // dotted, "arm.link2.mass"
+    std::string path;  // dotted, "arm.link2.mass"
     Kind kind;
-    std::size_t size;                  // doubles it takes in the flat array
+    std::size_t size;  // doubles it takes in the flat array
     Form form;
-    std::vector<double> fallback;      // default; NaN: not given (derived, or as `unset` says)
+    std::vector<double> fallback;  // default; NaN: not given (derived, or as `unset` says)
     Source source;
-    Bounds bounds;                     // of each number; inf as a value only with allow_infinity
+    Bounds bounds;  // of each number; inf as a value only with allow_infinity
     bool allow_infinity = false;
-    std::string unit;                  // "m", "N m s/rad"; "" for none
-    std::string doc;                   // one sentence
+    std::string unit;  // "m", "N m s/rad"; "" for none
+    std::string doc;   // one sentence
     std::vector<std::string> choices = {};
-    std::string word = {};             // for vector_or_word: "infinite"
-    std::string when_key = {};         // the key exists only where the choice at this path ...
-    std::vector<std::string> when = {};// ... is one of these words
-    bool required = false;             // must be given (where it exists at all)
-    std::string unset = {};            // what NaN means: "length/2", "as the plant"
-    std::size_t offset = 0;            // first index in the flat array; filled by schema()
+    std::string word = {};               // for vector_or_word: "infinite"
+    std::string when_key = {};           // the key exists only where the choice at this path ...
+    std::vector<std::string> when = {};  // ... is one of these words
+    bool required = false;               // must be given (where it exists at all)
+    std::string unset = {};              // what NaN means: "length/2", "as the plant"
+    std::size_t offset = 0;              // first index in the flat array; filled by schema()
 };
 
 // Every key, in the order of the reference page. `name` (text), `format` and `checks` are the reader's own.
 const std::vector<Key>& schema();
 const Key* find_key(std::string_view path);
 std::size_t param_count();
-std::string param_name(std::size_t index);                // "initial.q[1]"
-std::size_t param_index(std::string_view name);           // throws Error ARM3R_E_INDEX, with the nearest right name
+std::string param_name(std::size_t index);       // "initial.q[1]"
+std::size_t param_index(std::string_view name);  // throws Error ARM3R_E_INDEX, with the nearest right name
 std::vector<double> param_defaults();
 
 // The default of one key, given the choices that stand in `params` (keys are in such an order that a choice precedes

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double deepest_start = 0.1;     // m
+constexpr double deepest_start = 0.1;      // m
 constexpr double smallest_inertia = 1e-9;  // kg m^2
 
 Vec3<double> vector_of(std::span<const double> params, std::string_view path) {
@@ -64,7 +64,8 @@ Link<double> link_of(std::span<const double> params, const std::string& link) {
     const double length = param(params, link + ".length");
     const Solid solid = solid_of(params, link, length);
     const Vec3<double> given = vector_of(params, link + ".inertia");
-    return {length, solid.mass, given_or(param(params, link + ".com"), length / 2), std::isnan(given[0]) ? solid.inertia : given};
+    return {length, solid.mass, given_or(param(params, link + ".com"), length / 2),
+            std::isnan(given[0]) ? solid.inertia : given};
 }
 
 bool any_above_zero(const Vec3<double>& v) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
@@ -74,7 +75,8 @@ void finish(Arm<double>& arm) {
     arm.gravity_is_vertical = arm.gravity[0] == 0 && arm.gravity[1] == 0;
     arm.has_damping = any_above_zero(arm.damping);
     arm.has_dry_friction = any_above_zero(arm.friction);
-    arm.has_torque_limit = std::isfinite(arm.torque_limit[0]) || std::isfinite(arm.torque_limit[1]) || std::isfinite(arm.torque_limit[2]);
+    arm.has_torque_limit =
+        std::isfinite(arm.torque_limit[0]) || std::isfinite(arm.torque_limit[1]) || std::isfinite(arm.torque_limit[2]);
 }
 
 bool is_simscape(std::span<const double> params) { return choice_of(params, "arm.convention") == "simscape"; }
@@ -90,7 +92,8 @@ std::vector<double> with_model(std::span<const double> params) {
     for (const Key& key : schema()) {
         if (!key.path.starts_with(prefix)) continue;
         const Key& plant_key = *find_key("arm." + key.path.substr(prefix.size()));
-        for (std::size_t i = 0; i < key.size; ++i) merged[plant_key.offset + i] = given_or(params[key.offset + i], merged[plant_key.offset + i]);
+        for (std::size_t i = 0; i < key.size; ++i)
+            merged[plant_key.offset + i] = given_or(params[key.offset + i], merged[plant_key.offset + i]);
     }
     return merged;
 }
@@ -98,10 +101,14 @@ std::vector<double> with_model(std::span<const double> params) {
 Controller<double> make_controller(std::span<const double> params) {
     Controller<double> controller{};
     const std::string& type = choice_of(params, "controller.type");
-    controller.type = type == "none" ? Controls::none : type == "constant" ? Controls::constant : Controls::gravity_compensation;
-    controller.algorithm = choice_of(params, "controller.algorithm") == "closed_form" ? Algorithm::closed_form : Algorithm::recursion;
+    controller.type = type == "none"       ? Controls::none
+                      : type == "constant" ? Controls::constant
+                                           : Controls::gravity_compensation;
+    controller.algorithm =
+        choice_of(params, "controller.algorithm") == "closed_form" ? Algorithm::closed_form : Algorithm::recursion;
     controller.model = make_arm(with_model(params));
-    if (controller.type == Controls::constant) controller.torque = to_slide(params, vector_of(params, "controller.torque"));
+    if (controller.type == Controls::constant)
+        controller.torque = to_slide(params, vector_of(params, "controller.torque"));
     if (controller.type == Controls::gravity_compensation) {
         controller.model.gravity = vector_along(params, "controller.gravity", {0, 0, -1});
         finish(controller.model);
@@ -143,45 +150,69 @@ Contact<double> make_contact(std::span<const double> params) {
 
 Solver make_solver(std::span<const double> params) {
     return {choice_of(params, "solver.method") == "dopri5" ? Solver::dopri5 : Solver::rk4,
-            param(params, "solver.rtol"), param(params, "solver.atol"), given_or(param(params, "solver.max_step"), infinite),
-            param(params, "solver.step"), param(params, "solver.max_steps")};
+            param(params, "solver.rtol"),
+            param(params, "solver.atol"),
+            given_or(param(params, "solver.max_step"), infinite),
+            param(params, "solver.step"),
+            param(params, "solver.max_steps")};
 }
 
 std::string degrees(double angle) { return shortest(std::round(angle * 180 / pi * 100) / 100) + " deg"; }
 
-std::string at_pose(const WorstPose& pose) { return "at q2 = " + degrees(pose.q2) + ", q3 = " + degrees(pose.q3) + ", any q1"; }
+std::string at_pose(const WorstPose& pose) {
+    return "at q2 = " + degrees(pose.q2) + ", q3 = " + degrees(pose.q3) + ", any q1";
+}
 
 void check_inertia(std::span<const double> params, const std::string& link, std::vector<Problem>& problems) {
     const Vec3<double> I = vector_of(params, link + ".inertia");
     for (int i = 0; i < 3; ++i) {
         const double others = I[(i + 1) % 3] + I[(i + 2) % 3];
         if (I[i] > others * (1 + 1e-12))
-            problems.push_back({.code = "scenario.inertia", .path = link + ".inertia", .message = "no body has one principal inertia above the sum of the other two",
-                                .got = shortest(I[i]) + " > " + shortest(others), .allowed = "Ix <= Iy + Iz, and so on in turn", .hint = ""});
+            problems.push_back({.code = "scenario.inertia",
+                                .path = link + ".inertia",
+                                .message = "no body has one principal inertia above the sum of the other two",
+                                .got = shortest(I[i]) + " > " + shortest(others),
+                                .allowed = "Ix <= Iy + Iz, and so on in turn",
+                                .hint = ""});
     }
 }
 
 void check_mass_matrix(const Arm<double>& arm, std::vector<Problem>& problems) {
     const WorstPose M11 = smallest_M11(arm.lumped);
     if (M11.value < smallest_inertia)
-        problems.push_back({.code = "scenario.singular_mass_matrix", .path = "arm.link1.inertia_axial",
-                            .message = "the mass matrix is nearly singular: M11 falls to " + shortest(M11.value) + " kg m^2 " + at_pose(M11),
-                            .got = shortest(arm.link1.inertia_axial), .allowed = "min M11 >= 1e-9 kg m^2",
-                            .hint = "give arm.link1.inertia_axial or arm.armature[0]; slender links have no inertia about their own axis"});
+        problems.push_back(
+            {.code = "scenario.singular_mass_matrix",
+             .path = "arm.link1.inertia_axial",
+             .message =
+                 "the mass matrix is nearly singular: M11 falls to " + shortest(M11.value) + " kg m^2 " + at_pose(M11),
+             .got = shortest(arm.link1.inertia_axial),
+             .allowed = "min M11 >= 1e-9 kg m^2",
+             .hint =
+                 "give arm.link1.inertia_axial or arm.armature[0]; slender links have no inertia about their own axis"});
     const WorstPose lower = smallest_lower_determinant(arm.lumped);
     if (lower.value <= 0)
-        problems.push_back({.code = "scenario.singular_mass_matrix", .path = "arm.link3.inertia",
-                            .message = "the mass matrix is singular: the determinant of joints 2 and 3 falls to " + shortest(lower.value) + " " + at_pose(lower),
-                            .got = "", .allowed = "determinant > 0", .hint = "give arm.link3.inertia, or armature for joints 2 and 3"});
+        problems.push_back({.code = "scenario.singular_mass_matrix",
+                            .path = "arm.link3.inertia",
+                            .message = "the mass matrix is singular: the determinant of joints 2 and 3 falls to " +
+                                       shortest(lower.value) + " " + at_pose(lower),
+                            .got = "",
+                            .allowed = "determinant > 0",
+                            .hint = "give arm.link3.inertia, or armature for joints 2 and 3"});
 }
 
 void check_start(const Setup& setup, std::vector<Problem>& problems) {
     const Plant<double>& plant = setup.plant;
     const Pose<double> p = pose(setup.q);
-    const Indentation<double> in = indentation(plant.wall, wall_at(plant.wall, 0.0), tip_position(plant.arm, p), tip_velocity(plant.arm, p, setup.qd));
+    const Indentation<double> in = indentation(plant.wall, wall_at(plant.wall, 0.0), tip_position(plant.arm, p),
+                                               tip_velocity(plant.arm, p, setup.qd));
     if (in.depth > deepest_start && inside_outline(plant.wall, in) >= 0)
-        problems.push_back({.code = "scenario.starts_inside_wall", .path = "wall.point", .message = "the tip starts deep inside the wall",
-                            .got = shortest(in.depth) + " m deep", .allowed = "at most 0.1 m", .hint = "move wall.point back or change initial.q; does wall.normal point towards the arm?"});
+        problems.push_back(
+            {.code = "scenario.starts_inside_wall",
+             .path = "wall.point",
+             .message = "the tip starts deep inside the wall",
+             .got = shortest(in.depth) + " m deep",
+             .allowed = "at most 0.1 m",
+             .hint = "move wall.point back or change initial.q; does wall.normal point towards the arm?"});
 }
 
 double norm(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
@@ -191,7 +222,8 @@ void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
     const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.plant.controller.model.gravity;
     const double apart = norm(minus(feels, compensates));
     if (apart > 0 && apart < 0.01 * norm(feels))
-        slips.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " + shortest(norm(compensates)) +
+        slips.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
+                        shortest(norm(compensates)) +
                         ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
 }
 
@@ -200,8 +232,9 @@ void slip_of_angles(const Setup& setup, std::vector<std::string>& slips) {
         const double in_degrees = setup.q[i] * 180 / pi;
         const bool was_degrees = std::abs(in_degrees - std::round(in_degrees)) < 1e-9 * std::abs(in_degrees);
         if (std::abs(setup.q[i]) > 2 * pi && !was_degrees)
-            slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " + shortest(std::abs(setup.q[i])) +
-                            " rad; plain numbers are radians: write `" + shortest(std::abs(setup.q[i])) + " deg` if degrees were meant");
+            slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " +
+                            shortest(std::abs(setup.q[i])) + " rad; plain numbers are radians: write `" +
+                            shortest(std::abs(setup.q[i])) + " deg` if degrees were meant");
     }
 }
 
@@ -209,8 +242,8 @@ void slip_of_links(const Arm<double>& arm, std::vector<std::string>& slips) {
     const Link<double>* links[] = {&arm.link2, &arm.link3};
     for (int i = 0; i < 2; ++i) {
         if (links[i]->com < 0 || links[i]->com > links[i]->length)
-            slips.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " + shortest(links[i]->com) +
-                            " m of " + shortest(links[i]->length) + " m");
+            slips.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " +
+                            shortest(links[i]->com) + " m of " + shortest(links[i]->length) + " m");
     }
 }
 
@@ -232,12 +265,15 @@ void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
     if (!setup.plant.has_wall) return;
     const double past = past_shoulder(setup);
     if (past > 0)
-        slips.push_back("the wall passes the shoulder during the run, by " + shortest(past) + " m at the most; the arm's base is then behind it");
+        slips.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
+                        " m at the most; the arm's base is then behind it");
     if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) {
         const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
         const double angle = setup.solver.step * std::sqrt(setup.plant.contact.stiffness[0] / m_n);
         if (angle > 1.414)
-            slips.push_back("step*sqrt(K_E/m_n) is " + shortest(angle) + ", more than half of what rk4 bears (2.828): the contact will not be resolved; take a smaller solver.step");
+            slips.push_back(
+                "step*sqrt(K_E/m_n) is " + shortest(angle) +
+                ", more than half of what rk4 bears (2.828): the contact will not be resolved; take a smaller solver.step");
     }
 }
 
@@ -299,11 +335,19 @@ std::vector<Problem> check_setup(std::span<const double> params) {
     check_inertia(params, "arm.link3", problems);
     if (param(params, "wall") != 0) {
         if (norm(vector_of(params, "wall.normal")) < 1e-9)
-            problems.push_back({.code = "scenario.range", .path = "wall.normal", .message = "a direction needs a length",
-                                .got = "[0, 0, 0]", .allowed = "any vector that is not zero", .hint = ""});
+            problems.push_back({.code = "scenario.range",
+                                .path = "wall.normal",
+                                .message = "a direction needs a length",
+                                .got = "[0, 0, 0]",
+                                .allowed = "any vector that is not zero",
+                                .hint = ""});
         if (choice_of(params, "wall.contact.law") == "diagonal" && param(params, "wall.acts_on_arm") != 0)
-            problems.push_back({.code = "scenario.one_way_only", .path = "wall.acts_on_arm", .message = "a diagonal K_E can only be measured, not act on the arm",
-                                .got = "true", .allowed = "false with law: diagonal", .hint = "use law: spring"});
+            problems.push_back({.code = "scenario.one_way_only",
+                                .path = "wall.acts_on_arm",
+                                .message = "a diagonal K_E can only be measured, not act on the arm",
+                                .got = "true",
+                                .allowed = "false with law: diagonal",
+                                .hint = "use law: spring"});
     }
     if (!problems.empty()) return problems;
     const Setup setup = make_setup(params);

@@ -18,11 +18,11 @@ struct Solver {
 };
 
 struct Setup {
-    bool simscape;             // how q, qd and torques are written at the faces
+    bool simscape;  // how q, qd and torques are written at the faces
     Plant<double> plant;
-    Vec3<double> q, qd;        // at t = 0
+    Vec3<double> q, qd;  // at t = 0
     Solver solver;
-    double stop, log_every;    // s
+    double stop, log_every;  // s
 };
 
 // `params` must have passed validate() (schema.hpp); only rules between keys are left to `check_setup`.

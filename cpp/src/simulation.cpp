@@ -21,7 +21,7 @@ constexpr double largest_angle = 1e5;     // rad: beyond it sincos is no longer 
 constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 constexpr std::size_t most_events = 4096;
 constexpr double most_fixed_steps = 1e9;
-constexpr int most_bad_trials = 30;       // steps in a row that are not even finite
+constexpr int most_bad_trials = 30;  // steps in a row that are not even finite
 constexpr int looks_per_adaptive_step = 9, looks_per_fixed_step = 2;
 
 using Clock = std::chrono::steady_clock;
@@ -45,8 +45,12 @@ FullState start_of(const Setup& setup) {
 void refuse_too_many_steps(const Setup& setup) {
     const double steps = setup.stop / setup.solver.step, most = std::min(most_fixed_steps, setup.solver.max_steps);
     if (setup.solver.method == Solver::rk4 && steps > most)
-        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.steps", .path = "solver.step", .message = "the run would need too many steps",
-                                        .got = "about " + shortest(steps), .allowed = "at most " + shortest(most), .hint = "take a larger step, or raise solver.max_steps"}});
+        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.steps",
+                                        .path = "solver.step",
+                                        .message = "the run would need too many steps",
+                                        .got = "about " + shortest(steps),
+                                        .allowed = "at most " + shortest(most),
+                                        .hint = "take a larger step, or raise solver.max_steps"}});
 }
 
 std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
@@ -54,9 +58,14 @@ std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 
 class Simulator {
 public:
     Simulator(std::span<const double> params, const RunOptions& options)
-        : setup_(make_setup(params)), options_(options), rhs_(setup_.plant),
+        : setup_(make_setup(params)),
+          options_(options),
+          rhs_(setup_.plant),
           watch_(setup_.plant, setup_.solver.method == Solver::dopri5 ? looks_per_adaptive_step : looks_per_fixed_step),
-          rows_(setup_, run_), y_(start_of(setup_)), mode_(watch_.mode_at_start(y_)), ledger_(setup_, y_, mode_) {
+          rows_(setup_, run_),
+          y_(start_of(setup_)),
+          mode_(watch_.mode_at_start(y_)),
+          ledger_(setup_, y_, mode_) {
         refuse_too_many_steps(setup_);
         run_.events.reserve(most_events);
         run_.warnings = likely_slips(params);
@@ -87,7 +96,9 @@ private:
         return mode_ == Mode::contact ? Touch::pressed : Touch::none;
     }
 
-    void note_depth(double depth) { run_.peak_force = std::max(run_.peak_force, setup_.plant.contact.stiffness[0] * depth); }
+    void note_depth(double depth) {
+        run_.peak_force = std::max(run_.peak_force, setup_.plant.contact.stiffness[0] * depth);
+    }
 
     // What is stored in the contact is lost when the tip leaves it over an edge (4.9).
     void change_mode(double t, const FullState& y, const Crossing& crossing) {
@@ -103,7 +114,8 @@ private:
             return;
         }
         const Vec3<double> q = angles(y), qd = rates(y);
-        run_.events.push_back({type, t, plain(setup_.simscape ? flipped(q) : q), plain(setup_.simscape ? flipped(qd) : qd),
+        run_.events.push_back({type, t, plain(setup_.simscape ? flipped(q) : q),
+                               plain(setup_.simscape ? flipped(qd) : qd),
                                plain(tip_position(setup_.plant.arm, pose(q)))});
     }
 
@@ -153,7 +165,9 @@ private:
         double h = setup_.solver.max_step;
         if (plant.has_wall && plant.wall.motion == Motion::sinusoid) h = std::min(h, 1 / (16 * plant.wall.frequency));
         if (plant.acts_on_arm && mode_ == Mode::contact && plant.contact.stiffness[0] > 0)
-            h = std::min(h, 0.25 * pi * std::sqrt(effective_mass(plant.arm, pose(angles(y_)), plant.wall.n) / plant.contact.stiffness[0]));
+            h = std::min(h, 0.25 * pi *
+                                std::sqrt(effective_mass(plant.arm, pose(angles(y_)), plant.wall.n) /
+                                          plant.contact.stiffness[0]));
         return h;
     }
 
@@ -163,12 +177,15 @@ private:
         const bool last = wanted >= rest;
         const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // no sliver of a step at the end
         if (h < 16 * epsilon * std::max(t_, 1e-3) && !last) {
-            end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(t_) + " s: the motion changes faster than the clock resolves");
+            end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(t_) +
+                                             " s: the motion changes faster than the clock resolves");
             return;
         }
         stepper_.step(rhs_, t_, y_, f_, h);
         run_.steps.evaluations += 6;
-        const double error = is_finite(stepper_.y1) && is_finite(stepper_.f1) ? stepper_.error(y_, h, setup_.solver.rtol, setup_.solver.atol) : infinite_;
+        const double error = is_finite(stepper_.y1) && is_finite(stepper_.f1)
+                                 ? stepper_.error(y_, h, setup_.solver.rtol, setup_.solver.atol)
+                                 : infinite_;
         if (!(error < 1)) {
             reject(h, error);
             return;
@@ -207,7 +224,8 @@ private:
             return;
         }
         h_ = 0.1 * h;
-        if (++bad_trials_ > most_bad_trials) end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(t_) + " s");
+        if (++bad_trials_ > most_bad_trials)
+            end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(t_) + " s");
     }
 
     void fixed_step() {
@@ -219,7 +237,8 @@ private:
         FullState y1 = rk4_step(rhs_, t_, y_, f_, h);
         run_.steps.evaluations += 3;
         if (!is_finite(y1)) {
-            end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(t_) + " s; a smaller solver.step may hold it");
+            end(ARM3R_RUN_DIVERGED,
+                "the motion is no longer finite after t = " + shortest(t_) + " s; a smaller solver.step may hold it");
             return;
         }
         y_ = y1;
@@ -259,8 +278,12 @@ private:
         t_ = t1;
         run_.steps.accepted += 1;
         for (int i = 0; i < 3; ++i)
-            if (std::abs(y_[i]) > largest_angle) end(ARM3R_RUN_DIVERGED, "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(t_) + " s");
-        if (!well_conditioned()) end(ARM3R_RUN_ILL_CONDITIONED, "the mass matrix is no longer positive definite to rounding at t = " + shortest(t_) + " s");
+            if (std::abs(y_[i]) > largest_angle)
+                end(ARM3R_RUN_DIVERGED,
+                    "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(t_) + " s");
+        if (!well_conditioned())
+            end(ARM3R_RUN_ILL_CONDITIONED,
+                "the mass matrix is no longer positive definite to rounding at t = " + shortest(t_) + " s");
         return came_to_rest;
     }
 
@@ -289,11 +312,14 @@ private:
     void read_clock() {
         const double elapsed = seconds_since(begun_);
         if (options_.time_limit > 0 && elapsed > options_.time_limit)
-            end(ARM3R_RUN_BUDGET, "the time limit of " + shortest(options_.time_limit) + " s is used up at t = " + shortest(t_) + " s");
+            end(ARM3R_RUN_BUDGET,
+                "the time limit of " + shortest(options_.time_limit) + " s is used up at t = " + shortest(t_) + " s");
         if (!options_.progress || elapsed < next_report_) return;
         next_report_ = elapsed + 0.02;
-        const std::int32_t answer = options_.progress(options_.user, t_, setup_.stop, static_cast<std::int64_t>(steps_taken()));
-        if (answer < 0) throw Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer));
+        const std::int32_t answer =
+            options_.progress(options_.user, t_, setup_.stop, static_cast<std::int64_t>(steps_taken()));
+        if (answer < 0)
+            throw Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer));
         if (answer > 0) end(ARM3R_RUN_STOPPED, "stopped at t = " + shortest(t_) + " s");
     }
 
@@ -310,7 +336,8 @@ private:
             judge();
         }
         if (rows_.link_behind_wall_since() >= 0)
-            run_.warnings.push_back("a link other than at its tip is behind the wall from t = " + shortest(rows_.link_behind_wall_since()) + " s on; only the tip feels the wall");
+            run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
+                                    shortest(rows_.link_behind_wall_since()) + " s on; only the tip feels the wall");
         run_.t_end = t_;
         run_.elapsed_s = seconds_since(begun_);
     }
@@ -330,8 +357,8 @@ private:
     FullState y_, f_{};
     Mode mode_;
     Ledger ledger_;
-    Inside inside_;      // the solution within the last step
-    double theta_ = 0;   // where t_ lies in it
+    Inside inside_;     // the solution within the last step
+    double theta_ = 0;  // where t_ lies in it
     bool just_rejected_ = false;
     int bad_trials_ = 0;
 

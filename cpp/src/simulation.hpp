@@ -14,8 +14,8 @@ namespace arm3r {
 
 struct Event {
     enum Type { make, brk } type;
-    double t;                            // s
-    std::array<double, 3> q, qd, tip;    // rad, rad/s, m; in the arm's convention
+    double t;                          // s
+    std::array<double, 3> q, qd, tip;  // rad, rad/s, m; in the arm's convention
 };
 
 struct Steps {
@@ -25,17 +25,17 @@ struct Steps {
 // Columns lie one after the other in one block: column i is data[i*capacity .. i*capacity + rows).
 struct Run {
     arm3r_outcome outcome = ARM3R_RUN_OK;
-    std::string message;                 // why, when the outcome is not ok; "" else
-    std::vector<std::size_t> columns;    // indices into column_table() (columns.hpp), in order
+    std::string message;               // why, when the outcome is not ok; "" else
+    std::vector<std::size_t> columns;  // indices into column_table() (columns.hpp), in order
     std::size_t rows = 0, capacity = 0;
     RowMemory data;
     std::vector<Event> events;
     std::vector<std::string> warnings;
     Steps steps;
-    double t_end = 0;                    // s, the time reached
-    double peak_force = 0;               // N, largest normal contact force, on the dense trajectory
-    double energy_residual_max = 0;      // J, over steps and rows
-    double elapsed_s = 0;                // wall clock
+    double t_end = 0;                // s, the time reached
+    double peak_force = 0;           // N, largest normal contact force, on the dense trajectory
+    double energy_residual_max = 0;  // J, over steps and rows
+    double elapsed_s = 0;            // wall clock
 
     std::span<const double> column(std::size_t i) const { return {data.get() + i * capacity, rows}; }
 };
@@ -44,7 +44,7 @@ struct RunOptions {
     const volatile std::int32_t* stop = nullptr;
     arm3r_progress progress = nullptr;
     void* user = nullptr;
-    double time_limit = 0;               // s; 0: none
+    double time_limit = 0;  // s; 0: none
 };
 
 // params: a valid flat parameter array (schema.hpp). Throws Error when it is not, or when the run is too large.

@@ -33,8 +33,13 @@ std::size_t expected_count(const Key& key, std::span<const double> params) {
 }
 
 Problem missing(const Key& key, std::size_t count) {
-    return {.code = "scenario.missing_key", .path = key.path, .message = "this must be given", .got = "",
-            .allowed = (count == 1 ? "a number" : "a list of " + std::to_string(count) + " numbers") + (key.unit.empty() ? "" : ", " + key.unit), .hint = ""};
+    return {.code = "scenario.missing_key",
+            .path = key.path,
+            .message = "this must be given",
+            .got = "",
+            .allowed = (count == 1 ? "a number" : "a list of " + std::to_string(count) + " numbers") +
+                       (key.unit.empty() ? "" : ", " + key.unit),
+            .hint = ""};
 }
 
 // A choice must be the index of one of its words; everything else is read only when all of them are.
@@ -43,8 +48,12 @@ void check_choice(const Key& key, std::span<const double> params, std::vector<Pr
     if (std::isnan(stored) && key.unset == "as the plant") return;
     const double count = key.kind == Kind::choice ? double(key.choices.size()) : 2;
     if (!(stored >= 0 && stored < count && stored == std::floor(stored)))
-        problems.push_back({.code = "scenario.choice", .path = key.path, .message = "no such choice", .got = shortest(stored),
-                            .allowed = "an index from 0 to " + shortest(count - 1), .hint = ""});
+        problems.push_back({.code = "scenario.choice",
+                            .path = key.path,
+                            .message = "no such choice",
+                            .got = shortest(stored),
+                            .allowed = "an index from 0 to " + shortest(count - 1),
+                            .hint = ""});
 }
 
 void check_numbers(const Key& key, std::span<const double> params, std::vector<Problem>& problems) {
@@ -59,11 +68,19 @@ void check_numbers(const Key& key, std::span<const double> params, std::vector<P
     for (std::size_t i = 0; i < count; ++i) {
         const double value = params[key.offset + i];
         if (!within(key, value))
-            problems.push_back({.code = "scenario.range", .path = item_path(key, i, count), .message = "out of range",
-                                .got = shortest(value), .allowed = range_of(key), .hint = ""});
+            problems.push_back({.code = "scenario.range",
+                                .path = item_path(key, i, count),
+                                .message = "out of range",
+                                .got = shortest(value),
+                                .allowed = range_of(key),
+                                .hint = ""});
         else if (key.kind == Kind::integer && value != std::floor(value))
-            problems.push_back({.code = "scenario.type", .path = item_path(key, i, count), .message = "not a whole number",
-                                .got = shortest(value), .allowed = range_of(key), .hint = ""});
+            problems.push_back({.code = "scenario.type",
+                                .path = item_path(key, i, count),
+                                .message = "not a whole number",
+                                .got = shortest(value),
+                                .allowed = range_of(key),
+                                .hint = ""});
     }
 }
 
@@ -79,14 +96,20 @@ void check_slender(std::span<const double> params, std::vector<Problem>& problem
     }
 }
 
-bool is_choice(const Key& key) { return key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section; }
+bool is_choice(const Key& key) {
+    return key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section;
+}
 
 }  // namespace
 
 std::vector<Problem> validate(std::span<const double> params) {
     if (params.size() != param_count())
-        return {{.code = "argument.size", .path = "", .message = "wrong number of parameters", .got = std::to_string(params.size()),
-                 .allowed = std::to_string(param_count()), .hint = ""}};
+        return {{.code = "argument.size",
+                 .path = "",
+                 .message = "wrong number of parameters",
+                 .got = std::to_string(params.size()),
+                 .allowed = std::to_string(param_count()),
+                 .hint = ""}};
     std::vector<Problem> problems;
     for (const Key& key : schema())
         if (is_choice(key)) check_choice(key, params, problems);

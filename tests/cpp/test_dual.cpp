@@ -29,11 +29,24 @@ static void check(F f, double low, double high) {
 
 BOOST_AUTO_TEST_CASE(arithmetic) {
     check([](auto x, auto y) { return (2.0 * x - y * 3.0 + 1.0) * (x / (y + 4.0)) - -y / 2.0; }, -2.0, 2.0);
-    check([](auto x, auto y) { x += y; x *= y; x -= 2.0; x /= y + 5.0; return x; }, -2.0, 2.0);
+    check(
+        [](auto x, auto y) {
+            x += y;
+            x *= y;
+            x -= 2.0;
+            x /= y + 5.0;
+            return x;
+        },
+        -2.0, 2.0);
 }
 
 BOOST_AUTO_TEST_CASE(elementary_functions) {
-    check([](auto x, auto y) { const auto [s, c] = sincos(x * y); return s + 2.0 * c; }, -3.0, 3.0);
+    check(
+        [](auto x, auto y) {
+            const auto [s, c] = sincos(x * y);
+            return s + 2.0 * c;
+        },
+        -3.0, 3.0);
     check([](auto x, auto y) { return tanh(x) * tanh(y); }, -3.0, 3.0);
     check([](auto x, auto y) { return atan2(y, x); }, 0.5, 3.0);
     check([](auto x, auto y) { return atan2(-y, -x); }, 0.5, 3.0);

@@ -1,5 +1,5 @@
-#include <boost/test/unit_test.hpp>
 #include <bit>
+#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -11,9 +11,7 @@ namespace arm3r {
 // Accuracy over the whole range is measured by tests/python/test_elementary_ulp.py.
 BOOST_AUTO_TEST_SUITE(elementary)
 
-static bool same_bits(double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
+static bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 static const double not_a_number = std::numeric_limits<double>::quiet_NaN();
 

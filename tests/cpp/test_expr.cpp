@@ -1,5 +1,5 @@
-#include <boost/test/unit_test.hpp>
 #include <bit>
+#include <boost/test/unit_test.hpp>
 #include <random>
 
 #include "arm3r/eigen_traits.hpp"
@@ -28,9 +28,7 @@ struct Recording {
     }
 };
 
-static bool same_bits(double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
+static bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 BOOST_FIXTURE_TEST_CASE(plays_back_to_the_bits_of_the_formula_itself, Recording) {
     std::mt19937_64 random(5);

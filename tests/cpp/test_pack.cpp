@@ -1,5 +1,5 @@
-#include <boost/test/unit_test.hpp>
 #include <bit>
+#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -18,11 +18,25 @@ ARM3R_INLINE void every_function(const T& x, const T& y, T* out) {
     const auto full = sincos(x);
     const auto near = sincos_near(y, sincos(y), T(y + 0.06 * tanh(x)));
     const auto rotated = sincos_rotated(full, T(0.03 * tanh(y)));
-    const T results[results_per_input] = {
-        full.sin,        full.cos,     near.sin,     near.cos,     rotated.sin,  rotated.cos,    tanh(y),
-        atan2(y, x),     acos(x),      hypot2(x, y), sqrt(abs(x)), min(x, y),    max(x, y),      copysign(x, y),
-        fifth_root(abs(y) + 1e-300),   x + 2.0 * y,  x / (1.0 - y), -x,
-        select((x < y && !(y <= T(0.0))) || x == y, x, y)};
+    const T results[results_per_input] = {full.sin,
+                                          full.cos,
+                                          near.sin,
+                                          near.cos,
+                                          rotated.sin,
+                                          rotated.cos,
+                                          tanh(y),
+                                          atan2(y, x),
+                                          acos(x),
+                                          hypot2(x, y),
+                                          sqrt(abs(x)),
+                                          min(x, y),
+                                          max(x, y),
+                                          copysign(x, y),
+                                          fifth_root(abs(y) + 1e-300),
+                                          x + 2.0 * y,
+                                          x / (1.0 - y),
+                                          -x,
+                                          select((x < y && !(y <= T(0.0))) || x == y, x, y)};
     for (int k = 0; k < results_per_input; ++k) out[k] = results[k];
 }
 
@@ -57,7 +71,9 @@ struct Variant {
 };
 
 static std::vector<Variant> variants() {
-    std::vector<Variant> all{{"baseline", 2, baseline<2>}, {"baseline", 4, baseline<4>}, {"baseline", 8, baseline<8>},
+    std::vector<Variant> all{{"baseline", 2, baseline<2>},
+                             {"baseline", 4, baseline<4>},
+                             {"baseline", 8, baseline<8>},
                              {"baseline", 16, baseline<16>}};
 #ifdef __x86_64__
     if (__builtin_cpu_supports("avx2"))
@@ -72,8 +88,19 @@ static std::vector<Variant> variants() {
 static std::vector<double> inputs(std::size_t count) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> unit(-1.0, 1.0), exponent(-300.0, 300.0);
-    const double special[] = {0.0, -0.0, 1.0, -1.0, M_PI, -M_PI_2, 5e-324, -1e-310, 1e300, -1e300, 0.03,
-                              std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()};
+    const double special[] = {0.0,
+                              -0.0,
+                              1.0,
+                              -1.0,
+                              M_PI,
+                              -M_PI_2,
+                              5e-324,
+                              -1e-310,
+                              1e300,
+                              -1e300,
+                              0.03,
+                              std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN()};
     std::vector<double> x(count);
     for (std::size_t i = 0; i < count; ++i) {
         switch (random() % 6) {

@@ -15,8 +15,12 @@ BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
     for (int trial = 0; trial < 200; ++trial) {
         Params params = random_params(random);
         params.set("wall", 1).set("wall.point", random.vector(-1, 1)).set("wall.normal", random.vector(-1, 1));
-        params.choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.1).set("wall.motion.frequency", 2).set("wall.motion.phase", 1);
-        params.set("wall.acts_on_arm", trial % 2).choose("controller.type", trial % 3 ? "gravity_compensation" : "none");
+        params.choose("wall.motion.type", "sinusoid")
+            .set("wall.motion.amplitude", 0.1)
+            .set("wall.motion.frequency", 2)
+            .set("wall.motion.phase", 1);
+        params.set("wall.acts_on_arm", trial % 2)
+            .choose("controller.type", trial % 3 ? "gravity_compensation" : "none");
         params.choose("controller.algorithm", trial % 5 ? "closed_form" : "recursion");
         const Setup setup = make_setup(params);
 
@@ -34,7 +38,8 @@ BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
             const double theta = (t[i] - inside.t0) / inside.h;
             const Row row = sample(scene, t[i], inside(theta), theta);
             for (std::size_t c = 0; c < column_count; ++c)
-                BOOST_TEST(same_bits(row.value[c], rows.value[c][i]), column_table()[c].name << " of row " << i << ", trial " << trial);
+                BOOST_TEST(same_bits(row.value[c], rows.value[c][i]),
+                           column_table()[c].name << " of row " << i << ", trial " << trial);
             if (row.link_behind_wall) first_behind = std::min(first_behind, i);
         }
         BOOST_TEST(first_behind == rows.first_link_behind_wall);

@@ -278,7 +278,10 @@ def test_m1_mutated_scenarios_never_crash(root):
         "?",
         "é",
         "%YAML",
-    ] + ["\n", "  ", "\t"]
+        "\n",
+        "  ",
+        "\t",
+    ]
     texts = [FULL, *(file.read_text() for file in sorted((root / "scenarios").rglob("*.yaml")))]
     chance = random.Random(20)
     deadline = time.monotonic() + 10

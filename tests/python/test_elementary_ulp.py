@@ -34,8 +34,9 @@ def ours(programs):
     def compute(name, x, y=None):
         x = np.asarray(x, float)
         pairs = np.stack([x, np.zeros_like(x) if y is None else np.asarray(y, float)], axis=1).tobytes()
-        outputs = {subprocess.run([p, name], input=pairs, stdout=subprocess.PIPE, check=True).stdout
-                   for p in programs.values()}
+        outputs = {
+            subprocess.run([p, name], input=pairs, stdout=subprocess.PIPE, check=True).stdout for p in programs.values()
+        }
         assert len(outputs) == 1, f"{name} differs between {', '.join(LEVELS)}"
         return np.frombuffer(outputs.pop())
 
@@ -44,7 +45,7 @@ def ours(programs):
 
 def largest_error(results, exact, unit=math.ulp):
     """In units of the last place of the exact values, unless another unit is given."""
-    return max(float(abs(mpmath.mpf(float(r)) - e)) / unit(float(e)) for r, e in zip(results, exact))
+    return max(float(abs(mpmath.mpf(float(r)) - e)) / unit(float(e)) for r, e in zip(results, exact, strict=True))
 
 
 def random():
@@ -86,7 +87,7 @@ def test_cos_is_within_1_6_ulp_up_to_1e5_rad(ours):
 def test_rotated_sincos_is_within_3e_16_up_to_0_03_rad(ours, name, exact):
     rng, n = random()
     x, delta = rng.uniform(-1e3, 1e3, n), rng.uniform(-0.03, 0.03, n)
-    true = [exact(mpmath.mpf(a) + mpmath.mpf(b)) for a, b in zip(x, delta)]
+    true = [exact(mpmath.mpf(a) + mpmath.mpf(b)) for a, b in zip(x, delta, strict=True)]
     assert largest_error(ours(name, x, delta), true, unit=lambda _: 1.0) < 3e-16
 
 

@@ -9,7 +9,8 @@
 namespace arm3r {
 
 // A link on joint 2 or 3. Axes: x along the link, y in the arm's vertical plane, z along the joint axis.
-template <class P> struct Link {
+template <class P>
+struct Link {
     P length;         // m, joint to joint, or joint to tip
     P mass;           // kg
     P com;            // m from the joint, along x
@@ -17,24 +18,27 @@ template <class P> struct Link {
 };
 
 // Link 1 turns about the vertical: only its inertia about that axis matters to the motion.
-template <class P> struct Turret {
+template <class P>
+struct Turret {
     P mass;           // kg
     P com;            // m, height of the centre of mass in the base frame
     P inertia_axial;  // kg m^2
 };
 
-template <class P> struct Lumped {  // (3.2)
+template <class P>
+struct Lumped {  // (3.2)
     P A1, A2, A3, B, B2, B3, J3, G2, G3;
 };
 
-template <class P> struct Arm {
-    P base_height;     // m, d1
+template <class P>
+struct Arm {
+    P base_height;  // m, d1
     Turret<P> link1;
     Link<P> link2, link3;  // link 3 carries the payload (3.9)
-    Vec3<P> gravity;   // m/s^2, base axes
-    Vec3<P> armature;  // kg m^2
-    Vec3<P> damping;   // N m s/rad
-    Vec3<P> friction;  // N m
+    Vec3<P> gravity;       // m/s^2, base axes
+    Vec3<P> armature;      // kg m^2
+    Vec3<P> damping;       // N m s/rad
+    Vec3<P> friction;      // N m
     P friction_velocity;   // rad/s
     Vec3<P> torque_limit;  // N m
     Lumped<P> lumped;
@@ -43,7 +47,8 @@ template <class P> struct Arm {
     bool gravity_is_vertical = false, has_damping = false, has_dry_friction = false, has_torque_limit = false;
 };
 
-template <class P> Lumped<P> lump(const Arm<P>& arm) {  // (3.2)
+template <class P>
+Lumped<P> lump(const Arm<P>& arm) {  // (3.2)
     const Link<P>&l2 = arm.link2, &l3 = arm.link3;
     const P m2_lc2_2 = l2.mass * l2.com * l2.com;
     const P m3_lc3_2 = l3.mass * l3.com * l3.com;
@@ -62,7 +67,8 @@ template <class P> Lumped<P> lump(const Arm<P>& arm) {  // (3.2)
 }
 
 // A point mass at the tip, folded into link 3 (3.9): exact.
-template <class P> Link<P> with_payload(const Link<P>& link, const P& payload) {
+template <class P>
+Link<P> with_payload(const Link<P>& link, const P& payload) {
     const P mass = link.mass + payload;
     const P arm = link.length - link.com;
     const P r = link.mass * payload / mass * arm * arm;
@@ -75,7 +81,8 @@ template <class P> Link<P> with_payload(const Link<P>& link, const P& payload) {
 }
 
 // D = diag(1, -1, -1): between the slide convention and simscape, either way, for q, qd, qdd and torques (1.1).
-template <class T> ARM3R_INLINE Vec3<T> flipped(const Vec3<T>& joint_vector) {
+template <class T>
+ARM3R_INLINE Vec3<T> flipped(const Vec3<T>& joint_vector) {
     return {joint_vector[0], -joint_vector[1], -joint_vector[2]};
 }
 

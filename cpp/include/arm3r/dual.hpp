@@ -27,9 +27,7 @@ struct Dual {
 
     friend Dual operator+(const Dual& a, const Dual& b) { return chain(a.number + b.number, a, 1.0, b, 1.0); }
     friend Dual operator-(const Dual& a, const Dual& b) { return chain(a.number - b.number, a, 1.0, b, -1.0); }
-    friend Dual operator*(const Dual& a, const Dual& b) {
-        return chain(a.number * b.number, a, b.number, b, a.number);
-    }
+    friend Dual operator*(const Dual& a, const Dual& b) { return chain(a.number * b.number, a, b.number, b, a.number); }
     friend Dual operator/(const Dual& a, const Dual& b) {
         const double quotient = a.number / b.number;
         return chain(quotient, a, 1.0 / b.number, b, -quotient / b.number);
@@ -56,7 +54,9 @@ struct Dual {
         return chain(copysign(magnitude.number, sign.number), magnitude, flip);
     }
 
-    friend Dual nearest_integer(const Dual& x) { return Dual(arm3r::nearest_integer(x.number)); }  // flat but for its jumps
+    friend Dual nearest_integer(const Dual& x) {
+        return Dual(arm3r::nearest_integer(x.number));
+    }  // flat but for its jumps
 
     friend Dual sqrt(const Dual& x) {
         const double root = sqrt(x.number);

@@ -6,33 +6,36 @@
 namespace arm3r {
 
 // M: kg m^2, armature included (3.3).
-template <class P, class T> ARM3R_INLINE Mat3<T> mass_matrix(const Arm<P>& arm, const Pose<T>& p) {
+template <class P, class T>
+ARM3R_INLINE Mat3<T> mass_matrix(const Arm<P>& arm, const Pose<T>& p) {
     const Lumped<P>& l = arm.lumped;
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
     const T M11 = l.A1 + p.C2 * (l.A2 * p.C2 + l.B * p.C23) + p.C23 * (l.A3 * p.C23 + l.B * p.C2);
     const T M22 = l.B2 + l.B3 + 2.0 * l.B * C3;
     const T M23 = l.B3 + l.B * C3;
     Mat3<T> M;
-    M << M11,    T(0.0), T(0.0),
-         T(0.0), M22,    M23,
-         T(0.0), M23,    T(l.B3 + l.J3);
+    M << M11, T(0.0), T(0.0),  //
+        T(0.0), M22, M23,      //
+        T(0.0), M23, T(l.B3 + l.J3);
     return M;
 }
 
 // C: the Christoffel choice, so that Mdot = C + C^T (3.4).
-template <class P, class T> ARM3R_INLINE Mat3<T> coriolis_matrix(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
+template <class P, class T>
+ARM3R_INLINE Mat3<T> coriolis_matrix(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
     const Lumped<P>& l = arm.lumped;
     const T h3 = -p.S23 * (l.A3 * p.C23 + l.B * p.C2);
     const T h2 = h3 - p.S2 * (l.A2 * p.C2 + l.B * p.C23);
     const T b = l.B * (p.S23 * p.C2 - p.C23 * p.S2);
     Mat3<T> C;
-    C <<  h2 * qd[1] + h3 * qd[2], h2 * qd[0], h3 * qd[0],
-         -h2 * qd[0],             -b * qd[2],  -b * (qd[1] + qd[2]),
-         -h3 * qd[0],              b * qd[1],  T(0.0);
+    C << h2 * qd[1] + h3 * qd[2], h2 * qd[0], h3 * qd[0],  //
+        -h2 * qd[0], -b * qd[2], -b * (qd[1] + qd[2]),     //
+        -h3 * qd[0], b * qd[1], T(0.0);
     return C;
 }
 
-template <class P, class T> ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // C qd
+template <class P, class T>
+ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // C qd
     const Lumped<P>& l = arm.lumped;
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T row2 = p.S2 * (l.A2 * p.C2 + l.B * p.C23);
@@ -43,7 +46,8 @@ template <class P, class T> ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& 
 }
 
 // The weight of the links on the three angles q1, q2, q2 + q3 (3.5). g is any gravity vector, in base axes.
-template <class P, class G, class T> ARM3R_INLINE Vec3<T> link_weight(const Lumped<P>& l, const Vec3<G>& g, bool vertical, const Pose<T>& p) {
+template <class P, class G, class T>
+ARM3R_INLINE Vec3<T> link_weight(const Lumped<P>& l, const Vec3<G>& g, bool vertical, const Pose<T>& p) {
     if (vertical) return {T(0.0), -(l.G2 * p.C2) * g[2], -(l.G3 * p.C23) * g[2]};
     const T gr = g[0] * p.C1 + g[1] * p.S1;
     const T gt = g[1] * p.C1 - g[0] * p.S1;
@@ -51,13 +55,15 @@ template <class P, class G, class T> ARM3R_INLINE Vec3<T> link_weight(const Lump
 }
 
 // tau_g: the torque that holds the arm at rest, dU/dq (3.5).
-template <class P, class T> ARM3R_INLINE Vec3<T> gravity_torque(const Arm<P>& arm, const Pose<T>& p) {
+template <class P, class T>
+ARM3R_INLINE Vec3<T> gravity_torque(const Arm<P>& arm, const Pose<T>& p) {
     const Vec3<T> weight = link_weight(arm.lumped, arm.gravity, arm.gravity_is_vertical, p);
     return {weight[0], weight[1] + weight[2], weight[2]};
 }
 
 // tau_f: viscous and regularised dry friction (3.6); always dissipative.
-template <class P, class T> ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& arm, const Vec3<T>& qd) {
+template <class P, class T>
+ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& arm, const Vec3<T>& qd) {
     Vec3<T> tau_f(T(0.0), T(0.0), T(0.0));
     if (arm.has_damping)
         for (int i = 0; i < 3; ++i) tau_f[i] = arm.damping[i] * qd[i];
@@ -66,12 +72,15 @@ template <class P, class T> ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& a
     return tau_f;
 }
 
-template <class P, class T> ARM3R_INLINE T kinetic_energy(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // T (3.7)
+template <class P, class T>
+ARM3R_INLINE T kinetic_energy(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // T (3.7)
     const Mat3<T> M = mass_matrix(arm, p);
-    return 0.5 * (M(0, 0) * qd[0] * qd[0] + M(1, 1) * qd[1] * qd[1] + M(2, 2) * qd[2] * qd[2]) + M(1, 2) * qd[1] * qd[2];
+    return 0.5 * (M(0, 0) * qd[0] * qd[0] + M(1, 1) * qd[1] * qd[1] + M(2, 2) * qd[2] * qd[2]) +
+           M(1, 2) * qd[1] * qd[2];
 }
 
-template <class P, class T> ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, zero at the base origin (3.7)
+template <class P, class T>
+ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, zero at the base origin (3.7)
     const Lumped<P>& l = arm.lumped;
     const T radial = l.G2 * p.C2 + l.G3 * p.C23;
     const T up = l.G2 * p.S2 + l.G3 * p.S23;
@@ -80,7 +89,8 @@ template <class P, class T> ARM3R_INLINE T potential_energy(const Arm<P>& arm, c
 }
 
 // The joint torques of a force at the tip: J^T f.
-template <class P, class T> ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& f_on_tip) {
+template <class P, class T>
+ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& f_on_tip) {
     const T radial = p.C1 * f_on_tip[0] + p.S1 * f_on_tip[1];
     const T around = p.C1 * f_on_tip[1] - p.S1 * f_on_tip[0];
     const T third = arm.link3.length * (p.C23 * f_on_tip[2] - p.S23 * radial);
@@ -89,7 +99,8 @@ template <class P, class T> ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& 
 }
 
 // qdd from the torques that drive the joints: actuators less friction plus J^T f. Solved in the absolute link angles (3.8).
-template <class P, class T> ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive) {
+template <class P, class T>
+ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive) {
     const Lumped<P>& l = arm.lumped;
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
@@ -114,15 +125,18 @@ template <class P, class T> ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>
 
 // M qdd + C qd + tau_g + tau_f = tau + J^T f_on_tip (3.1), solved for qdd.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> forward_dynamics(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& tau, const Vec3<T>& f_on_tip) {
+ARM3R_INLINE Vec3<T> forward_dynamics(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& tau,
+                                      const Vec3<T>& f_on_tip) {
     const Vec3<T> tau_f = friction_torque(arm, qd);
     const Vec3<T> tau_e = tip_force_torque(arm, p, f_on_tip);
-    return joint_acceleration(arm, p, qd, Vec3<T>(tau[0] - tau_f[0] + tau_e[0], tau[1] - tau_f[1] + tau_e[1], tau[2] - tau_f[2] + tau_e[2]));
+    return joint_acceleration(
+        arm, p, qd, Vec3<T>(tau[0] - tau_f[0] + tau_e[0], tau[1] - tau_f[1] + tau_e[1], tau[2] - tau_f[2] + tau_e[2]));
 }
 
 // The same equation, solved for tau.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> inverse_dynamics(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& qdd, const Vec3<T>& f_on_tip) {
+ARM3R_INLINE Vec3<T> inverse_dynamics(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& qdd,
+                                      const Vec3<T>& f_on_tip) {
     const Mat3<T> M = mass_matrix(arm, p);
     const Vec3<T> v = velocity_product(arm, p, qd);
     const Vec3<T> tau_g = gravity_torque(arm, p);
@@ -134,14 +148,16 @@ ARM3R_INLINE Vec3<T> inverse_dynamics(const Arm<P>& arm, const Pose<T>& p, const
 }
 
 // J M^-1 J^T: m-1, how easily the tip gives way (3.11).
-template <class P, class T> ARM3R_INLINE Mat3<T> tip_mobility(const Arm<P>& arm, const Pose<T>& p) {
+template <class P, class T>
+ARM3R_INLINE Mat3<T> tip_mobility(const Arm<P>& arm, const Pose<T>& p) {
     const Mat3<T> M = mass_matrix(arm, p);
     const Mat3<T> J = jacobian(arm, p);
     const T inverse_det = 1.0 / (M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2));
     Mat3<T> W;
     for (int i = 0; i < 3; ++i) {
         for (int j = i; j < 3; ++j) {
-            const T lower = J(i, 1) * (M(2, 2) * J(j, 1) - M(1, 2) * J(j, 2)) + J(i, 2) * (M(1, 1) * J(j, 2) - M(1, 2) * J(j, 1));
+            const T lower =
+                J(i, 1) * (M(2, 2) * J(j, 1) - M(1, 2) * J(j, 2)) + J(i, 2) * (M(1, 1) * J(j, 2) - M(1, 2) * J(j, 1));
             W(i, j) = J(i, 0) * J(j, 0) / M(0, 0) + lower * inverse_det;
             W(j, i) = W(i, j);
         }
@@ -150,14 +166,16 @@ template <class P, class T> ARM3R_INLINE Mat3<T> tip_mobility(const Arm<P>& arm,
 }
 
 // m_n = 1 / (n^T J M^-1 J^T n): kg, the mass that the tip shows along the unit vector n (3.11).
-template <class P, class T> ARM3R_INLINE T effective_mass(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& n) {
+template <class P, class T>
+ARM3R_INLINE T effective_mass(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& n) {
     const Mat3<T> W = tip_mobility(arm, p);
     const T diagonal = W(0, 0) * n[0] * n[0] + W(1, 1) * n[1] * n[1] + W(2, 2) * n[2] * n[2];
     return 1.0 / (diagonal + 2.0 * (W(0, 1) * n[0] * n[1] + W(0, 2) * n[0] * n[2] + W(1, 2) * n[1] * n[2]));
 }
 
 // Lambda = J^-T M J^-1: kg (3.11). Grows without bound towards a singular pose.
-template <class P, class T> ARM3R_INLINE Mat3<T> operational_space_inertia(const Arm<P>& arm, const Pose<T>& p) {
+template <class P, class T>
+ARM3R_INLINE Mat3<T> operational_space_inertia(const Arm<P>& arm, const Pose<T>& p) {
     const Mat3<T> M = mass_matrix(arm, p);
     const Mat3<T> K = inverse_jacobian(arm, p);
     Mat3<T> L;

@@ -102,11 +102,11 @@ ARM3R_INLINE T atan2(const T& y, const T& x) {
     const T z = t * t;
     const T z2 = z * z;
     const T z4 = z2 * z2;
-    const T tail = ((-0x1.555555555550dp-2 + z * 0x1.999999998ebc4p-3) +
-                    z2 * (-0x1.24924920083ffp-3 + z * 0x1.c71c6fe231671p-4)) +
-                   z4 * (((-0x1.745cdc54c206ep-4 + z * 0x1.3b0f2af749a6dp-4) +
-                          z2 * (-0x1.10d66a0d03d51p-4 + z * 0x1.dde2d52defd9ap-5)) +
-                         z4 * ((-0x1.97b4b24760debp-5 + z * 0x1.2b4442c6a6c2fp-5) - z2 * 0x1.0ad3ae322da11p-6));
+    const T tail =
+        ((-0x1.555555555550dp-2 + z * 0x1.999999998ebc4p-3) + z2 * (-0x1.24924920083ffp-3 + z * 0x1.c71c6fe231671p-4)) +
+        z4 * (((-0x1.745cdc54c206ep-4 + z * 0x1.3b0f2af749a6dp-4) +
+               z2 * (-0x1.10d66a0d03d51p-4 + z * 0x1.dde2d52defd9ap-5)) +
+              z4 * ((-0x1.97b4b24760debp-5 + z * 0x1.2b4442c6a6c2fp-5) - z2 * 0x1.0ad3ae322da11p-6));
     const T arc = t + (t * z) * tail;
 
     const auto left = copysign(T(1.0), x) < T(0.0);
@@ -133,9 +133,11 @@ ARM3R_INLINE T hypot2(const T& x, const T& y) {
 // in the upper half of the bits, two Halley steps and one of Newton follow.
 template <Lanewise T>
 ARM3R_INLINE T fifth_root(const T& x) {
-    const T upper = with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA {
-        i = ((i >> 32) & 0x7fffffff) | 0x4330000000000000;  // the double 2^52 + that half
-    }) - 0x1p52;
+    const T upper = with_bits(x,
+                              [](auto& i) ARM3R_INLINE_LAMBDA {
+                                  i = ((i >> 32) & 0x7fffffff) | 0x4330000000000000;  // the double 2^52 + that half
+                              }) -
+                    0x1p52;
     T y = with_bits(upper * 0.2 + (0x1p52 + 0.8 * 1023 * 0x1p20), [](auto& i) ARM3R_INLINE_LAMBDA { i = i << 32; });
     for (int i = 0; i < 2; ++i) {
         const T ratio = x / ((y * y) * (y * y) * y);

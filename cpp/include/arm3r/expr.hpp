@@ -15,10 +15,29 @@
 namespace arm3r {
 
 enum class Op {
-    constant, input, select,
-    add, subtract, multiply, divide, negate, sqrt, abs, min, max, copysign, sine, cosine, tanh, atan2,
-    less, less_equal, equal,
-    logical_and, logical_or, logical_not
+    constant,
+    input,
+    select,
+    add,
+    subtract,
+    multiply,
+    divide,
+    negate,
+    sqrt,
+    abs,
+    min,
+    max,
+    copysign,
+    sine,
+    cosine,
+    tanh,
+    atan2,
+    less,
+    less_equal,
+    equal,
+    logical_and,
+    logical_or,
+    logical_not
 };
 
 // One operation on the results of earlier nodes; unused operands are -1.

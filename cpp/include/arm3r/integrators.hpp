@@ -11,15 +11,18 @@
 
 namespace arm3r {
 
-template <class T, std::size_t N> using State = std::array<T, N>;
+template <class T, std::size_t N>
+using State = std::array<T, N>;
 
 // The solution within a step: y(theta), theta = (t - t0)/h in [0, 1], a polynomial of degree 4 (5.2) or 3 (5.1).
-template <class T, std::size_t N> struct Interpolant {
+template <class T, std::size_t N>
+struct Interpolant {
     T t0, h;
     std::array<State<T, N>, 5> c;
 
     // One component, at one instant or at several side by side.
-    template <class S> ARM3R_INLINE S component(std::size_t i, const S& theta) const {
+    template <class S>
+    ARM3R_INLINE S component(std::size_t i, const S& theta) const {
         const S rest = 1.0 - theta;
         return c[0][i] + theta * (c[1][i] + rest * (c[2][i] + theta * (c[3][i] + rest * c[4][i])));
     }
@@ -33,7 +36,8 @@ template <class T, std::size_t N> struct Interpolant {
 
 // Cubic Hermite from both ends of a step: the first four coefficients of either method.
 template <class T, std::size_t N>
-Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0, const State<T, N>& y1, const State<T, N>& f1) {
+Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0, const State<T, N>& y1,
+                          const State<T, N>& f1) {
     Interpolant<T, N> inside{t, h, {}};
     for (std::size_t i = 0; i < N; ++i) {
         const T difference = y1[i] - y0[i];
@@ -64,29 +68,33 @@ ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, 
 }
 
 // Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step.
-template <class T, std::size_t N, std::size_t Norm> struct Dopri5 {
-    State<T, N> y1, f1;          // the end of the step
+template <class T, std::size_t N, std::size_t Norm>
+struct Dopri5 {
+    State<T, N> y1, f1;            // the end of the step
     std::array<State<T, N>, 6> k;  // k[0] = f0 .. k[5]
 
-    template <class F> void step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
+    template <class F>
+    void step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
         State<T, N> s;
         k[0] = f0;
         for (std::size_t i = 0; i < N; ++i) s[i] = y[i] + h * (1.0 / 5 * k[0][i]);
         f(t + 1.0 / 5 * h, s, k[1]);
         for (std::size_t i = 0; i < N; ++i) s[i] = y[i] + h * (3.0 / 40 * k[0][i] + 9.0 / 40 * k[1][i]);
         f(t + 3.0 / 10 * h, s, k[2]);
-        for (std::size_t i = 0; i < N; ++i) s[i] = y[i] + h * (44.0 / 45 * k[0][i] - 56.0 / 15 * k[1][i] + 32.0 / 9 * k[2][i]);
+        for (std::size_t i = 0; i < N; ++i)
+            s[i] = y[i] + h * (44.0 / 45 * k[0][i] - 56.0 / 15 * k[1][i] + 32.0 / 9 * k[2][i]);
         f(t + 4.0 / 5 * h, s, k[3]);
         for (std::size_t i = 0; i < N; ++i)
-            s[i] = y[i] + h * (19372.0 / 6561 * k[0][i] - 25360.0 / 2187 * k[1][i] + 64448.0 / 6561 * k[2][i] - 212.0 / 729 * k[3][i]);
+            s[i] = y[i] + h * (19372.0 / 6561 * k[0][i] - 25360.0 / 2187 * k[1][i] + 64448.0 / 6561 * k[2][i] -
+                               212.0 / 729 * k[3][i]);
         f(t + 8.0 / 9 * h, s, k[4]);
         for (std::size_t i = 0; i < N; ++i)
-            s[i] = y[i] + h * (9017.0 / 3168 * k[0][i] - 355.0 / 33 * k[1][i] + 46732.0 / 5247 * k[2][i] + 49.0 / 176 * k[3][i] -
-                               5103.0 / 18656 * k[4][i]);
+            s[i] = y[i] + h * (9017.0 / 3168 * k[0][i] - 355.0 / 33 * k[1][i] + 46732.0 / 5247 * k[2][i] +
+                               49.0 / 176 * k[3][i] - 5103.0 / 18656 * k[4][i]);
         f(t + h, s, k[5]);
         for (std::size_t i = 0; i < N; ++i)
-            y1[i] = y[i] + h * (35.0 / 384 * k[0][i] + 500.0 / 1113 * k[2][i] + 125.0 / 192 * k[3][i] - 2187.0 / 6784 * k[4][i] +
-                                11.0 / 84 * k[5][i]);
+            y1[i] = y[i] + h * (35.0 / 384 * k[0][i] + 500.0 / 1113 * k[2][i] + 125.0 / 192 * k[3][i] -
+                                2187.0 / 6784 * k[4][i] + 11.0 / 84 * k[5][i]);
         f(t + h, y1, f1);
     }
 
@@ -95,8 +103,8 @@ template <class T, std::size_t N, std::size_t Norm> struct Dopri5 {
     T error(const State<T, N>& y, const T& h, double rtol, double atol) const {
         T largest(0.0);
         for (std::size_t i = 0; i < Norm; ++i) {
-            const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] - 17253.0 / 339200 * k[4][i] +
-                             22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
+            const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] -
+                             17253.0 / 339200 * k[4][i] + 22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
             largest = max(largest, T(abs(e) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
         }
         return largest;
@@ -113,7 +121,8 @@ template <class T, std::size_t N, std::size_t Norm> struct Dopri5 {
 };
 
 // What to multiply the step with, so that the next error comes out a little below the tolerance (5.2).
-template <class T> T step_factor(const T& error) {
+template <class T>
+T step_factor(const T& error) {
     const T floored = max(error, T(1e-10));
     return min(T(10.0), max(T(0.2), T(0.9 / fifth_root(floored))));
 }

@@ -88,9 +88,7 @@ struct Pack {
     ARM3R_INLINE friend Mask operator==(const Pack& a, const Pack& b) { return Mask(a.v == b.v); }
     ARM3R_INLINE friend Mask operator!=(const Pack& a, const Pack& b) { return Mask(a.v != b.v); }
 
-    ARM3R_INLINE friend Pack select(const Mask& mask, const Pack& a, const Pack& b) {
-        return Pack(mask.v ? a.v : b.v);
-    }
+    ARM3R_INLINE friend Pack select(const Mask& mask, const Pack& a, const Pack& b) { return Pack(mask.v ? a.v : b.v); }
     ARM3R_INLINE friend Pack min(const Pack& a, const Pack& b) { return Pack(b.v < a.v ? b.v : a.v); }
     ARM3R_INLINE friend Pack max(const Pack& a, const Pack& b) { return Pack(a.v < b.v ? b.v : a.v); }
 
@@ -134,12 +132,14 @@ ARM3R_INLINE std::array<SinCos<double>, 2> sincos_pair(double first, double seco
 
 template <class T>
 ARM3R_INLINE std::array<SinCos<T>, 2> sincos_near_pair(const T& first_base, const SinCos<T>& at_first, const T& first,
-                                                       const T& second_base, const SinCos<T>& at_second, const T& second) {
+                                                       const T& second_base, const SinCos<T>& at_second,
+                                                       const T& second) {
     return {sincos_near(first_base, at_first, first), sincos_near(second_base, at_second, second)};
 }
 
-ARM3R_INLINE std::array<SinCos<double>, 2> sincos_near_pair(double first_base, const SinCos<double>& at_first, double first,
-                                                            double second_base, const SinCos<double>& at_second, double second) {
+ARM3R_INLINE std::array<SinCos<double>, 2> sincos_near_pair(double first_base, const SinCos<double>& at_first,
+                                                            double first, double second_base,
+                                                            const SinCos<double>& at_second, double second) {
     const SinCos<Pack<2>> bases{side_by_side(at_first.sin, at_second.sin), side_by_side(at_first.cos, at_second.cos)};
     return apart(sincos_near(side_by_side(first_base, second_base), bases, side_by_side(first, second)));
 }

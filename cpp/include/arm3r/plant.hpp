@@ -16,7 +16,8 @@ enum class Touch {
     each_stage,  // fixed steps: contact is wherever the tip is inside, asked anew at each stage
 };
 
-template <class P> struct Plant {
+template <class P>
+struct Plant {
     Arm<P> arm;
     Wall<P> wall;
     Contact<P> contact;
@@ -25,22 +26,29 @@ template <class P> struct Plant {
 };
 
 // The derivative of the state. N is motion_size for the motion alone, state_size with the books.
-template <class P, class T> class RightHandSide {
+template <class P, class T>
+class RightHandSide {
 public:
     explicit RightHandSide(const Plant<P>& plant)
-        : plant_(plant), needs_azimuth_(!plant.arm.gravity_is_vertical || !plant.controller.model.gravity_is_vertical || plant.acts_on_arm) {}
+        : plant_(plant),
+          needs_azimuth_(!plant.arm.gravity_is_vertical || !plant.controller.model.gravity_is_vertical ||
+                         plant.acts_on_arm) {}
 
     Touch touch = Touch::none;
 
     // The stages of a step are turned from the sines and cosines at the nearest point of a grid of angles (elementary.hpp,
     // sincos_near), which change so rarely that they are kept. What is kept never changes a result: it is that of the point.
-    template <std::size_t N> ARM3R_INLINE void begin_step(const State<T, N>& y) {
+    template <std::size_t N>
+    ARM3R_INLINE void begin_step(const State<T, N>& y) {
         const Vec3<T> nearest(on_grid(y[0]), on_grid(y[1]), on_grid(T(y[1] + y[2])));
-        if (all(nearest[1] == anchor_q_[1]) && all(nearest[2] == anchor_q_[2]) && (!needs_azimuth_ || all(nearest[0] == anchor_q_[0]))) return;
+        if (all(nearest[1] == anchor_q_[1]) && all(nearest[2] == anchor_q_[2]) &&
+            (!needs_azimuth_ || all(nearest[0] == anchor_q_[0])))
+            return;
         move_anchor(nearest);
     }
 
-    template <std::size_t N> ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
+    template <std::size_t N>
+    ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
         const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
         const Pose<T> p = pose_near(y);
         const Arm<P>& arm = plant_.arm;
@@ -80,16 +88,19 @@ private:
         anchor_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
     }
 
-    template <std::size_t N> ARM3R_INLINE Pose<T> pose_near(const State<T, N>& y) const {
-        const auto [second, third] = sincos_near_pair(anchor_q_[1], SinCos<T>{anchor_.S2, anchor_.C2}, y[1],
-                                                      anchor_q_[2], SinCos<T>{anchor_.S23, anchor_.C23}, T(y[1] + y[2]));
+    template <std::size_t N>
+    ARM3R_INLINE Pose<T> pose_near(const State<T, N>& y) const {
+        const auto [second, third] =
+            sincos_near_pair(anchor_q_[1], SinCos<T>{anchor_.S2, anchor_.C2}, y[1], anchor_q_[2],
+                             SinCos<T>{anchor_.S23, anchor_.C23}, T(y[1] + y[2]));
         if (!needs_azimuth_) return {T(0.0), T(1.0), second.sin, second.cos, third.sin, third.cos};
         const SinCos<T> first = sincos_near(anchor_q_[0], SinCos<T>{anchor_.S1, anchor_.C1}, y[0]);
         return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
     }
 
     ARM3R_INLINE ContactForce<T> force_at(const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd) const {
-        const Indentation<T> in = indentation(plant_.wall, wall, tip_position(plant_.arm, p), tip_velocity(plant_.arm, p, qd));
+        const Indentation<T> in =
+            indentation(plant_.wall, wall, tip_position(plant_.arm, p), tip_velocity(plant_.arm, p, qd));
         const ContactForce<T> force = contact_force(plant_.wall, plant_.contact, in);
         if (touch == Touch::pressed) return force;
         const T zero(0.0);

@@ -7,21 +7,24 @@ namespace arm3r {
 
 enum class Motion { fixed, constant, sinusoid };
 
-template <class P> struct Wall {
-    Vec3<P> point;       // m, origin of the plate's frame at t = 0
-    Vec3<P> n, e1, e2;   // unit: towards the arm, and along the plate's sides (4.1)
-    P half1, half2;      // m, half its sides; inf: half-space
-    P face_offset;       // m, of the contact face in front of the frame
+template <class P>
+struct Wall {
+    Vec3<P> point;      // m, origin of the plate's frame at t = 0
+    Vec3<P> n, e1, e2;  // unit: towards the arm, and along the plate's sides (4.1)
+    P half1, half2;     // m, half its sides; inf: half-space
+    P face_offset;      // m, of the contact face in front of the frame
     Motion motion;
-    Vec3<P> velocity;    // m/s, for constant
+    Vec3<P> velocity;               // m/s, for constant
     P amplitude, frequency, phase;  // m, Hz, rad, along n, for sinusoid
 };
 
-template <class T> struct WallState {
+template <class T>
+struct WallState {
     Vec3<T> position, velocity, acceleration;  // of the frame's origin: m, m/s, m/s^2
 };
 
-template <class P, class T> ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
+template <class P, class T>
+ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
     const T o(0.0);
     WallState<T> state{{T(wall.point[0]), T(wall.point[1]), T(wall.point[2])}, {o, o, o}, {o, o, o}};
     if (wall.motion == Motion::constant) {
@@ -47,21 +50,24 @@ template <class P, class T> ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wal
 }
 
 // A point as the plate sees it: how deep it is, how fast it sinks in, and where on the plate it is.
-template <class T> struct Indentation {
-    T depth, rate;          // m, m/s; > 0 inside (4.3), deepening (4.4)
-    T across1, across2;     // m from the centre along e1, e2
-    T slip1, slip2;         // m/s relative to the plate along e1, e2
+template <class T>
+struct Indentation {
+    T depth, rate;       // m, m/s; > 0 inside (4.3), deepening (4.4)
+    T across1, across2;  // m from the centre along e1, e2
+    T slip1, slip2;      // m/s relative to the plate along e1, e2
 };
 
 template <class P, class T>
-ARM3R_INLINE Indentation<T> indentation(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point, const Vec3<T>& velocity) {
+ARM3R_INLINE Indentation<T> indentation(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point,
+                                        const Vec3<T>& velocity) {
     const Vec3<T> x = minus(point, state.position), v = minus(velocity, state.velocity);
     const Vec3<T> n = lifted<T>(wall.n), e1 = lifted<T>(wall.e1), e2 = lifted<T>(wall.e2);
     return {wall.face_offset - dot(n, x), -dot(n, v), dot(e1, x), dot(e2, x), dot(e1, v), dot(e2, v)};
 }
 
 // Distance inside the outline, m: < 0 beside the plate (4.7).
-template <class P, class T> ARM3R_INLINE T inside_outline(const Wall<P>& wall, const Indentation<T>& in) {
+template <class P, class T>
+ARM3R_INLINE T inside_outline(const Wall<P>& wall, const Indentation<T>& in) {
     return min(T(wall.half1 - abs(in.across1)), T(wall.half2 - abs(in.across2)));
 }
 
