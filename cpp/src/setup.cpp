@@ -301,7 +301,8 @@ Arm<double> make_arm(std::span<const double> params) {
     arm.base_height = param(params, "arm.base_height");
     arm.link1 = turret_of(params);
     arm.link2 = link_of(params, "arm.link2");
-    arm.link3 = with_payload(link_of(params, "arm.link3"), param(params, "arm.payload.mass"));
+    arm.link3 = link_of(params, "arm.link3");
+    arm.payload = param(params, "arm.payload.mass");
     arm.gravity = vector_of(params, "arm.gravity");
     arm.armature = vector_of(params, "arm.armature");
     arm.damping = vector_of(params, "arm.damping");

@@ -34,7 +34,8 @@ template <class P>
 struct Arm {
     P base_height;  // m, d1
     Turret<P> link1;
-    Link<P> link2, link3;  // link 3 carries the payload (3.9)
+    Link<P> link2, link3;
+    P payload;             // kg, a point mass at the tip
     Vec3<P> gravity;       // m/s^2, base axes
     Vec3<P> armature;      // kg m^2
     Vec3<P> damping;       // N m s/rad
@@ -50,34 +51,22 @@ struct Arm {
 template <class P>
 Lumped<P> lump(const Arm<P>& arm) {  // (3.2)
     const Link<P>&l2 = arm.link2, &l3 = arm.link3;
-    const P m2_lc2_2 = l2.mass * l2.com * l2.com;
-    const P m3_lc3_2 = l3.mass * l3.com * l3.com;
-    const P m3_a2_2 = l3.mass * l2.length * l2.length;
+    const P a2 = l2.length, a3 = l3.length;
+    const P beyond_elbow = l3.mass + arm.payload;
+    const P about_elbow = l3.mass * l3.com + arm.payload * a3;
+    const P second2 = l2.mass * l2.com * l2.com + beyond_elbow * a2 * a2;
+    const P second3 = l3.mass * l3.com * l3.com + arm.payload * a3 * a3;
     return {
         .A1 = arm.link1.inertia_axial + arm.armature[0] + l2.inertia[0] + l3.inertia[0],
-        .A2 = l2.inertia[1] - l2.inertia[0] + m2_lc2_2 + m3_a2_2,
-        .A3 = l3.inertia[1] - l3.inertia[0] + m3_lc3_2,
-        .B = l3.mass * l2.length * l3.com,
-        .B2 = l2.inertia[2] + m2_lc2_2 + m3_a2_2 + arm.armature[1],
-        .B3 = l3.inertia[2] + m3_lc3_2,
+        .A2 = l2.inertia[1] - l2.inertia[0] + second2,
+        .A3 = l3.inertia[1] - l3.inertia[0] + second3,
+        .B = a2 * about_elbow,
+        .B2 = l2.inertia[2] + second2 + arm.armature[1],
+        .B3 = l3.inertia[2] + second3,
         .J3 = arm.armature[2],
-        .G2 = l2.mass * l2.com + l3.mass * l2.length,
-        .G3 = l3.mass * l3.com,
+        .G2 = l2.mass * l2.com + beyond_elbow * a2,
+        .G3 = about_elbow,
     };
-}
-
-// A point mass at the tip, folded into link 3 (3.9): exact.
-template <class P>
-Link<P> with_payload(const Link<P>& link, const P& payload) {
-    const P mass = link.mass + payload;
-    const P arm = link.length - link.com;
-    const P r = link.mass * payload / mass * arm * arm;
-    Link<P> loaded = link;
-    loaded.mass = mass;
-    loaded.com = (link.mass * link.com + payload * link.length) / mass;
-    loaded.inertia[1] = link.inertia[1] + r;
-    loaded.inertia[2] = link.inertia[2] + r;
-    return loaded;
 }
 
 // D = diag(1, -1, -1): between the slide convention and simscape, either way, for q, qd, qdd and torques (1.1).

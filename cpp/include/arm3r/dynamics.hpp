@@ -84,7 +84,7 @@ ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, ze
     const Lumped<P>& l = arm.lumped;
     const T radial = l.G2 * p.C2 + l.G3 * p.C23;
     const T up = l.G2 * p.S2 + l.G3 * p.S23;
-    const P fixed = arm.link1.mass * arm.link1.com + (arm.link2.mass + arm.link3.mass) * arm.base_height;
+    const P fixed = arm.link1.mass * arm.link1.com + (arm.link2.mass + arm.link3.mass + arm.payload) * arm.base_height;
     return -(arm.gravity[0] * p.C1 * radial + arm.gravity[1] * p.S1 * radial + arm.gravity[2] * (fixed + up));
 }
 

@@ -112,11 +112,12 @@ Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Ve
         moment[i] = plus(inertial, cross(omega, angular_momentum));
     }
 
-    // inward: f and n that the parent puts on each body, at its joint, starting from what pushes on the tip
+    // inward: f and n that the parent puts on each body, at its joint, starting from the payload and what pushes on it
     Vec3<T> push = f_on_tip;
     for (int i = 0; i < 3; ++i) push = transposed_times(bodies[i].R, push);
     const Vec3<T> tip(T(arm.link3.length), o, o);
-    Vec3<T> f(-push[0], -push[1], -push[2]);
+    const Vec3<T> of_tip = plus(acceleration, plus(cross(alpha, tip), cross(omega, cross(omega, tip))));
+    Vec3<T> f(arm.payload * of_tip[0] - push[0], arm.payload * of_tip[1] - push[1], arm.payload * of_tip[2] - push[2]);
     Vec3<T> n = cross(tip, f);
     Vec3<T> tau;
     for (int i = 2; i >= 0; --i) {
