@@ -22,7 +22,6 @@ struct arm3r_arm {
 
 namespace {
 
-constexpr double largest_angle = 1e5;     // rad
 constexpr double largest_number = 1e100;  // its square and cube are still numbers
 constexpr double least_sine = 1e-3;  // of joint 3, or of the tip's distance from joint 1's axis over the arm's length
 constexpr std::size_t most_states = std::numeric_limits<std::size_t>::max() / (18 * sizeof(double));
@@ -40,7 +39,7 @@ struct Output {
     const char* name;
 };
 
-Input joint_angles(const double* q) { return {q, 3, "q", largest_angle}; }
+Input joint_angles(const double* q) { return {q, 3, "q", sincos_limit}; }
 Input numbers(const double* data, const char* name) { return {data, 3, name, largest_number}; }
 
 Error bad_value(const Input& in, std::size_t at) {

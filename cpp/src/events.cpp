@@ -21,8 +21,7 @@ bool is_narrow(const Inside& inside, double a, double b) {
 Mode ContactWatch::mode_at_start(const FullState& y) const {
     if (!plant_.has_wall) return Mode::free;
     const Pose<double> p = pose(angles(y));
-    const Indentation<double> in = indentation(plant_.wall, wall_at(plant_.wall, 0.0), tip_position(plant_.arm, p),
-                                               tip_velocity(plant_.arm, p, rates(y)));
+    const Indentation<double> in = tip_indentation(plant_, wall_at(plant_.wall, 0.0), p, rates(y));
     if (!(in.depth > 0)) return Mode::free;
     return inside_outline(plant_.wall, in) >= 0 ? Mode::contact : Mode::embedded;
 }
@@ -31,8 +30,7 @@ ContactWatch::Look ContactWatch::look(const Inside& inside, double theta) const 
     const FullState y = inside(theta);
     const Pose<double> p = pose(angles(y));
     const WallState<double> wall = wall_at(plant_.wall, inside.t0 + theta * inside.h);
-    const Indentation<double> in =
-        indentation(plant_.wall, wall, tip_position(plant_.arm, p), tip_velocity(plant_.arm, p, rates(y)));
+    const Indentation<double> in = tip_indentation(plant_, wall, p, rates(y));
     const double half1 = plant_.wall.half1, half2 = plant_.wall.half2;
     return {{in.depth, half1 - in.across1, half1 + in.across1, half2 - in.across2, half2 + in.across2},
             {in.rate, -in.slip1, in.slip1, -in.slip2, in.slip2}};

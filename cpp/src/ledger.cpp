@@ -38,8 +38,10 @@ bool Ledger::is_strict() const {
 std::optional<std::string> Ledger::complaint(const Run& run) const {
     const double limit = 100 * tolerance() * exchanged_ + 1e-12 * held_;
     if (run.energy_residual_max <= limit) return std::nullopt;
+    const char* const advice =
+        setup_.solver.method == Solver::dopri5 ? "tighten solver.rtol" : "take a smaller solver.step";
     return "the energy balance does not close: " + shortest(run.energy_residual_max) +
-           " J are left over, the limit is " + shortest(limit) + " J";
+           " J are left over, the limit is " + shortest(limit) + " J; " + advice;
 }
 
 }  // namespace arm3r

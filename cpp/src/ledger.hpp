@@ -1,6 +1,9 @@
 #pragma once
 // The energy books of a run, and what they say about it; docs/model.md (4.9).
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -33,8 +36,10 @@ private:
     double exchanged_ = 0, held_ = 0;  // J, the largest flow and the largest stock of the run
 };
 
+// A residual that is not a number is the largest of all.
 inline void note_residual(Run& run, double residual) {
-    run.energy_residual_max = std::max(run.energy_residual_max, std::abs(residual));
+    const double size = std::isnan(residual) ? std::numeric_limits<double>::infinity() : std::abs(residual);
+    run.energy_residual_max = std::max(run.energy_residual_max, size);
 }
 
 }  // namespace arm3r

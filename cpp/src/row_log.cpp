@@ -29,7 +29,7 @@ RowLog::RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {
                                         .allowed = "at most " + shortest(rounded(most)),
                                         .hint = "log less often"}});
     run.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
-    while (time_of(run.capacity) < last_time()) run.capacity += 1;
+    while (stands_before(run.capacity, setup.stop)) run.capacity += 1;
     run.capacity += 1;  // the end
     run.data = allocate_rows(run.capacity * run.columns.size());
 }

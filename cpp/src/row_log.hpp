@@ -13,9 +13,8 @@ public:
     // All rows before `until`, from the solution within the step, while go_on() holds.
     template <class GoOn>
     void log_until(double until, const Scene& scene, GoOn go_on) {
-        const double end = std::min(until, last_time());
-        while (time_of(run_.rows + together - 1) < end && go_on()) log_together(scene);
-        while (time_of(run_.rows) < end && go_on()) {
+        while (stands_before(run_.rows + together - 1, until) && go_on()) log_together(scene);
+        while (stands_before(run_.rows, until) && go_on()) {
             const double t = time_of(run_.rows), theta = (t - scene.inside.t0) / scene.inside.h;
             log(scene, t, scene.inside(theta), theta);
         }
@@ -23,14 +22,19 @@ public:
 
     void log(const Scene& scene, double t, const FullState& y, double theta);
 
+    // Of the last row, s; 0 where there is none.
+    double last_time() const { return run_.rows ? run_.data[run_.rows - 1] : 0; }
+
     // When a link other than at its tip was first behind the wall, s; < 0: never.
     double link_behind_wall_since() const { return link_behind_wall_since_; }
 
 private:
     double time_of(std::size_t row) const { return double(row) * setup_.log_every; }
-    double last_time() const {
-        return setup_.stop - 1e-9 * setup_.log_every;
-    }  // the end of the run is a row of its own
+    // The end of the run is a row of its own; so is its beginning, however long the interval.
+    bool stands_before(std::size_t row, double until) const {
+        const double t = time_of(row);
+        return t < until && (row == 0 || t < setup_.stop - 1e-9 * setup_.log_every);
+    }
     void log_together(const Scene& scene);
     void note_link_behind_wall(double t);
 

@@ -35,17 +35,11 @@ ARM3R_INLINE std::array<Vec3<double>, 4> tip_around(const Arm<double>& arm, cons
 
 template <class T>
 ARM3R_INLINE Vec3<T> differentiated_tip(const Arm<double>& arm, const Inside& inside, const T& theta) {  // (5.4)
-    const double d = std::max(inside.h * stencil, shortest_stencil);
+    const double d = std::max(inside.h * stencil, std::min(shortest_stencil, 0.25 * inside.h));
     const std::array<Vec3<T>, 4> tip = tip_around(arm, inside, theta, d / inside.h);
     Vec3<T> v;
     for (int i = 0; i < 3; ++i) v[i] = (8.0 * (tip[2][i] - tip[1][i]) - (tip[3][i] - tip[0][i])) / (12 * d);
     return v;
-}
-
-template <class T>
-ARM3R_INLINE Indentation<T> indentation_of(const Plant<double>& plant, const WallState<T>& wall, const Pose<T>& p,
-                                           const Vec3<T>& qd) {
-    return indentation(plant.wall, wall, tip_position(plant.arm, p), tip_velocity(plant.arm, p, qd));
 }
 
 template <class T>
@@ -98,7 +92,7 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, sta
     row.link_behind_wall = o;
     if (plant.has_wall) {
         wall = wall_at(plant.wall, t);
-        in = indentation_of(plant, wall, p, qd);
+        in = tip_indentation(plant, wall, p, qd);
         force = force_of(plant, in, scene.mode);
         if (scene.mode == Mode::contact) touches = select(in.depth > o, T(1.0), o);
         row.link_behind_wall = link_behind(plant, wall, p, touches);
@@ -144,7 +138,7 @@ Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode
     const Pose<double> p = pose(angles(y));
     double stored = 0;
     if (plant.acts_on_arm && mode == Mode::contact)
-        stored = force_of(plant, indentation_of(plant, wall_at(plant.wall, t), p, rates(y)), mode).stored;
+        stored = force_of(plant, tip_indentation(plant, wall_at(plant.wall, t), p, rates(y)), mode).stored;
     return {kinetic_energy(plant.arm, p, rates(y)), potential_energy(plant.arm, p), stored};
 }
 

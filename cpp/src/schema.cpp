@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <map>
 
 namespace arm3r {
@@ -10,7 +11,7 @@ namespace {
 
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 constexpr Bounds any_position{-1e6, 1e6};
 constexpr Bounds not_negative{0, 1e12};

@@ -29,6 +29,9 @@ struct Setup {
 Arm<double> make_arm(std::span<const double> params);
 Setup make_setup(std::span<const double> params);
 
+// The same parameters with whatever controller.model says in the place of the plant's arm.
+std::vector<double> with_model(std::span<const double> params);
+
 // What no single key can break: the mass matrix over the whole workspace (3.10), inertia inequalities, the start.
 std::vector<Problem> check_setup(std::span<const double> params);
 

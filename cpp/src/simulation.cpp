@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "error.hpp"
 #include "events.hpp"
@@ -15,9 +16,8 @@
 namespace arm3r {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double largest_angle = 1e5;     // rad: beyond it sincos is no longer exact to the last bits
 constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 constexpr std::size_t most_events = 4096;
 constexpr double most_fixed_steps = 1e9;
@@ -74,7 +74,9 @@ public:
     Run run() {
         start();
         while (run_.outcome == ARM3R_RUN_OK && t_ < setup_.stop) {
-            if (steps_taken() >= setup_.solver.max_steps) end(ARM3R_RUN_BUDGET, "solver.max_steps is used up");
+            if (steps_taken() >= setup_.solver.max_steps)
+                end(ARM3R_RUN_BUDGET, "solver.max_steps is used up at t = " + shortest(t_) +
+                                          " s; stiff friction or contact, or a tolerance too tight?");
             else if (poll()) setup_.solver.method == Solver::dopri5 ? adaptive_step() : fixed_step();
         }
         finish();
@@ -102,7 +104,11 @@ private:
 
     // What is stored in the contact is lost when the tip leaves it over an edge (4.9).
     void change_mode(double t, const FullState& y, const Crossing& crossing) {
-        if (crossing.over_edge) y_[8] += energies(setup_.plant, t, y, mode_).contact;
+        if (crossing.over_edge) {
+            const double lost = energies(setup_.plant, t, y, mode_).contact;
+            y_[8] += lost;
+            inside_.c[0][8] += lost;  // for the rows of this step that are still to come
+        }
         if (crossing.next == Mode::contact) record(Event::make, t, y);
         if (mode_ == Mode::contact) record(Event::brk, t, y);
         mode_ = crossing.next;
@@ -122,7 +128,11 @@ private:
     // ---- steps
 
     void start() {
-        if (mode_ == Mode::contact) record(Event::make, 0.0, y_);
+        if (mode_ == Mode::contact) {
+            record(Event::make, 0.0, y_);
+            note_depth(
+                tip_indentation(setup_.plant, wall_at(setup_.plant.wall, 0.0), pose(angles(y_)), rates(y_)).depth);
+        }
         derive();
         h_ = first_step();
         FullState ahead;  // what stands in for the solution when there is no step
@@ -160,9 +170,18 @@ private:
         return std::min(100 * trial, by_slope);
     }
 
-    double largest_step() const {
+    // In which time the fastest link angle turns by 45 degrees, at its present rate and acceleration. Some motions have no
+    // error at any step, a spin without gravity for one; the wall and the rows still want to see them turn.
+    double eighth_of_a_turn() const {
+        const auto fastest = [](const FullState& v) {
+            return std::max({std::abs(v[3]), std::abs(v[4]), std::abs(v[4] + v[5])});
+        };
+        return std::min(0.25 * pi / fastest(y_), std::sqrt(0.5 * pi / fastest(f_)));
+    }
+
+    double largest_step() const {  // (5.2)
         const Plant<double>& plant = setup_.plant;
-        double h = setup_.solver.max_step;
+        double h = std::min(setup_.solver.max_step, eighth_of_a_turn());
         if (plant.has_wall && plant.wall.motion == Motion::sinusoid) h = std::min(h, 1 / (16 * plant.wall.frequency));
         if (plant.acts_on_arm && mode_ == Mode::contact && plant.contact.stiffness[0] > 0)
             h = std::min(h, 0.25 * pi *
@@ -177,8 +196,7 @@ private:
         const bool last = wanted >= rest;
         const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // no sliver of a step at the end
         if (h < 16 * epsilon * std::max(t_, 1e-3) && !last) {
-            end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(t_) +
-                                             " s: the motion changes faster than the clock resolves");
+            collapse(h);
             return;
         }
         stepper_.step(rhs_, t_, y_, f_, h);
@@ -190,7 +208,6 @@ private:
             reject(h, error);
             return;
         }
-        bad_trials_ = 0;
         inside_ = stepper_.interpolant(t_, y_, h);
         double deepest = 0;
         const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, deepest);
@@ -219,13 +236,15 @@ private:
     void reject(double h, double error) {
         run_.steps.rejected += 1;
         just_rejected_ = true;
-        if (std::isfinite(error)) {
-            h_ = h * std::min(1.0, step_factor(error));
-            return;
-        }
-        h_ = 0.1 * h;
-        if (++bad_trials_ > most_bad_trials)
-            end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(t_) + " s");
+        trial_was_finite_ = std::isfinite(error);
+        h_ = trial_was_finite_ ? h * std::min(1.0, step_factor(error)) : 0.1 * h;
+    }
+
+    void collapse(double h) {
+        if (trial_was_finite_)
+            end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(t_) +
+                                             " s: the motion changes faster than the clock resolves");
+        else end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(t_) + " s");
     }
 
     void fixed_step() {
@@ -278,7 +297,7 @@ private:
         t_ = t1;
         run_.steps.accepted += 1;
         for (int i = 0; i < 3; ++i)
-            if (std::abs(y_[i]) > largest_angle)
+            if (std::abs(y_[i]) > sincos_limit)
                 end(ARM3R_RUN_DIVERGED,
                     "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(t_) + " s");
         if (!well_conditioned())
@@ -338,7 +357,7 @@ private:
         if (rows_.link_behind_wall_since() >= 0)
             run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
                                     shortest(rows_.link_behind_wall_since()) + " s on; only the tip feels the wall");
-        run_.t_end = t_;
+        run_.t_end = std::max(t_, rows_.last_time());
         run_.elapsed_s = seconds_since(begun_);
     }
 
@@ -360,7 +379,7 @@ private:
     Inside inside_;     // the solution within the last step
     double theta_ = 0;  // where t_ lies in it
     bool just_rejected_ = false;
-    int bad_trials_ = 0;
+    bool trial_was_finite_ = true;  // the last one that was rejected
 
     unsigned polls_ = 0;
     double next_report_ = 0;

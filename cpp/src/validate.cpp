@@ -27,7 +27,8 @@ bool within(const Key& key, double value) {
 
 // How many of a key's places must hold a number, given its form and the first of them.
 std::size_t expected_count(const Key& key, std::span<const double> params) {
-    if (key.form == Form::number_or_vector && std::isnan(params[key.offset + 1])) return 1;
+    if (key.form == Form::number_or_vector && std::isnan(params[key.offset + 1]) && std::isnan(params[key.offset + 2]))
+        return 1;
     if (key.form == Form::by_choice) return choice_of(params, key.when_key) == key.when.front() ? 1 : key.size;
     return key.size;
 }
@@ -84,20 +85,58 @@ void check_numbers(const Key& key, std::span<const double> params, std::vector<P
     }
 }
 
-// A slender link has no volume to take its mass from.
-void check_slender(std::span<const double> params, std::vector<Problem>& problems) {
-    for (const char* link : {"arm.link1", "arm.link2", "arm.link3"}) {
-        const std::string mass = std::string(link) + ".mass";
-        if (choice_of(params, std::string(link) + ".shape") == "slender" && std::isnan(param(params, mass))) {
-            Problem problem = missing(*find_key(mass), 1);
-            problem.hint = "a slender link has no density: give its mass";
-            problems.push_back(problem);
-        }
+bool is_choice(const Key& key) {
+    return key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section;
+}
+
+void need_number(std::span<const double> params, const std::string& path, const char* hint,
+                 std::vector<Problem>& problems) {
+    if (!std::isnan(param(params, path))) return;
+    problems.push_back(missing(*find_key(path), 1));
+    problems.back().hint = hint;
+}
+
+// What a shape cannot give must be given.
+void check_shapes(std::span<const double> params, std::vector<Problem>& problems) {
+    for (const char* link : {"arm.link1", "arm.link2", "arm.link3"})
+        if (choice_of(params, std::string(link) + ".shape") == "slender")
+            need_number(params, std::string(link) + ".mass", "a slender link has no density: give its mass", problems);
+    if (choice_of(params, "arm.link1.shape") == "explicit")
+        for (const char* key : {"arm.link1.mass", "arm.link1.com", "arm.link1.inertia_axial"})
+            need_number(params, key, "shape explicit takes nothing from a shape", problems);
+}
+
+void check_inertia(std::span<const double> params, const std::string& path, std::vector<Problem>& problems) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double own = param(params, path, i),
+                     others = param(params, path, (i + 1) % 3) + param(params, path, (i + 2) % 3);
+        if (own > others * (1 + 1e-12))
+            problems.push_back({.code = "scenario.inertia",
+                                .path = path,
+                                .message = "no body has one principal inertia above the sum of the other two",
+                                .got = shortest(own) + " > " + shortest(others),
+                                .allowed = "Ix <= Iy + Iz, and so on in turn",
+                                .hint = ""});
     }
 }
 
-bool is_choice(const Key& key) {
-    return key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section;
+// The rules of `arm`, its keys and what holds between them.
+std::vector<Problem> arm_problems(std::span<const double> params) {
+    std::vector<Problem> problems;
+    for (const Key& key : schema())
+        if (key.path.starts_with("arm.") && !is_choice(key) && key_exists(key, params))
+            check_numbers(key, params, problems);
+    check_shapes(params, problems);
+    check_inertia(params, "arm.link2.inertia", problems);
+    check_inertia(params, "arm.link3.inertia", problems);
+    return problems;
+}
+
+// The controller's copy must be an arm too: what is not given there is the plant's.
+std::vector<Problem> model_problems(std::span<const double> params) {
+    std::vector<Problem> problems = arm_problems(with_model(params));
+    for (Problem& problem : problems) problem.path.replace(0, std::string_view("arm").size(), "controller.model");
+    return problems;
 }
 
 }  // namespace
@@ -114,9 +153,12 @@ std::vector<Problem> validate(std::span<const double> params) {
     for (const Key& key : schema())
         if (is_choice(key)) check_choice(key, params, problems);
     if (!problems.empty()) return problems;
+    problems = arm_problems(params);
     for (const Key& key : schema())
-        if (!is_choice(key) && key_exists(key, params)) check_numbers(key, params, problems);
-    check_slender(params, problems);
+        if (!key.path.starts_with("arm.") && !is_choice(key) && key_exists(key, params))
+            check_numbers(key, params, problems);
+    if (problems.empty() && choice_of(params, "controller.type") == "gravity_compensation")
+        problems = model_problems(params);
     return problems.empty() ? check_setup(params) : problems;
 }
 

@@ -14,7 +14,10 @@ ARM3R_INLINE T nearest_integer(const T& x) {
     return (x + round_magic) - round_magic;
 }
 
-// For |x| <= 1e5 rad. The angle is n quarter turns and a rest r within pi/4. pi/2 stands in three parts of 37, 37 and
+// Beyond this many radians the reduction of sincos loses digits: a run ends there, a function refuses.
+inline constexpr double sincos_limit = 1e5;
+
+// For |x| <= sincos_limit. The angle is n quarter turns and a rest r within pi/4. pi/2 stands in three parts of 37, 37 and
 // 53 bits, so that n times the first two is exact. The quarter turns enter as an exact rotation by (cos, sin) of
 // n pi/2, which are 0 or +-1. The shape of the sums keeps the chain of dependent operations short.
 template <Lanewise T>

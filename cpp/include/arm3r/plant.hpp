@@ -25,6 +25,13 @@ struct Plant {
     bool has_wall = false, acts_on_arm = false;
 };
 
+// The tip as the wall sees it (4.3), (4.4), (4.7).
+template <class P, class T>
+ARM3R_INLINE Indentation<T> tip_indentation(const Plant<P>& plant, const WallState<T>& wall, const Pose<T>& p,
+                                            const Vec3<T>& qd) {
+    return indentation(plant.wall, wall, tip_position(plant.arm, p), tip_velocity(plant.arm, p, qd));
+}
+
 // The derivative of the state. N is motion_size for the motion alone, state_size with the books.
 template <class P, class T>
 class RightHandSide {
@@ -99,8 +106,7 @@ private:
     }
 
     ARM3R_INLINE ContactForce<T> force_at(const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd) const {
-        const Indentation<T> in =
-            indentation(plant_.wall, wall, tip_position(plant_.arm, p), tip_velocity(plant_.arm, p, qd));
+        const Indentation<T> in = tip_indentation(plant_, wall, p, qd);
         const ContactForce<T> force = contact_force(plant_.wall, plant_.contact, in);
         if (touch == Touch::pressed) return force;
         const T zero(0.0);
