@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import statistics
 import sys
 import tempfile
 import time
@@ -44,8 +45,7 @@ def ours(runs: int, out: Path) -> dict[str, list[float]]:
         parts["without -o"].append(timed(EXECUTABLE, "run", SCENARIO)[0])
         parts["start"].append(timed(EXECUTABLE, "--version")[0])
         parts["loop"].append(json.loads(summary)["elapsed_s"] * 1e3)
-    slow_beside_slow = zip(sorted(parts["whole"]), sorted(parts["without -o"]), strict=True)
-    return parts | {"text": [whole - silent for whole, silent in slow_beside_slow]}
+    return parts | {"text": [statistics.median(parts["whole"]) - statistics.median(parts["without -o"])]}
 
 
 def mujocos(out: Path) -> dict[str, list[float]]:

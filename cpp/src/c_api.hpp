@@ -23,6 +23,9 @@ namespace arm3r {
 int32_t remember(const Error& error) noexcept;
 int32_t remember(arm3r_status status, const char* message) noexcept;
 
+inline constexpr const char* out_of_memory =
+    "error[memory]: there is not enough memory; of a run most goes to its rows (time.log_every)";
+
 // The body of a C function: nothing thrown leaves it.
 template <class Body>
 int32_t guard(Body&& body) noexcept {
@@ -32,7 +35,7 @@ int32_t guard(Body&& body) noexcept {
     } catch (const Error& error) {
         return remember(error);
     } catch (const std::bad_alloc&) {
-        return remember(ARM3R_E_MEMORY, "out of memory");
+        return remember(ARM3R_E_MEMORY, out_of_memory);
     } catch (const std::exception& error) {
         return remember(ARM3R_E_INTERNAL, error.what());
     } catch (...) {

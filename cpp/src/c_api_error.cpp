@@ -64,7 +64,7 @@ int32_t remember(const Error& error) noexcept {
     try {
         last = {error.what(), json(error)};
     } catch (...) {
-        last.fixed_message = "out of memory while reporting a failure";
+        last.fixed_message = out_of_memory;
     }
     return error.status();
 }
@@ -122,7 +122,7 @@ const char* arm3r_error_message(void) { return last.fixed_message ? last.fixed_m
 
 const char* arm3r_error_json(void) {
     if (last.fixed_message)
-        return "{\"status\": -402, \"code\": \"memory\", \"message\": \"out of memory\", \"problems\": []}";
+        return "{\"status\": -402, \"code\": \"memory\", \"message\": \"not enough memory\", \"problems\": []}";
     return last.json.empty() ? "{\"status\": 0, \"code\": \"\", \"message\": \"\", \"problems\": []}"
                              : last.json.c_str();
 }

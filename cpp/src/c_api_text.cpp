@@ -10,6 +10,8 @@
 #include "reference.hpp"
 #include "results.hpp"
 #include "schema.hpp"
+#include "setup.hpp"
+#include "text.hpp"
 
 using namespace arm3r;
 
@@ -43,6 +45,13 @@ void save(const arm3r_run& run, const std::string& path) {
     summary.close();
     csv.publish();
     summary.publish();
+}
+
+void set(arm3r_scenario* scenario, const std::string& path, const std::string& value, const std::string& origin) {
+    Scenario edited = scenario->scenario;
+    arm3r::set(edited, path, value, origin);
+    scenario->scenario = std::move(edited);
+    scenario->changed();
 }
 
 // A text that is made once for the whole process; "" where there is no memory for it.
@@ -104,10 +113,16 @@ int32_t arm3r_scenario_set(arm3r_scenario* scenario, const char* path, size_t pa
                            size_t value_size) {
     return guard([&] {
         need(scenario, "scenario");
-        Scenario edited = scenario->scenario;
-        set(edited, text_in(path, path_size, "path"), text_in(value, value_size, "value", any_size));
-        scenario->scenario = std::move(edited);
-        scenario->changed();
+        set(scenario, text_in(path, path_size, "path"), text_in(value, value_size, "value", any_size), "set");
+    });
+}
+
+int32_t arm3r_scenario_set_from(arm3r_scenario* scenario, const char* path, size_t path_size, const char* value,
+                                size_t value_size, const char* file, size_t file_size) {
+    return guard([&] {
+        need(scenario, "scenario");
+        set(scenario, text_in(path, path_size, "path"), text_in(value, value_size, "value", any_size),
+            text_in(file, file_size, "file"));
     });
 }
 
@@ -146,6 +161,20 @@ int32_t arm3r_scenario_yaml(const arm3r_scenario* scenario, int32_t annotate, co
     });
 }
 
+int32_t arm3r_scenario_warnings(const arm3r_scenario* scenario, const char** text) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(text, "text");
+        const Resolved& resolved = scenario->resolved();
+        *text = scenario->texts.get("warnings", [&] {
+            const std::string place = visible(scenario->scenario.file, 4096) + ": warning: ";
+            std::string lines;
+            for (const std::string& slip : likely_slips(resolved.params)) lines += place + slip + "\n";
+            return lines;
+        });
+    });
+}
+
 int32_t arm3r_scenario_params(const arm3r_scenario* scenario, double* params, size_t count) {
     return guard([&] {
         need(scenario, "scenario");
@@ -168,7 +197,7 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         handle->name = resolved.name;
         handle->scenario = to_yaml(resolved.tree, false);
         handle->run = simulate_located(scenario->scenario, resolved, chosen);
-        handle->checks = evaluate(resolved.checks, handle->run, param(resolved.params, "time.log_every"));
+        handle->checks = evaluate(resolved.checks, handle->run, resolved.params);
         *run = handle.release();
     });
 }
@@ -220,6 +249,15 @@ int32_t arm3r_run_save(const arm3r_run* run, const char* path, size_t path_size)
 
 int32_t arm3r_output_probe(const char* path, size_t path_size) {
     return guard([&] { probe_output(text_in(path, path_size, "path")); });
+}
+
+int32_t arm3r_output_summary(const char* path, size_t path_size, const char** summary) {
+    return guard([&] {
+        need(summary, "summary");
+        thread_local std::string last;
+        last = summary_path(text_in(path, path_size, "path"));
+        *summary = last.c_str();
+    });
 }
 
 // ---- reference

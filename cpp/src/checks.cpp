@@ -75,19 +75,23 @@ private:
                     "{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}");
             return false;
         }
-        int found = 0;
+        Words found;
         for (std::size_t i = 0; i < subjects.size(); ++i) {
             if (!node_.find(subjects[i])) continue;
             check.subject = static_cast<Check::Subject>(i);
-            ++found;
+            found.push_back(subjects[i]);
         }
-        if (found == 1) return true;
+        if (found.size() == 1) return true;
+        if (found.size() > 1) {
+            problem(node_.mark, "", "subject", "only one subject may stand in a check", listed(found, " and "), "",
+                    "make a check of each");
+            return false;
+        }
         std::string hint;
         for (const Node& child : node_.children)
             if (hint.empty() && !is_in(limits, child.key) && child.key != "name")
                 hint = did_you_mean(child.key, subjects);
-        problem(node_.mark, "", "subject", found ? "a check has one subject" : "a check needs a subject", "",
-                "one of " + listed(subjects), hint);
+        problem(node_.mark, "", "subject", "a check needs a subject", "", "one of " + listed(subjects), hint);
         return false;
     }
 
@@ -96,7 +100,7 @@ private:
         for (const Node& child : node_.children)
             if (!is_in(keys, child.key))
                 problem(child.key_mark, child.key, "unknown_key",
-                        "a check of a " + subjects[subject] + " has no such key", "", listed(keys),
+                        "a check with `" + subjects[subject] + "` has no such key", "", listed(keys),
                         did_you_mean(child.key, keys));
     }
 
@@ -189,6 +193,10 @@ private:
         if (has_equals == has_range)
             problem(node_.mark, "", "limit", has_equals ? "has `equals` and `below` or `above`" : "needs a limit", "",
                     "equals (with abs, rel), or below, above");
+        if (check.above && check.below && *check.above >= *check.below)
+            problem(node_.find("below")->mark, "below", "limit",
+                    "no value is above " + shortest(*check.above) + " and below " + shortest(*check.below), "", "",
+                    "exchange the two, or make two checks");
         for (const char* key : {"abs", "rel"})
             if (const Node* node = node_.find(key); node && !has_equals)
                 problem(node->key_mark, key, "limit", "a tolerance goes with `equals`");
@@ -258,6 +266,8 @@ std::vector<double> values_of(const Check& check, const Run& run) {
     return values;
 }
 
+std::string ended_text(const Run& run) { return "the run ended at t = " + shortest(run.t_end) + " s"; }
+
 Measured measure_column(const Check& check, const Run& run, double log_every) {
     const std::vector<double> values = values_of(check, run);
     if (values.empty()) return {{}, "the run has no rows"};
@@ -265,7 +275,7 @@ Measured measure_column(const Check& check, const Run& run, double log_every) {
     const std::span<const double> t = column_of(run, "t");
     const auto row = std::lower_bound(t.begin(), t.end(), check.at - 1e-9 * log_every);
     if (row == t.end() || *row - check.at > 1e-9 * log_every)
-        return {{}, "no row at t = " + shortest(check.at) + " s; the run ended at " + shortest(run.t_end) + " s"};
+        return {{}, "no row at t = " + shortest(check.at) + " s; " + ended_text(run)};
     return {values[static_cast<std::size_t>(row - t.begin())], ""};
 }
 
@@ -276,13 +286,19 @@ std::vector<double> event_times(const Run& run, const std::string& type) {
     return times;
 }
 
-Measured measure(const Check& check, const Run& run, double log_every) {
-    if (check.subject == Check::column) return measure_column(check, run, log_every);
+// Whether only the whole run can tell.
+bool needs_all(const Check& check) {
+    return check.subject == Check::column ? !check.of.empty() : check.subject != Check::event;
+}
+
+Measured measure(const Check& check, const Run& run, std::span<const double> params) {
+    if (needs_all(check) && run.t_end < param(params, "time.stop")) return {{}, ended_text(run)};
+    if (check.subject == Check::column) return measure_column(check, run, param(params, "time.log_every"));
     if (check.subject == Check::summary) return {summary_number(run, check.what), ""};
     const std::vector<double> times = event_times(run, check.what);
     if (check.subject == Check::count) return {static_cast<double>(times.size()), ""};
     if (check.index < times.size()) return {times[check.index], ""};
-    return {{}, "there were " + std::to_string(times.size()) + " " + check.what + " events"};
+    return {{}, (times.size() == 1 ? "there was " : "there were ") + counted(times.size(), check.what + " event")};
 }
 
 std::string limit_text(const Check& check) {
@@ -308,8 +324,8 @@ bool holds(const Check& check, double value) {
     return (!check.below || value < *check.below) && (!check.above || value > *check.above);
 }
 
-CheckResult evaluate_one(const Check& check, const Run& run, double log_every) {
-    const Measured measured = measure(check, run, log_every);
+CheckResult evaluate_one(const Check& check, const Run& run, std::span<const double> params) {
+    const Measured measured = measure(check, run, params);
     CheckResult result{.name = check.name,
                        .passed = measured.value && holds(check, *measured.value),
                        .value = measured.value,
@@ -339,9 +355,9 @@ std::vector<Check> read_checks(const Node& list, std::span<const double> params,
     return checks;
 }
 
-std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, double log_every) {
+std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, std::span<const double> params) {
     std::vector<CheckResult> results;
-    for (const Check& check : checks) results.push_back(evaluate_one(check, run, log_every));
+    for (const Check& check : checks) results.push_back(evaluate_one(check, run, params));
     return results;
 }
 

@@ -37,6 +37,7 @@ struct CheckResult {
 std::vector<Check> read_checks(const Node& list, std::span<const double> params, const std::string& file,
                                std::vector<Problem>& problems);
 
-std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, double log_every);
+// `params`: those of the run. On part of a run, only the rows and events that exist can be judged.
+std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, std::span<const double> params);
 
 }  // namespace arm3r

@@ -57,7 +57,7 @@ ScenarioHandle load(const std::string& path) {
 ScenarioHandle load(const std::string& path, const Arguments& arguments) {
     ScenarioHandle scenario = load(path);
     for (const auto& [at, value] : arguments.edits)
-        require(arm3r_scenario_set(scenario.get(), at.data(), at.size(), value.data(), value.size()));
+        require(arm3r_scenario_set_from(scenario.get(), at.data(), at.size(), value.data(), value.size(), "--set", 5));
     require(arm3r_scenario_validate(scenario.get()));
     return scenario;
 }
@@ -97,6 +97,18 @@ bool is_same_file(const std::string& a, const std::string& b) {
            one.st_ino == other.st_ino;
 }
 
+void spare_scenarios(const std::vector<std::string>& files, const std::string& path) {
+    for (const std::string& file : files)
+        if (is_same_file(file, path))
+            throw Exit{exit_usage, path + ": error[usage]: this would overwrite a scenario; give -o another name"};
+}
+
+std::string summary_beside(const std::string& path) {
+    const char* summary = nullptr;
+    require(arm3r_output_summary(path.data(), path.size(), &summary));
+    return summary;
+}
+
 // A file for each scenario, checked before the first run; "-" is standard output, "" nowhere.
 std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vector<ScenarioHandle>& scenarios) {
     const std::string& output = arguments.output;
@@ -116,8 +128,8 @@ std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vec
             directory ? output + (output.ends_with('/') ? "" : "/") + name_of(scenarios[i]) + ".csv" : output;
         if (!seen.insert(path).second)
             throw Exit{exit_usage, path + ": error[usage]: two scenarios would write this file; give them names"};
-        for (const std::string& file : arguments.files)
-            if (is_same_file(file, path)) throw Exit{exit_usage, path + ": error[usage]: this is the scenario itself"};
+        spare_scenarios(arguments.files, path);
+        spare_scenarios(arguments.files, summary_beside(path));
         require(arm3r_output_probe(path.data(), path.size()));
         paths.push_back(path);
     }
@@ -204,8 +216,10 @@ int call_run(const Arguments& arguments) {
 
 int call_check(const Arguments& arguments) {
     const ScenarioHandle scenario = load(arguments.files[0], arguments);
-    const char* yaml = nullptr;
+    const char *warnings = nullptr, *yaml = nullptr;
+    require(arm3r_scenario_warnings(scenario.get(), &warnings));
     require(arm3r_scenario_yaml(scenario.get(), 1, &yaml));
+    complain(warnings);
     print(yaml);
     return exit_ok;
 }
@@ -277,6 +291,7 @@ int main(int count, char** words) {
 
 int main(int count, char** words) {
     std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit then returns an error
+    std::signal(SIGPIPE, SIG_DFL);  // also where the caller ignores it: a reader that has gone ends the program quietly
     int code = cli::exit_internal;
     try {
         code = cli::main(count, words);
@@ -284,7 +299,7 @@ int main(int count, char** words) {
         cli::complain(exit.message + "\n");
         code = exit.code;
     } catch (const std::bad_alloc&) {
-        cli::complain("arm3r: error[memory]: out of memory\n");
+        cli::complain("arm3r: error[memory]: there is not enough memory\n");
         code = cli::exit_budget;
     }
     if (cli::stop_requested()) cli::die_by_signal();

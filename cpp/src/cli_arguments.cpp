@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace cli {
 
@@ -66,7 +67,8 @@ bool is_slip(std::string_view typed, std::string_view meant) {
 template <class Table>
 std::string did_you_mean(std::string_view typed, const Table& table) {
     for (const auto& entry : table)
-        if (is_slip(typed, entry.name)) return "; did you mean " + std::string(entry.name) + "?";
+        if (is_slip(typed, entry.name) || (typed.size() > 2 && entry.name.starts_with(typed)))
+            return "; did you mean " + std::string(entry.name) + "?";
     return {};
 }
 
@@ -116,18 +118,28 @@ struct Used {
     std::vector<const Option*> options;
 };
 
-// An option with its value, in the same word behind = or in the next one. Returns how many words it took.
+// "--output=X" and "-oX" as "--output" and "X". A word like "-output" is left whole, and so refused.
+std::pair<std::string, std::optional<std::string>> parted(const std::string& word) {
+    const std::size_t equals = word.find('=');
+    const auto is_long = [&](const Option& option) { return "-" + word.substr(0, equals) == option.name; };
+    if (word.starts_with("--") ? equals == word.npos : word.size() == 2) return {word, {}};
+    if (word.starts_with("--")) return {word.substr(0, equals), word.substr(equals + 1)};
+    if (std::any_of(std::begin(options), std::end(options), is_long)) return {word.substr(0, equals), {}};
+    return {word.substr(0, 2), word.substr(word[2] == '=' ? 3 : 2)};
+}
+
+// An option with its value, in the same word or in the next one. Returns how many words it took.
 std::size_t read_option(const std::vector<std::string>& words, std::size_t at, Arguments& arguments, Used& used) {
     const std::string& word = words[at];
-    const std::size_t equals = word.starts_with("--") ? word.find('=') : word.npos;
-    const Option& option = find_option(word.substr(0, equals));
+    const auto [name, value] = parted(word);
+    const Option& option = find_option(name);
     used.options.push_back(&option);
     if (option.value.empty()) {
-        if (equals != word.npos) usage_error(std::string(option.name) + " takes no value");
+        if (value) usage_error(std::string(option.name) + " takes no value");
         apply(option, "", arguments);
         return 1;
     }
-    if (equals != word.npos) return apply(option, word.substr(equals + 1), arguments), 1;
+    if (value) return apply(option, *value, arguments), 1;
     if (at + 1 == words.size()) usage_error(word + " needs a value: " + std::string(option.value));
     apply(option, words[at + 1], arguments);
     return 2;
@@ -170,8 +182,9 @@ std::string program_help() {
 bool is_call(std::string_view name) { return find_call(name) != nullptr; }
 
 std::string unknown_call(const std::string& name) {
-    return "unknown call " + printable(name) + ", and no program arm3r-" + printable(name) + did_you_mean(name, calls) +
-           " See arm3r --help";
+    const std::string hint = did_you_mean(name, calls);
+    return "unknown call " + printable(name) + ", and no program arm3r-" + printable(name) +
+           (hint.empty() ? "; see" : hint + " See") + " arm3r --help";
 }
 
 Arguments read_arguments(const std::vector<std::string>& words) {

@@ -56,6 +56,7 @@ std::string read_up_to(int descriptor, const std::string& path) {
 }  // namespace
 
 std::string read_input(const std::string& path) {
+    if (path.empty()) refuse(path, "file.name", "the file name is empty");
     if (path == "-") return read_up_to(STDIN_FILENO, "standard input");
     // O_NONBLOCK: opening a FIFO must not wait for its writer.
     const File file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));

@@ -91,19 +91,13 @@ struct Unit {
 };
 
 constexpr Unit units[] = {
-    {"mm", 1000, "m"},       {"cm", 100, "m"},
-    {"m", 1, "m"},           {"km", 1e-3, "m"},
-    {"g", 1000, "kg"},       {"kg", 1, "kg"},
-    {"t", 1e-3, "kg"},       {"us", 1e6, "s"},
-    {"ms", 1000, "s"},       {"s", 1, "s"},
-    {"sec", 1, "s"},         {"N", 1, "N"},
-    {"kN", 1e-3, "N"},       {"Nm", 1, "N m"},
-    {"N/m", 1, "N/m"},       {"N/mm", 1e-3, "N/m"},
-    {"kN/m", 1e-3, "N/m"},   {"Hz", 1, "Hz"},
-    {"kHz", 1e-3, "Hz"},     {"rad", 1, "rad"},
-    {"m/s", 1, "m/s"},       {"mm/s", 1000, "m/s"},
-    {"rad/s", 1, "rad/s"},   {"m/s^2", 1, "m/s^2"},
-    {"kg/m^3", 1, "kg/m^3"}, {"g/cm^3", 1e-3, "kg/m^3"},
+    {"mm", 1000, "m"},     {"cm", 100, "m"},      {"m", 1, "m"},           {"km", 1e-3, "m"},
+    {"g", 1000, "kg"},     {"kg", 1, "kg"},       {"t", 1e-3, "kg"},       {"us", 1e6, "s"},
+    {"ms", 1000, "s"},     {"s", 1, "s"},         {"sec", 1, "s"},         {"N", 1, "N"},
+    {"kN", 1e-3, "N"},     {"Nm", 1, "N m"},      {"N/m", 1, "N/m"},       {"N/mm", 1e-3, "N/m"},
+    {"kN/m", 1e-3, "N/m"}, {"Hz", 1, "Hz"},       {"kHz", 1e-3, "Hz"},     {"rad", 1, "rad"},
+    {"m/s", 1, "m/s"},     {"mm/s", 1000, "m/s"}, {"cm/s", 100, "m/s"},    {"km/h", 3.6, "m/s"},
+    {"rad/s", 1, "rad/s"}, {"m/s^2", 1, "m/s^2"}, {"kg/m^3", 1, "kg/m^3"}, {"g/cm^3", 1e-3, "kg/m^3"},
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -130,7 +124,9 @@ std::string unit_hint(std::string_view number, std::string_view unit, const Numb
             return "numbers are plain SI: write " + shortest(*value / known.divisor) + " (" + std::string(known.si) +
                    ")";
     }
-    return {};
+    constexpr std::string_view no_word = "e+-.,:_0123456789";  // e: an exponent that was not finished
+    const bool is_word = !unit.empty() && no_word.find(unit[0]) == unit.npos;
+    return is_word ? "numbers are plain SI, without their unit" : "";
 }
 
 std::string based_hint(std::string_view text) {

@@ -28,7 +28,8 @@ std::string directory_of(const std::string& path) { return path.substr(0, path.r
 
 void check_target(const std::string& path) {
     struct stat about{};
-    if (path.empty() || path.ends_with('/')) refuse(path, std::strerror(EISDIR), "name a file");
+    if (path.empty()) refuse(path, "the file name is empty");
+    if (path.ends_with('/')) refuse(path, std::strerror(EISDIR), "name a file");
     if (lstat(path.c_str(), &about) != 0) return;
     if (S_ISDIR(about.st_mode)) refuse(path, std::strerror(EISDIR), "name a file");
     if (!S_ISREG(about.st_mode) && !S_ISLNK(about.st_mode))

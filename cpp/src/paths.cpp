@@ -73,6 +73,10 @@ std::string item(std::string_view path, std::size_t index) {
     return std::string(path) + "[" + std::to_string(index) + "]";
 }
 
+std::string below(std::string_view path, std::string_view rest) {
+    return rest.empty() || rest.starts_with('[') ? std::string(path) + std::string(rest) : join(path, rest);
+}
+
 std::vector<std::string> names_below(std::string_view section) {
     std::vector<std::string> names;
     const std::string prefix = join(section, "");

@@ -23,6 +23,7 @@ Mark locate(const Node& root, const std::vector<Step>& steps);
 
 std::string join(std::string_view prefix, std::string_view key);  // "a" + "b" = "a.b"
 std::string item(std::string_view path, std::size_t index);       // "a" + 1 = "a[1]"
+std::string below(std::string_view path, std::string_view rest);  // "a" + "[1].b" = "a[1].b"; "a" + "" = "a"
 
 // The names that the schema and the reader know directly below a section, in their order; "" is the top.
 std::vector<std::string> names_below(std::string_view section);

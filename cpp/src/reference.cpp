@@ -132,7 +132,9 @@ std::string default_text(const Key& key) {
     std::string out;
     for (const double value : key.fallback)
         if (!std::isnan(value)) out += (out.empty() ? "" : ", ") + shortest(value);
-    return key.size > 1 && !std::isnan(key.fallback[1]) ? "[" + out + "]" : out;
+    if (key.size > 1 && !std::isnan(key.fallback[1])) return "[" + out + "]";
+    if (key.form == Form::by_choice && key.required) return out + " for " + key.when.front() + ", else required";
+    return key.unset.empty() ? out : out + " for explicit, else " + key.unset;
 }
 
 std::string numbers_text(const Key& key) {
@@ -169,6 +171,27 @@ The source of a default: *lecture* says it, *inferred* follows from what the lec
 )";
 
 const char* const markdown_tail = R"(
+## What goes with what
+
+A shape gives a link its mass, centre of mass and inertia. A slender link has no density, so `mass` must be given. The
+defaults of `arm.link1`'s `mass`, `com` and `inertia_axial` hold for shape explicit only; any other shape gives its own.
+
+`wall.contact.stiffness` has a default for law spring only; diagonal needs `stiffness: [kn, k1, k2]`.
+
+At t = 0 the tip may stand in the wall, which is a make at t = 0, but not deeper than 0.1 m.
+
+## Rows
+
+The rows of a run stand at t_k = k*log_every while t_k < stop - 1e-9*log_every, then exactly at stop; so t = 0 and stop
+always are rows. Events add none.
+
+## --set PATH=VALUE
+
+VALUE is YAML and takes the place of what stands at PATH; sections that are missing are made, and `null` takes a key
+out. `[i]` sets one item of a list and leaves the others as they are; where a single number may stand as well, the
+whole list must be given unless one stands there. A new word for a `type`, `method`, `law` or `shape` drops the keys
+that belong to the old one only. All are applied in their order, then the scenario is validated once.
+
 ## The controller's copy of the arm
 
 `controller.model` takes the keys of `arm` except `convention` and `gravity`. A key given there is what the controller
@@ -183,12 +206,13 @@ A list of claims, each held against the run; a claim that fails makes the execut
 | `column: NAME` with `at: TIME` | the column in the row at that time, which must be a row |
 | `column: NAME` with `of: min`, `max`, `max_abs`, `range` or `final` | of all rows |
 | `column: NAME`, `minus: NAME` | the same of the difference, row by row |
-| `event: make` or `break`, `index: N` | the time of the event of this type with this index, from 0 |
+| `event: make` or `break`, with or without `index: N` | the time of the event of this type with this index; 0, the first, without it |
 | `count: make` or `break` | the number of such events |
 | `summary: FIELD` | a number of the summary, e.g. `peak_force`, `steps.accepted` |
 
 The limit is `equals: X` with `abs: A` and `rel: R` (either tolerance suffices; none: exactly), or `below: X`,
-`above: X` or both. `name` is what the report calls the check.
+`above: X` or both. `name` is what the report calls the check. Of a run that ended before stop, only the rows (`at`) and
+events that there are can be judged; every other check fails.
 )";
 
 // ---- template
@@ -242,7 +266,7 @@ std::string columns_markdown() {
         table_head({"Column", "Unit", "Meaning"});
     for (const Column& column : column_table())
         out += row({"`" + std::string(column.name) + "`", std::string(column.unit),
-                    std::string(column.doc) + (column.only_with_wall ? " Only with a wall." : "")});
+                    std::string(column.doc) + (column.only_with_wall ? ". Only with a wall." : "")});
     return out;
 }
 

@@ -52,10 +52,25 @@ Words sections_of(std::string_view name) {
         for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
             const std::string_view below = std::string_view(key.path).substr(dot + 1);
             const bool here = below.substr(0, below.find('.')) == name;
-            if (here && !key.path.starts_with("controller.model.")) add(key.path.substr(0, dot));
+            const std::string section = key.path.substr(0, dot);
+            if (here && !section.starts_with("controller.model")) add(section);
         }
     }
     return sections;
+}
+
+// Whole paths of the keys whose last name is nearest to this one, the controller's copies left out.
+Words paths_like(const std::string& name) {
+    Words names, paths;
+    for (const Key& key : schema()) names.push_back(last_name(key.path));
+    const std::string near = nearest(name, names);
+    for (const Key& key : schema())
+        if (last_name(key.path) == near && !key.path.starts_with("controller.model.")) paths.push_back(key.path);
+    return paths;
+}
+
+bool is_digits(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 // Text as a file name: what cannot stand in one becomes _.
@@ -191,7 +206,7 @@ private:
             const Key* key = find_key(path);
             if (key && key->kind != Kind::section) read_value(*key, node);
             else if (node.key.find_first_of(".[") == std::string::npos && is_section(path)) read_subsection(node, path);
-            else if (path != "format" && path != "name" && path != "checks") unknown_key(node, section);
+            else if (path != "format" && path != "name" && path != "checks") unknown_key(map, node, section);
         }
     }
 
@@ -203,13 +218,22 @@ private:
                 {"scenario.type", path, "expects a map", shape_of(node), "keys " + listed(names_below(path)), hint});
     }
 
-    void unknown_key(const Node& node, const std::string& section) {
-        const Words here = names_below(section);
-        const Words elsewhere = sections_of(node.key);
-        std::string hint = did_you_mean(node.key, here);
-        if (!elsewhere.empty()) hint = "`" + visible(node.key) + "` belongs to " + listed(elsewhere, " or ");
+    void unknown_key(const Node& map, const Node& node, const std::string& section) {
         problem(node.key_mark, {"scenario.unknown_key", join(section, node.key),
-                                section.empty() ? "no such key" : "no such key in " + section, "", listed(here), hint});
+                                section.empty() ? "no such key" : "no such key in " + section, "",
+                                listed(names_below(section)), meant_key(map, node, section)});
+    }
+
+    // What an unknown key most likely is: half of a number, a key of another section, or a slip of the fingers.
+    static std::string meant_key(const Node& map, const Node& node, const std::string& section) {
+        const Node* before = &node == &map.children.front() ? nullptr : &node - 1;
+        if (before && node.type == Node::nothing && is_digits(node.key))
+            return "use a point: " + before->text + "." + node.key;
+        if (const Words elsewhere = sections_of(node.key); !elsewhere.empty())
+            return "`" + visible(node.key) + "` belongs to " + listed(elsewhere, " or ");
+        if (const std::string here = did_you_mean(node.key, names_below(section)); !here.empty()) return here;
+        const Words paths = paths_like(node.key);
+        return paths.empty() ? "" : "did you mean " + listed(paths, " or ") + "?";
     }
 
     void read_value(const Key& key, const Node& node) {
@@ -239,7 +263,7 @@ private:
                 {"scenario.other_choice", key.path,
                  "`" + last_name(key.path) + "` belongs to " + choice + " " + listed(missing->when, " or ") +
                      "; here the " + choice + " is " + choice_of(result_.params, missing->when_key),
-                 "", "", "take it out, or set " + missing->when_key});
+                 "", "", "take it out, or set " + missing->when_key + " to " + listed(missing->when, " or ")});
     }
 
     void wrong_shape(const Key& key, const Node& node) {
@@ -247,7 +271,10 @@ private:
         if (node.type == Node::nothing) hint = "leave the key out for its default";
         if (key.form == Form::by_choice)
             hint = last_name(key.when_key) + " is " + choice_of(result_.params, key.when_key);
-        if (key.form == Form::vector_or_word && node.type == Node::scalar) hint = did_you_mean(node.text, {key.word});
+        if (key.form == Form::vector_or_word && node.type == Node::scalar)
+            hint = is_infinity(node) ? "write " + key.word : did_you_mean(node.text, {key.word});
+        if (is_list_here(key) && node.type == Node::list && node.children.size() > key.size)
+            hint = "a comma parts the items; in a number use a point";
         problem(node.mark,
                 {"scenario.type", key.path, "expects " + expected(key, result_.params), shape_of(node), "", hint});
     }
@@ -261,6 +288,10 @@ private:
     bool is_list_here(const Key& key) const {
         if (key.form == Form::by_choice) return choice_of(result_.params, key.when_key) != key.when.front();
         return key.size > 1;
+    }
+
+    static bool is_infinity(const Node& node) {
+        return node.text.ends_with("inf") || node.text.ends_with("Inf") || node.text.ends_with("INF");
     }
 
     void read_flag(const Key& key, const Node& node) {
@@ -302,6 +333,7 @@ private:
                 .degrees = key.kind == Kind::angle, .infinity = key.allow_infinity, .whole = key.kind == Kind::integer};
             if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
         }
+        if (key.form == Form::vector_or_word && is_infinity(node)) fault.hint = "write " + key.word + ", not a list";
         problem(node.mark, {fault.code, path, fault.message, shape_of(node), "", fault.hint});
         return false;
     }
@@ -332,11 +364,12 @@ private:
     std::string& origin(const Key& key) { return origin_[static_cast<std::size_t>(&key - schema().data())]; }
 
     void set_origin(const Key& key, const Node& node) {
-        const bool edited =
-            std::any_of(node.children.begin(), node.children.end(), [](const Node& n) { return n.mark.line == 0; });
-        const std::string line = visible(scenario_.file, 200) + ":" + std::to_string(node.start().line);
-        const bool all_edited = node.mark.line == 0;
-        origin(key) = all_edited ? "--set" : edited && key.kind != Kind::section ? line + ", --set" : line;
+        if (node.mark.edit) return void(origin(key) = visible(node.mark.edit->origin));
+        origin(key) = visible(scenario_.file, 200) + ":" + std::to_string(node.start().line);
+        const auto edited = std::find_if(node.children.begin(), node.children.end(),
+                                         [](const Node& child) { return child.mark.edit != nullptr; });
+        if (edited != node.children.end() && key.kind != Kind::section)
+            origin(key) += ", " + visible(edited->mark.edit->origin);
     }
 
     // Whether the key has a place in the resolved scenario.
@@ -344,7 +377,15 @@ private:
         for (const Key& section : schema())
             if (section.kind == Kind::section && key.path.starts_with(section.path + ".") && *at(section) == 0)
                 return false;
-        return key.kind == Kind::section ? *at(key) != 0 : key_exists(key, result_.params);
+        if (key.kind == Kind::section) return *at(key) != 0;
+        return key_exists(key, result_.params) && !(std::isnan(*at(key)) && is_copy_of_nothing(key));
+    }
+
+    // A key of the controller's copy of the arm that, for the plant's own shapes, the plant does not have.
+    bool is_copy_of_nothing(const Key& key) const {
+        constexpr std::string_view model = "controller.model.";
+        return key.path.starts_with(model) &&
+               !key_exists(*find_key("arm." + key.path.substr(model.size())), result_.params);
     }
 
     void build_tree() {

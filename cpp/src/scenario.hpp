@@ -19,7 +19,8 @@ struct Scenario {
 Scenario read_scenario(std::string text, std::string file);
 
 // Put a value (YAML) at a path; null takes away what stands there. A new choice drops the keys of the old one.
-void set(Scenario& scenario, std::string_view path, const std::string& value);
+// `origin`: what messages and provenance call the edit.
+void set(Scenario& scenario, std::string_view path, const std::string& value, const std::string& origin);
 
 struct Resolved {
     std::string name;

@@ -5,35 +5,11 @@
 #include "paths.hpp"
 #include "scenario.hpp"
 #include "schema.hpp"
+#include "text.hpp"
 
 namespace arm3r {
 
 namespace {
-
-// A mark in a --set value has a column and no line.
-void forget_lines(Node& node) {
-    node.mark.line = node.key_mark.line = 0;
-    for (Node& child : node.children) forget_lines(child);
-}
-
-Document read_value(std::string_view path, const std::string& value) {
-    try {
-        Document document = parse_yaml(checked_text(value, "--set"), "--set");
-        forget_lines(document.root);
-        for (Problem& problem : document.problems) {
-            problem.line = 0;
-            problem.path = join(path, problem.path);
-        }
-        return document;
-    } catch (const Error& error) {
-        std::vector<Problem> problems = error.problems();
-        for (Problem& problem : problems) {
-            problem.line = 0;
-            problem.path = path;
-        }
-        throw Error(error.status(), problems);
-    }
-}
 
 [[noreturn]] void refuse(std::string_view path, std::string code, std::string message, std::string hint) {
     throw Error(ARM3R_E_SCENARIO, {{.code = std::move(code),
@@ -41,19 +17,55 @@ Document read_value(std::string_view path, const std::string& value) {
                                     .message = std::move(message),
                                     .got = "",
                                     .allowed = "",
-                                    .hint = std::move(hint),
-                                    .file = "--set"}});
+                                    .hint = std::move(hint)}});
 }
 
+// ---- the value, and where it stands
+
+void place_in(const std::shared_ptr<const Edit>& edit, Node& node) {
+    node.mark = {0, node.mark.column, edit};
+    node.key_mark = {0, node.key_mark.column, edit};
+    for (Node& child : node.children) place_in(edit, child);
+}
+
+std::vector<Problem> placed_in(const Edit& edit, std::string_view path, std::vector<Problem> problems) {
+    for (Problem& problem : problems) {
+        const bool inside_value = !problem.file.empty();
+        if (inside_value) problem.path = below(path, problem.path);
+        problem.file = edit.place;
+        problem.line = 0;
+        if (problem.column == 1) problem.column = 0;
+    }
+    return problems;
+}
+
+Document read_value(const std::string& value, const std::shared_ptr<const Edit>& edit) {
+    Document document = parse_yaml(checked_text(value, edit->place), edit->place);
+    place_in(edit, document.root);
+    return document;
+}
+
+// `null` and nothing else: an empty value is more likely an empty variable.
+bool takes_out(const Document& document, const std::string& value, std::string_view path) {
+    if (document.root.type != Node::nothing) return false;
+    if (value == "null") return true;
+    refuse(path, "path.value", "there is no value", "write one, or `null` to take out what stands there");
+}
+
+// ---- the way to a path
+
 // A list of which only single items are set: the others keep their defaults.
-std::vector<Node> open_items(std::string_view path) {
+std::vector<Node> open_items(const std::string& path, std::size_t index) {
     const Key* key = find_key(path);
+    if (key && (key->form == Form::number_or_vector || key->form == Form::by_choice))
+        refuse(item(path, index), "path.list", "`" + path + "` can be a single number, and no list stands there",
+               "give the whole list: " + path + " = [x, y, z]");
     Node hole;
     hole.type = Node::hole;
     return std::vector<Node>(key ? key->size : 0, hole);
 }
 
-Node& child(Node& node, const std::string& path, const std::string& name) {
+Node& child(Node& node, const std::string& path, const std::string& name, const Mark& place) {
     if (node.type == Node::nothing || node.type == Node::hole) node.type = Node::map;
     if (node.type != Node::map)
         refuse(join(path, name), "path.section", "`" + path + "` is " + shape_of(node) + ", not a section", "");
@@ -61,24 +73,37 @@ Node& child(Node& node, const std::string& path, const std::string& name) {
     Node fresh;
     fresh.type = Node::hole;
     fresh.key = name;
-    fresh.key_mark = fresh.mark = {0, 1};
+    fresh.key_mark = fresh.mark = place;
     node.children.push_back(fresh);
     return node.children.back();
 }
 
 Node& child(Node& node, const std::string& path, std::size_t index) {
     if (node.type == Node::nothing || node.type == Node::hole) {
+        node.children = open_items(path, index);
         node.type = Node::list;
-        node.children = open_items(path);
     }
     if (node.type != Node::list)
-        refuse(item(path, index), "path.list", "`" + path + "` is " + shape_of(node) + ", not a list", "");
-    if (index == node.children.size()) node.children.emplace_back();
-    if (index > node.children.size())
-        refuse(item(path, index), "path.index", "`" + path + "` has " + std::to_string(node.children.size()) + " items",
-               "");
+        refuse(item(path, index), "path.list", "`" + path + "` is " + shape_of(node) + ", not a list",
+               "give the whole list: " + path + " = [...]");
+    const Key* key = find_key(path);
+    if (index == node.children.size() && (!key || index < key->size)) node.children.emplace_back();
+    if (index >= node.children.size())
+        refuse(item(path, index), "path.index", "`" + path + "` has " + counted(node.children.size(), "item"), "");
     return node.children[index];
 }
+
+Node& reach(Node& root, const std::vector<Step>& steps, const Mark& place) {
+    Node* node = &root;
+    std::string walked;
+    for (const Step& step : steps) {
+        node = step.key.empty() ? &child(*node, walked, step.index) : &child(*node, walked, step.key, place);
+        walked = step.key.empty() ? item(walked, step.index) : join(walked, step.key);
+    }
+    return *node;
+}
+
+// ---- taking out
 
 void remove(Node& root, const std::vector<Step>& steps) {
     const std::vector<Step> parent(steps.begin(), steps.end() - 1);
@@ -89,6 +114,16 @@ void remove(Node& root, const std::vector<Step>& steps) {
     else
         std::erase_if(from->children,
                       [&](const Node& node) { return !node.key.empty() && node.key == steps.back().key; });
+}
+
+void remove_known(Node& root, std::string_view path, const std::vector<Step>& steps) {
+    std::vector<std::string> paths = names_below("");
+    const bool top = std::find(paths.begin(), paths.end(), path) != paths.end();
+    const std::vector<std::string> all = all_paths();
+    paths.insert(paths.end(), all.begin(), all.end());
+    if (!find(root, steps) && !top && !is_known(path))
+        refuse(path, "path.unknown", "there is no such key to take out", did_you_mean(path, paths));
+    remove(root, steps);
 }
 
 bool fits(const Key& key, const std::string& word, const Node& root) {
@@ -106,28 +141,34 @@ void drop_others(Node& root, const std::string& choice, const std::string& word)
     }
 }
 
-}  // namespace
-
-void set(Scenario& scenario, std::string_view path, const std::string& value) {
+void apply(Document& scenario, std::string_view path, const std::string& value,
+           const std::shared_ptr<const Edit>& edit) {
     const std::vector<Step> steps = parse_path(path);
-    Document document = read_value(path, value);
-    Node& root = scenario.document.root;
-    if (document.root.type == Node::nothing) return remove(root, steps);
+    Document document = read_value(value, edit);
+    if (takes_out(document, value, path)) return remove_known(scenario.root, path, steps);
 
-    Node* node = &root;
-    std::string walked;
-    for (const Step& step : steps) {
-        node = step.key.empty() ? &child(*node, walked, step.index) : &child(*node, walked, step.key);
-        walked = step.key.empty() ? item(walked, step.index) : join(walked, step.key);
-    }
-    document.root.key = node->key;
-    document.root.key_mark = {0, 1};
-    *node = std::move(document.root);
-    scenario.document.problems.insert(scenario.document.problems.end(), document.problems.begin(),
-                                      document.problems.end());
+    const Mark place{0, 1, edit};
+    Node& node = reach(scenario.root, steps, place);
+    document.root.key = node.key;
+    document.root.key_mark = place;
+    node = std::move(document.root);
+    const std::vector<Problem> problems = placed_in(*edit, path, std::move(document.problems));
+    scenario.problems.insert(scenario.problems.end(), problems.begin(), problems.end());
 
     const Key* key = find_key(path);
-    if (key && key->kind == Kind::choice) drop_others(root, key->path, node->text);
+    if (key && key->kind == Kind::choice) drop_others(scenario.root, key->path, node.text);
+}
+
+}  // namespace
+
+void set(Scenario& scenario, std::string_view path, const std::string& value, const std::string& origin) {
+    const std::string place = origin + " " + visible(std::string(path) + "=" + value);
+    const auto edit = std::make_shared<const Edit>(Edit{origin, place});
+    try {
+        apply(scenario.document, path, value, edit);
+    } catch (const Error& error) {
+        throw Error(error.status(), placed_in(*edit, path, error.problems()));
+    }
 }
 
 }  // namespace arm3r

@@ -3,8 +3,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <map>
+#include <numbers>
 
 namespace arm3r {
 namespace {

@@ -170,18 +170,20 @@ private:
         return std::min(100 * trial, by_slope);
     }
 
-    // In which time the fastest link angle turns by 45 degrees, at its present rate and acceleration. Some motions have no
-    // error at any step, a spin without gravity for one; the wall and the rows still want to see them turn.
-    double eighth_of_a_turn() const {
+    // In which time the fastest link angle turns as far as a step may, at its present rate and acceleration. Motions without
+    // an error of their own, a spin without gravity, a compensated drift, would take steps in which the wall passes unseen
+    // and the work of a turning torque is badly summed.
+    double turning_time() const {
+        const double turn = std::min(0.25 * pi, fifth_root(1e5 * setup_.solver.rtol));
         const auto fastest = [](const FullState& v) {
             return std::max({std::abs(v[3]), std::abs(v[4]), std::abs(v[4] + v[5])});
         };
-        return std::min(0.25 * pi / fastest(y_), std::sqrt(0.5 * pi / fastest(f_)));
+        return std::min(turn / fastest(y_), std::sqrt(2 * turn / fastest(f_)));
     }
 
     double largest_step() const {  // (5.2)
         const Plant<double>& plant = setup_.plant;
-        double h = std::min(setup_.solver.max_step, eighth_of_a_turn());
+        double h = std::min(setup_.solver.max_step, turning_time());
         if (plant.has_wall && plant.wall.motion == Motion::sinusoid) h = std::min(h, 1 / (16 * plant.wall.frequency));
         if (plant.acts_on_arm && mode_ == Mode::contact && plant.contact.stiffness[0] > 0)
             h = std::min(h, 0.25 * pi *

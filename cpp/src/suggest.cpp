@@ -26,6 +26,10 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
+std::size_t common_head(std::string_view a, std::string_view b) {
+    return static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& words) {
@@ -34,7 +38,9 @@ std::string nearest(std::string_view word, const std::vector<std::string>& words
     std::string found;
     for (const std::string& candidate : words) {
         const std::size_t d = distance(word, candidate);
-        if (d < best && d < word.size()) {
+        const bool nearer =
+            d < best || (d == best && !found.empty() && common_head(word, candidate) > common_head(word, found));
+        if (nearer && d < word.size()) {
             best = d;
             found = candidate;
         }

@@ -100,6 +100,10 @@ std::string visible(std::string_view text, std::size_t limit) {
     return out;
 }
 
+std::string counted(std::size_t count, std::string_view what) {
+    return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");
+}
+
 std::string listed(const std::vector<std::string>& words, std::string_view between) {
     std::string out;
     for (const std::string& word : words) (out += out.empty() ? "" : between) += word;

@@ -24,6 +24,9 @@ std::string json_number(double value);           // NaN: null, infinity: "inf"
 // For messages: control characters escaped, at most `limit` characters.
 std::string visible(std::string_view text, std::size_t limit = 80);
 
+// "1 item", "2 items"
+std::string counted(std::size_t count, std::string_view what);
+
 // "a, b, c"
 std::string listed(const std::vector<std::string>& words, std::string_view between = ", ");
 

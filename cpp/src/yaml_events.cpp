@@ -272,9 +272,9 @@ void check_characters(std::string_view text, const std::string& file) {
 }  // namespace
 
 Problem located(Problem problem, const Mark& at, const std::string& file) {
-    problem.file = at.line == 0 && at.column > 0 ? "--set" : file;
+    problem.file = at.edit ? at.edit->place : file;
     problem.line = at.line;
-    problem.column = at.column;
+    problem.column = at.edit && at.column == 1 ? 0 : at.column;
     return problem;
 }
 

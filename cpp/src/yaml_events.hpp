@@ -2,6 +2,7 @@
 // YAML text as a tree of plain structs with marks, built from the parser's events. What a scenario must not use
 // (anchors, aliases, tags, merge keys, duplicate keys) is listed beside the tree.
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,8 +11,14 @@
 
 namespace arm3r {
 
+// A value that was set by path.
+struct Edit {
+    std::string origin, place;  // "--set", "--set time.stop=5"
+};
+
 struct Mark {
-    int line = 0, column = 0;  // from 1; line 0 where there is a column: in a --set value
+    int line = 0, column = 0;               // from 1; in an edit only the column, of its value
+    std::shared_ptr<const Edit> edit = {};  // null: in the file
 };
 
 struct Node {
@@ -20,7 +27,7 @@ struct Node {
         scalar,
         list,
         map,
-        hole,  // says nothing: an item left open by --set, or something already refused
+        hole,  // says nothing: an item left open by an edit, or something already refused
     };
     Type type = nothing;
     std::string key;   // in a map: its key
@@ -40,7 +47,7 @@ struct Document {
     std::vector<Problem> problems;
 };
 
-// The problem with its place: in `file`, or in a --set value.
+// The problem with its place: in `file`, or in an edit.
 Problem located(Problem problem, const Mark& at, const std::string& file);
 
 // As messages show it: "a list of 3", "a map", "0.5" (as written), "nothing"

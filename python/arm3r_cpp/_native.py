@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+import re
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arm3r
 from .errors import Arm3rError, IncompatibleError, class_of
 
-ffi, lib = _arm3r.ffi, _arm3r.lib
+try:
+    from ._arm3r import ffi as ffi
+    from ._arm3r import lib as lib
+except ModuleNotFoundError as missing:
+    raise ImportError(
+        f"{os.path.dirname(__file__)} holds the sources of arm3r_cpp, not built; `pip install .` builds and installs "
+        "it, and Python must then not be started beside them"
+    ) from missing
 
 Floats = NDArray[np.float64]
 
@@ -34,12 +42,15 @@ def _check_abi() -> None:
 # ---- errors ---------------------------------------------------------------------------------------------------------
 
 
-def error(status: int, *, detail: str = "", **context: Any) -> Arm3rError:
-    """The error of this thread's last failed call."""
+def error(status: int, states: States | None = None) -> Arm3rError:
+    """The error of this thread's last failed call, its places told in the shapes of the states it was made with."""
     report = json.loads(ffi.string(lib.arm3r_error_json()))
-    return class_of(status)(
-        report["message"] + detail, status=status, code=report["code"], problems=report["problems"], **context
-    )
+    message, problems, index = report["message"], report["problems"], None
+    for problem in problems:
+        if states and (found := states.find(problem["path"])):
+            place, index = found
+            message, problem["path"] = message.replace(problem["path"], place), place
+    return class_of(status)(message, status=status, code=report["code"], problems=problems, index=index)
 
 
 def call(function: Callable[..., int], *arguments: Any) -> None:
@@ -52,8 +63,10 @@ def call(function: Callable[..., int], *arguments: Any) -> None:
 # ---- text -----------------------------------------------------------------------------------------------------------
 
 
-def utf8(text: str) -> tuple[bytes, int]:
-    """Text as the library takes it: bytes and their number."""
+def utf8(text: str, name: str) -> tuple[bytes, int]:
+    """Text as the library takes it: bytes and their number. TypeError: it is not text."""
+    if not isinstance(text, str):
+        raise TypeError(f"{name}: text (str) is needed, got {type(text).__name__}")
     data = text.encode()
     return data, len(data)
 
@@ -99,24 +112,50 @@ def finite(value: Any, name: str) -> Floats:
     good = np.isfinite(array)
     if not good.all():
         index = tuple(int(i) for i in np.argwhere(~good)[0])
-        raise ValueError(f"{name}{list(index)}: a finite number is needed, got {array[index]}")
+        raise ValueError(f"{name}{_brackets(index)}: a finite number is needed, got {array[index]}")
     return array
 
 
-def states(**values: Any) -> tuple[tuple[int, ...], list[Any]]:
-    """Arrays (..., 3), broadcast over their leading axes: those axes, and pointers; no f_on_tip becomes NULL."""
-    given = {name: value for name, value in values.items() if name != "f_on_tip" or value is not None}
-    arrays = {name: finite(value, name) for name, value in given.items()}
-    for name, array in arrays.items():
-        if array.ndim == 0 or array.shape[-1] != 3:
-            raise ValueError(f"{name}: the shape (..., 3) is needed, got {array.shape}")
-    try:
-        leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise ValueError(f"the leading axes do not broadcast: {shapes}") from None
-    full = {name: np.ascontiguousarray(np.broadcast_to(a, (*leading, 3))) for name, a in arrays.items()}
-    return leading, [readable(full[name]) if name in full else ffi.NULL for name in values]
+def _brackets(index: Iterable[int]) -> str:
+    return "".join(f"[{i}]" for i in index)
+
+
+class States:
+    """Arrays (..., 3), broadcast over their leading axes, as the library takes them: n states in a row."""
+
+    def __init__(self, **values: Any) -> None:
+        """TypeError, ValueError: not real numbers, not finite, or of shapes that do not fit. f_on_tip may be None."""
+        given = {name: value for name, value in values.items() if name != "f_on_tip" or value is not None}
+        arrays = {name: finite(value, name) for name, value in given.items()}
+        for name, array in arrays.items():
+            if array.ndim == 0 or array.shape[-1] != 3:
+                raise ValueError(f"{name}: the shape (..., 3) is needed, got {array.shape}")
+        self._shapes = {name: array.shape[:-1] for name, array in arrays.items()}
+        try:
+            self.leading = np.broadcast_shapes(*self._shapes.values())
+        except ValueError:
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+            raise ValueError(f"the leading axes do not broadcast: {shapes}") from None
+        full = {name: np.ascontiguousarray(np.broadcast_to(a, (*self.leading, 3))) for name, a in arrays.items()}
+        self._pointers = [readable(full[name]) if name in full else ffi.NULL for name in values]
+
+    def call(self, function: Callable[..., int], handle: Any, *arguments: Any) -> None:
+        """Call a function that takes a handle, n, the states, and more."""
+        status = function(handle, math.prod(self.leading), *self._pointers, *arguments)
+        if status:
+            raise error(status, self)
+
+    def find(self, path: str) -> tuple[str, tuple[int, ...]] | None:
+        """The library's "q[7][1]", of state 7 of n, as the caller counts, "q[3][1][1]"; and that state's index."""
+        found = re.fullmatch(r"(\w+)(.*?)\[(\d+)\](.*)", path)
+        if not found:
+            return None
+        name, note, state, component = found.groups()
+        name = name if name in self._shapes else next(iter(self._shapes))  # tip, of inverse_kinematics(p)
+        index = tuple(int(i) for i in np.unravel_index(int(state), self.leading)) if self.leading else ()
+        own = self._shapes[name]
+        place = (0 if size == 1 else i for i, size in zip(index[len(index) - len(own) :], own, strict=True))
+        return f"{name}{_brackets(place)}{component}{note}", index
 
 
 def readable(array: Floats) -> Any:

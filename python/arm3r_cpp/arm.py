@@ -42,10 +42,9 @@ class Arm:
 
     def _batch(self, function: Callable[..., int], *shapes: tuple[int, ...], **arguments: Any) -> list[Any]:
         """One call: (..., 3) arrays in, one array of each shape out."""
-        leading, pointers = _native.states(**arguments)
-        results = [np.empty(leading + shape) for shape in shapes]
-        count = int(np.prod(leading, dtype=np.intp))
-        _native.call(function, self._handle, count, *pointers, *map(_native.writable, results))
+        states = _native.States(**arguments)
+        results = [np.empty(states.leading + shape) for shape in shapes]
+        states.call(function, self._handle, *map(_native.writable, results))
         return [result if result.shape else float(result) for result in results]
 
     def _one(self, function: Callable[..., int], *shape: int, **arguments: Any) -> Any:
@@ -147,18 +146,13 @@ class Arm:
         Raises:
             UsageError: a point is out of reach; `index` is the first one's.
         """
+        if not isinstance(front, (bool, np.bool_)):
+            raise TypeError(f"front: True or False is needed, got {front!r}")
         if elbow not in ("up", "down"):
             raise ValueError(f"elbow: 'up' or 'down' is needed, got {elbow!r}")
-        leading, (points,) = _native.states(p=p)
-        q = np.empty((*leading, 3))
-        failed = ffi.new("size_t *")
-        count = int(np.prod(leading, dtype=np.intp))
-        status = lib.arm3r_arm_inverse_kinematics(
-            self._handle, count, points, bool(front), elbow == "up", _native.writable(q), failed
+        states = _native.States(p=p)
+        q = np.empty((*states.leading, 3))
+        states.call(
+            lib.arm3r_arm_inverse_kinematics, self._handle, bool(front), elbow == "up", _native.writable(q), ffi.NULL
         )
-        if status == lib.ARM3R_E_REACH:
-            index = tuple(int(i) for i in np.unravel_index(failed[0], leading)) if leading else ()
-            raise _native.error(status, detail=f" (p{list(index)})" if index else "", index=index)
-        if status:
-            raise _native.error(status)
         return q

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .run import Run
+from typing import Any
 
 
 class Arm3rError(Exception):
@@ -27,7 +24,7 @@ class Arm3rError(Exception):
         status: int = 0,
         code: str = "",
         problems: list[dict[str, Any]] | None = None,
-        run: Run | None = None,
+        run: Any = None,
         index: tuple[int, ...] | None = None,
     ) -> None:
         super().__init__(message)

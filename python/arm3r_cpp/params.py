@@ -20,7 +20,7 @@ def param_index(name: str) -> int:
         UsageError: there is no such parameter; the message names the nearest one.
     """
     index = ffi.new("size_t *")
-    _native.call(lib.arm3r_param_index, *_native.utf8(name), index)
+    _native.call(lib.arm3r_param_index, *_native.utf8(name, "name"), index)
     return int(index[0])
 
 

@@ -72,14 +72,11 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
 
 def read(path: Path) -> tuple[Run, Arm3rError | None]:
     """The run; and why it is only a partial one, if it is."""
-    from . import Run, Scenario
+    from .run import Run
+    from .scenario import Scenario
 
     if path.suffix not in SCENARIOS:
-        try:
-            return Run.load(path), None
-        except (OSError, ValueError, KeyError) as error:
-            hint = "RUN.csv needs RUN.json beside it, as `arm3r run -o RUN.csv` writes them"
-            raise UsageError(f"{path}: not a run: {error}; {hint}") from error
+        return Run.load(path), None
     try:
         return Scenario.load(path).run(), None
     except Arm3rError as error:

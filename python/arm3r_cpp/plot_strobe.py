@@ -21,7 +21,7 @@ PATH_IN_REACHES = 3.0  # the strobe stops when the tip has come this far: a swin
 def strobe(run: Run) -> Figure:
     import matplotlib.pyplot as plt
 
-    from . import Scenario
+    from .scenario import Scenario
 
     scenario = Scenario(run.summary["scenario"])
     q, tip = run["q"], run["tip"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +15,7 @@ import numpy as np
 from . import _native
 from ._native import Floats, lib
 from .errors import UsageError
+from .run_file import read
 
 
 class Event(NamedTuple):
@@ -59,18 +60,36 @@ class Run:
         return run
 
     def __getitem__(self, name: str) -> Floats:
-        """A column as (rows,); or three at once, such as "q", "tau_g", "tip", "f_on_tip", as a new (rows, 3)."""
+        """A column as (rows,); or three at once, such as "q", "tau_g", "tip", "f_on_tip", as a new (rows, 3).
+
+        Raises:
+            KeyError: there is no such column; the message names the nearest one.
+            TypeError: it is not a name.
+        """
+        if not isinstance(name, str):
+            raise TypeError(f"a column's name is needed, such as run['q1'], got {name!r}; rows are run['q1'][0]")
         if name in self._columns:
             return self._columns[name]
-        for ends in ("123", "xyz"):
-            for joint in ("", "_"):
-                parts = [name + joint + end for end in ends]
-                if all(part in self._columns for part in parts):
-                    return np.stack([self._columns[part] for part in parts], axis=-1)
+        if parts := self._three(name):
+            return np.stack([self._columns[part] for part in parts], axis=-1)
         near = difflib.get_close_matches(name, self._columns)
         raise KeyError(f"no column {name!r}; {'near: ' + ', '.join(near) if near else 'see run.columns'}")
 
+    def __contains__(self, name: object) -> bool:
+        """Whether run[name] is there."""
+        return name in self._columns or (isinstance(name, str) and bool(self._three(name)))
+
+    def __iter__(self) -> Iterator[str]:
+        """The columns' names, in order."""
+        return iter(self._columns)
+
+    def _three(self, name: str) -> list[str]:
+        """The columns that a name stands for, such as "q" for q1, q2, q3; else none."""
+        triples = ([name + joint + end for end in ends] for ends in ("123", "xyz") for joint in ("", "_"))
+        return next((parts for parts in triples if all(part in self._columns for part in parts)), [])
+
     def __len__(self) -> int:
+        """How many rows there are."""
         return len(self.t)
 
     def __repr__(self) -> str:
@@ -172,32 +191,7 @@ class Run:
         """Read what `to_csv`, `arm3r run -o` (PATH.csv, with PATH.json beside it) or `to_npz` wrote, to the same bits.
 
         Raises:
-            OSError: a file cannot be read.
-            ValueError: the suffix is neither .csv nor .npz, or the content is not a run's.
+            UsageError: a file cannot be read, its suffix is neither .csv nor .npz, or its numbers are not those that
+                the summary was written for: their count and their hash are compared.
         """
-        path = Path(path)
-        readers = {".csv": _read_csv, ".npz": _read_npz}
-        if path.suffix not in readers:
-            raise ValueError(f"{path}: a file named .csv or .npz is needed, got {path.suffix!r}")
-        return cls(*readers[path.suffix](path))
-
-
-def _read_csv(path: Path) -> tuple[Any, ...]:
-    with path.open(encoding="utf-8") as file:
-        names = file.readline().rstrip("\n").split(",")
-        if names[0] != "t":
-            raise ValueError(f"{path}:1: a header of column names, from t on, is needed, got {names[0]!r}")
-        data = np.loadtxt(file, delimiter=",", ndmin=2)
-    if data.shape[1] != len(names):
-        raise ValueError(f"{path}: {len(names)} names over {data.shape[1]} columns")
-    summary = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
-    units = {column["name"]: column["unit"] for column in summary["columns"]}
-    return dict(zip(names, np.ascontiguousarray(data.T), strict=True)), units, summary, None
-
-
-def _read_npz(path: Path) -> tuple[Any, ...]:
-    with np.load(path) as stored:
-        names = stored["columns"].tolist()
-        columns = dict(zip(names, stored["data"], strict=True))
-        units = dict(zip(names, stored["units"].tolist(), strict=True))
-        return columns, units, json.loads(stored["summary"].item()), stored["report"].item() or None
+        return cls(*read(Path(path)))

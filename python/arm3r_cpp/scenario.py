@@ -14,7 +14,7 @@ import numpy as np
 from . import _native
 from ._native import Floats, Progress, lib
 from .arm import Arm
-from .errors import class_of_outcome
+from .errors import UsageError, class_of_outcome
 from .params import param_count
 from .run import Run
 
@@ -34,9 +34,13 @@ class Scenario:
 
         Raises:
             ScenarioError: the text cannot be read as YAML of the kind allowed; what it says is judged when it is used.
+            UsageError: the text is the name of a file.
         """
+        texts = (*_native.utf8(text, "text"), *_native.utf8(file, "file"))
+        if os.path.isfile(text):
+            raise UsageError(f"text: a file's name instead of a scenario; use Scenario.load({text!r})", code="usage")
         self._file = file
-        self._handle = _native.create("scenario", lib.arm3r_scenario_create, *_native.utf8(text), *_native.utf8(file))
+        self._handle = _native.create("scenario", lib.arm3r_scenario_create, *texts)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Scenario:
@@ -73,17 +77,37 @@ class Scenario:
     def __getitem__(self, path: str) -> Any:
         """The value at a dotted path, defaults included, list items by [i]: "wall.contact.stiffness", "initial.q[1]".
 
+        None stands for what is absent; maps leave it out. Putting back what was read changes nothing.
+
         Raises:
-            ScenarioError: there is no such key, or the scenario is not valid.
+            UsageError: there is no such key; the message names the nearest one.
+            ScenarioError: the scenario is not valid.
         """
-        return _numbers(json.loads(_native.text(lib.arm3r_scenario_get, self._handle, *_native.utf8(path))))
+        found = _native.text(lib.arm3r_scenario_get, self._handle, *_native.utf8(path, "path"))
+        return _plain(json.loads(found, parse_float=_number))
 
     def __setitem__(self, path: str, value: Any) -> None:
         """Put a number, text, flag, list, array or map at a path; it is validated when the scenario is next used.
 
-        Angles may be given as text: "30 deg". A new type, method or law drops the keys of the old one.
+        Angles may be given as text: "30 deg". A new type, method or law drops the keys of the old one. None takes away
+        what is there: the default holds again.
+
+        Raises:
+            TypeError: the value is none of these, or the path is not text.
         """
-        _native.call(lib.arm3r_scenario_set, self._handle, *_native.utf8(path), *_native.utf8(_flow(value, path)))
+        place = _native.utf8(path, "path")
+        _native.call(lib.arm3r_scenario_set, self._handle, *place, *_native.utf8(_flow(value, path), path))
+
+    def __contains__(self, path: str) -> bool:
+        """Whether there is a value at a path, a default included.
+
+        Raises:
+            ScenarioError: the scenario is not valid.
+        """
+        try:
+            return self[path] is not None
+        except UsageError:
+            return False
 
     def validate(self) -> None:
         """Raise ScenarioError, listing all problems, unless the scenario is valid."""
@@ -138,12 +162,18 @@ def _restore(text: str, file: str) -> Scenario:
     return Scenario(text, file=file)
 
 
-def _numbers(value: Any) -> Any:
-    """JSON has no infinity: the library writes "inf"."""
+def _number(text: str) -> int | float:
+    """The library writes 1e+07 for a whole number too; keys that need one take no other."""
+    value = float(text)
+    return int(value) if value.is_integer() else value
+
+
+def _plain(value: Any) -> Any:
+    """Without what is absent in maps; and JSON has no infinity: the library writes "inf"."""
     if isinstance(value, list):
-        return [_numbers(item) for item in value]
+        return [_plain(item) for item in value]
     if isinstance(value, dict):
-        return {key: _numbers(item) for key, item in value.items()}
+        return {key: item for key, given in value.items() if (item := _plain(given)) not in (None, {})}
     return math.inf if value == "inf" else value
 
 

@@ -143,6 +143,81 @@ BOOST_AUTO_TEST_CASE(touching_exactly_is_not_contact) {
     BOOST_TEST(coming.events[0].t <= 1e-12);
 }
 
+BOOST_AUTO_TEST_CASE(a_wall_that_recedes_was_deepest_at_the_start) {
+    for (const char* method : {"dopri5", "rk4"}) {
+        Params params = held(-0.05).choose("solver.method", method).set("wall.motion.velocity", -0.05);
+        const Run run = params.set("time.stop", 2).run();
+        BOOST_TEST(std::abs(run.peak_force - 50) <= 1e-9);
+        BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+        BOOST_TEST(run.events[0].t == 0);
+        BOOST_TEST(std::abs(run.events[1].t - 1) <= 1e-9);
+        BOOST_TEST(run.events[1].type == Event::brk);
+        BOOST_TEST(std::abs(params.set("time.stop", 0).run().peak_force - 50) <= 1e-9);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(from_an_exact_touch_a_wall_may_recede_and_come_back) {
+    BOOST_TEST(held(0, {-1, 0, 0}).set("wall.motion.velocity", -0.05).set("time.stop", 1).run().events.empty());
+    for (const char* method : {"dopri5", "rk4"}) {
+        Params params = held(0, {-1, 0, 0}).choose("solver.method", method).choose("wall.motion.type", "sinusoid");
+        params.set("wall.motion.amplitude", 0.02).set("wall.motion.frequency", 1).set("wall.motion.phase", M_PI);
+        const Run run = params.set("time.stop", 2.25).run();
+        BOOST_REQUIRE_EQUAL(run.events.size(), 4u);
+        for (std::size_t i = 0; i < 4; ++i) {
+            BOOST_TEST((run.events[i].type == Event::make) == (i % 2 == 0));
+            BOOST_TEST(std::abs(run.events[i].t - 0.5 * double(i + 1)) <= 1e-9);
+        }
+    }
+}
+
+// ---- spins, which have no error at any step
+
+static Params spinning(const Vec3<double>& qd) {
+    return Params().set("arm.gravity", {0, 0, 0}).set("initial.q", {1, 0, 0}).set("initial.qd", qd);
+}
+
+BOOST_AUTO_TEST_CASE(a_spinning_arm_meets_the_wall_every_turn) {
+    Params params = spinning({3, 0, 0}).set("wall", 1).set("wall.size", {HUGE_VAL, HUGE_VAL}).set("time.log_every", 1);
+    params.set("wall.point", {2.5, 0, 0}).set("wall.motion.velocity", 1e-3).set("time.stop", 600);
+    const Run run = params.run();
+    BOOST_TEST(run.events.size() == 96u);
+    BOOST_TEST(double(run.steps.accepted) >= 600 * 3 / (M_PI / 4));
+}
+
+BOOST_AUTO_TEST_CASE(an_arm_that_spins_up_meets_the_wall_every_turn) {
+    Params params = spinning({0, 0, 0}).choose("controller.type", "constant").set("controller.torque", {1, 0, 0});
+    params.set("wall", 1).set("wall.size", {HUGE_VAL, HUGE_VAL}).set("wall.point", {1.9, 0, 0});
+    const Run run = params.choose("wall.motion.type", "fixed").set("time.stop", 20).run();
+    BOOST_TEST(run.events.size() == 30u);
+    BOOST_TEST(double(run.steps.accepted) >= (last(run, "q1") - 1) / (M_PI / 4));
+}
+
+// Where the steps end, from runs that may take one more each.
+BOOST_AUTO_TEST_CASE(an_arm_that_starts_to_spin_turns_no_more_than_a_quarter_in_its_first_steps) {
+    for (const double torque : {1.0, 2.0, 3.0, 5.0, 7.0}) {
+        Params params = spinning({0, 0, 0}).choose("controller.type", "constant");
+        params.set("controller.torque", {torque, 0, 0}).set("time.stop", 100);
+        const double acceleration = torque / mass_matrix(params.arm(), pose(Vec3<double>(1, 0, 0)))(0, 0);
+        double turned = 0;
+        for (int steps = 1; steps <= 20; ++steps) {
+            const double t = params.set("solver.max_steps", steps).run().t_end, angle = 0.5 * acceleration * t * t;
+            BOOST_TEST(angle - turned <= M_PI / 2);
+            turned = angle;
+        }
+        BOOST_TEST(turned > M_PI);
+    }
+}
+
+// Link 3 balanced at the elbow: each link turns on its own, at a steady rate.
+BOOST_AUTO_TEST_CASE(no_step_turns_a_link_by_more_than_an_eighth) {
+    for (const Vec3<double>& qd :
+         {Vec3<double>(3, 0, 0), Vec3<double>(0, 3, -3), Vec3<double>(0, 0, 3), Vec3<double>(0, 1.5, 1.5)}) {
+        const Run run = spinning(qd).set("arm.link3.com", 0).set("time.stop", 100).set("time.log_every", 10).run();
+        BOOST_TEST(double(run.steps.accepted) >= 100 * 3 / (M_PI / 4), "at " << qd.transpose());
+        BOOST_TEST(double(run.steps.accepted) <= 1.2 * 100 * 3 / (M_PI / 4), "at " << qd.transpose());
+    }
+}
+
 // ---- the rim of the plate
 
 // The plate of 1 m slides away sideways, along e1, from under a tip that is 2 mm deep.
@@ -163,6 +238,80 @@ BOOST_AUTO_TEST_CASE(leaving_over_the_edge_is_a_break) {
             BOOST_TEST(std::abs(f[i] - (t[i] < 5 ? 20.0 : 0.0)) <= 1e-9);
             BOOST_TEST(flag[i] == (t[i] < 5 ? 1.0 : 0.0));
             BOOST_TEST(std::abs(depth[i] - 0.002) <= 1e-12);
+        }
+    }
+}
+
+// A plate of 0.3 m by 0.9 m, its centre off the tip, slides away in eight directions.
+BOOST_AUTO_TEST_CASE(a_plate_is_left_over_the_edge_that_comes_first) {
+    const double half[] = {0.15, 0.45}, across[] = {0.05, -0.3}, speed = 0.2;
+    const auto leaving = [&](int axis, int way) {  // the tip moves the other way over the plate
+        return way == 0 ? HUGE_VAL : (half[axis] + way * across[axis]) / speed;
+    };
+    for (const char* method : {"dopri5", "rk4"}) {
+        for (int direction = 0; direction < 9; ++direction) {
+            const int along1 = direction % 3 - 1, along2 = direction / 3 - 1;
+            if (along1 == 0 && along2 == 0) continue;
+            Params params = held(-0.002, {-1, 0, 0}).set("wall.size", {0.3, 0.9}).choose("solver.method", method);
+            params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.002, -across[0], -across[1])));
+            const Run run =
+                params.set("wall.motion.velocity", {0, along1 * speed, along2 * speed}).set("time.stop", 5).run();
+            BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+            BOOST_TEST(run.events[0].t == 0);
+            BOOST_TEST(run.events[1].type == Event::brk);
+            BOOST_TEST(std::abs(run.events[1].t - std::min(leaving(0, along1), leaving(1, along2))) <= 1e-9,
+                       method << " " << along1 << " " << along2 << ": " << run.events[1].t);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(near_a_corner_the_earlier_edge_counts) {
+    const double speed = 0.2, one = 1.0002, other = 1.0006;  // within one fixed step
+    for (const char* method : {"dopri5", "rk4"}) {
+        for (const auto& [t1, t2] : {std::pair(one, other), std::pair(other, one)}) {
+            Params params = held(-0.002, {-1, 0, 0}).set("wall.size", {1, 1}).choose("solver.method", method);
+            const Vec3<double> off(-0.002, 0.5 - speed * t1, 0.5 - speed * t2);
+            params.set("wall.point", Vec3<double>(start_of(params) + off)).set("time.stop", 2);
+            const Run run = params.set("wall.motion.velocity", {0, speed, speed}).run();
+            BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+            BOOST_TEST(std::abs(run.events[1].t - one) <= 1e-9, method << ": " << run.events[1].t);
+        }
+    }
+}
+
+// The tip turns above a floor, 1 cm deep, and comes out over each of its four edges by a micrometre: between two looks.
+BOOST_AUTO_TEST_CASE(an_edge_crossed_for_an_instant_is_found) {
+    const double radius = 1.4, half = radius - 1e-6, speed = 2, before = 0.5;
+    for (int edge = 0; edge < 4; ++edge) {
+        Params params = unequal_params().set("arm.gravity", {0, 0, 0}).set("initial.qd", {speed, 0, 0});
+        params.set("initial.q", {edge * M_PI / 2 - before, 0, 0}).set("wall", 1).set("wall.normal", {0, 0, 1});
+        params.set("wall.point", {0, 0, 0.31}).set("wall.size", {2 * half, 2 * half});
+        const Run run = params.choose("wall.motion.type", "fixed").set("time.stop", 0.6).run();
+        BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+        BOOST_TEST(std::abs(run.events[1].t - (before - std::acos(half / radius)) / speed) <= 1e-9,
+                   "edge " << edge << ": " << run.events[1].t);
+    }
+}
+
+// The plate passes the tip's depth beside it, at `t_depth`, and then slides over it, at `t_over`.
+static Run passed_beside(const char* method, double acts_on_arm, double t_depth, double t_over) {
+    Params params = held(0, {-1, 0, 0}).set("wall.size", {0.3, 0.9}).set("wall.acts_on_arm", acts_on_arm);
+    params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(0.05 * t_depth, 0.15 + 0.1 * t_over, 0)));
+    params.set("wall.motion.velocity", {-0.05, -0.1, 0}).choose("solver.method", method).set("solver.step", 0.01);
+    return params.set("time.stop", 2).run();
+}
+
+BOOST_AUTO_TEST_CASE(a_plate_that_gets_behind_the_tip_beside_it_pushes_nothing) {
+    for (const char* method : {"dopri5", "rk4"}) {
+        for (const double acts_on_arm : {0.0, 1.0}) {
+            for (const double t_over : {1.5, 1.012}) {  // the second: in the very next of the fixed steps
+                const Run run = passed_beside(method, acts_on_arm, 1.003, t_over);
+                BOOST_TEST(last(run, "depth") > 0.04);
+                BOOST_TEST(run.events.empty());
+                BOOST_TEST(run.peak_force == 0);
+                BOOST_TEST(last(run, "work_wall") == 0);
+                for (const double force : column(run, "f_on_tip_x")) BOOST_TEST(force == 0);
+            }
         }
     }
 }
@@ -269,6 +418,45 @@ BOOST_AUTO_TEST_CASE(what_the_spring_holds_at_the_edge_is_booked_as_lost) {
     BOOST_TEST(std::abs(last(run, "energy_dissipated") - 0.5 * 1e4 * depth * depth) <= 1e-12);
     BOOST_TEST(last(run, "energy_contact") == 0);
     BOOST_TEST(run.energy_residual_max <= 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(letting_go_over_the_face_loses_nothing) {
+    for (const char* method : {"dopri5", "rk4"}) {
+        const Run run = bouncing().choose("solver.method", method).run();
+        BOOST_TEST(run.events.size() == 2u);
+        for (const double lost : column(run, "energy_dissipated")) BOOST_TEST(lost == 0);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rows_after_an_edge_within_a_fixed_step_have_booked_the_loss) {
+    Params params = held(-0.05, {-1, 0, 0}).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 100);
+    params.set("wall.size", {0.02, 0.5}).set("wall.motion.velocity", {0, 0.3, 0}).set("time.stop", 0.1);
+    params.choose("solver.method", "rk4").set("solver.step", 0.004);
+    for (const double log_every : {5e-4, 0.004, 1.0}) {
+        const Run run = params.set("time.log_every", log_every).run();
+        BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
+        const double lost = last(run, "energy_dissipated");
+        BOOST_TEST(lost > 0.05);
+        for (const double residual : column(run, "energy_residual")) BOOST_TEST(std::abs(residual) <= 0.02 * lost);
+        BOOST_TEST(run.energy_residual_max <= 0.02 * lost);
+    }
+}
+
+// The arm rests its weight on a hard floor, with tolerances that would allow anything: only the floor's own time holds
+// the steps short.
+BOOST_AUTO_TEST_CASE(steps_in_contact_follow_the_stiffness_of_the_wall) {
+    const double stiffness = 1e6, stop = 0.05;
+    const Vec3<double> up(0, 0, 1), none(0, 0, 0);
+    const Setup setup = make_setup(held(0));
+    const Arm<double>& arm = setup.plant.arm;
+    const Pose<double> p = pose(setup.q);
+    const double m_n = effective_mass(arm, p, up);
+    const double weight = -m_n * (jacobian(arm, p) * forward_dynamics(arm, p, none, none, none))[2];
+    Params params = held(-weight / stiffness, up).choose("controller.type", "none").set("wall.acts_on_arm", 1);
+    params.choose("wall.motion.type", "fixed").set("wall.contact.stiffness", stiffness).set("time.stop", stop);
+    const Run run = params.set("solver.rtol", 1e-3).set("solver.atol", 1e-2).run();
+    BOOST_TEST(run.events.size() == 1u);
+    BOOST_TEST(double(run.steps.accepted) >= 0.95 * stop / (0.25 * M_PI * std::sqrt(m_n / stiffness)));
 }
 
 BOOST_AUTO_TEST_CASE(one_way_contact_leaves_the_arm_and_its_books_alone) {

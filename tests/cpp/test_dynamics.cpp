@@ -2,6 +2,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "arm3r/dynamics.hpp"
+#include "arm3r/plant.hpp"
 #include "arm3r/recursion.hpp"
 #include "fixtures.hpp"
 
@@ -240,6 +241,27 @@ BOOST_AUTO_TEST_CASE(friction_always_takes_energy) {
                                            c.arm.friction[i] * std::tanh(c.qd[i] / c.arm.friction_velocity)));
         }
     });
+}
+
+// Plant and controller each with a gravity of its own, upright or oblique.
+BOOST_AUTO_TEST_CASE(the_equation_of_motion_knows_either_gravity) {
+    Random random(18);
+    const Vec3<double> upright(0, 0, -9), oblique(2, -3, -7);
+    for (const auto& [feels, compensates] : {std::pair(upright, oblique), std::pair(oblique, upright)}) {
+        for (int i = 0; i < 100; ++i) {
+            Case c(random);
+            c.params.set("arm.gravity", feels).choose("controller.type", "gravity_compensation");
+            const Plant<double> plant = make_setup(c.params.set("controller.gravity", compensates)).plant;
+            RightHandSide<double, double> rhs(plant);
+            const State<double, motion_size> y{c.q[0], c.q[1], c.q[2], c.qd[0], c.qd[1], c.qd[2]};
+            State<double, motion_size> dy;
+            rhs.begin_step(y);
+            rhs(0.0, y, dy);
+            const Vec3<double> tau = recursion_gravity_torque(plant.controller.model, c.q);
+            BOOST_TEST(close(recursion_forward_dynamics(plant.arm, c.q, c.qd, tau, Vec3<double>(0, 0, 0)),
+                             Vec3<double>(dy[3], dy[4], dy[5]), 1e-11));
+        }
+    }
 }
 
 // ---- seen from the tip

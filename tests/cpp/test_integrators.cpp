@@ -130,6 +130,18 @@ BOOST_AUTO_TEST_CASE(the_error_estimate_is_of_order_5_and_counts_the_motion_alon
     BOOST_TEST(stepper.error({1.0, 0.0}, 0.01, 1e-6, 1e-6) < 1);
 }
 
+// Of the two ends of a step the larger sets the tolerance.
+BOOST_AUTO_TEST_CASE(the_tolerance_is_that_of_the_larger_end) {
+    Dopri5<double, 1, 1> stepper;
+    stepper.k = {Scalar{1.0}};
+    stepper.f1 = {0.0};
+    for (const auto& [y, y1] : {std::pair(1e-6, -4.0), std::pair(-4.0, 1e-6)}) {
+        stepper.y1 = {y1};
+        const double tolerance = 1e-3 + 1e-2 * 4;
+        BOOST_TEST(std::abs(stepper.error({y}, 0.1, 1e-2, 1e-3) / (0.1 * 71 / 57600 / tolerance) - 1) <= 1e-14);
+    }
+}
+
 // ---- the arm
 
 using Motion6 = State<double, motion_size>;
@@ -191,6 +203,15 @@ BOOST_AUTO_TEST_CASE(a_tolerance_a_hundred_thousand_times_finer_takes_ten_times_
     };
     const double ratio = steps(1e-12) / steps(1e-7);
     BOOST_TEST(std::abs(ratio - 10) <= 1, ratio);
+}
+
+// Stiff friction rejects steps in a row: one that is rejected must not grow again at once.
+BOOST_AUTO_TEST_CASE(a_step_does_not_grow_right_after_a_rejected_one) {
+    Params params = unequal_params().set("initial.qd", {0.5, -0.4, 0.3}).set("arm.link1.inertia_axial", 0.3);
+    params.set("arm.friction", {0.5, 0.4, 0.3}).set("arm.friction_velocity", 0.01).set("solver.rtol", 1e-6);
+    const Run run = params.set("time.stop", 5).run();
+    BOOST_TEST(run.steps.rejected > run.steps.accepted / 5);
+    BOOST_TEST(run.steps.rejected < run.steps.accepted / 3);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

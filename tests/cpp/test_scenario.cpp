@@ -76,6 +76,9 @@ BOOST_AUTO_TEST_CASE(what_only_looks_like_a_number_is_refused) {
     BOOST_TEST(refused("010").hint == "write 10");
     BOOST_TEST(refused("-0x10").hint == "only decimal numbers: this would be -16");
     BOOST_TEST(refused("35 cm").hint == "numbers are plain SI: write 0.35 (m)");
+    BOOST_TEST(refused("5 cm/s").hint == "numbers are plain SI: write 0.05 (m/s)");
+    BOOST_TEST(refused("5 furlong").hint == "numbers are plain SI, without their unit");
+    for (const char* text : {"1e", "1e+", "1.5 2.5", "1..2"}) BOOST_TEST(refused(text).hint == "", text);
 }
 
 BOOST_AUTO_TEST_CASE(infinity_and_whole_numbers_only_by_rule) {
@@ -91,6 +94,8 @@ BOOST_AUTO_TEST_CASE(the_nearest_word_is_within_two_slips) {
     BOOST_TEST(nearest("lenght", words) == "length");
     BOOST_TEST(nearest("tpye", words) == "type");
     BOOST_TEST(nearest("damping", words) == "");
+    BOOST_TEST(nearest("brake", {"make", "break"}) == "break");
+    BOOST_TEST(nearest("brake", {"break", "make"}) == "break");
     BOOST_TEST(nearest("x", words) == "");
     BOOST_TEST(nearest(std::string(100'000, 'x'), words) == "");
 }
@@ -115,6 +120,12 @@ BOOST_AUTO_TEST_CASE(a_problem_is_one_line_and_harmless) {
 BOOST_AUTO_TEST_CASE(an_error_shows_20_problems_at_most) {
     const Error error(ARM3R_E_SCENARIO, std::vector<Problem>(50, Problem{"c", "p", "m", "", "", ""}));
     BOOST_TEST(error.problems().size() == 20u);
+}
+
+BOOST_AUTO_TEST_CASE(one_is_not_several) {
+    BOOST_TEST(counted(0, "item") == "0 items");
+    BOOST_TEST(counted(1, "make event") == "1 make event");
+    BOOST_TEST(counted(2, "item") == "2 items");
 }
 
 BOOST_AUTO_TEST_CASE(bytes_that_are_not_utf8_are_told_from_those_that_are) {

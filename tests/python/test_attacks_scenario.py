@@ -59,7 +59,8 @@ def check(cli, tmp_path: Path) -> Callable[..., Outcome]:
         (tmp_path / "s.yaml").write_bytes(text if isinstance(text, bytes) else text.encode())
         result = cli("check", "s.yaml", *options, cwd=tmp_path)
         assert result.returncode >= 0, result
-        assert (result.returncode == 0) == (result.stderr == "")
+        warnings = all(": warning: " in line for line in result.stderr.splitlines())
+        assert (result.returncode == 0) == warnings
         return Outcome(result.returncode, result.stderr)
 
     return call
@@ -344,6 +345,8 @@ def test_a20_a_long_key_is_cut_short(refused):
         ("controler: {}\n", "2:1", "controler", "controller"),
         ("solver: {rtoll: 1e-9}\n", "2:10", "solver.rtoll", "rtol"),
         ("tiem: {stop: 1}\n", "2:1", "tiem", "time"),
+        ("stifness: 500\n", "2:1", "stifness", "wall.contact.stiffness"),
+        ("arm: {log_evry: 1}\n", "2:7", "arm.log_evry", "time.log_every"),
     ],
 )
 def test_a21_an_unknown_key_meets_the_nearest_one(refused, text, place, path, meant):
@@ -356,6 +359,13 @@ def test_a22_a_key_in_the_wrong_section_is_sent_to_the_right_one(refused):
     assert "`section` belongs to shape brick; here the shape is cylinder" in refused(
         HEAD + "arm: {link2: {shape: cylinder, radius: 0.1, section: [0.01, 0.01]}}\n"
     )
+
+
+def test_a22_the_controllers_copy_of_the_arm_belongs_to_gravity_compensation(refused):
+    message = refused(HEAD + "controller: {model: {link2: {mass: 1}}}\n")
+    assert "`mass` belongs to type gravity_compensation; here the type is none" in message
+    assert "set controller.type to gravity_compensation" in message
+    assert "`model` belongs to controller" in refused(HEAD + "model: {link2: {mass: 1}}\n")
 
 
 def test_a23_a_missing_key_names_its_parent(refused):
@@ -452,6 +462,8 @@ def test_b3_except_where_no_limit_is_meant(check, refused):
     assert check(HEAD + "arm: {torque_limit: [inf, 5, inf]}\n").code == 0
     assert "write inf" in refused(HEAD + "arm: {torque_limit: [.inf, 5, inf]}\n")
     assert "error[scenario.range]" in refused(HEAD + "arm: {torque_limit: [-inf, 5, inf]}\n")
+    for size in ["[inf, inf]", "inf", ".inf"]:
+        assert "; write infinite" in refused(HEAD + f"wall: {{size: {size}}}\n")
 
 
 @pytest.mark.parametrize(
@@ -465,6 +477,8 @@ def test_b4_decimal_only(refused, value, hint):
 
 def test_b5_a_comma_and_a_locale_with_commas(refused, cli, tmp_path):
     assert "use a point: 1.5" in refused(HEAD + "time:\n  stop: 1,5\n")
+    assert "use a point: 1.5" in refused(HEAD + "time: {stop: 1,5}\n")
+    assert "in a number use a point" in refused(HEAD + "arm: {gravity: [0, 0, -9,81]}\n")
     path = tmp_path / "s.yaml"
     path.write_text(HEAD + "time: {stop: 0.5}\n")
     german = cli("check", path, env={**os.environ, "LC_ALL": "de_DE.UTF-8"})
@@ -493,6 +507,8 @@ def test_b8_units_are_answered_with_the_plain_number(refused):
     assert "write 0.5 (m)" in refused(HEAD + "arm: {link2: {length: 50 cm}}\n")
     assert "write 30 deg" in refused(HEAD + "initial: {q: [0, 30deg, 0]}\n")
     assert "degrees" in refused(HEAD + "arm: {link2: {length: 50 deg}}\n")
+    assert "write 0.05 (m/s)" in refused(HEAD + "wall: {motion: {velocity: 5 cm/s}}\n")
+    assert "plain SI, without their unit" in refused(HEAD + "wall: {motion: {velocity: 5 furlong}}\n")
 
 
 @pytest.mark.parametrize("value", ["3.7", "2147483648", "99999999999", "1e3", "0", "-5"])
@@ -517,6 +533,55 @@ def test_b_every_legal_form_of_one_half(value):
     assert "stop: 0.5\n" in arm3r.Scenario(HEAD + f"time: {{stop: {value}}}\n").to_yaml()
 
 
+# ---- checks ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "claim, says",
+    [
+        ("{column: q1, event: make, equals: 1}", "only one subject may stand in a check, got column and event"),
+        ("{event: brake, equals: 1}", "did you mean break?"),
+        ("{event: make, at: 1, equals: 1}", "a check with `event` has no such key"),
+        ("{column: q1, of: max, above: 2, below: 1}", "no value is above 2 and below 1"),
+        ("{column: q1, of: max, above: 2, below: 2}", "no value is above 2 and below 2"),
+    ],
+)
+def test_a_check_that_cannot_be_meant_is_refused(refused, claim, says):
+    assert says in refused(HEAD + f"checks: [{claim}]\n")
+
+
+def test_on_part_of_a_run_only_its_rows_and_events_are_judged():
+    ended_early = arm3r.Scenario(
+        HEAD
+        + """
+solver: {max_steps: 20}
+wall: {point: [1.75, 0, 0]}
+checks:
+  - {name: start, column: t, at: 0, equals: 0}
+  - {name: end, column: t, at: 10, equals: 10}
+  - {name: made, event: make, equals: 0, abs: 10}
+  - {name: largest, column: t, of: max, below: 1e3}
+  - {name: last, column: t, of: final, below: 1e3}
+  - {name: force, summary: peak_force, below: 1e9}
+  - {name: lost, count: break, equals: 0}
+"""
+    )
+    with pytest.raises(arm3r.BudgetError) as error:
+        ended_early.run()
+    run = error.value.run
+    checks = {check["name"]: check for check in run.checks}
+    assert {name for name, check in checks.items() if check["passed"]} == {"start", "made"}
+    for name in ["largest", "last", "force", "lost"]:
+        assert checks[name]["value"] is None
+        assert checks[name]["reason"] == f"the run ended at t = {run.summary['t_end']} s"
+
+
+def test_one_event_is_one_event():
+    scenario = arm3r.Scenario(HEAD + "time: {stop: 6}\ncontroller: {type: gravity_compensation}\nwall: {}\n")
+    scenario["checks"] = [{"name": "second", "event": "make", "index": 1, "equals": 1}]
+    assert scenario.run().checks[0]["reason"] == "there was 1 make event"
+
+
 # ---- what `arm3r check` prints --------------------------------------------------------------------------------------
 
 
@@ -535,6 +600,20 @@ def test_every_value_tells_where_it_comes_from(cli, tmp_path):
     assert re.search(r"stop: 1 +# --set", text) and re.search(r"radius: 0.02 +# s.yaml:5", text)
 
 
+def test_what_the_plant_has_not_is_not_printed_as_the_plants(cli):
+    text = HEAD + "arm: {link2: {shape: cylinder, radius: 0.01}}\n"
+    text += "controller: {type: gravity_compensation, model: {link2: {shape: brick, mass: 1}}}\n"
+    model = cli("check", "-", input=text).stdout.split("model:")[1]
+    assert "length: as the plant" in model and "section" not in model
+
+
+def test_check_names_likely_slips(cli, tmp_path):
+    (tmp_path / "s.yaml").write_text(HEAD + "initial: {q: [0, 90, 0]}\n")
+    result = cli("check", "s.yaml", cwd=tmp_path)
+    assert result.returncode == 0
+    assert result.stderr.startswith("s.yaml: warning: initial.q[1] is more than a full turn, 90 rad")
+
+
 # ---- --set ----------------------------------------------------------------------------------------------------------
 
 
@@ -548,8 +627,75 @@ def test_set_of_a_new_type_drops_the_keys_of_the_old(check):
 
 
 def test_set_reports_its_own_place_and_the_path(refused):
-    assert "--set:3: error[number.syntax]: time.stop" in refused(HEAD, "--set", "time.stop=  1s")
+    assert "--set time.stop=1s: error[number.syntax]: time.stop: " in refused(HEAD, "--set", "time.stop=1s")
+    assert "--set time.stop=  1s:3: error[number.syntax]: time.stop: " in refused(HEAD, "--set", "time.stop=  1s")
     assert "did you mean stiffness?" in refused(HEAD, "--set", "wall.contact.stifness=1")
+
+
+@pytest.mark.parametrize(
+    "wrong, says",
+    [
+        ("time.stop=-1", "error[scenario.range]: time.stop: "),
+        ("wall..x=1", "error[path.syntax]: wall..x: "),
+        ("initial.q[0=1", "error[path.syntax]: initial.q[0: "),
+        ("arm.link2.mass=&x 1", "error[yaml.anchor]: arm.link2.mass: "),
+        ("arm.link2.mass=[1", "error[yaml.syntax]: arm.link2.mass: "),
+        ("initial.q[3]=1", "error[path.index]: initial.q[3]: `initial.q` has 3 items"),
+        ("checks[1]=1", "error[path.index]: checks[1]: `checks` has 0 items"),
+    ],
+)
+def test_of_several_sets_the_wrong_one_is_named(refused, wrong, says):
+    message = refused(HEAD, "--set", "wall={}", "--set", wrong, "--set", "time.log_every=0.1")
+    assert message.startswith(f"--set {wrong}: {says}") and message.count("\n") == 1
+
+
+def test_the_path_inside_a_set_value_is_whole(refused):
+    assert "error[yaml.anchor]: checks[0].at: " in refused(HEAD, "--set", "checks=[{at: &x 1}]")
+
+
+def test_a_value_set_from_python_is_not_called_an_option():
+    scenario = arm3r.Scenario(HEAD)
+    scenario["time.stop"] = -1
+    with pytest.raises(arm3r.ScenarioError, match=r"^set time\.stop=-1: error\[scenario\.range\]: time\.stop: "):
+        scenario.validate()
+    scenario["time.stop"] = 1
+    assert re.search(r"stop: 1 +# set\n", scenario.to_yaml(annotate=True))
+
+
+ONE_NUMBER_OR_A_LIST = [
+    ("wall.motion.velocity", ["wall={}"]),
+    ("wall.contact.stiffness", ["wall.contact.law=diagonal"]),
+    ("controller.gravity", ["controller.type=gravity_compensation"]),
+]
+
+
+@pytest.mark.parametrize("path, before", ONE_NUMBER_OR_A_LIST)
+def test_an_item_of_what_may_be_one_number_needs_the_list(check, refused, path, before):
+    sets = [word for edit in before for word in ("--set", edit)]
+    message = refused(HEAD, *sets, "--set", f"{path}[0]=1")
+    assert f"`{path}` can be a single number" in message and "give the whole list" in message
+    assert check(HEAD, *sets, "--set", f"{path}=[3, 2, 1]", "--set", f"{path}[0]=1").code == 0
+
+
+def test_an_item_of_a_number_that_stands_there_needs_the_list(refused):
+    message = refused(HEAD + "wall: {motion: {velocity: 0.5}}\n", "--set", "wall.motion.velocity[0]=1")
+    assert "is 0.5, not a list; give the whole list" in message
+
+
+@pytest.mark.parametrize("nothing", ["", " ", "~", "# 5"])
+def test_only_null_takes_a_key_out(cli, refused, tmp_path, nothing):
+    text = HEAD + "wall: {contact: {stiffness: 500}}\n"
+    assert "there is no value" in refused(text, "--set", f"wall.contact.stiffness={nothing}")
+    (tmp_path / "s.yaml").write_text(text)
+    assert "stiffness: 1000 " in cli("check", "s.yaml", "--set", "wall.contact.stiffness=null", cwd=tmp_path).stdout
+
+
+def test_null_needs_a_key_to_take_out(check, refused):
+    assert "did you mean wall.contact.stiffness?" in refused(HEAD, "--set", "wall.contact.stifness=null")
+    assert "no such key" in refused(HEAD, "--set", "checks[0]=null")
+    for known in ["wall", "wall.contact", "time.stop", "checks", "name"]:
+        assert check(HEAD, "--set", f"{known}=null").code == 0
+    assert check(HEAD + "stifness: 1\n", "--set", "stifness=null").code == 0
 
 
 def test_set_of_one_item_leaves_the_others(cli, tmp_path):
@@ -581,6 +727,15 @@ def test_a_closed_pipe_ends_by_sigpipe(executable, moving_wall):
     assert command.wait(timeout=10) == -signal.SIGPIPE
 
 
+def test_a_closed_pipe_ends_quietly_where_the_caller_ignores_sigpipe(executable, moving_wall):
+    ignore = lambda: signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # noqa: E731
+    command = subprocess.Popen(
+        [executable, "run", moving_wall, "-o", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=ignore
+    )
+    command.stdout.close()
+    assert command.stderr.read() == b"" and command.wait(timeout=10) == -signal.SIGPIPE
+
+
 LONG_TIME = "time={stop: 1e6, log_every: 1e3}"
 MANY_STEPS = "solver={method: rk4, step: 1e-3, max_steps: 1000000000}"
 LONG_RUN = ["--set", LONG_TIME, "--set", MANY_STEPS, "--set", "checks=[]"]
@@ -609,6 +764,13 @@ def test_a_time_limit_exits_5_and_keeps_the_rows(cli, tmp_path, moving_wall):
     assert (tmp_path / "x.csv").exists() and '"budget"' in (tmp_path / "x.json").read_text()
 
 
+def test_too_little_memory_exits_5_and_says_what_takes_it(cli, moving_wall):
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (512 << 20, 512 << 20))  # noqa: E731
+    result = cli("run", moving_wall, "--set", "time.log_every=3e-6", "--set", "checks=[]", preexec_fn=limit)
+    assert result.returncode == 5
+    assert "error[memory]: there is not enough memory" in result.stderr and "time.log_every" in result.stderr
+
+
 def test_a_failed_check_exits_10(cli, moving_wall):
     result = cli("run", moving_wall, "--set", "checks=[{name: impossible, column: t, of: max, below: 1}]")
     assert result.returncode == 10 and "FAIL  impossible" in result.stdout
@@ -616,7 +778,27 @@ def test_a_failed_check_exits_10(cli, moving_wall):
 
 def test_an_unknown_call_is_met_with_the_likely_one(cli):
     result = cli("rnu", "x.yaml")
-    assert result.returncode == USAGE_EXIT and "did you mean run?" in result.stderr
+    assert result.returncode == USAGE_EXIT and "did you mean run? See arm3r --help" in result.stderr
+    assert "no program arm3r-nothing; see arm3r --help" in cli("nothing").stderr
+
+
+@pytest.mark.parametrize("typed", ["--out", "--outptu", "-output", "-output=x.csv"])
+def test_an_unknown_option_is_met_with_the_likely_one(cli, moving_wall, typed):
+    result = cli("run", moving_wall, typed, "x.csv")
+    assert result.returncode == USAGE_EXIT and "did you mean --output?" in result.stderr
+
+
+@pytest.mark.parametrize("words", [["-o", "x.csv"], ["-ox.csv"], ["-o=x.csv"], ["--output=x.csv"]])
+def test_an_option_and_its_value_in_one_word_or_two(cli, tmp_path, moving_wall, words):
+    assert cli("run", moving_wall, "--set", "time.stop=0", "--set", "checks=[]", *words, cwd=tmp_path).returncode == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["x.csv", "x.json"]
+
+
+def test_an_empty_file_name_is_called_that(cli):
+    result = cli("check", "")
+    assert result.returncode == USAGE_EXIT and "the file name is empty" in result.stderr
+    with pytest.raises(arm3r.OutputError, match="the file name is empty"):
+        arm3r.Scenario(HEAD + "time: {stop: 0}\n").run().to_csv("")
 
 
 def test_another_program_is_found_on_the_path(cli, tmp_path):
@@ -638,6 +820,15 @@ def test_a_scenario_is_not_overwritten_by_its_own_results(cli, tmp_path):
     path = tmp_path / "s.yaml"
     path.write_text(HEAD)
     assert cli("run", path, "-o", path).returncode == USAGE_EXIT and path.read_text() == HEAD
+
+
+def test_a_scenario_is_not_overwritten_by_its_own_summary(cli, tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text(HEAD)
+    for output in [tmp_path / "a.csv", tmp_path]:
+        result = cli("run", path, "-o", output)
+        assert result.returncode == USAGE_EXIT and "a.json: error[usage]: this would overwrite" in result.stderr
+        assert path.read_text() == HEAD and list(tmp_path.iterdir()) == [path]
 
 
 def test_the_template_is_a_scenario(cli):

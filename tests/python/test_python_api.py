@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 import decimal
 import gc
+import graphlib
+import json
 import math
 import os
 import pickle
+import re
+import shutil
 import signal
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -20,6 +26,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from arm3r_cpp.fnv import fnv1a64
 
 FALLING = "format: 1\ntime: {stop: 0.2, log_every: 0.1}\n"
 LONG = "format: 1\nsolver: {method: rk4, step: 1e-5, max_steps: 1000000000}\ntime: {stop: 500, log_every: 0.1}\n"
@@ -162,7 +169,7 @@ def test_what_is_not_real_numbers_is_refused(arm: arm3r.Arm, bad: Any) -> None:
 def test_what_is_not_finite_is_named_by_index(arm: arm3r.Arm, bad: float) -> None:
     qd = np.zeros((4, 5, 3))
     qd[2, 3, 1] = bad
-    with pytest.raises(ValueError, match=r"qd\[2, 3, 1\]"):
+    with pytest.raises(ValueError, match=r"qd\[2\]\[3\]\[1\]:"):
         arm.energy(POSE, qd)
 
 
@@ -188,16 +195,46 @@ def test_inverse_kinematics_has_four_branches(arm: arm3r.Arm) -> None:
 def test_out_of_reach_is_named_by_index(arm: arm3r.Arm) -> None:
     points = np.full((2, 3, 3), 0.5)
     points[1, 2] = [3, 0, 0]
-    with pytest.raises(arm3r.UsageError, match=r"p\[1, 2\]") as raised:
+    with pytest.raises(arm3r.UsageError, match=r"p\[1\]\[2\]: the point is out of reach") as raised:
         arm.inverse_kinematics(points)
     assert raised.value.index == (1, 2)
-    with pytest.raises(ValueError):
+    assert raised.value.problems[0]["path"] == "p[1][2]" and "tip" not in str(raised.value)
+    with pytest.raises(ValueError, match=r" p: the point is out of reach"):
         arm.inverse_kinematics([3, 0, 0])
+
+
+@pytest.mark.parametrize("far", [math.nan, 1e7], ids=["checked here", "checked by the library"])
+@pytest.mark.parametrize(
+    ("q", "qd", "place"),
+    [((3,), (3,), (1,)), ((4, 3), (3,), (2, 1)), ((2, 4, 3), (4, 3), (1, 2, 1)), ((2, 1, 3), (4, 3), (1, 0, 1))],
+)
+def test_places_are_told_in_the_shape_that_was_given(
+    arm: arm3r.Arm, far: float, q: tuple[int, ...], qd: tuple[int, ...], place: tuple[int, ...]
+) -> None:
+    values = np.zeros(q)
+    values[place] = far
+    with pytest.raises(ValueError, match=rf"\bq{re.escape(''.join(f'[{i}]' for i in place))}: "):
+        arm.energy(values, np.zeros(qd))
+    with pytest.raises(ValueError, match=rf"\bqd{re.escape(''.join(f'[{i}]' for i in place))}: "):
+        arm.energy(np.zeros(qd), values * 1e100)
+
+
+def test_singular_poses_are_named_by_index(arm: arm3r.Arm) -> None:
+    poses = np.full((2, 3, 3), 0.5)
+    poses[1, 0, 2] = 0
+    with pytest.raises(arm3r.UsageError, match=r" q\[1\]\[0\]: .* singular") as raised:
+        arm.operational_space_inertia(poses)
+    assert raised.value.index == (1, 0)
 
 
 def test_inverse_kinematics_options_are_checked(arm: arm3r.Arm) -> None:
     with pytest.raises(ValueError, match="'up' or 'down'"):
         arm.inverse_kinematics([1, 0, 0], elbow="left")
+    with pytest.raises(TypeError, match="front: True or False is needed, got 'no'"):
+        arm.inverse_kinematics([1, 0, 0], front="no")  # type: ignore[arg-type]
+    assert np.array_equal(
+        arm.inverse_kinematics([1, 0, 0], front=np.bool_(False)), arm.inverse_kinematics([1, 0, 0], front=False)
+    )
     with pytest.raises(TypeError):
         arm.inverse_kinematics([1, 0, 0], True)  # type: ignore[misc]
 
@@ -234,6 +271,8 @@ def test_unknown_parameters_are_refused() -> None:
         arm3r.param_name(arm3r.param_count())
     with pytest.raises(IndexError):
         arm3r.param_name(-1)
+    with pytest.raises(TypeError, match="name: text"):
+        arm3r.param_index(3)  # type: ignore[arg-type]
 
 
 # ---- scenarios ------------------------------------------------------------------------------------------------------
@@ -262,6 +301,78 @@ def test_values_by_path(lecture: arm3r.Scenario, path: str, value: Any, read: An
     lecture[path] = value
     lecture.validate()
     assert lecture[path] == read
+
+
+EVERY_KEY = """
+format: 1
+arm: {torque_limit: [inf, 5, inf], payload: {mass: 0.1}}
+wall:
+  motion: {type: sinusoid, amplitude: 0.01, frequency: 2}
+  size: infinite
+  contact: {law: diagonal, stiffness: [1, 2, 3]}
+controller: {type: gravity_compensation, model: {link2: {density: 7000}}}
+checks: [{name: "a: [strange] # name", column: q1, of: max, below: 1}]
+"""
+
+
+def _paths(value: Any, path: str) -> list[str]:
+    if isinstance(value, dict):
+        return [path, *(p for key, item in value.items() for p in _paths(item, f"{path}.{key}"))]
+    if isinstance(value, list) and path != "checks":
+        return [path, *(p for i, item in enumerate(value) for p in _paths(item, f"{path}[{i}]"))]
+    return [path]
+
+
+@pytest.mark.parametrize("text", ["format: 1\n", EVERY_KEY, "format: 1\nsolver: {method: rk4, step: 0.001}\n"])
+def test_what_is_read_can_be_put_back(root: Path, text: str) -> None:
+    scenario = arm3r.Scenario(text)
+    keys = json.loads((root / "docs/scenario.schema.json").read_text())["properties"]
+    names = [re.sub(r"\[\d\]$", "", arm3r.param_name(i)) for i in range(arm3r.param_count())]
+    before, params = {key: scenario[key] for key in keys}, scenario.params
+    paths = {path for key in keys for path in _paths(before[key], key)} | set(names)
+    assert len(paths) > 100
+    for path in sorted(paths):
+        scenario[path] = scenario[path]
+        assert {key: scenario[key] for key in keys} == before, path
+    assert np.array_equal(scenario.params, params, equal_nan=True)
+
+
+def test_whole_numbers_are_whole_and_absent_keys_absent() -> None:
+    scenario = arm3r.Scenario("format: 1\n")
+    assert isinstance(scenario["solver.max_steps"], int)
+    assert "max_step" not in scenario["solver"] and "mass" not in scenario["arm.link2"]
+    assert scenario["solver.max_step"] is None and scenario["wall"] is None
+
+
+def test_none_takes_a_value_away(lecture: arm3r.Scenario) -> None:
+    lecture["checks"] = lecture["wall"] = lecture["solver.rtol"] = None
+    assert "wall" not in lecture and "wall.point" not in lecture
+    assert lecture["solver.rtol"] == arm3r.Scenario()["solver.rtol"]
+
+
+def test_paths_are_in_a_scenario_or_not(lecture: arm3r.Scenario) -> None:
+    assert "wall.point" in lecture and "initial.q[2]" in lecture and "arm" in lecture
+    assert "solver.max_step" not in lecture and "wall.pont" not in lecture and "initial.q[3]" not in lecture
+    with pytest.raises(arm3r.UsageError, match=r"did you mean wall\.point"):
+        lecture["wall.pont"]
+    lecture["time.stop"] = -1
+    with pytest.raises(arm3r.ScenarioError):
+        "wall" in lecture  # noqa: B015
+
+
+def test_what_is_not_text_is_refused(lecture: arm3r.Scenario, moving_wall: Path) -> None:
+    for text in (None, b"format: 1", moving_wall, 3):
+        with pytest.raises(TypeError, match=rf"text: text \(str\) is needed, got {type(text).__name__}"):
+            arm3r.Scenario(text)  # type: ignore[arg-type]
+    uses = (lambda: lecture[3], lambda: lecture.__setitem__(3, 3), lambda: 3 in lecture, lambda: list(lecture))
+    for use in uses:
+        with pytest.raises(TypeError, match=r"path: text \(str\) is needed, got int"):
+            use()
+
+
+def test_a_file_name_is_not_a_scenario(moving_wall: Path) -> None:
+    with pytest.raises(arm3r.UsageError, match=r"Scenario\.load\('.*moving_wall\.yaml'\)"):
+        arm3r.Scenario(str(moving_wall))
 
 
 @pytest.mark.parametrize("value", [{1, 2}, object(), 1j, b"bytes", [1, object()]])
@@ -364,6 +475,15 @@ def test_three_columns_at_once(lecture_run: arm3r.Run) -> None:
 def test_unknown_columns_name_the_nearest(lecture_run: arm3r.Run) -> None:
     with pytest.raises(KeyError, match="tip_x"):
         lecture_run["tipx"]
+    for name in (0, slice(2), None, ("q1", "q2")):
+        with pytest.raises(TypeError, match=r"a column's name is needed"):
+            lecture_run[name]  # type: ignore[index]
+
+
+def test_runs_are_mappings_of_columns(lecture_run: arm3r.Run) -> None:
+    assert list(lecture_run) == lecture_run.columns
+    assert "q1" in lecture_run and "q" in lecture_run and "f_on_tip" in lecture_run
+    assert "q4" not in lecture_run and 0 not in lecture_run and None not in lecture_run
 
 
 def test_every_column_has_a_unit(lecture_run: arm3r.Run) -> None:
@@ -426,11 +546,98 @@ def test_files_that_cannot_be_written(lecture_run: arm3r.Run, tmp_path: Path) ->
         lecture_run.to_npz(tmp_path / "no" / "such" / "folder.npz")
 
 
-def test_files_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(OSError):
-        arm3r.Run.load(tmp_path / "nothing.csv")
-    with pytest.raises(ValueError, match=r"\.csv or \.npz"):
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """The files of a small run, by suffix."""
+    folder = tmp_path_factory.mktemp("written")
+    run = arm3r.Scenario(FALLING).run()
+    run.to_csv(folder / "run.csv")
+    run.to_npz(folder / "run.npz")
+    return {path.suffix: path.read_bytes() for path in folder.iterdir()}
+
+
+def _edit(line: int, old: bytes, new: bytes) -> Callable[[bytes], bytes]:
+    def change(data: bytes) -> bytes:
+        lines = data.splitlines(keepends=True)
+        assert old in lines[line - 1]
+        lines[line - 1] = lines[line - 1].replace(old, new, 1)
+        return b"".join(lines)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("suffix", "change", "why"),
+    [
+        (".csv", lambda data: b"".join(data.splitlines(keepends=True)[:-1]), r"run\.csv: .*rows: 3 in .*, 2 in"),
+        (".csv", lambda data: data.splitlines(keepends=True)[0], r"run\.csv: .*rows: 3 in .*, 0 in"),
+        (".csv", lambda data: b"", r"run\.csv:1: a line of column names"),
+        (".csv", lambda data: b"\xff\xfe\0" + data, r"run\.csv:1: a line of column names"),
+        (".csv", lambda data: data[:-40], r"run\.csv:4: a whole line of 42 numbers .* ends within it"),
+        (".csv", lambda data: data[:-1], r"run\.csv:4: a whole line .* ends within it"),
+        (".csv", _edit(3, b"0.1,", b"0.1,0,"), r"run\.csv:3: a whole line of 42 numbers is needed, got 43"),
+        (".csv", _edit(3, b",-", b",minus "), r"run\.csv:3: q\w+: a number is needed, got 'minus "),
+        (".csv", _edit(3, b"0.1,", b"0.1000000000000001,"), r"run\.csv: .*hash: fnv1a64:\w+ in .*, fnv1a64:\w+ in"),
+        (".csv", _edit(3, b"0.1,", b"nan,"), r"run\.csv: .*hash"),
+        (".csv", _edit(1, b"q1,", b"Q1,"), r"run\.csv: .*column: q1 in the summary, Q1 in"),
+        (".json", lambda data: data[:80], r"run\.json:\d+:\d+: not JSON"),
+        (".json", lambda data: b"[]", r"run\.json: not the summary of a run"),
+        (".json", lambda data: b"{}", r"run\.json: not the summary of a run"),
+        (".json", None, r"run\.json: cannot be read: No such file"),
+        (".csv", None, r"run\.csv: cannot be read: No such file"),
+        (".npz", None, r"run\.npz: cannot be read: No such file"),
+        (".npz", lambda data: data[: len(data) // 2], r"run\.npz: not a run that to_npz wrote, or damaged"),
+        (".npz", lambda data: b"", r"run\.npz: not a run"),
+        (".npz", lambda data: b"text", r"run\.npz: not a run"),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_files_that_are_not_as_they_were_written(
+    written: dict[str, bytes], tmp_path: Path, suffix: str, change: Callable[[bytes], bytes] | None, why: str
+) -> None:
+    for other, data in written.items():
+        (tmp_path / "run").with_suffix(other).write_bytes(data)
+    changed = (tmp_path / "run").with_suffix(suffix)
+    changed.unlink() if change is None else changed.write_bytes(change(written[suffix]))
+    with pytest.raises(arm3r.UsageError, match=why):
+        arm3r.Run.load(tmp_path / ("run.npz" if suffix == ".npz" else "run.csv"))
+
+
+def test_other_names_than_csv_and_npz_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(arm3r.UsageError, match=r"\.csv or \.npz"):
         arm3r.Run.load(tmp_path / "run.parquet")
+
+
+def test_numbers_changed_in_an_npz_are_seen(lecture_run: arm3r.Run, tmp_path: Path) -> None:
+    lecture_run.to_npz(tmp_path / "run.npz")
+    parts = dict(np.load(tmp_path / "run.npz"))
+    parts["data"][3, 5] = np.nextafter(parts["data"][3, 5], 1)
+    np.savez(tmp_path / "run.npz", **parts)
+    with pytest.raises(arm3r.UsageError, match="hash"):
+        arm3r.Run.load(tmp_path / "run.npz")
+
+
+def test_lines_may_end_as_on_other_systems(written: dict[str, bytes], tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_bytes(written[".csv"].replace(b"\n", b"\r\n"))
+    (tmp_path / "run.json").write_bytes(written[".json"])
+    assert len(arm3r.Run.load(tmp_path / "run.csv")) == 3
+
+
+def test_partial_runs_are_read_back(tmp_path: Path) -> None:
+    with pytest.raises(arm3r.BudgetError) as raised:
+        arm3r.Scenario("format: 1\nsolver: {max_steps: 20}\n").run()
+    raised.value.run.to_csv(tmp_path / "run.csv")
+    _equal(arm3r.Run.load(tmp_path / "run.csv"), raised.value.run)
+
+
+@pytest.mark.parametrize("sizes", [[], [0], [1], [8191, 3], [8192], [20000]])
+def test_the_hash_is_fnv1a_byte_by_byte(sizes: list[int]) -> None:
+    rng = np.random.default_rng(5)
+    columns = [rng.integers(0, 2**64, size, np.uint64).view(np.float64) for size in sizes]
+    state = 0xCBF29CE484222325
+    for byte in b"".join(column.tobytes() for column in columns):
+        state = (state ^ byte) * 0x100000001B3 % 2**64
+    assert fnv1a64(columns) == f"fnv1a64:{state:016x}"
 
 
 def test_failing_checks_do_not_raise() -> None:
@@ -561,3 +768,32 @@ def test_errors_are_pickled() -> None:
     assert (type(again), str(again), again.problems) == (type(raised.value), str(raised.value), raised.value.problems)
     output = pickle.loads(pickle.dumps(arm3r.OutputError("full", status=-501, code="output")))
     assert (str(output), output.status) == ("full", -501) and isinstance(output, OSError)
+
+
+# ---- modules --------------------------------------------------------------------------------------------------------
+
+MODULES = sorted(path.stem for path in Path(arm3r.__file__).parent.glob("*.py"))
+
+
+@pytest.mark.parametrize("module", [name for name in MODULES if name != "__init__"])
+def test_every_module_can_be_the_first(python: Any, module: str) -> None:
+    done = python(f"import sys, arm3r_cpp.{module} as m; assert m is sys.modules['arm3r_cpp.{module}']")
+    assert done.returncode == 0, done.stderr
+
+
+def test_no_modules_import_each_other() -> None:
+    def imported(name: str) -> set[str]:
+        tree = ast.parse((Path(arm3r.__file__).parent / f"{name}.py").read_text())
+        froms = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.level == 1]
+        return {node.module or alias.name for node in froms for alias in node.names} & set(MODULES)
+
+    graph = {name: imported(name) for name in MODULES if name != "__init__"}
+    assert graph["scenario"] >= {"_native", "run"}
+    assert len(list(graphlib.TopologicalSorter(graph).static_order())) == len(graph)  # CycleError names a circle
+
+
+def test_sources_that_are_not_built_say_so(python: Any, root: Path, tmp_path: Path) -> None:
+    shutil.copytree(root / "python" / "arm3r_cpp", tmp_path / "arm3r_cpp", ignore=shutil.ignore_patterns("*.so"))
+    for code in ("import arm3r_cpp.run", "import arm3r_cpp; arm3r_cpp.Run", "import arm3r_cpp.plot_cli, arm3r_cpp.arm"):
+        done = python(code, PYTHONPATH=str(tmp_path))
+        assert "not built; `pip install .`" in done.stderr.splitlines()[-1] and "circular" not in done.stderr

@@ -175,12 +175,17 @@ ARM3R_API int32_t arm3r_scenario_copy(const arm3r_scenario *scenario, arm3r_scen
 /* Put a value (YAML, flow style) in place of what stands at a dotted path; list items by [i]. A new type, method or law drops
  * the keys of the old one. Nothing is validated before one of the functions below is called. */
 ARM3R_API int32_t arm3r_scenario_set(arm3r_scenario *scenario, const char *path, size_t path_size, const char *value, size_t value_size);
+/* The same; `file` is what messages and provenance call the place the value came from, e.g. "--set". */
+ARM3R_API int32_t arm3r_scenario_set_from(arm3r_scenario *scenario, const char *path, size_t path_size, const char *value, size_t value_size,
+                                          const char *file, size_t file_size);
 ARM3R_API int32_t arm3r_scenario_validate(const arm3r_scenario *scenario);
 /* The value at a path as JSON, defaults included; inf as "inf", an absent value as null. */
 ARM3R_API int32_t arm3r_scenario_get(const arm3r_scenario *scenario, const char *path, size_t path_size, const char **json);
 ARM3R_API int32_t arm3r_scenario_name(const arm3r_scenario *scenario, const char **name);
 /* The whole scenario with all defaults, itself a scenario file; annotate 1: each value with its provenance in a comment. */
 ARM3R_API int32_t arm3r_scenario_yaml(const arm3r_scenario *scenario, int32_t annotate, const char **yaml);
+/* What is allowed but probably a slip, a line each: "FILE: warning: SENTENCE"; "" where there is nothing to say. */
+ARM3R_API int32_t arm3r_scenario_warnings(const arm3r_scenario *scenario, const char **text);
 ARM3R_API int32_t arm3r_scenario_params(const arm3r_scenario *scenario, double *params, size_t count);
 ARM3R_API int32_t arm3r_scenario_run(const arm3r_scenario *scenario, const arm3r_run_options *options /* Nullable */, arm3r_run **run);
 
@@ -196,6 +201,8 @@ ARM3R_API int32_t arm3r_run_csv(const arm3r_run *run, arm3r_sink sink, void *use
 ARM3R_API int32_t arm3r_run_save(const arm3r_run *run, const char *path, size_t path_size);
 /* Fail with ARM3R_E_OUTPUT if arm3r_run_save could not write there: to be asked before a long run. */
 ARM3R_API int32_t arm3r_output_probe(const char *path, size_t path_size);
+/* Where arm3r_run_save puts the summary that belongs to PATH; the text stays until this thread asks again. */
+ARM3R_API int32_t arm3r_output_summary(const char *path, size_t path_size, const char **summary);
 
 /* ---- text: reference ----------------------------------------------------------------------------------------------- */
 
