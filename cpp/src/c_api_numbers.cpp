@@ -342,7 +342,12 @@ int32_t arm3r_arm_effective_mass(const arm3r_arm* arm, size_t n, const double* q
             const Vec3<double> d = load(direction, i);
             const double length = std::sqrt(dot(d, d));
             if (!(length > 1e-100))
-                throw bad_value({direction, 3, "direction (a direction needs a length)", largest_number}, 3 * i);
+                throw Error(ARM3R_E_VALUE, {{.code = "argument.value",
+                                             .path = "direction[" + std::to_string(i) + "]",
+                                             .message = "a direction needs a length",
+                                             .got = "[0, 0, 0]",
+                                             .allowed = "any vector that is not zero",
+                                             .hint = ""}});
             found[i] = effective_mass(arm->arm, pose(load_joints(*arm, q, i)),
                                       Vec3<double>(d[0] / length, d[1] / length, d[2] / length));
             if (!(std::isfinite(found[i]) && found[i] > 0))

@@ -38,6 +38,11 @@ def test_every_link_between_pages_leads_somewhere(root: Path) -> None:
             assert (page.parent / target).exists(), f"{page.name} links to {target}"
 
 
+def test_the_readme_leads_to_every_page(root: Path) -> None:
+    readme = (root / "README.md").read_text()
+    assert [page.name for page in root.glob("docs/*.md") if f"(docs/{page.name})" not in readme] == []
+
+
 def _block(root: Path, language: str, section: str) -> str:
     text = (root / "README.md").read_text().split(f"\n## {section}\n")[1]
     return text.split(f"```{language}\n")[1].split("```")[0]
