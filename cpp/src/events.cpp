@@ -82,8 +82,7 @@ std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mo
         std::optional<Crossing> first;
         const auto consider = [&](const Falling& falling) {
             const std::optional<double> theta = first_fall(inside, falling, a, at_a, b, at_b);
-            if (theta && (!first || *theta < first->theta))
-                first = {*theta, falling.next, falling.signal != depth_signal};
+            if (theta && (!first || *theta < first->theta)) first = {*theta, falling.next};
         };
         if (mode == Mode::free) {
             consider({depth_signal, -1, Mode::contact});
@@ -98,7 +97,7 @@ std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mo
                 for (int edge = 1; edge <= edges; ++edge) consider({edge, +1, Mode::embedded});
                 const double end = first ? first->theta : b;
                 const Look at_end = first ? look(inside, end) : at_b;
-                deepest = std::max({deepest, at_a.value[depth_signal], at_end.value[depth_signal]});
+                deepest = std::max(deepest, at_end.value[depth_signal]);
                 if (at_a.rate[depth_signal] > 0 && at_end.rate[depth_signal] < 0)
                     deepest = std::max(
                         deepest,

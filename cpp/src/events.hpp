@@ -11,7 +11,6 @@ namespace arm3r {
 struct Crossing {
     double theta;  // where in the step, in (from, 1]
     Mode next;
-    bool over_edge;
 };
 
 class ContactWatch {

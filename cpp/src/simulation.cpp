@@ -102,16 +102,14 @@ private:
         run_.peak_force = std::max(run_.peak_force, setup_.plant.contact.stiffness[0] * depth);
     }
 
-    // What is stored in the contact is lost when the tip leaves it over an edge (4.9).
-    void change_mode(double t, const FullState& y, const Crossing& crossing) {
-        if (crossing.over_edge) {
-            const double lost = energies(setup_.plant, t, y, mode_).contact;
-            y_[8] += lost;
-            inside_.c[0][8] += lost;  // for the rows of this step that are still to come
-        }
-        if (crossing.next == Mode::contact) record(Event::make, t, y);
+    // What is still stored in the contact is lost: something where the tip leaves over an edge, nothing where it lets go (4.9).
+    void change_mode(double t, const FullState& y, Mode next) {
+        const double lost = energies(setup_.plant, t, y, mode_).contact;
+        y_[8] += lost;
+        inside_.c[0][8] += lost;  // for the rows of this step that are still to come
+        if (next == Mode::contact) record(Event::make, t, y);
         if (mode_ == Mode::contact) record(Event::brk, t, y);
-        mode_ = crossing.next;
+        mode_ = next;
     }
 
     void record(Event::Type type, double t, const FullState& y) {
@@ -221,7 +219,7 @@ private:
         theta_ = theta;
         y_ = crossing ? inside_(theta) : stepper_.y1;
         const bool came_to_rest = accept(t1);
-        if (crossing) change_mode(t1, y_, *crossing);
+        if (crossing) change_mode(t1, y_, crossing->next);
         if (crossing || came_to_rest) derive();
         else carry_over();
         ledger_.close(t_, y_, mode_, run_);
@@ -277,7 +275,7 @@ private:
         while (const std::optional<Crossing> crossing = watch_.next(inside_, from, mode_, deepest)) {
             const double t = t0 + crossing->theta * h;
             log_until(t);
-            change_mode(t, inside_(crossing->theta), *crossing);
+            change_mode(t, inside_(crossing->theta), crossing->next);
             changed = true;
             from = crossing->theta;
             if (run_.outcome != ARM3R_RUN_OK || from >= 1) break;
