@@ -133,9 +133,11 @@ private:
         }
         derive();
         h_ = first_step();
-        FullState ahead;  // what stands in for the solution when there is no step
-        for (std::size_t i = 0; i < state_size; ++i) ahead[i] = y_[i] + h_ * f_[i];
-        inside_ = hermite(0.0, h_, y_, f_, ahead, f_);
+        constexpr double a_moment = 1e-3;  // s
+        FullState ahead;                   // straight on, in place of a solution before there is a step
+        for (std::size_t i = 0; i < state_size; ++i) ahead[i] = y_[i] + a_moment * f_[i];
+        inside_ = hermite(0.0, a_moment, y_, f_, ahead, f_);
+        if (setup_.stop > 0) rows_.log(scene(), 0.0, y_, 0.0);  // whatever becomes of the first step
     }
 
     // The derivative at the present instant, with the sines and cosines that the next stages turn from.

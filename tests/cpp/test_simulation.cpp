@@ -352,6 +352,14 @@ BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_without_subnormal_numbers) {
 
 // ---- how a run may end
 
+BOOST_AUTO_TEST_CASE(a_run_that_fails_in_its_first_step_has_the_row_at_0) {
+    const Run run = falling().choose("solver.method", "rk4").set("solver.step", 5).set("time.stop", 100).run();
+    BOOST_TEST(run.outcome == ARM3R_RUN_DIVERGED);
+    BOOST_REQUIRE(run.rows >= 1u);
+    BOOST_TEST(column(run, "t")[0] == 0);
+    BOOST_TEST(column(run, "qdd2")[0] != 0);
+}
+
 BOOST_AUTO_TEST_CASE(an_angle_beyond_1e5_rad_is_diverged) {
     for (const char* method : methods) {
         const Run run = unequal_params()
