@@ -200,14 +200,14 @@ void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
                         ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
 }
 
-void slip_of_angles(const Setup& setup, std::vector<std::string>& slips) {
+void slip_of_angles(std::span<const double> params, std::vector<std::string>& slips) {
     for (int i = 0; i < 3; ++i) {
-        const double in_degrees = setup.q[i] * 180 / pi;
+        const double angle = param(params, "initial.q", i), in_degrees = angle * 180 / pi;
         const bool was_degrees = std::abs(in_degrees - std::round(in_degrees)) < 1e-9 * std::abs(in_degrees);
-        if (std::abs(setup.q[i]) > 2 * pi && !was_degrees)
-            slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " +
-                            shortest(std::abs(setup.q[i])) + " rad; plain numbers are radians: write `" +
-                            shortest(std::abs(setup.q[i])) + " deg` if degrees were meant");
+        if (std::abs(angle) > 2 * pi && !was_degrees)
+            slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " + shortest(angle) +
+                            " rad; plain numbers are radians: write `" + shortest(angle) +
+                            " deg` if degrees were meant");
     }
 }
 
@@ -217,6 +217,24 @@ void slip_of_links(const Arm<double>& arm, std::vector<std::string>& slips) {
         if (links[i]->com < 0 || links[i]->com > links[i]->length)
             slips.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " +
                             shortest(links[i]->com) + " m of " + shortest(links[i]->length) + " m");
+    }
+}
+
+// Units that are off by powers of ten show in the proportions of a link.
+void slip_of_units(const Arm<double>& arm, std::vector<std::string>& slips) {
+    constexpr double a_long_link = 50;  // m
+    const Link<double>* links[] = {&arm.link2, &arm.link3};
+    for (int i = 0; i < 2; ++i) {
+        const Link<double>& link = *links[i];
+        const std::string name = "arm.link" + std::to_string(i + 2);
+        const double largest = std::max({link.inertia[0], link.inertia[1], link.inertia[2]});
+        const double whole_mass_at_the_end = link.mass * link.length * link.length;
+        if (link.length > a_long_link)
+            slips.push_back(name + ".length is " + shortest(link.length) + " m; was it given in millimetres?");
+        if (largest > whole_mass_at_the_end)
+            slips.push_back(name + ".inertia has " + shortest(largest) +
+                            " kg m^2, more than mass*length^2 = " + shortest(whole_mass_at_the_end) +
+                            ": no body within the link has as much; was it given in g cm^2 (1e-7 kg m^2)?");
     }
 }
 
@@ -344,8 +362,9 @@ std::vector<std::string> likely_slips(std::span<const double> params) {
     const Setup setup = make_setup(params);
     std::vector<std::string> slips;
     slip_of_gravity(setup, slips);
-    slip_of_angles(setup, slips);
+    slip_of_angles(params, slips);
     slip_of_links(setup.plant.arm, slips);
+    slip_of_units(setup.plant.arm, slips);
     slip_of_wall(setup, slips);
     return slips;
 }

@@ -194,7 +194,7 @@ BOOST_AUTO_TEST_CASE(two_gravities_within_a_percent_but_not_equal_are_named) {
 }
 
 BOOST_AUTO_TEST_CASE(an_angle_that_looks_like_degrees_is_named) {
-    check_slip(unequal_params().set("initial.q", {0.4, -30, 0.2}), "`30 deg`");
+    check_slip(unequal_params().set("initial.q", {0.4, -30, 0.2}), "`-30 deg`");
     BOOST_TEST(slips(unequal_params().set("initial.q", {0.4, 720 * M_PI / 180, 0.2})).empty());
 }
 
@@ -208,6 +208,17 @@ BOOST_AUTO_TEST_CASE(a_fixed_step_that_cannot_resolve_the_contact_is_named) {
     Params params = unequal_params().set("wall", 1).set("wall.acts_on_arm", 1).choose("solver.method", "rk4");
     check_slip(Params(params).set("wall.contact.stiffness", 1e8), "solver.step");
     BOOST_TEST(slips(params).empty());
+}
+
+BOOST_AUTO_TEST_CASE(units_off_by_powers_of_ten_are_a_slip) {
+    const Params params = unequal_params();
+    const Vec3<double> I = params.arm().link2.inertia;
+    const Params in_g_cm2 = Params(params).set("arm.link2.inertia", Vec3<double>(1e7 * I));
+    BOOST_REQUIRE_EQUAL(slips(in_g_cm2).size(), 1u);
+    BOOST_TEST(slips(in_g_cm2)[0].find("g cm^2") != std::string::npos);
+    const std::vector<std::string> in_mm = slips(Params(params).set("arm.link3.length", 700));
+    BOOST_TEST(std::count_if(in_mm.begin(), in_mm.end(),
+                             [](const std::string& slip) { return slip.find("millimetres") != slip.npos; }) == 1);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
