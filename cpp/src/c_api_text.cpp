@@ -11,6 +11,7 @@
 #include "results.hpp"
 #include "schema.hpp"
 #include "setup.hpp"
+#include "size_cap.hpp"
 #include "text.hpp"
 
 using namespace arm3r;
@@ -28,9 +29,10 @@ arm3r_scenario* new_scenario(Scenario scenario) {
 }
 
 // Problems that only the numbers show, with their place in the text.
-Run simulate_located(const Scenario& scenario, const Resolved& resolved, const RunOptions& options) {
+template <class Body>
+auto with_places(const Scenario& scenario, Body body) {
     try {
-        return simulate(resolved.params, options);
+        return body();
     } catch (const Error& error) {
         if (error.problems().empty()) throw;
         throw Error(error.status(), located(error.problems(), scenario));
@@ -129,7 +131,8 @@ int32_t arm3r_scenario_set_from(arm3r_scenario* scenario, const char* path, size
 int32_t arm3r_scenario_validate(const arm3r_scenario* scenario) {
     return guard([&] {
         need(scenario, "scenario");
-        scenario->resolved();
+        const Setup setup = make_setup(scenario->resolved().params);
+        with_places(scenario->scenario, [&] { refuse_too_large(setup); });
     });
 }
 
@@ -196,7 +199,7 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         auto handle = std::make_unique<arm3r_run>();
         handle->name = resolved.name;
         handle->scenario = to_yaml(resolved.tree, false);
-        handle->run = simulate_located(scenario->scenario, resolved, chosen);
+        handle->run = with_places(scenario->scenario, [&] { return simulate(resolved.params, chosen); });
         handle->checks = evaluate(resolved.checks, handle->run, resolved.params);
         *run = handle.release();
     });

@@ -2,32 +2,12 @@
 
 #include <algorithm>
 
-#include "columns.hpp"
-#include "error.hpp"
-#include "numbers.hpp"
+#include "size_cap.hpp"
 
 namespace arm3r {
-namespace {
-
-constexpr double most_bytes = 2e9;
-
-double rounded(double count) { return count < 1e15 ? nearest_integer(count) : count; }
-
-}  // namespace
-
 RowLog::RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {
-    const std::vector<Column>& table = column_table();
-    for (std::size_t i = 0; i < table.size(); ++i)
-        if (setup.plant.has_wall || !table[i].only_with_wall) run.columns.push_back(i);
+    run.columns = columns_of(setup);
     const double intervals = setup.stop / setup.log_every;
-    const double most = most_bytes / double(run.columns.size() * sizeof(double));
-    if (intervals > most)
-        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.rows",
-                                        .path = "time.log_every",
-                                        .message = "the run would need too many rows",
-                                        .got = "about " + shortest(rounded(intervals)),
-                                        .allowed = "at most " + shortest(rounded(most)),
-                                        .hint = "log less often"}});
     run.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
     while (stands_before(run.capacity, setup.stop)) run.capacity += 1;
     run.capacity += 1;  // the end

@@ -7,7 +7,7 @@ namespace arm3r {
 
 class RowLog {
 public:
-    // Reserves all rows. Throws Error ARM3R_E_SIZE_CAP when there would be too many of them.
+    // Reserves all rows; refuse_too_large() (size_cap.hpp) has seen to it that they are not too many.
     RowLog(const Setup& setup, Run& run);
 
     // All rows before `until`, from the solution within the step, while go_on() holds.

@@ -12,6 +12,7 @@
 #include "numbers.hpp"
 #include "row_log.hpp"
 #include "schema.hpp"
+#include "size_cap.hpp"
 
 namespace arm3r {
 namespace {
@@ -20,7 +21,6 @@ using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 constexpr std::size_t most_events = 4096;
-constexpr double most_fixed_steps = 1e9;
 constexpr int most_bad_trials = 30;  // steps in a row that are not even finite
 constexpr int looks_per_adaptive_step = 9, looks_per_fixed_step = 2;
 
@@ -42,15 +42,9 @@ FullState start_of(const Setup& setup) {
     return y;
 }
 
-void refuse_too_many_steps(const Setup& setup) {
-    const double steps = setup.stop / setup.solver.step, most = std::min(most_fixed_steps, setup.solver.max_steps);
-    if (setup.solver.method == Solver::rk4 && steps > most)
-        throw Error(ARM3R_E_SIZE_CAP, {{.code = "budget.steps",
-                                        .path = "solver.step",
-                                        .message = "the run would need too many steps",
-                                        .got = "about " + shortest(steps),
-                                        .allowed = "at most " + shortest(most),
-                                        .hint = "take a larger step, or raise solver.max_steps"}});
+Setup small_enough(Setup setup) {
+    refuse_too_large(setup);
+    return setup;
 }
 
 std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
@@ -58,7 +52,7 @@ std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 
 class Simulator {
 public:
     Simulator(std::span<const double> params, const RunOptions& options)
-        : setup_(make_setup(params)),
+        : setup_(small_enough(make_setup(params))),
           options_(options),
           rhs_(setup_.plant),
           watch_(setup_.plant, setup_.solver.method == Solver::dopri5 ? looks_per_adaptive_step : looks_per_fixed_step),
@@ -66,7 +60,6 @@ public:
           y_(start_of(setup_)),
           mode_(watch_.mode_at_start(y_)),
           ledger_(setup_, y_, mode_) {
-        refuse_too_many_steps(setup_);
         run_.events.reserve(most_events);
         run_.warnings = likely_slips(params);
     }

@@ -834,3 +834,12 @@ def test_a_scenario_is_not_overwritten_by_its_own_summary(cli, tmp_path):
 def test_the_template_is_a_scenario(cli):
     template = cli("template").stdout
     assert cli("check", "-", input=template).returncode == 0
+
+
+@pytest.mark.parametrize("call", ["check", "run"])
+def test_c18_a_run_that_would_be_too_large_is_refused_before_it_begins(cli, tmp_path, call):
+    path = tmp_path / "long.yaml"
+    path.write_text("format: 1\ntime: {stop: 1e9, log_every: 1e-9}\n")
+    result = cli(call, path)
+    assert result.returncode == 5
+    assert f"{path}:2:30: error[budget.rows]: time.log_every" in result.stderr

@@ -19,7 +19,7 @@ LAYERS = [
     ["controllers"],
     ["plant"],
     ["setup", "sample"],
-    ["validate", "events"],
+    ["validate", "events", "size_cap"],
     ["simulation ledger row_log"],
     ["yaml_events", "input", "output"],
     ["paths"],

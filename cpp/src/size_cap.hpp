@@ -1,0 +1,14 @@
+#pragma once
+// Runs that are refused before they begin, because they would need more rows or steps than any user wants.
+
+#include "setup.hpp"
+
+namespace arm3r {
+
+// Throws Error ARM3R_E_SIZE_CAP.
+void refuse_too_large(const Setup& setup);
+
+// Which columns of column_table() a run has, in order.
+std::vector<std::size_t> columns_of(const Setup& setup);
+
+}  // namespace arm3r
