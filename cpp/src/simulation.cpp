@@ -21,7 +21,6 @@ using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 constexpr std::size_t most_events = 4096;
-constexpr int most_bad_trials = 30;  // steps in a row that are not even finite
 constexpr int looks_per_adaptive_step = 9, looks_per_fixed_step = 2;
 
 using Clock = std::chrono::steady_clock;
@@ -95,7 +94,7 @@ private:
         run_.peak_force = std::max(run_.peak_force, setup_.plant.contact.stiffness[0] * depth);
     }
 
-    // What is still stored in the contact is lost: something where the tip leaves over an edge, nothing where it lets go (4.9).
+    // What is still stored in the contact is lost (4.9): something where the tip leaves over an edge, else nothing.
     void change_mode(double t, const FullState& y, Mode next) {
         const double lost = energies(setup_.plant, t, y, mode_).contact;
         y_[8] += lost;
