@@ -20,7 +20,8 @@ public:
 
     Mode mode_at_start(const FullState& y) const;
 
-    // The first change of mode after `from`, or nothing. `deepest` grows to the largest depth reached in contact before it, m.
+    // The first change of mode after `from`, or nothing. `deepest` grows to the largest depth, m, that contact reaches
+    // between the two.
     std::optional<Crossing> next(const Inside& inside, double from, Mode mode, double& deepest) const;
 
 private:
