@@ -1,13 +1,14 @@
 #include "events.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace arm3r {
 namespace {
 
-constexpr int depth_signal = 0;
-constexpr double finest = 1e-14;  // s
+constexpr int depth_signal = 0, edges = 4;  // the distances inside the outline are signals 1 to 4
+constexpr double finest = 1e-14;            // s
 
 // A bracket of two instants that the clock can hardly tell apart.
 bool is_narrow(const Inside& inside, double a, double b) {
@@ -43,6 +44,10 @@ bool ContactWatch::has_fallen(const Falling& falling, const Look& here) {
     return letting_go ? value <= 0 : value < 0;
 }
 
+bool ContactWatch::within_outline(const Look& here) {
+    return std::all_of(here.value.begin() + 1, here.value.end(), [](double distance) { return distance >= 0; });
+}
+
 double ContactWatch::root(const Inside& inside, const Falling& falling, double a, double b) const {
     while (!is_narrow(inside, a, b)) {
         const double middle = 0.5 * (a + b);
@@ -71,9 +76,15 @@ std::optional<double> ContactWatch::first_fall(const Inside& inside, const Falli
     return std::nullopt;
 }
 
+double ContactWatch::deepest_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const {
+    const double at_end = at_b.value[depth_signal];
+    if (!(at_a.rate[depth_signal] > 0 && at_b.rate[depth_signal] < 0)) return at_end;
+    const Falling rising{depth_signal, -1, Mode::contact};
+    return std::max(at_end, look(inside, turning_point(inside, rising, a, b)).value[depth_signal]);
+}
+
 std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mode mode, double& deepest) const {
     if (!plant_.has_wall) return std::nullopt;
-    constexpr int edges = 4;
     double a = from;
     Look at_a = look(inside, a);
     for (int n = 1; n < looks_; ++n) {
@@ -86,22 +97,14 @@ std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mo
         };
         if (mode == Mode::free) {
             consider({depth_signal, -1, Mode::contact});
-            if (first) {
-                const Look there = look(inside, first->theta);
-                for (int edge = 1; edge <= edges; ++edge)
-                    if (there.value[edge] < 0) first->next = Mode::embedded;
-            }
+            if (first && !within_outline(look(inside, first->theta))) first->next = Mode::embedded;
         } else {
             consider({depth_signal, +1, Mode::free});
             if (mode == Mode::contact) {
                 for (int edge = 1; edge <= edges; ++edge) consider({edge, +1, Mode::embedded});
-                const double end = first ? first->theta : b;
-                const Look at_end = first ? look(inside, end) : at_b;
-                deepest = std::max(deepest, at_end.value[depth_signal]);
-                if (at_a.rate[depth_signal] > 0 && at_end.rate[depth_signal] < 0)
-                    deepest = std::max(
-                        deepest,
-                        look(inside, turning_point(inside, {depth_signal, -1, mode}, a, end)).value[depth_signal]);
+                deepest =
+                    std::max(deepest, first ? deepest_of(inside, a, at_a, first->theta, look(inside, first->theta))
+                                            : deepest_of(inside, a, at_a, b, at_b));
             }
         }
         if (first) return first;

@@ -36,10 +36,13 @@ private:
     };
 
     static bool has_fallen(const Falling& falling, const Look& here);
+    static bool within_outline(const Look& here);
     Look look(const Inside& inside, double theta) const;
     std::optional<double> first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b,
                                      const Look& at_b) const;
     double turning_point(const Inside& inside, const Falling& falling, double a, double b) const;
+    // The largest depth from a to b in contact, where that at a is known already.
+    double deepest_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const;
     double root(const Inside& inside, const Falling& falling, double a, double b) const;
 
     const Plant<double>& plant_;
