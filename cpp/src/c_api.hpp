@@ -7,6 +7,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,7 +50,27 @@ void need(const void* pointer, const char* name);
 // Text from outside: `size` bounds it. Refuses more than `most` bytes, a NUL inside, and what is not UTF-8.
 std::string text_in(const char* text, std::size_t size, const char* name, std::size_t most = 4096);
 
-// Null gives the defaults. Throws Error ARM3R_E_ABI for a struct this library does not know.
+// As need(), and that it may point to a double.
+void check_pointer(const void* data, const char* name);
+
+void check_index(std::size_t index, std::size_t count, const char* what);
+
+std::span<const double> params_in(const double* params, std::size_t count);
+
+// What the caller's version of a struct says, in ours; all begin with their size and end with reserved fields. Throws
+// Error ARM3R_E_ABI where it holds what this library does not know.
+void read_struct(const void* given, void* into, std::size_t known, const char* name);
+
+template <class Struct>
+Struct struct_in(const Struct* given, const char* name) {
+    Struct known{};
+    read_struct(given, &known, sizeof known, name);
+    for (const int64_t field : known.reserved)
+        if (field != 0) throw Error(ARM3R_E_ABI, std::string(name) + ": a reserved field is not 0");
+    return known;
+}
+
+// Null gives the defaults.
 RunOptions options_in(const arm3r_run_options* options);
 
 // Texts that a handle has given out: each is made once and stays where it is.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "c_api.hpp"
+#include "schema.hpp"
 #include "text.hpp"
 
 namespace arm3r {
@@ -95,20 +96,42 @@ std::string text_in(const char* text, std::size_t size, const char* name, std::s
     return copy;
 }
 
-RunOptions options_in(const arm3r_run_options* given) {
-    if (!given) return {};
-    constexpr std::size_t known = sizeof(arm3r_run_options), largest = 4096;
-    const std::size_t size = given->struct_size;
-    const auto refuse = [](const std::string& why) { throw Error(ARM3R_E_ABI, "arm3r_run_options: " + why); };
+void read_struct(const void* given, void* into, std::size_t known, const char* name) {
+    constexpr std::size_t largest = 4096;
+    const auto refuse = [&](const std::string& why) { throw Error(ARM3R_E_ABI, std::string(name) + ": " + why); };
+    std::size_t size;
+    std::memcpy(&size, given, sizeof size);
     if (size < sizeof(std::size_t) || size > largest || size % sizeof(std::size_t))
         refuse("struct_size is " + std::to_string(size) + ", this library knows " + std::to_string(known));
-    const auto* bytes = reinterpret_cast<const unsigned char*>(given);
+    const auto* bytes = static_cast<const unsigned char*>(given);
     if (size > known && std::any_of(bytes + known, bytes + size, [](unsigned char byte) { return byte != 0; }))
         refuse("it has fields that this library does not know");
-    arm3r_run_options options{};
-    std::memcpy(&options, given, std::min(size, known));
-    if (std::any_of(std::begin(options.reserved), std::end(options.reserved), [](int64_t field) { return field != 0; }))
-        refuse("a reserved field is not 0");
+    std::memcpy(into, given, std::min(size, known));
+}
+
+void check_pointer(const void* data, const char* name) {
+    need(data, name);
+    if (reinterpret_cast<std::uintptr_t>(data) % alignof(double) != 0)
+        throw Error(ARM3R_E_VALUE, std::string(name) + " is not aligned for doubles");
+}
+
+void check_index(std::size_t index, std::size_t count, const char* what) {
+    if (index >= count)
+        throw Error(ARM3R_E_INDEX, "there is no " + std::string(what) + " " + std::to_string(index) + "; there are " +
+                                       std::to_string(count));
+}
+
+std::span<const double> params_in(const double* params, std::size_t count) {
+    need(params, "params");
+    if (count != param_count())
+        throw Error(ARM3R_E_SIZE, "params has " + std::to_string(count) + " numbers; a scenario has " +
+                                      std::to_string(param_count()));
+    return {params, count};
+}
+
+RunOptions options_in(const arm3r_run_options* given) {
+    if (!given) return {};
+    const arm3r_run_options options = struct_in(given, "arm3r_run_options");
     if (!(options.time_limit >= 0) || std::isinf(options.time_limit))
         throw Error(ARM3R_E_VALUE, "arm3r_run_options: time_limit must be finite and not negative");
     return {.stop = options.stop, .progress = options.progress, .user = options.user, .time_limit = options.time_limit};

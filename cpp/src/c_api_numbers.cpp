@@ -53,12 +53,6 @@ Error bad_value(const Input& in, std::size_t at) {
                                   .hint = ""}});
 }
 
-void check_pointer(const void* data, const char* name) {
-    need(data, name);
-    if (reinterpret_cast<std::uintptr_t>(data) % alignof(double) != 0)
-        throw Error(ARM3R_E_VALUE, std::string(name) + " is not aligned for doubles");
-}
-
 void check_values(const Input& in, std::size_t n) {
     const std::size_t count = n * in.width;
     bool good = true;
@@ -181,23 +175,9 @@ int32_t of_motion(const arm3r_arm* arm, std::size_t n, const double* q, const do
     });
 }
 
-std::span<const double> params_in(const double* params, std::size_t count) {
-    need(params, "params");
-    if (count != param_count())
-        throw Error(ARM3R_E_SIZE, "params has " + std::to_string(count) + " numbers; a scenario has " +
-                                      std::to_string(param_count()));
-    return {params, count};
-}
-
 void refuse_invalid(std::span<const double> params) {
     std::vector<Problem> problems = validate(params);
     if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
-}
-
-void check_index(std::size_t index, std::size_t count, const char* what) {
-    if (index >= count)
-        throw Error(ARM3R_E_INDEX, "there is no " + std::string(what) + " " + std::to_string(index) + "; there are " +
-                                       std::to_string(count));
 }
 
 const std::vector<std::string>& param_names() {
@@ -219,7 +199,7 @@ const char* arm3r_build_info(void) { return ARM3R_BUILD_INFO; }
 
 const char* arm3r_outcome_name(int32_t outcome) {
     static const char* const names[] = {"ok",          "stopped",         "diverged", "step_collapse",
-                                        "event_storm", "ill_conditioned", "energy",   "budget"};
+                                        "event_storm", "ill_conditioned", "energy",   "budget",   "invalid"};
     return outcome >= 0 && outcome < int32_t(std::size(names)) ? names[outcome] : "";
 }
 

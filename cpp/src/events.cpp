@@ -83,6 +83,15 @@ double ContactWatch::deepest_of(const Inside& inside, double a, const Look& at_a
     return std::max(at_end, look(inside, turning_point(inside, rising, a, b)).value[depth_signal]);
 }
 
+double ContactWatch::depth_integral(const Inside& inside, double a, double b) const {
+    constexpr double place[] = {0, 0.53846931010568309, 0.90617984593866399};  // Gauss and Legendre, five points
+    constexpr double weight[] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
+    const auto depth = [&](double x) { return look(inside, 0.5 * ((a + b) + (b - a) * x)).value[depth_signal]; };
+    double sum = weight[0] * depth(0);
+    for (int i = 1; i < 3; ++i) sum += weight[i] * (depth(-place[i]) + depth(place[i]));
+    return 0.5 * (b - a) * inside.h * sum;
+}
+
 std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mode mode, double& deepest) const {
     if (!plant_.has_wall) return std::nullopt;
     double a = from;

@@ -24,6 +24,9 @@ public:
     // between the two.
     std::optional<Crossing> next(const Inside& inside, double from, Mode mode, double& deepest) const;
 
+    // Integral of the depth, m s, along the solution from place a to place b within the step.
+    double depth_integral(const Inside& inside, double a, double b) const;
+
 private:
     // Depth and the four distances inside the outline, m, with their rates, m/s.
     struct Look {

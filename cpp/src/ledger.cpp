@@ -21,7 +21,7 @@ Ledger::Ledger(const Setup& setup, const FullState& y, Mode mode)
 
 void Ledger::close(double t, const FullState& y, Mode mode, Run& run) {
     const Energies now = energies(setup_.plant, t, y, mode);
-    note_residual(run, energy_residual(y, now.sum(), start_.sum()));
+    note_residual(run.ledger_residual, energy_residual(y, now.sum(), start_.sum()));
     exchanged_ = std::max({exchanged_, std::abs(y[6]), std::abs(y[7]), std::abs(y[8]), now.kinetic,
                            std::abs(now.potential - start_.potential)});
     held_ = std::max(held_, stock(now));
@@ -37,10 +37,10 @@ bool Ledger::is_strict() const {
 
 std::optional<std::string> Ledger::complaint(const Run& run) const {
     const double limit = 100 * tolerance() * exchanged_ + 1e-12 * held_;
-    if (run.energy_residual_max <= limit) return std::nullopt;
+    if (run.ledger_residual <= limit) return std::nullopt;
     const char* const advice =
         setup_.solver.method == Solver::dopri5 ? "tighten solver.rtol" : "take a smaller solver.step";
-    return "the energy balance does not close: " + shortest(run.energy_residual_max) +
+    return "the energy balance does not close: " + shortest(run.ledger_residual) +
            " J are left over, the limit is " + shortest(limit) + " J; " + advice;
 }
 

@@ -37,9 +37,9 @@ private:
 };
 
 // A residual that is not a number is the largest of all.
-inline void note_residual(Run& run, double residual) {
+inline void note_residual(double& largest, double residual) {
     const double size = std::isnan(residual) ? std::numeric_limits<double>::infinity() : std::abs(residual);
-    run.energy_residual_max = std::max(run.energy_residual_max, size);
+    largest = std::max(largest, size);
 }
 
 }  // namespace arm3r

@@ -8,26 +8,25 @@
 #include "columns.hpp"
 #include "error.hpp"
 #include "numbers.hpp"
+#include "summary.hpp"
 #include "text.hpp"
 
 namespace arm3r {
 
 namespace {
 
-struct SummaryNumber {
-    const char* name;
-    double (*of)(const Run&);
+// What only a run of its own has.
+const std::vector<SummaryNumber> other_numbers = {
+    {"energy_residual_max", "J", "largest residual of the energy balance, over steps and rows",
+     [](const Run& run) { return run.energy_residual_max; }},
+    {"elapsed_s", "s", "wall clock", [](const Run& run) { return run.elapsed_s; }},
 };
 
-constexpr SummaryNumber summary_numbers[] = {
-    {"t_end", [](const Run& run) { return run.t_end; }},
-    {"peak_force", [](const Run& run) { return run.peak_force; }},
-    {"energy_residual_max", [](const Run& run) { return run.energy_residual_max; }},
-    {"steps.accepted", [](const Run& run) { return static_cast<double>(run.steps.accepted); }},
-    {"steps.rejected", [](const Run& run) { return static_cast<double>(run.steps.rejected); }},
-    {"steps.evaluations", [](const Run& run) { return static_cast<double>(run.steps.evaluations); }},
-    {"elapsed_s", [](const Run& run) { return run.elapsed_s; }},
-};
+std::vector<SummaryNumber> summary_numbers() {
+    std::vector<SummaryNumber> numbers = summary_table();
+    numbers.insert(numbers.end(), other_numbers.begin(), other_numbers.end());
+    return numbers;
+}
 
 const char* type_name(const Event& event) { return event.type == Event::make ? "make" : "break"; }
 
@@ -168,11 +167,11 @@ std::string elapsed_text(double seconds) {
 }  // namespace
 
 std::vector<std::string> summary_number_names() {
-    return each(summary_numbers, [](const SummaryNumber& number) { return std::string(number.name); });
+    return each(summary_numbers(), [](const SummaryNumber& number) { return std::string(number.name); });
 }
 
 double summary_number(const Run& run, std::string_view name) {
-    for (const SummaryNumber& number : summary_numbers)
+    for (const SummaryNumber& number : summary_numbers())
         if (number.name == name) return number.of(run);
     throw Error(ARM3R_E_INTERNAL, "a summary has no number " + std::string(name));
 }
@@ -189,7 +188,11 @@ std::string summary_json(const Results& results) {
     field("t_end", json_number(run.t_end));
     field("events", list(each(run.events, [](const Event& event) { return json(event); }), ",\n    "));
     field("checks", list(each(results.checks, [](const CheckResult& check) { return json(check); }), ",\n    "));
+    field("contacts", json_number(run.contacts));
+    field("contact_time", json_number(run.contact_time));
     field("peak_force", json_number(run.peak_force));
+    field("final_force", json_number(run.final_force));
+    field("impulse", json_number(run.impulse));
     field("energy_residual_max", json_number(run.energy_residual_max));
     field("steps", json(run.steps));
     field("elapsed_s", json_number(run.elapsed_s));

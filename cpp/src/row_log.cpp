@@ -5,7 +5,8 @@
 #include "size_cap.hpp"
 
 namespace arm3r {
-RowLog::RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {
+RowLog::RowLog(const Setup& setup, Run& run, bool wanted) : setup_(setup), run_(run) {
+    if (!wanted) return;
     run.columns = columns_of(setup);
     const double intervals = setup.stop / setup.log_every;
     run.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
@@ -22,7 +23,7 @@ void RowLog::log(const Scene& scene, double t, const FullState& y, double theta)
         cell += run_.capacity;
     }
     run_.rows += 1;
-    note_residual(run_, row.value.back());
+    note_residual(run_.energy_residual_max, row.value.back());
     if (row.link_behind_wall) note_link_behind_wall(t);
 }
 
@@ -37,7 +38,7 @@ void RowLog::log_together(const Scene& scene) {
         cells += run_.capacity;
     }
     run_.rows += together;
-    for (const double residual : rows.value[column_count - 1]) note_residual(run_, residual);
+    for (const double residual : rows.value[column_count - 1]) note_residual(run_.energy_residual_max, residual);
     if (rows.first_link_behind_wall < together) note_link_behind_wall(t[rows.first_link_behind_wall]);
 }
 

@@ -7,8 +7,8 @@ namespace arm3r {
 
 class RowLog {
 public:
-    // Reserves all rows; refuse_too_large() (size_cap.hpp) has seen to it that they are not too many.
-    RowLog(const Setup& setup, Run& run);
+    // Reserves all rows, if any are wanted; refuse_too_large() (size_cap.hpp) has seen to it that they are not too many.
+    RowLog(const Setup& setup, Run& run, bool wanted);
 
     // All rows before `until`, from the solution within the step, while go_on() holds.
     template <class GoOn>

@@ -55,10 +55,11 @@ public:
           options_(options),
           rhs_(setup_.plant),
           watch_(setup_.plant, setup_.solver.method == Solver::dopri5 ? looks_per_adaptive_step : looks_per_fixed_step),
-          rows_(setup_, run_),
+          rows_(setup_, run_, options.rows),
           y_(start_of(setup_)),
           mode_(watch_.mode_at_start(y_)),
           ledger_(setup_, y_, mode_) {
+        if (!options.rows) return;
         run_.events.reserve(most_events);
         run_.warnings = likely_slips(params);
     }
@@ -79,7 +80,7 @@ private:
     Scene scene() const { return {setup_.plant, setup_.simscape, ledger_.energy_at_start(), mode_, inside_}; }
 
     void log_until(double t) {
-        rows_.log_until(t, scene(), [this] { return poll(); });
+        if (options_.rows) rows_.log_until(t, scene(), [this] { return poll(); });
     }
 
     // ---- contact
@@ -105,14 +106,33 @@ private:
     }
 
     void record(Event::Type type, double t, const FullState& y) {
-        if (run_.events.size() == most_events) {
+        note_event(type, t);
+        if (events_seen_++ == most_events) {
             end(ARM3R_RUN_EVENT_STORM, "more than 4096 contact events, the last at t = " + shortest(t) + " s");
             return;
         }
-        const Vec3<double> q = angles(y), qd = rates(y);
-        run_.events.push_back({type, t, plain(setup_.simscape ? flipped(q) : q),
-                               plain(setup_.simscape ? flipped(qd) : qd),
-                               plain(tip_position(setup_.plant.arm, pose(q)))});
+        if (options_.rows)
+            run_.events.push_back({type, t, joints_out(angles(y)), joints_out(rates(y)),
+                                   plain(tip_position(setup_.plant.arm, pose(angles(y))))});
+    }
+
+    std::array<double, 3> joints_out(const Vec3<double>& v) const { return plain(setup_.simscape ? flipped(v) : v); }
+
+    void note_event(Event::Type type, double t) {
+        if (type == Event::make) {
+            run_.contacts += 1;
+            if (run_.contacts == 1) run_.first_contact = t;
+            touching_since_ = t;
+        } else {
+            if (std::isnan(run_.first_release)) run_.first_release = t;
+            run_.contact_time += t - touching_since_;
+        }
+    }
+
+    // The solution from place a to place b within the step has been gone through in the present mode.
+    void note_passage(double a, double b) {
+        if (mode_ == Mode::contact)
+            run_.impulse += setup_.plant.contact.stiffness[0] * watch_.depth_integral(inside_, a, b);
     }
 
     // ---- steps
@@ -129,7 +149,7 @@ private:
         FullState ahead;                   // straight on, in place of a solution before there is a step
         for (std::size_t i = 0; i < state_size; ++i) ahead[i] = y_[i] + a_moment * f_[i];
         inside_ = hermite(0.0, a_moment, y_, f_, ahead, f_);
-        if (setup_.stop > 0) rows_.log(scene(), 0.0, y_, 0.0);  // whatever becomes of the first step
+        if (options_.rows && setup_.stop > 0) rows_.log(scene(), 0.0, y_, 0.0);  // whatever becomes of the first step
     }
 
     // The derivative at the present instant, with the sines and cosines that the next stages turn from.
@@ -207,6 +227,7 @@ private:
         const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, deepest);
         note_depth(deepest);
         const double theta = crossing ? crossing->theta : 1;
+        note_passage(0, theta);
         const double t1 = crossing ? t_ + theta * h : last ? setup_.stop : t_ + h;
         log_until(t1);
         if (run_.outcome != ARM3R_RUN_OK) return;
@@ -268,6 +289,7 @@ private:
         bool changed = false;
         while (const std::optional<Crossing> crossing = watch_.next(inside_, from, mode_, deepest)) {
             const double t = t0 + crossing->theta * h;
+            note_passage(from, crossing->theta);
             log_until(t);
             change_mode(t, inside_(crossing->theta), crossing->next);
             changed = true;
@@ -275,6 +297,7 @@ private:
             if (run_.outcome != ARM3R_RUN_OK || from >= 1) break;
         }
         note_depth(deepest);
+        note_passage(from, 1);
         log_until(t_);
         if (changed) derive();
         ledger_.close(t_, y_, mode_, run_);
@@ -345,14 +368,28 @@ private:
 
     void finish() {
         if (run_.outcome == ARM3R_RUN_OK) {
-            rows_.log(scene(), t_, y_, theta_);
+            if (options_.rows) rows_.log(scene(), t_, y_, theta_);
             judge();
         }
         if (rows_.link_behind_wall_since() >= 0)
             run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
                                     shortest(rows_.link_behind_wall_since()) + " s on; only the tip feels the wall");
-        run_.t_end = std::max(t_, rows_.last_time());
+        note_end();
         run_.elapsed_s = seconds_since(begun_);
+    }
+
+    void note_end() {
+        run_.t_end = std::max(t_, rows_.last_time());
+        run_.energy_residual_max = std::max(run_.energy_residual_max, run_.ledger_residual);
+        run_.q = joints_out(angles(y_));
+        run_.qd = joints_out(rates(y_));
+        const Pose<double> p = pose(angles(y_));
+        run_.tip = plain(tip_position(setup_.plant.arm, p));
+        for (std::size_t i = motion_size; i < state_size; ++i) run_.books[i - motion_size] = y_[i];
+        if (mode_ != Mode::contact) return;
+        run_.contact_time += t_ - touching_since_;
+        const double depth = tip_indentation(setup_.plant, wall_at(setup_.plant.wall, t_), p, rates(y_)).depth;
+        run_.final_force = setup_.plant.contact.stiffness[0] * std::max(0.0, depth);
     }
 
     static constexpr double infinite_ = std::numeric_limits<double>::infinity();
@@ -372,6 +409,8 @@ private:
     Ledger ledger_;
     Inside inside_;     // the solution within the last step
     double theta_ = 0;  // where t_ lies in it
+    double touching_since_ = 0;
+    std::size_t events_seen_ = 0;
     bool just_rejected_ = false;
     bool trial_was_finite_ = true;  // the last one that was rejected
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,8 +23,23 @@ struct Steps {
     std::int64_t accepted = 0, rejected = 0, evaluations = 0;
 };
 
+// What one row of a batch's table tells of a run (summary.hpp). Joint vectors in the arm's convention.
+struct Metrics {
+    double t_end = 0;                // s, the time reached
+    double peak_force = 0;           // N, largest normal contact force, on the dense trajectory
+    double impulse = 0;              // N s, of the normal force
+    double contact_time = 0;         // s
+    double final_force = 0;          // N, normal
+    double ledger_residual = 0;      // J, largest at the end of a step
+    std::array<double, 3> q{}, qd{}, tip{};
+    std::array<double, 3> books{};  // J: work of the actuators, work of the wall, dissipated energy
+    double contacts = 0;            // makes so far
+    double first_contact = std::numeric_limits<double>::quiet_NaN();  // s
+    double first_release = std::numeric_limits<double>::quiet_NaN();  // s
+};
+
 // Columns lie one after the other in one block: column i is data[i*capacity .. i*capacity + rows).
-struct Run {
+struct Run : Metrics {
     arm3r_outcome outcome = ARM3R_RUN_OK;
     std::string message;               // why, when the outcome is not ok; "" else
     std::vector<std::size_t> columns;  // indices into column_table() (columns.hpp), in order
@@ -32,8 +48,6 @@ struct Run {
     std::vector<Event> events;
     std::vector<std::string> warnings;
     Steps steps;
-    double t_end = 0;                // s, the time reached
-    double peak_force = 0;           // N, largest normal contact force, on the dense trajectory
     double energy_residual_max = 0;  // J, over steps and rows
     double elapsed_s = 0;            // wall clock
 
@@ -45,6 +59,7 @@ struct RunOptions {
     arm3r_progress progress = nullptr;
     void* user = nullptr;
     double time_limit = 0;  // s; 0: none
+    bool rows = true;       // false: no rows, no warnings, the metrics alone
 };
 
 // params: a valid flat parameter array (schema.hpp). Throws Error when it is not, or when the run is too large.

@@ -21,12 +21,14 @@ LAYERS = [
     ["setup", "sample"],
     ["validate", "events", "size_cap"],
     ["simulation ledger row_log"],
+    ["summary"],
+    ["batch"],
     ["yaml_events", "input", "output"],
     ["paths"],
     ["checks results csv"],
     ["scenario scenario_set scenario_text"],
     ["reference"],
-    ["c_api c_api_error c_api_numbers c_api_text"],
+    ["c_api c_api_batch c_api_error c_api_numbers c_api_text"],
     ["cli"],
 ]
 HEIGHT = {stem: height for height, layer in enumerate(LAYERS) for part in layer for stem in part.split()}

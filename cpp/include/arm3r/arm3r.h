@@ -73,7 +73,8 @@ typedef enum arm3r_outcome {
     ARM3R_RUN_EVENT_STORM = 4,     /* more than 4096 contact events */
     ARM3R_RUN_ILL_CONDITIONED = 5, /* the mass matrix lost its positive definiteness */
     ARM3R_RUN_ENERGY = 6,          /* the energy balance does not close */
-    ARM3R_RUN_BUDGET = 7           /* max_steps or the time limit is used up */
+    ARM3R_RUN_BUDGET = 7,          /* max_steps or the time limit is used up */
+    ARM3R_RUN_INVALID = 8          /* of one run among many: its parameters are not valid, it was not begun */
 } arm3r_outcome;
 
 ARM3R_API const char *arm3r_outcome_name(int32_t outcome); /* "ok", "stopped", ...; "" for an unknown value */
@@ -161,6 +162,29 @@ ARM3R_API int32_t arm3r_run_shape(const arm3r_run *run, size_t *rows, size_t *co
 ARM3R_API int32_t arm3r_run_column(const arm3r_run *run, size_t index, const char **name, const char **unit, const double **data);
 ARM3R_API int32_t arm3r_run_event_count(const arm3r_run *run, size_t *count);
 ARM3R_API int32_t arm3r_run_event(const arm3r_run *run, size_t index, arm3r_event *event);
+
+/* ---- numbers: many runs -------------------------------------------------------------------------------------------- */
+
+/* Called at most every 20 ms, from the calling thread. Answers as arm3r_progress. */
+typedef int32_t (*arm3r_batch_progress)(void *user, int64_t runs_done, int64_t runs);
+
+typedef struct arm3r_batch_options {
+    size_t struct_size;             /* sizeof(arm3r_batch_options) */
+    const volatile int32_t *stop;   /* Nullable: runs not yet ended end as `stopped` soon after *stop is not 0 */
+    arm3r_batch_progress progress;  /* Nullable */
+    void *user;                     /* Nullable: handed to progress */
+    int32_t threads;                /* 0: as many as the CPUs that this process may use */
+    int32_t lanes;                  /* runs that march side by side in one thread: 1 or 8; 0: as is fastest. Never changes a result */
+    int64_t reserved[4];            /* 0 */
+} arm3r_batch_options;
+
+ARM3R_API size_t arm3r_summary_count(void); /* columns of a batch's table */
+ARM3R_API int32_t arm3r_summary_column(size_t index, const char **name, const char **unit, const char **meaning);
+/* `runs` runs: run i has params, but values[j*runs + i] in the place of number varied[j]. results: arm3r_summary_count() columns
+ * of `runs` numbers, one column after the other; NaN where a run has no such number. Row i has the same bits as the summary
+ * of a run of its own. ARM3R_OK whatever the outcomes. Numbers that stand for a choice, a flag or a section cannot vary. */
+ARM3R_API int32_t arm3r_batch_run(const double *params, size_t count, const size_t *varied, size_t varied_count, const double *values, size_t runs,
+                                  const arm3r_batch_options *options /* Nullable */, double *results);
 
 /* ---- text: scenarios ----------------------------------------------------------------------------------------------- */
 

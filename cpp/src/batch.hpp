@@ -1,0 +1,30 @@
+#pragma once
+// Many runs that differ in numbers, spread over threads; each row of the table is what the run alone would say.
+
+#include <cstdint>
+#include <span>
+
+#include "arm3r/arm3r.h"
+
+namespace arm3r {
+
+// Run i has `params`, but values[j*runs + i] in the place of number varied[j].
+struct Variation {
+    std::span<const double> params;
+    std::span<const std::size_t> varied;
+    std::span<const double> values;
+    std::size_t runs;
+};
+
+struct BatchOptions {
+    const volatile std::int32_t* stop = nullptr;
+    arm3r_batch_progress progress = nullptr;
+    void* user = nullptr;
+    int threads = 0;  // 0: as many as the CPUs that this process may use
+    int lanes = 0;    // 1 or 8; 0: as is fastest
+};
+
+// results: summary_table().size() columns of `runs` numbers. Throws Error where the base or the variation is not valid.
+void run_batch(const Variation& variation, const BatchOptions& options, double* results);
+
+}  // namespace arm3r

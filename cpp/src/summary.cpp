@@ -1,0 +1,39 @@
+#include "summary.hpp"
+
+namespace arm3r {
+
+const std::vector<SummaryNumber>& summary_table() {
+    using R = const Run&;
+    static const std::vector<SummaryNumber> table = {
+        {"outcome", "1", "how the run ended: 0 ok, else the index of its name", [](R r) { return double(r.outcome); }},
+        {"t_end", "s", "time reached", [](R r) { return r.t_end; }},
+        {"contacts", "1", "how often contact was made", [](R r) { return r.contacts; }},
+        {"first_contact", "s", "when contact was first made", [](R r) { return r.first_contact; }},
+        {"first_release", "s", "when contact was first lost", [](R r) { return r.first_release; }},
+        {"contact_time", "s", "time in contact", [](R r) { return r.contact_time; }},
+        {"peak_force", "N", "largest normal contact force", [](R r) { return r.peak_force; }},
+        {"final_force", "N", "normal contact force at the end", [](R r) { return r.final_force; }},
+        {"impulse", "N s", "integral of the normal contact force", [](R r) { return r.impulse; }},
+        {"q1", "rad", "joint angle 1 at the end", [](R r) { return r.q[0]; }},
+        {"q2", "rad", "joint angle 2 at the end", [](R r) { return r.q[1]; }},
+        {"q3", "rad", "joint angle 3 at the end", [](R r) { return r.q[2]; }},
+        {"qd1", "rad/s", "joint rate 1 at the end", [](R r) { return r.qd[0]; }},
+        {"qd2", "rad/s", "joint rate 2 at the end", [](R r) { return r.qd[1]; }},
+        {"qd3", "rad/s", "joint rate 3 at the end", [](R r) { return r.qd[2]; }},
+        {"tip_x", "m", "tip position along base x at the end", [](R r) { return r.tip[0]; }},
+        {"tip_y", "m", "tip position along base y at the end", [](R r) { return r.tip[1]; }},
+        {"tip_z", "m", "tip position along base z at the end", [](R r) { return r.tip[2]; }},
+        {"work_actuators", "J", "work of the applied torques", [](R r) { return r.books[0]; }},
+        {"work_wall", "J", "work of the wall's drive on the arm", [](R r) { return r.books[1]; }},
+        {"energy_dissipated", "J", "energy lost to friction, damping and contact", [](R r) { return r.books[2]; }},
+        {"ledger_residual", "J", "largest residual of the energy balance at the end of a step",
+         [](R r) { return r.ledger_residual; }},
+        {"steps.accepted", "1", "steps taken", [](R r) { return double(r.steps.accepted); }},
+        {"steps.rejected", "1", "steps tried again with a smaller one", [](R r) { return double(r.steps.rejected); }},
+        {"steps.evaluations", "1", "evaluations of the equation of motion",
+         [](R r) { return double(r.steps.evaluations); }},
+    };
+    return table;
+}
+
+}  // namespace arm3r
