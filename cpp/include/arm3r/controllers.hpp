@@ -31,9 +31,10 @@ ARM3R_INLINE Vec3<T> control(const Controller<P>& controller, const Vec3<T>& q, 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> limited(const Arm<P>& arm, const Vec3<T>& tau) {
     if (!arm.has_torque_limit) return tau;
-    Vec3<T> clamped;
-    for (int i = 0; i < 3; ++i) clamped[i] = max(min(tau[i], T(arm.torque_limit[i])), T(-arm.torque_limit[i]));
-    return clamped;
+    const auto clamped = [&](int i) ARM3R_INLINE_LAMBDA {
+        return T(max(min(tau[i], T(arm.torque_limit[i])), T(-arm.torque_limit[i])));
+    };
+    return {clamped(0), clamped(1), clamped(2)};
 }
 
 }  // namespace arm3r

@@ -45,13 +45,15 @@ ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& arm, const Pose<T>& p, const
     return {-2.0 * (row2 * w2 + row3 * w3) * w1, row2 * w1 * w1 - b * w3 * w3 + third, third};
 }
 
-// The weight of the links on the three angles q1, q2, q2 + q3 (3.5). g is any gravity vector, in base axes.
+// The weight of the links on the three angles q1, q2, q2 + q3 (3.5). g is any gravity vector, in base axes. Where it is
+// vertical both ways give the same bits.
 template <class P, class G, class T>
 ARM3R_INLINE Vec3<T> link_weight(const Lumped<P>& l, const Vec3<G>& g, bool vertical, const Pose<T>& p) {
     if (vertical) return {T(0.0), -(l.G2 * p.C2) * g[2], -(l.G3 * p.C23) * g[2]};
     const T gr = g[0] * p.C1 + g[1] * p.S1;
     const T gt = g[1] * p.C1 - g[0] * p.S1;
-    return {-(l.G2 * p.C2 + l.G3 * p.C23) * gt, l.G2 * (p.S2 * gr - p.C2 * g[2]), l.G3 * (p.S23 * gr - p.C23 * g[2])};
+    return {-(l.G2 * p.C2 + l.G3 * p.C23) * gt, (l.G2 * p.S2) * gr - (l.G2 * p.C2) * g[2],
+            (l.G3 * p.S23) * gr - (l.G3 * p.C23) * g[2]};
 }
 
 // tau_g: the torque that holds the arm at rest, dU/dq (3.5).
@@ -64,12 +66,13 @@ ARM3R_INLINE Vec3<T> gravity_torque(const Arm<P>& arm, const Pose<T>& p) {
 // tau_f: viscous and regularised dry friction (3.6); always dissipative.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& arm, const Vec3<T>& qd) {
-    Vec3<T> tau_f(T(0.0), T(0.0), T(0.0));
-    if (arm.has_damping)
-        for (int i = 0; i < 3; ++i) tau_f[i] = arm.damping[i] * qd[i];
-    if (arm.has_dry_friction)
-        for (int i = 0; i < 3; ++i) tau_f[i] = tau_f[i] + arm.friction[i] * tanh(T(qd[i] / arm.friction_velocity));
-    return tau_f;
+    const T o(0.0);
+    Vec3<T> tau_f(o, o, o);
+    if (arm.has_damping) tau_f = {arm.damping[0] * qd[0], arm.damping[1] * qd[1], arm.damping[2] * qd[2]};
+    if (!arm.has_dry_friction) return tau_f;
+    const auto dry = [&](int i)
+                         ARM3R_INLINE_LAMBDA { return arm.friction[i] * tanh(T(qd[i] / arm.friction_velocity)); };
+    return {tau_f[0] + dry(0), tau_f[1] + dry(1), tau_f[2] + dry(2)};
 }
 
 template <class P, class T>
@@ -103,6 +106,7 @@ template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive) {
     const Lumped<P>& l = arm.lumped;
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
+    const T w1_2 = w1 * w1;
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
     const T BS3 = l.B * (p.S23 * p.C2 - p.C23 * p.S2);
     const T BC23 = l.B * p.C23, BC2 = l.B * p.C2;
@@ -112,8 +116,8 @@ ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, con
 
     const T M11 = l.A1 + p.C2 * Pc + p.C23 * Q;
     const T R1 = drive[0] - weight[0] + 2.0 * (S2P * w2 + S23Q * w3) * w1;
-    const T R2 = (drive[1] - drive[2]) - weight[1] - S2P * (w1 * w1) + BS3 * (w3 * w3);
-    const T R3 = drive[2] - weight[2] - S23Q * (w1 * w1) - BS3 * (w2 * w2);
+    const T R2 = (drive[1] - drive[2]) - weight[1] - S2P * w1_2 + BS3 * (w3 * w3);
+    const T R3 = drive[2] - weight[2] - S23Q * w1_2 - BS3 * (w2 * w2);
 
     const P Mb22 = l.B2 + l.J3, Mb33 = l.B3 + l.J3;
     const T Mb23 = l.B * C3 - l.J3;

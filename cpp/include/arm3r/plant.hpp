@@ -56,31 +56,44 @@ public:
 
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
+        WallState<T> wall;
+        if (plant_.acts_on_arm && touch != Touch::none) wall = wall_at(plant_.wall, t);
+        derivative(wall, pose_near(y), y, dy);
+    }
+
+    // The same where the pose is known, and the wall unless it is not felt.
+    template <std::size_t N>
+    ARM3R_INLINE void derivative(const WallState<T>& wall, const Pose<T>& p, const State<T, N>& y,
+                                 State<T, N>& dy) const {
         const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
-        const Pose<T> p = pose_near(y);
         const Arm<P>& arm = plant_.arm;
         const Vec3<T> tau = limited(arm, control(plant_.controller, q, p));
         const Vec3<T> tau_f = friction_torque(arm, qd);
-        Vec3<T> drive(tau[0] - tau_f[0], tau[1] - tau_f[1], tau[2] - tau_f[2]);
+        Vec3<T> drive = minus(tau, tau_f);
         T wall_power(0.0), contact_loss(0.0);
         if (plant_.acts_on_arm && touch != Touch::none) {
-            const WallState<T> wall = wall_at(plant_.wall, t);
             const ContactForce<T> force = force_at(wall, p, qd);
-            const Vec3<T> tau_e = tip_force_torque(arm, p, force.on_tip);
-            for (int i = 0; i < 3; ++i) drive[i] = drive[i] + tau_e[i];
+            drive = plus(drive, tip_force_torque(arm, p, force.on_tip));
             wall_power = dot(force.on_tip, wall.velocity);
             contact_loss = force.dissipated;
         }
         const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive);
-        for (int i = 0; i < 3; ++i) {
-            dy[i] = qd[i];
-            dy[3 + i] = qdd[i];
-        }
-        if constexpr (N == state_size) {
-            dy[6] = dot(tau, qd);
-            dy[7] = wall_power;
-            dy[8] = dot(tau_f, qd) + contact_loss;
-        }
+        if constexpr (N == motion_size) dy = {qd[0], qd[1], qd[2], qdd[0], qdd[1], qdd[2]};
+        else
+            dy = {qd[0],        qd[1],      qd[2],
+                  qdd[0],       qdd[1],     qdd[2],
+                  dot(tau, qd), wall_power, T(dot(tau_f, qd) + contact_loss)};
+    }
+
+    // The pose near the one of begin_step().
+    template <std::size_t N>
+    ARM3R_INLINE Pose<T> pose_near(const State<T, N>& y) const {
+        const auto [second, third] =
+            sincos_near_pair(anchor_q_[1], SinCos<T>{anchor_.S2, anchor_.C2}, y[1], anchor_q_[2],
+                             SinCos<T>{anchor_.S23, anchor_.C23}, T(y[1] + y[2]));
+        if (!needs_azimuth_) return {T(0.0), T(1.0), second.sin, second.cos, third.sin, third.cos};
+        const SinCos<T> first = sincos_near(anchor_q_[0], SinCos<T>{anchor_.S1, anchor_.C1}, y[0]);
+        return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
     }
 
 private:
@@ -93,16 +106,6 @@ private:
         const SinCos<T> first = sincos(nearest[0]), second = sincos(nearest[1]), third = sincos(nearest[2]);
         anchor_q_ = nearest;
         anchor_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
-    }
-
-    template <std::size_t N>
-    ARM3R_INLINE Pose<T> pose_near(const State<T, N>& y) const {
-        const auto [second, third] =
-            sincos_near_pair(anchor_q_[1], SinCos<T>{anchor_.S2, anchor_.C2}, y[1], anchor_q_[2],
-                             SinCos<T>{anchor_.S23, anchor_.C23}, T(y[1] + y[2]));
-        if (!needs_azimuth_) return {T(0.0), T(1.0), second.sin, second.cos, third.sin, third.cos};
-        const SinCos<T> first = sincos_near(anchor_q_[0], SinCos<T>{anchor_.S1, anchor_.C1}, y[0]);
-        return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
     }
 
     ARM3R_INLINE ContactForce<T> force_at(const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd) const {
