@@ -29,10 +29,11 @@ test: $(VENV)/test $(BUILD)/tests
 gates: $(VENV)/test $(BUILD)/tests
 	$(BIN)/python -m pytest -q -m gate
 
-bench: $(VENV)/test
+bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
 	$(BIN)/cmake --build $(BUILD) --target arm3r_benchmarks
 	$(BIN)/python benchmarks/run.py $(BUILD)/arm3r_benchmarks
+	$(BIN)/python benchmarks/figures.py
 
 format: $(VENV)/dev
 	$(BIN)/clang-format -i $(CODE)
@@ -59,7 +60,7 @@ $(VENV)/tools: pyproject.toml
 	@touch $@
 
 # An extra of the installed package.
-$(VENV)/test $(VENV)/dev: $(VENV)/%: pyproject.toml | $(VENV)/installed
+$(VENV)/test $(VENV)/dev $(VENV)/bench: $(VENV)/%: pyproject.toml | $(VENV)/installed
 	$(PIP) 'arm3r_cpp[$*]'
 	@touch $@
 

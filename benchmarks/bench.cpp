@@ -60,7 +60,7 @@ std::string cpu() {
 }
 
 void print_row(const Contender& contender, const std::string& numbers) {
-    std::printf("\"%s\",\"%s\",%s,\"%s\",\"%s\"\n", contender.job.c_str(), contender.who.c_str(), numbers.c_str(),
+    std::printf("\"%s\",\"%s\",,%s,,\"%s\",\"%s\"\n", contender.job.c_str(), contender.who.c_str(), numbers.c_str(),
                 cpu().c_str(), contender.build.c_str());
 }
 
@@ -85,7 +85,7 @@ void race(const std::vector<const Contender*>& job) {
 
 void race_all(const std::vector<Contender>& all) {
     check_agreement();
-    std::puts("job,who,unit,median,min,times_ours,cpu,build");
+    std::puts("job,who,setting,unit,median,min,times_ours,error,cpu,build");
     for (std::size_t i = 0; i < all.size();) {
         std::vector<const Contender*> job;
         for (const std::string& name = all[i].job; i < all.size() && all[i].job == name; ++i) job.push_back(&all[i]);

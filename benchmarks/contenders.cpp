@@ -73,15 +73,39 @@ Contender pinocchio() {
 Contender pinocchio() { return {"forward dynamics", "Pinocchio aba", "not found when this was built", {}}; }
 #endif
 
-#ifdef BENCH_MUJOCO
-void start(peers::Mujoco& peer) {
+template <class Peer>
+[[maybe_unused]] void start(Peer& peer) {
     static const Setup setup = make_setup(free_fall());
     peer.start(setup.q.data(), setup.qd.data());
 }
 
+#ifdef BENCH_CASADI
+Contender casadi() {
+    return {"forward dynamics", "CasADi, generated C", peers::Casadi::build(), [] {
+                auto peer = std::make_shared<peers::Casadi>(step, false);
+                return over_queries([peer](const Query& query, Joints& qdd) {
+                    peer->forward_dynamics(query.q.data(), query.qd.data(), query.tau.data(), qdd.data());
+                });
+            }};
+}
+
+Contender casadi(std::string job, bool pushed) {
+    return {std::move(job), "CasADi, generated C", peers::Casadi::build(), [pushed] {
+                return over_steps<peers::Casadi>(std::make_shared<peers::Casadi>(step, pushed), start<peers::Casadi>);
+            }};
+}
+#else
+Contender casadi(std::string job = "forward dynamics", bool = {}) {
+    return {std::move(job), "CasADi, generated C", "not found when this was built", {}};
+}
+#endif
+
+#ifdef BENCH_MUJOCO
 Contender mujoco(std::string job) {
-    return {std::move(job), "MuJoCo mj_step, free fall", peers::Mujoco::build(),
-            [] { return over_steps<peers::Mujoco>(std::make_shared<peers::Mujoco>(numbers_of(arm()), step), start); }};
+    return {std::move(job), "MuJoCo mj_step, free fall", peers::Mujoco::build(), [] {
+                return over_steps<peers::Mujoco>(std::make_shared<peers::Mujoco>(numbers_of(arm()), step),
+                                                 start<peers::Mujoco>);
+            }};
 }
 #else
 Contender mujoco(std::string job) { return {std::move(job), "MuJoCo mj_step", "not found when this was built", {}}; }
@@ -105,6 +129,18 @@ template <class Peer>
     }
 }
 
+template <class Peer>
+[[maybe_unused]] void compare_steps(const std::string& who, Peer& peer, const std::vector<double>& params) {
+    Stepper<motion_size> ours(params);
+    start(peer);
+    for (int i = 0; i < steps_per_run; ++i) {
+        ours.advance(1);
+        peer.advance(1);
+        compare("angles by " + who, ours.state().data(), peer.q());
+        compare("rates by " + who, ours.state().data() + 3, peer.qd());
+    }
+}
+
 }  // namespace
 
 std::vector<Contender> contenders() {
@@ -115,12 +151,15 @@ std::vector<Contender> contenders() {
          [] {
              return over_queries([arm = arm()](const Query& query, Joints& qdd) { forward_dynamics(arm, query, qdd); });
          }},
+        casadi(),
         pinocchio(),
         our_steps<motion_size>(falls, free_fall),
+        casadi(falls, false),
         mujoco(falls),
         our_steps<state_size>(falls + books, free_fall),
         our_runs(falls + books, free_fall),
         our_steps<motion_size>(pushed, compensated_at_wall),
+        casadi(pushed, true),
         mujoco(pushed),
         our_steps<state_size>(pushed + books, compensated_at_wall),
         our_runs(pushed + books, compensated_at_wall),
@@ -128,23 +167,20 @@ std::vector<Contender> contenders() {
 }
 
 void check_agreement() {
+#ifdef BENCH_CASADI
+    peers::Casadi falling_by_casadi(step, false), pushed_by_casadi(step, true);
+    compare_accelerations("CasADi", falling_by_casadi);
+    compare_steps("CasADi", falling_by_casadi, free_fall());
+    compare_steps("CasADi", pushed_by_casadi, compensated_at_wall());
+#endif
 #ifdef BENCH_PINOCCHIO
     peers::Pinocchio pinocchio(numbers_of(arm()));
     compare_accelerations("Pinocchio", pinocchio);
 #endif
 #ifdef BENCH_MUJOCO
-    peers::Mujoco mujoco(numbers_of(arm()), step);
-    compare_accelerations("MuJoCo", mujoco);
-
-    peers::Mujoco falling(numbers_of(arm()), step);
-    Stepper<motion_size> ours(free_fall());
-    start(falling);
-    for (int i = 0; i < steps_per_run; ++i) {
-        ours.advance(1);
-        falling.advance(1);
-        compare("angles by MuJoCo", ours.state().data(), falling.q());
-        compare("rates by MuJoCo", ours.state().data() + 3, falling.qd());
-    }
+    peers::Mujoco accelerating(numbers_of(arm()), step), falling(numbers_of(arm()), step);
+    compare_accelerations("MuJoCo", accelerating);
+    compare_steps("MuJoCo", falling, free_fall());
 #endif
 }
 

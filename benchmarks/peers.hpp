@@ -47,4 +47,21 @@ private:
     std::unique_ptr<Inside> in_;
 };
 
+// Generated for the lecture's arm alone.
+class [[gnu::visibility("default")]] Casadi {
+public:
+    static std::string build();
+    // pushed: compensated, with the wall; else in free fall.
+    Casadi(double step, bool pushed) : step_(step), pushed_(pushed) {}
+    void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);
+    void start(const double* q, const double* qd);
+    void advance(int steps);  // by RK4
+    const double* q() const { return y_; }
+    const double* qd() const { return y_ + 3; }
+
+private:
+    double step_, t_, y_[6];
+    bool pushed_;
+};
+
 }  // namespace peers

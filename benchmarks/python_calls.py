@@ -10,12 +10,11 @@ import sys
 import time
 from collections.abc import Callable
 from importlib.metadata import version
-from importlib.util import find_spec
 
 import arm3r_cpp as arm3r
 import numpy as np
-from peer_arms import MJCF, pinocchio_model
-from table import Table
+from peer_arms import mujoco_model, pinocchio_model
+from table import Table, installed
 
 STATES, PEER_STATES, ROUNDS, IMPORTS = 1_000_000, 10_000, 15, 15
 IMPORT = "import time, numpy; begun = time.perf_counter(); import {}; print(time.perf_counter() - begun)"
@@ -40,8 +39,7 @@ def pinocchio_job(q: np.ndarray, qd: np.ndarray, tau: np.ndarray) -> Job:
 def mujoco_job(q: np.ndarray, qd: np.ndarray, tau: np.ndarray) -> Job:
     import mujoco
 
-    model = mujoco.MjModel.from_xml_string(MJCF)
-    model.body_gravcomp[:] = 0
+    model = mujoco_model()
     data = mujoco.MjData(model)
 
     def acceleration(q: np.ndarray, qd: np.ndarray, tau: np.ndarray) -> np.ndarray:
@@ -61,31 +59,29 @@ def time_calls(table: Table) -> None:
     )
     few = q[:PEER_STATES], qd[:PEER_STATES], tau[:PEER_STATES]
     arm = arm3r.Scenario("format: 1").arm
-    racers: dict[str, tuple[str, Job, int]] = {
-        "arm3r_cpp": ("one call", lambda: arm.forward_dynamics(q, qd, tau), STATES)
-    }
-    if find_spec("pinocchio"):
-        racers["pin"] = "aba in a loop", pinocchio_job(*few), PEER_STATES
-    if find_spec("mujoco"):
-        racers["mujoco"] = "mj_forward in a loop", mujoco_job(*few), PEER_STATES
+    peers = {"pin": ("pinocchio", pinocchio_job, "aba"), "mujoco": ("mujoco", mujoco_job, "mj_forward")}
+    racers = {"arm3r_cpp": ("one call", lambda: arm.forward_dynamics(q, qd, tau), STATES)}
+    for who, (package, job, function) in peers.items():
+        if installed(package):
+            racers[who] = f"{function} in a loop", job(*few), PEER_STATES
     expected = arm.forward_dynamics(*few)
     for _, job, _ in racers.values():
         np.testing.assert_allclose(np.asarray(job())[:PEER_STATES], expected, rtol=1e-9, atol=1e-9)
 
-    samples: dict[str, list[float]] = {who: [] for who in racers}
+    samples: dict[str, list[float]] = {who: [] for who in ("arm3r_cpp", *peers)}
     for _ in range(ROUNDS):
         for who, (_, job, states) in racers.items():
             samples[who].append(nanoseconds(job, states))
     for who, figures in samples.items():
-        table.row(
-            f"forward dynamics of {STATES} states from Python", who, f"{version(who)}, {racers[who][0]}", "ns", figures
-        )
+        build = f"{version(who)}, {racers[who][0]}" if figures else "not installed"
+        table.row(f"forward dynamics of {STATES} states from Python", who, build, "ns", figures)
 
 
 def time_imports(table: Table) -> None:
     # The first use loads what `import arm3r_cpp` puts off: that is counted.
     for who, module in {"arm3r_cpp": "arm3r_cpp._api", "pin": "pinocchio", "mujoco": "mujoco"}.items():
-        if not find_spec(module):
+        if not installed(module.partition(".")[0]):
+            table.row("import, over numpy's", who, "not installed", "ms", [])
             continue
         command = [sys.executable, "-c", IMPORT.format(module)]
         seconds = [

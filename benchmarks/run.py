@@ -1,6 +1,6 @@
 """Run every benchmark and gather the rows in out/bench.csv.
 
-python benchmarks/run.py [PROGRAM]    # arm3r_benchmarks; where `make bench` builds it, if not given
+python benchmarks/run.py PROGRAM    # arm3r_benchmarks
 """
 
 from __future__ import annotations
@@ -9,23 +9,39 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 
 
+def script(name: str, *words: str | Path) -> list[str | Path]:
+    return [sys.executable, HERE / f"{name}.py", *words]
+
+
 def rows(*command: str | Path) -> list[str]:
     """The lines that a program prints: the header first."""
-    print("running", *(Path(word).name for word in command if word != sys.executable), file=sys.stderr)
-    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
+    begun = time.perf_counter()
+    lines = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
+    names = " ".join(Path(word).name for word in command if word != sys.executable)
+    print(f"{names}: {time.perf_counter() - begun:.0f} s", file=sys.stderr)
+    return lines
 
 
 def main() -> None:
     program = Path(sys.argv[1])
-    commands = [[program], [sys.executable, HERE / "whole_process.py"], [sys.executable, HERE / "python_calls.py"]]
+    commands = [
+        [program],
+        script("whole_process"),
+        script("python_calls"),
+        script("one_run"),
+        script("many_arms", program),
+        script("precision"),
+        script("lecture_runs"),
+    ]
     if shutil.which("valgrind"):
-        commands.append([sys.executable, HERE / "instructions.py", program])
+        commands.append(script("instructions", program))
     print("load before:", *os.getloadavg(), f"on {os.cpu_count()} cores", file=sys.stderr)
     tables = [rows(*command) for command in commands]
     lines = [tables[0][0], *(line for table in tables for line in table[1:])]

@@ -7,6 +7,7 @@ import cffi
 
 CALLED_FROM_C = """
 extern "Python" int32_t arm3r_python_progress(void *user, double t, double stop, int64_t steps);
+extern "Python" int32_t arm3r_python_batch_progress(void *user, int64_t runs_done, int64_t runs);
 """
 
 cdef, output = sys.argv[1:]

@@ -3,23 +3,23 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <exception>
-#include <limits>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "crew.hpp"
 #include "error.hpp"
 #include "schema.hpp"
-#include "summary.hpp"
 
 namespace arm3r {
 namespace {
 
-constexpr std::size_t runs_at_a_time = 256;
-constexpr std::chrono::milliseconds between_reports{20};
+constexpr std::size_t least_runs_per_thread = 64;
+constexpr std::chrono::milliseconds between_looks{5}, between_reports{20};
+using Clock = std::chrono::steady_clock;
 
 int allowed_threads() {
     cpu_set_t cpus;
@@ -49,14 +49,17 @@ void check_variation(const Variation& variation) {
 class Batch {
 public:
     Batch(const Variation& variation, const BatchOptions& options, double* results)
-        : variation_(variation), options_(options), results_(results) {}
+        : options_(options),
+          work_{variation, Checker(variation.params, variation.varied), results,
+                options.lanes ? options.lanes : widest_lanes()} {}
 
     void run() {
+        const std::size_t runs = work_.variation.runs;
         const std::size_t wanted = options_.threads > 0 ? options_.threads : allowed_threads();
-        const std::size_t count = std::clamp<std::size_t>(variation_.runs / runs_at_a_time, 1, wanted);
+        const std::size_t count = std::clamp<std::size_t>(runs / least_runs_per_thread, 1, wanted);
         std::vector<std::thread> threads;
         for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { work(); });
-        watch();
+        while (!has_ended(count)) watch();
         for (std::thread& thread : threads) thread.join();
         if (failure_) std::rethrow_exception(failure_);
     }
@@ -64,76 +67,55 @@ public:
 private:
     void work() {
         try {
-            for (std::size_t first; (first = next_.fetch_add(runs_at_a_time)) < variation_.runs;)
-                run_some(first, std::min(first + runs_at_a_time, variation_.runs));
+            Crew(work_).run();
         } catch (...) {
-            const std::lock_guard lock(mutex_);
-            failure_ = std::current_exception();
-            stop_ = 1;
-            done_ = variation_.runs;
+            fail(std::current_exception());
         }
-    }
-
-    void run_some(std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            store(one(i), i);
-            done_ += 1;
-        }
-    }
-
-    Run one(std::size_t i) const {
-        std::vector<double> params(variation_.params.begin(), variation_.params.end());
-        for (std::size_t j = 0; j < variation_.varied.size(); ++j)
-            params[variation_.varied[j]] = variation_.values[j * variation_.runs + i];
-        if (validate(params).empty()) return simulate(params, {.stop = &stop_, .rows = false});
-        Run invalid;
-        invalid.outcome = ARM3R_RUN_INVALID;
-        return invalid;
-    }
-
-    void store(const Run& run, std::size_t i) {
-        double* cell = results_ + i;
-        for (const SummaryNumber& number : summary_table()) {
-            const bool known = run.outcome != ARM3R_RUN_INVALID || number.name == "outcome";
-            *cell = known ? number.of(run) + 0.0 : std::numeric_limits<double>::quiet_NaN();
-            cell += variation_.runs;
-        }
-    }
-
-    // The calling thread hands the wish to stop on, and reports.
-    void watch() {
-        while (done_ < variation_.runs) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            if (options_.stop && *options_.stop) stop_ = 1;
-            if (options_.progress && std::chrono::steady_clock::now() >= next_report_) report();
-        }
-    }
-
-    void report() {
-        next_report_ = std::chrono::steady_clock::now() + between_reports;
-        const std::int32_t answer = options_.progress(options_.user, static_cast<std::int64_t>(done_.load()),
-                                                      static_cast<std::int64_t>(variation_.runs));
-        if (answer != 0) stop_ = 1;
-        if (answer >= 0 || failure_) return;
         const std::lock_guard lock(mutex_);
-        failure_ = std::make_exception_ptr(
-            Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer)));
+        ended_ += 1;
+        wake_.notify_one();
     }
 
-    const Variation& variation_;
+    void fail(std::exception_ptr failure) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::move(failure);
+        work_.stop = true;
+    }
+
+    bool has_ended(std::size_t threads) {
+        std::unique_lock lock(mutex_);
+        return wake_.wait_for(lock, between_looks, [&] { return ended_ == threads; });
+    }
+
+    // The calling thread hands on the wish to stop, and reports.
+    void watch() {
+        if (options_.stop && *options_.stop) work_.stop = true;
+        if (!options_.progress || Clock::now() < next_report_) return;
+        next_report_ = Clock::now() + between_reports;
+        const std::int32_t answer = options_.progress(options_.user, static_cast<std::int64_t>(work_.done.load()),
+                                                      static_cast<std::int64_t>(work_.variation.runs));
+        if (answer != 0) work_.stop = true;
+        if (answer < 0)
+            fail(std::make_exception_ptr(
+                Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer))));
+    }
+
     const BatchOptions& options_;
-    double* const results_;
-    std::atomic<std::size_t> next_ = 0, done_ = 0;
-    volatile std::int32_t stop_ = 0;
+    Work work_;
     std::mutex mutex_;
+    std::condition_variable wake_;
+    std::size_t ended_ = 0;
     std::exception_ptr failure_;
-    std::chrono::steady_clock::time_point next_report_{};
+    Clock::time_point next_report_ = Clock::now() + between_reports;
 };
 
 }  // namespace
 
 void run_batch(const Variation& variation, const BatchOptions& options, double* results) {
     check_variation(variation);
+    if (options.lanes > widest_lanes())
+        throw Error(ARM3R_E_VALUE, "lanes: this processor has instructions for " + std::to_string(widest_lanes()) +
+                                       ", not for " + std::to_string(options.lanes));
     if (variation.varied.empty()) {
         std::vector<Problem> problems = validate(variation.params);
         if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));

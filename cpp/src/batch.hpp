@@ -21,7 +21,7 @@ struct BatchOptions {
     arm3r_batch_progress progress = nullptr;
     void* user = nullptr;
     int threads = 0;  // 0: as many as the CPUs that this process may use
-    int lanes = 0;    // 1 or 8; 0: as is fastest
+    int lanes = 0;    // 1, 2, 4 or 8; 0: as is fastest
 };
 
 // results: summary_table().size() columns of `runs` numbers. Throws Error where the base or the variation is not valid.

@@ -20,7 +20,8 @@ BatchOptions batch_options_in(const arm3r_batch_options* given) {
                     std::string(name) + ": " + field + " is " + std::to_string(value) + "; " + allowed + " is needed");
     };
     if (options.threads < 0) refuse("threads", options.threads, "0 or more");
-    if (options.lanes != 0 && options.lanes != 1 && options.lanes != 8) refuse("lanes", options.lanes, "0, 1 or 8");
+    if (options.lanes < 0 || options.lanes > 8 || (options.lanes & (options.lanes - 1)))
+        refuse("lanes", options.lanes, "0, 1, 2, 4 or 8");
     return {options.stop, options.progress, options.user, options.threads, options.lanes};
 }
 

@@ -1,5 +1,6 @@
 // The numbers half of the C interface: version, parameters, the arm, and reading a run.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -9,16 +10,14 @@
 
 #include "c_api.hpp"
 #include "columns.hpp"
+#include "model_batch.hpp"
 #include "numbers.hpp"
 #include "schema.hpp"
 #include "setup.hpp"
 
 using namespace arm3r;
 
-struct arm3r_arm {
-    bool simscape;
-    Arm<double> arm;
-};
+struct arm3r_arm : Model {};
 
 namespace {
 
@@ -26,25 +25,28 @@ constexpr double largest_number = 1e100;  // its square and cube are still numbe
 constexpr double least_sine = 1e-3;  // of joint 3, or of the tip's distance from joint 1's axis over the arm's length
 constexpr std::size_t most_states = std::numeric_limits<std::size_t>::max() / (18 * sizeof(double));
 
-struct Input {
+struct Input {  // rows of 3
     const double* data;
-    int width;
     const char* name;
     double limit;
+    bool nullable = false;
 };
 
 struct Output {
     double* data;
-    int width;
+    std::size_t width;
     const char* name;
 };
 
-Input joint_angles(const double* q) { return {q, 3, "q", sincos_limit}; }
-Input numbers(const double* data, const char* name) { return {data, 3, name, largest_number}; }
+using Inputs = std::initializer_list<Input>;
+using Outputs = std::initializer_list<Output>;
+
+Input joint_angles(const double* q) { return {q, "q", sincos_limit}; }
+Input numbers(const double* data, const char* name) { return {data, name, largest_number}; }
+Input tip_force(const double* f_on_tip) { return {f_on_tip, "f_on_tip", largest_number, true}; }
 
 Error bad_value(const Input& in, std::size_t at) {
-    const std::string where =
-        std::string(in.name) + "[" + std::to_string(at / in.width) + "][" + std::to_string(at % in.width) + "]";
+    const std::string where = std::string(in.name) + "[" + std::to_string(at / 3) + "][" + std::to_string(at % 3) + "]";
     return Error(ARM3R_E_VALUE, {{.code = "argument.value",
                                   .path = where,
                                   .message = "not a number that this function takes",
@@ -54,11 +56,8 @@ Error bad_value(const Input& in, std::size_t at) {
 }
 
 void check_values(const Input& in, std::size_t n) {
-    const std::size_t count = n * in.width;
-    bool good = true;
-    for (std::size_t i = 0; i < count; ++i) good &= std::abs(in.data[i]) <= in.limit;
-    if (good) return;
-    for (std::size_t i = 0; i < count; ++i)
+    if (!in.data || all_within(in.data, 3 * n, in.limit)) return;
+    for (std::size_t i = 0; i < 3 * n; ++i)
         if (!(std::abs(in.data[i]) <= in.limit)) throw bad_value(in, i);
 }
 
@@ -67,25 +66,33 @@ bool overlap(const double* a, std::size_t a_count, const double* b, std::size_t 
     return at(a) < at(b) + b_count * sizeof(double) && at(b) < at(a) + a_count * sizeof(double);
 }
 
-void check_overlap(const Output& out, const double* other, int width, const char* name, std::size_t n) {
-    if (n > 0 && overlap(out.data, n * out.width, other, n * width))
+void check_overlap(const Output& out, const double* other, std::size_t width, const char* name, std::size_t n) {
+    if (n > 0 && other && overlap(out.data, n * out.width, other, n * width))
         throw Error(ARM3R_E_OVERLAP, std::string(out.name) + " overlaps " + name);
 }
 
 // All that is checked before a model function writes its first number.
-void check(const arm3r_arm* arm, std::size_t n, std::initializer_list<Input> inputs,
-           std::initializer_list<Output> outputs) {
+void check(const arm3r_arm* arm, std::size_t n, Inputs inputs, Outputs outputs) {
     need(arm, "arm");
-    for (const Input& in : inputs) check_pointer(in.data, in.name);
+    for (const Input& in : inputs)
+        if (in.data || !in.nullable) check_pointer(in.data, in.name);
     for (const Output& out : outputs) check_pointer(out.data, out.name);
     if (n > most_states) throw Error(ARM3R_E_SIZE, "n is " + std::to_string(n) + ": no array is as long");
     for (const Output& out : outputs) {
-        for (const Input& in : inputs) check_overlap(out, in.data, in.width, in.name, n);
+        for (const Input& in : inputs) check_overlap(out, in.data, 3, in.name, n);
         for (const Output& other : outputs)
             if (other.data != out.data) check_overlap(out, other.data, other.width, other.name, n);
             else if (&other != &out) throw Error(ARM3R_E_OVERLAP, std::string(out.name) + " overlaps " + other.name);
     }
     for (const Input& in : inputs) check_values(in, n);
+}
+
+Rows rows(Inputs inputs, Outputs outputs) {
+    Rows all{};
+    std::transform(inputs.begin(), inputs.end(), all.in.begin(), [](const Input& in) { return in.data; });
+    std::transform(outputs.begin(), outputs.end(), all.out.begin(),
+                   [](const Output& out) { return Rows::Out{out.data, out.width}; });
+    return all;
 }
 
 Vec3<double> load(const double* data, std::size_t i) { return {data[3 * i], data[3 * i + 1], data[3 * i + 2]}; }
@@ -103,21 +110,6 @@ void store_joints(const arm3r_arm& arm, const Vec3<double>& v, double* data, std
     store(arm.simscape ? flipped(v) : v, data, i);
 }
 
-void store(const Mat3<double>& m, double* data) {
-    for (int k = 0; k < 9; ++k) data[k] = m.data()[k] + 0.0;
-}
-
-// J D: rows in space, columns in joints. D M D: both in joints.
-Mat3<double> columns_out(const arm3r_arm& arm, Mat3<double> m) {
-    if (arm.simscape) m.rightCols<2>() = -m.rightCols<2>();
-    return m;
-}
-
-Mat3<double> joints_out(const arm3r_arm& arm, Mat3<double> m) {
-    if (arm.simscape) m.bottomRows<2>() = -m.bottomRows<2>();
-    return columns_out(arm, m);
-}
-
 Error singular(std::size_t i, const char* what) {
     return Error(
         ARM3R_E_SINGULAR,
@@ -130,48 +122,52 @@ Error singular(std::size_t i, const char* what) {
               "|sin q3| and the tip's distance from the joint-1 axis over the arm's length must be at least 1e-3"}});
 }
 
-void refuse_singular(const Arm<double>& arm, const Pose<double>& p, std::size_t i) {
-    const double S3 = p.S23 * p.C2 - p.C23 * p.S2;
-    if (std::abs(S3) < least_sine) throw singular(i, "the arm is stretched or folded: the pose is singular");
-    if (std::abs(radius(arm, p)) < least_sine * (arm.link2.length + arm.link3.length))
-        throw singular(i, "the tip is on the axis of joint 1: the pose is singular");
+void refuse_singular(const Model& model, std::size_t n, const double* q) {
+    const double reach = model.arm.link2.length + model.arm.link3.length;
+    constexpr std::size_t most = 512;
+    double sine[most], radius[most];
+    for (std::size_t first = 0; first < n; first += most) {
+        const std::size_t count = std::min(most, n - first);
+        evaluate(in_groups::singularity, model, count, {{q + 3 * first}, {{{sine, 1}, {radius, 1}}}});
+        for (std::size_t i = 0; i < count; ++i) {
+            if (sine[i] < least_sine) throw singular(first + i, "the arm is stretched or folded: the pose is singular");
+            if (radius[i] < least_sine * reach)
+                throw singular(first + i, "the tip is on the axis of joint 1: the pose is singular");
+        }
+    }
+}
+
+[[noreturn]] void refuse_direction(const Vec3<double>& direction, std::size_t i) {
+    if (std::sqrt(dot(direction, direction)) > least_length)
+        throw singular(i, "the tip cannot move along this direction");
+    throw Error(ARM3R_E_VALUE, {{.code = "argument.value",
+                                 .path = "direction[" + std::to_string(i) + "]",
+                                 .message = "a direction needs a length",
+                                 .got = "[0, 0, 0]",
+                                 .allowed = "any vector that is not zero",
+                                 .hint = ""}});
+}
+
+int32_t evaluated(const arm3r_arm* arm, std::size_t n, Inputs inputs, Outputs outputs, GroupFunction& function) {
+    return guard([&] {
+        check(arm, n, inputs, outputs);
+        evaluate(function, *arm, n, rows(inputs, outputs));
+    });
 }
 
 constexpr double no_force[3] = {0, 0, 0};
 
-// An absent force is one of zero for every state.
+// By the recursion, state after state. An absent force is one of zero for every state.
 template <class Body>
-int32_t with_force(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd, const char* third_name,
-                   const double* third, const double* f_on_tip, Output out, Body body) {
+int32_t by_recursion(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd, const char* third_name,
+                     const double* third, const double* f_on_tip, Output out, Body body) {
     return guard([&] {
-        if (f_on_tip)
-            check(arm, n,
-                  {joint_angles(q), numbers(qd, "qd"), numbers(third, third_name), numbers(f_on_tip, "f_on_tip")},
-                  {out});
-        else check(arm, n, {joint_angles(q), numbers(qd, "qd"), numbers(third, third_name)}, {out});
+        check(arm, n, {joint_angles(q), numbers(qd, "qd"), numbers(third, third_name), tip_force(f_on_tip)}, {out});
         for (std::size_t i = 0; i < n; ++i)
             store_joints(*arm,
                          body(load_joints(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third, i),
                               f_on_tip ? load(f_on_tip, i) : load(no_force, 0)),
                          out.data, i);
-    });
-}
-
-// One pose in, something written for state i.
-template <class Write>
-int32_t of_pose(const arm3r_arm* arm, std::size_t n, const double* q, Output out, Write write) {
-    return guard([&] {
-        check(arm, n, {joint_angles(q)}, {out});
-        for (std::size_t i = 0; i < n; ++i) write(pose(load_joints(*arm, q, i)), i);
-    });
-}
-
-template <class Write>
-int32_t of_motion(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd,
-                  std::initializer_list<Output> outs, Write write) {
-    return guard([&] {
-        check(arm, n, {joint_angles(q), numbers(qd, "qd")}, outs);
-        for (std::size_t i = 0; i < n; ++i) write(pose(load_joints(*arm, q, i)), load_joints(*arm, qd, i), i);
     });
 }
 
@@ -198,8 +194,8 @@ const char* arm3r_version(void) { return ARM3R_VERSION; }
 const char* arm3r_build_info(void) { return ARM3R_BUILD_INFO; }
 
 const char* arm3r_outcome_name(int32_t outcome) {
-    static const char* const names[] = {"ok",          "stopped",         "diverged", "step_collapse",
-                                        "event_storm", "ill_conditioned", "energy",   "budget",   "invalid"};
+    static const char* const names[] = {
+        "ok", "stopped", "diverged", "step_collapse", "event_storm", "ill_conditioned", "energy", "budget", "invalid"};
     return outcome >= 0 && outcome < int32_t(std::size(names)) ? names[outcome] : "";
 }
 
@@ -222,6 +218,19 @@ int32_t arm3r_param_name(size_t index, const char** name) {
     });
 }
 
+int32_t arm3r_param_key(size_t index, const char** key, const char** kind, const char** unit) {
+    return guard([&] {
+        need(key, "key");
+        need(kind, "kind");
+        need(unit, "unit");
+        check_index(index, param_count(), "parameter");
+        const Key& found = key_at(index);
+        *key = found.path.c_str();
+        *kind = kind_name(found.kind);
+        *unit = found.unit.c_str();
+    });
+}
+
 int32_t arm3r_param_defaults(double* params, size_t count) {
     return guard([&] {
         params_in(params, count);
@@ -237,79 +246,61 @@ int32_t arm3r_arm_create(const double* params, size_t count, arm3r_arm** arm) {
         need(arm, "arm");
         const std::span<const double> all = params_in(params, count);
         refuse_invalid(all);
-        *arm = new arm3r_arm{choice_of(all, "arm.convention") == "simscape", make_arm(all)};
+        *arm = new arm3r_arm{{make_arm(all), choice_of(all, "arm.convention") == "simscape"}};
     });
 }
 
 void arm3r_arm_free(arm3r_arm* arm) { delete arm; }
 
 int32_t arm3r_arm_tip_position(const arm3r_arm* arm, size_t n, const double* q, double* tip) {
-    return of_pose(arm, n, q, {tip, 3, "tip"},
-                   [&](const Pose<double>& p, std::size_t i) { store(tip_position(arm->arm, p), tip, i); });
+    return evaluated(arm, n, {joint_angles(q)}, {{tip, 3, "tip"}}, in_groups::tip_position);
 }
 
 int32_t arm3r_arm_elbow_position(const arm3r_arm* arm, size_t n, const double* q, double* elbow) {
-    return of_pose(arm, n, q, {elbow, 3, "elbow"},
-                   [&](const Pose<double>& p, std::size_t i) { store(elbow_position(arm->arm, p), elbow, i); });
+    return evaluated(arm, n, {joint_angles(q)}, {{elbow, 3, "elbow"}}, in_groups::elbow_position);
 }
 
-int32_t arm3r_arm_centres(const arm3r_arm* arm, size_t n, const double* q, double* out) {
-    return of_pose(arm, n, q, {out, 9, "centres"},
-                   [&](const Pose<double>& p, std::size_t i) { store(centres(arm->arm, p), out + 9 * i); });
+int32_t arm3r_arm_centres(const arm3r_arm* arm, size_t n, const double* q, double* centres) {
+    return evaluated(arm, n, {joint_angles(q)}, {{centres, 9, "centres"}}, in_groups::centres);
 }
 
-int32_t arm3r_arm_jacobian(const arm3r_arm* arm, size_t n, const double* q, double* out) {
-    return of_pose(arm, n, q, {out, 9, "jacobian"}, [&](const Pose<double>& p, std::size_t i) {
-        store(columns_out(*arm, jacobian(arm->arm, p)), out + 9 * i);
-    });
+int32_t arm3r_arm_jacobian(const arm3r_arm* arm, size_t n, const double* q, double* jacobian) {
+    return evaluated(arm, n, {joint_angles(q)}, {{jacobian, 9, "jacobian"}}, in_groups::jacobian);
 }
 
-int32_t arm3r_arm_geometric_jacobian(const arm3r_arm* arm, size_t n, const double* q, double* out) {
-    return of_pose(arm, n, q, {out, 18, "jacobian"}, [&](const Pose<double>& p, std::size_t i) {
-        store(columns_out(*arm, jacobian(arm->arm, p)), out + 18 * i);
-        store(columns_out(*arm, angular_jacobian(p)), out + 18 * i + 9);
-    });
+int32_t arm3r_arm_geometric_jacobian(const arm3r_arm* arm, size_t n, const double* q, double* jacobian) {
+    return evaluated(arm, n, {joint_angles(q)}, {{jacobian, 18, "jacobian"}}, in_groups::geometric_jacobian);
 }
 
-int32_t arm3r_arm_jacobian_dot(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* out) {
-    return of_motion(arm, n, q, qd, {{out, 9, "jacobian_dot"}},
-                     [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
-                         store(columns_out(*arm, jacobian_dot(arm->arm, p, w)), out + 9 * i);
-                     });
+int32_t arm3r_arm_jacobian_dot(const arm3r_arm* arm, size_t n, const double* q, const double* qd,
+                               double* jacobian_dot) {
+    return evaluated(arm, n, {joint_angles(q), numbers(qd, "qd")}, {{jacobian_dot, 9, "jacobian_dot"}},
+                     in_groups::jacobian_dot);
 }
 
 int32_t arm3r_arm_mass_matrix(const arm3r_arm* arm, size_t n, const double* q, double* mass) {
-    return of_pose(arm, n, q, {mass, 9, "mass"}, [&](const Pose<double>& p, std::size_t i) {
-        store(joints_out(*arm, mass_matrix(arm->arm, p)), mass + 9 * i);
-    });
+    return evaluated(arm, n, {joint_angles(q)}, {{mass, 9, "mass"}}, in_groups::mass_matrix);
 }
 
 int32_t arm3r_arm_coriolis_matrix(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* coriolis) {
-    return of_motion(arm, n, q, qd, {{coriolis, 9, "coriolis"}},
-                     [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
-                         store(joints_out(*arm, coriolis_matrix(arm->arm, p, w)), coriolis + 9 * i);
-                     });
+    return evaluated(arm, n, {joint_angles(q), numbers(qd, "qd")}, {{coriolis, 9, "coriolis"}},
+                     in_groups::coriolis_matrix);
 }
 
 int32_t arm3r_arm_velocity_product(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* product) {
-    return of_motion(arm, n, q, qd, {{product, 3, "product"}},
-                     [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
-                         store_joints(*arm, velocity_product(arm->arm, p, w), product, i);
-                     });
+    return evaluated(arm, n, {joint_angles(q), numbers(qd, "qd")}, {{product, 3, "product"}},
+                     in_groups::velocity_product);
 }
 
 int32_t arm3r_arm_gravity_torque(const arm3r_arm* arm, size_t n, const double* q, double* tau_g) {
-    return of_pose(arm, n, q, {tau_g, 3, "tau_g"}, [&](const Pose<double>& p, std::size_t i) {
-        store_joints(*arm, gravity_torque(arm->arm, p), tau_g, i);
-    });
+    return evaluated(arm, n, {joint_angles(q)}, {{tau_g, 3, "tau_g"}}, in_groups::gravity_torque);
 }
 
 int32_t arm3r_arm_operational_space_inertia(const arm3r_arm* arm, size_t n, const double* q, double* lambda) {
     return guard([&] {
         check(arm, n, {joint_angles(q)}, {{lambda, 9, "lambda"}});
-        for (std::size_t i = 0; i < n; ++i) refuse_singular(arm->arm, pose(load_joints(*arm, q, i)), i);
-        for (std::size_t i = 0; i < n; ++i)
-            store(operational_space_inertia(arm->arm, pose(load_joints(*arm, q, i))), lambda + 9 * i);
+        refuse_singular(*arm, n, q);
+        evaluate(in_groups::operational_space_inertia, *arm, n, {{q}, {{{lambda, 9}}}});
     });
 }
 
@@ -318,63 +309,45 @@ int32_t arm3r_arm_effective_mass(const arm3r_arm* arm, size_t n, const double* q
     return guard([&] {
         check(arm, n, {joint_angles(q), numbers(direction, "direction")}, {{mass, 1, "mass"}});
         std::vector<double> found(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            const Vec3<double> d = load(direction, i);
-            const double length = std::sqrt(dot(d, d));
-            if (!(length > 1e-100))
-                throw Error(ARM3R_E_VALUE, {{.code = "argument.value",
-                                             .path = "direction[" + std::to_string(i) + "]",
-                                             .message = "a direction needs a length",
-                                             .got = "[0, 0, 0]",
-                                             .allowed = "any vector that is not zero",
-                                             .hint = ""}});
-            found[i] = effective_mass(arm->arm, pose(load_joints(*arm, q, i)),
-                                      Vec3<double>(d[0] / length, d[1] / length, d[2] / length));
-            if (!(std::isfinite(found[i]) && found[i] > 0))
-                throw singular(i, "the tip cannot move along this direction");
-        }
+        evaluate(in_groups::effective_mass, *arm, n, {{q, direction}, {{{found.data(), 1}}}});
+        for (std::size_t i = 0; i < n; ++i)
+            if (!(std::isfinite(found[i]) && found[i] > 0)) refuse_direction(load(direction, i), i);
         std::copy(found.begin(), found.end(), mass);
     });
 }
 
-int32_t arm3r_arm_manipulability(const arm3r_arm* arm, size_t n, const double* q, double* out) {
-    return of_pose(arm, n, q, {out, 1, "manipulability"},
-                   [&](const Pose<double>& p, std::size_t i) { out[i] = manipulability(arm->arm, p); });
+int32_t arm3r_arm_manipulability(const arm3r_arm* arm, size_t n, const double* q, double* manipulability) {
+    return evaluated(arm, n, {joint_angles(q)}, {{manipulability, 1, "manipulability"}}, in_groups::manipulability);
 }
 
 int32_t arm3r_arm_energy(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* kinetic,
                          double* potential) {
-    return of_motion(arm, n, q, qd, {{kinetic, 1, "kinetic"}, {potential, 1, "potential"}},
-                     [&](const Pose<double>& p, const Vec3<double>& w, std::size_t i) {
-                         kinetic[i] = kinetic_energy(arm->arm, p, w) + 0.0;
-                         potential[i] = potential_energy(arm->arm, p) + 0.0;
-                     });
+    return evaluated(arm, n, {joint_angles(q), numbers(qd, "qd")},
+                     {{kinetic, 1, "kinetic"}, {potential, 1, "potential"}}, in_groups::energy);
 }
 
 int32_t arm3r_arm_forward_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* tau,
                                    const double* f_on_tip, double* qdd) {
-    return with_force(arm, n, q, qd, "tau", tau, f_on_tip, {qdd, 3, "qdd"},
-                      [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& torque,
-                          const Vec3<double>& f) { return forward_dynamics(arm->arm, pose(angles), w, torque, f); });
+    return evaluated(arm, n, {joint_angles(q), numbers(qd, "qd"), numbers(tau, "tau"), tip_force(f_on_tip)},
+                     {{qdd, 3, "qdd"}}, in_groups::forward_dynamics);
 }
 
 int32_t arm3r_arm_inverse_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd, const double* qdd,
                                    const double* f_on_tip, double* tau) {
-    return with_force(arm, n, q, qd, "qdd", qdd, f_on_tip, {tau, 3, "tau"},
-                      [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& a,
-                          const Vec3<double>& f) { return inverse_dynamics(arm->arm, pose(angles), w, a, f); });
+    return evaluated(arm, n, {joint_angles(q), numbers(qd, "qd"), numbers(qdd, "qdd"), tip_force(f_on_tip)},
+                     {{tau, 3, "tau"}}, in_groups::inverse_dynamics);
 }
 
 int32_t arm3r_arm_recursion_inverse_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd,
                                              const double* qdd, const double* f_on_tip, double* tau) {
-    return with_force(arm, n, q, qd, "qdd", qdd, f_on_tip, {tau, 3, "tau"},
-                      [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& a,
-                          const Vec3<double>& f) { return recursion_inverse_dynamics(arm->arm, angles, w, a, f); });
+    return by_recursion(arm, n, q, qd, "qdd", qdd, f_on_tip, {tau, 3, "tau"},
+                        [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& a,
+                            const Vec3<double>& f) { return recursion_inverse_dynamics(arm->arm, angles, w, a, f); });
 }
 
 int32_t arm3r_arm_recursion_forward_dynamics(const arm3r_arm* arm, size_t n, const double* q, const double* qd,
                                              const double* tau, const double* f_on_tip, double* qdd) {
-    return with_force(
+    return by_recursion(
         arm, n, q, qd, "tau", tau, f_on_tip, {qdd, 3, "qdd"},
         [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& torque, const Vec3<double>& f) {
             return recursion_forward_dynamics(arm->arm, angles, w, torque, f);
@@ -383,14 +356,8 @@ int32_t arm3r_arm_recursion_forward_dynamics(const arm3r_arm* arm, size_t n, con
 
 int32_t arm3r_arm_tip_sensor(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* position,
                              double* velocity) {
-    return guard([&] {
-        check(arm, n, {joint_angles(q), numbers(qd, "qd")}, {{position, 3, "position"}, {velocity, 3, "velocity"}});
-        for (std::size_t i = 0; i < n; ++i) {
-            const TipSensor<double> sensor = tip_sensor(arm->arm, load_joints(*arm, q, i), load_joints(*arm, qd, i));
-            store(sensor.position, position, i);
-            store(sensor.velocity, velocity, i);
-        }
-    });
+    return evaluated(arm, n, {joint_angles(q), numbers(qd, "qd")},
+                     {{position, 3, "position"}, {velocity, 3, "velocity"}}, in_groups::tip_sensor);
 }
 
 int32_t arm3r_arm_inverse_kinematics(const arm3r_arm* arm, size_t n, const double* tip, int32_t front, int32_t elbow_up,

@@ -13,12 +13,14 @@
 #include "setup.hpp"
 #include "size_cap.hpp"
 #include "text.hpp"
+#include "yaml_json.hpp"
 
 using namespace arm3r;
 
 namespace {
 
-constexpr std::size_t any_size = SIZE_MAX;  // the reader has its own limit, and its own words for it
+constexpr std::size_t any_size = SIZE_MAX;     // the reader has its own limit, and its own words for it
+constexpr std::size_t enough = (1 << 20) + 1;  // of a text that is longer than the reader takes
 
 Results results_of(const arm3r_run& run) { return {run.run, run.name, run.scenario, run.checks}; }
 
@@ -88,7 +90,6 @@ int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* fi
         need(text, "text");
         need(scenario, "scenario");
         const std::string name = text_in(file, file_size, "file");
-        constexpr std::size_t enough = (1 << 20) + 1;
         *scenario = new_scenario(read_scenario(std::string(text, std::min(text_size, enough)), name));
     });
 }
@@ -202,6 +203,17 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         handle->run = with_places(scenario->scenario, [&] { return simulate(resolved.params, chosen); });
         handle->checks = evaluate(resolved.checks, handle->run, resolved.params);
         *run = handle.release();
+    });
+}
+
+int32_t arm3r_yaml_json(const char* text, size_t text_size, const char* file, size_t file_size, const char** json) {
+    return guard([&] {
+        need(text, "text");
+        need(json, "json");
+        const std::string name = text_in(file, file_size, "file");
+        thread_local std::string last;
+        last = yaml_json(std::string(text, std::min(text_size, enough)), name);
+        *json = last.c_str();
     });
 }
 

@@ -4,14 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "sample.hpp"
+#include "contact_step.hpp"
 
 namespace arm3r {
-
-struct Crossing {
-    double theta;  // where in the step, in (from, 1]
-    Mode next;
-};
 
 class ContactWatch {
 public:

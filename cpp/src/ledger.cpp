@@ -14,34 +14,49 @@ double stock(const Energies& energies) {
     return std::abs(energies.kinetic) + std::abs(energies.potential) + std::abs(energies.contact);
 }
 
+// The accuracy that the solver was asked for; a fixed step promises none.
+double tolerance(const Solver& solver) {
+    switch (solver.method) {
+        case Solver::dopri5: return solver.rtol;
+        case Solver::taylor: return solver.tol;
+        default: return loosest_strict_tolerance;
+    }
+}
+
+const char* advice(const Solver& solver) {
+    switch (solver.method) {
+        case Solver::dopri5: return "tighten solver.rtol";
+        case Solver::taylor: return "tighten solver.tol";
+        default: return "take a smaller solver.step";
+    }
+}
+
 }  // namespace
 
+double balance_limit(const Solver& solver, const Flows& flows) {
+    return 100 * tolerance(solver) * flows.exchanged + 1e-12 * flows.held;
+}
+
+bool is_strict(const Solver& solver) {
+    return solver.method != Solver::rk4 && tolerance(solver) <= loosest_strict_tolerance;
+}
+
+std::optional<std::string> balance_complaint(const Solver& solver, const Flows& flows) {
+    const double limit = balance_limit(solver, flows);
+    if (flows.residual <= limit) return std::nullopt;
+    return "the energy balance does not close: " + shortest(flows.residual) + " J are left over, the limit is " +
+           shortest(limit) + " J; " + advice(solver);
+}
+
 Ledger::Ledger(const Setup& setup, const FullState& y, Mode mode)
-    : setup_(setup), start_(energies(setup.plant, 0.0, y, mode)), held_(stock(start_)) {}
+    : setup_(setup), start_(energies(setup.plant, 0.0, y, mode)), flows_{0, stock(start_), 0} {}
 
-void Ledger::close(double t, const FullState& y, Mode mode, Run& run) {
+void Ledger::close(double t, const FullState& y, Mode mode) {
     const Energies now = energies(setup_.plant, t, y, mode);
-    note_residual(run.ledger_residual, energy_residual(y, now.sum(), start_.sum()));
-    exchanged_ = std::max({exchanged_, std::abs(y[6]), std::abs(y[7]), std::abs(y[8]), now.kinetic,
-                           std::abs(now.potential - start_.potential)});
-    held_ = std::max(held_, stock(now));
-}
-
-double Ledger::tolerance() const {
-    return setup_.solver.method == Solver::dopri5 ? setup_.solver.rtol : loosest_strict_tolerance;
-}
-
-bool Ledger::is_strict() const {
-    return setup_.solver.method == Solver::dopri5 && setup_.solver.rtol <= loosest_strict_tolerance;
-}
-
-std::optional<std::string> Ledger::complaint(const Run& run) const {
-    const double limit = 100 * tolerance() * exchanged_ + 1e-12 * held_;
-    if (run.ledger_residual <= limit) return std::nullopt;
-    const char* const advice =
-        setup_.solver.method == Solver::dopri5 ? "tighten solver.rtol" : "take a smaller solver.step";
-    return "the energy balance does not close: " + shortest(run.ledger_residual) +
-           " J are left over, the limit is " + shortest(limit) + " J; " + advice;
+    note_residual(flows_.residual, energy_residual(y, now.sum(), start_.sum()));
+    flows_.exchanged = std::max({flows_.exchanged, std::abs(y[6]), std::abs(y[7]), std::abs(y[8]), now.kinetic,
+                                 std::abs(now.potential - start_.potential)});
+    flows_.held = std::max(flows_.held, stock(now));
 }
 
 }  // namespace arm3r

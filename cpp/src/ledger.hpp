@@ -13,27 +13,33 @@
 
 namespace arm3r {
 
+// J, over a run so far: the largest flow, the largest stock, and the largest residual.
+struct Flows {
+    double exchanged = 0, held = 0, residual = 0;
+};
+
+// What the residual may be at the end, and whether more is the run's outcome or only a warning.
+double balance_limit(const Solver& solver, const Flows& flows);
+bool is_strict(const Solver& solver);
+
+// Why the balance does not close, or nothing.
+std::optional<std::string> balance_complaint(const Solver& solver, const Flows& flows);
+
 class Ledger {
 public:
     Ledger(const Setup& setup, const FullState& y, Mode mode);
 
     double energy_at_start() const { return start_.sum(); }  // J
 
-    // After each step: note in `run` what the balance leaves over, and remember the largest flows.
-    void close(double t, const FullState& y, Mode mode, Run& run);
+    // After each step: note what the balance leaves over, and the largest flows.
+    void close(double t, const FullState& y, Mode mode);
 
-    // At the end: why the balance does not close, or nothing.
-    std::optional<std::string> complaint(const Run& run) const;
-
-    // Whether a complaint is the run's outcome or only a warning.
-    bool is_strict() const;
+    const Flows& flows() const { return flows_; }
 
 private:
-    double tolerance() const;
-
     const Setup& setup_;
     Energies start_;
-    double exchanged_ = 0, held_ = 0;  // J, the largest flow and the largest stock of the run
+    Flows flows_;
 };
 
 // A residual that is not a number is the largest of all.

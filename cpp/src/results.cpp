@@ -16,17 +16,7 @@ namespace arm3r {
 namespace {
 
 // What only a run of its own has.
-const std::vector<SummaryNumber> other_numbers = {
-    {"energy_residual_max", "J", "largest residual of the energy balance, over steps and rows",
-     [](const Run& run) { return run.energy_residual_max; }},
-    {"elapsed_s", "s", "wall clock", [](const Run& run) { return run.elapsed_s; }},
-};
-
-std::vector<SummaryNumber> summary_numbers() {
-    std::vector<SummaryNumber> numbers = summary_table();
-    numbers.insert(numbers.end(), other_numbers.begin(), other_numbers.end());
-    return numbers;
-}
+constexpr std::string_view largest_residual = "energy_residual_max", wall_clock = "elapsed_s";
 
 const char* type_name(const Event& event) { return event.type == Event::make ? "make" : "break"; }
 
@@ -167,11 +157,16 @@ std::string elapsed_text(double seconds) {
 }  // namespace
 
 std::vector<std::string> summary_number_names() {
-    return each(summary_numbers(), [](const SummaryNumber& number) { return std::string(number.name); });
+    std::vector<std::string> names = each(summary_table(), [](const SummaryNumber& n) { return std::string(n.name); });
+    names.emplace_back(largest_residual);
+    names.emplace_back(wall_clock);
+    return names;
 }
 
 double summary_number(const Run& run, std::string_view name) {
-    for (const SummaryNumber& number : summary_numbers())
+    if (name == largest_residual) return run.energy_residual_max;
+    if (name == wall_clock) return run.elapsed_s;
+    for (const SummaryNumber& number : summary_table())
         if (number.name == name) return number.of(run);
     throw Error(ARM3R_E_INTERNAL, "a summary has no number " + std::string(name));
 }

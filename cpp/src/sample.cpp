@@ -85,7 +85,7 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, sta
     const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
     const Pose<T> p = pose(q);
 
-    WallState<T> wall{{o, o, o}, {o, o, o}, {o, o, o}};
+    WallState<T> wall = no_wall<T>();
     Indentation<T> in{o, o, o, o, o, o};
     ContactForce<T> force = no_contact<T>();
     T touches = o;

@@ -9,6 +9,8 @@ namespace arm3r {
 
 enum class Mode { free, contact, embedded };  // embedded: behind the plate without having come through its face (4.8)
 
+inline constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
+
 using FullState = State<double, state_size>;
 using Inside = Interpolant<double, state_size>;
 

@@ -1,5 +1,6 @@
 #include "schema.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -221,21 +222,42 @@ void append_controller(std::vector<Key>& keys) {
 }
 
 void append_solver(std::vector<Key>& keys) {
-    keys.push_back(choice("solver.method", {"dopri5", "rk4"}, Source::ours,
-                          "dopri5: Dormand-Prince 5(4), adaptive; rk4: classical Runge-Kutta, fixed step."));
+    keys.push_back(choice(
+        "solver.method", {"dopri5", "rk4", "taylor"}, Source::ours,
+        "dopri5: Dormand-Prince 5(4), adaptive; rk4: classical Runge-Kutta, fixed step; taylor: power series, adaptive."));
     keys.push_back(where("solver.method", {"dopri5"},
                          number("solver.rtol", {1e-9}, Source::ours, {2.220446049250313e-14, 0.1}, "",
                                 "Relative tolerance of a step; not below 100 times the rounding unit.")));
     keys.push_back(
         where("solver.method", {"dopri5"},
               number("solver.atol", {1e-12}, Source::ours, {1e-20, 1}, "rad, rad/s", "Absolute tolerance of a step.")));
+    keys.push_back(where("solver.method", {"taylor"},
+                         number("solver.tol", {1e-9}, Source::ours, {1e-15, 1e-2}, "rad, rad/s",
+                                "Tolerance of a step: absolute below 1, relative above.")));
     keys.push_back(where(
-        "solver.method", {"dopri5"},
+        "solver.method", {"dopri5", "taylor"},
         derived("no limit", number("solver.max_step", {unset}, Source::ours, {1e-12, 1e9}, "s", "Largest step."))));
     keys.push_back(
         where("solver.method", {"rk4"}, number("solver.step", {1e-3}, Source::ours, {1e-12, 1e9}, "s", "The step.")));
     keys.push_back(of_kind(Kind::integer, number("solver.max_steps", {1e7}, Source::ours, {1, 1e9}, "",
                                                  "Accepted and rejected steps after which the run ends as `budget`.")));
+}
+
+const Key* known_among(const std::vector<Key>& keys, const std::string& path) {
+    const auto found = std::ranges::find(keys, path, &Key::path);
+    if (found == keys.end()) throw Error(ARM3R_E_INTERNAL, "no key '" + path + "' in the schema");
+    return &*found;
+}
+
+void connect(std::vector<Key>& keys) {
+    constexpr std::string_view model = "controller.model.";
+    std::size_t offset = 0;
+    for (Key& key : keys) {
+        key.offset = offset;
+        offset += key.size;
+        if (!key.when_key.empty()) key.decided_by = known_among(keys, key.when_key);
+        if (key.path.starts_with(model)) key.plant = known_among(keys, "arm." + key.path.substr(model.size()));
+    }
 }
 
 std::vector<Key> make_schema() {
@@ -260,12 +282,7 @@ std::vector<Key> make_schema() {
     keys.push_back(
         number("time.log_every", {0.01}, Source::ours, {1e-12, 1e9}, "s",
                "Time between rows; t = 0 and the end are always rows, and the log never changes the steps."));
-
-    std::size_t offset = 0;
-    for (Key& key : keys) {
-        key.offset = offset;
-        offset += key.size;
-    }
+    connect(keys);
     return keys;
 }
 
@@ -276,12 +293,6 @@ const std::map<std::string, const Key*, std::less<>>& by_path() {
         return paths;
     }();
     return index;
-}
-
-const Key& known_key(std::string_view path) {
-    const Key* key = find_key(path);
-    if (!key) throw Error(ARM3R_E_INTERNAL, "no key '" + std::string(path) + "' in the schema");
-    return *key;
 }
 
 }  // namespace
@@ -296,18 +307,32 @@ const Key* find_key(std::string_view path) {
     return found == by_path().end() ? nullptr : found->second;
 }
 
+const Key& known_key(std::string_view path) {
+    const Key* key = find_key(path);
+    if (!key) throw Error(ARM3R_E_INTERNAL, "no key '" + std::string(path) + "' in the schema");
+    return *key;
+}
+
+const char* kind_name(Kind kind) {
+    constexpr const char* names[] = {"number", "angle", "integer", "flag", "choice", "section"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+const Key& key_at(std::size_t index) {
+    for (const Key& key : schema())
+        if (index < key.offset + key.size) return key;
+    throw Error(ARM3R_E_INDEX,
+                "there is no parameter " + std::to_string(index) + "; there are " + std::to_string(param_count()));
+}
+
 std::size_t param_count() {
     const Key& last = schema().back();
     return last.offset + last.size;
 }
 
 std::string param_name(std::size_t index) {
-    for (const Key& key : schema()) {
-        if (index < key.offset + key.size)
-            return key.size == 1 ? key.path : key.path + "[" + std::to_string(index - key.offset) + "]";
-    }
-    throw Error(ARM3R_E_INDEX,
-                "there is no parameter " + std::to_string(index) + "; there are " + std::to_string(param_count()));
+    const Key& key = key_at(index);
+    return key.size == 1 ? key.path : key.path + "[" + std::to_string(index - key.offset) + "]";
 }
 
 std::size_t param_index(std::string_view name) {
@@ -355,22 +380,27 @@ double param(std::span<const double> params, std::string_view path, std::size_t 
     return params[known_key(path).offset + item];
 }
 
-const std::string& choice_of(std::span<const double> params, std::string_view path) {
-    const Key& key = known_key(path);
+const std::string& choice_of(std::span<const double> params, const Key& key) {
     const double stored = params[key.offset];
-    constexpr std::string_view model = "controller.model.";
-    if (std::isnan(stored) && path.starts_with(model))
-        return choice_of(params, "arm." + std::string(path.substr(model.size())));
+    if (std::isnan(stored) && key.plant) return choice_of(params, *key.plant);
     return key.choices.at(static_cast<std::size_t>(stored));
 }
 
+const std::string& choice_of(std::span<const double> params, std::string_view path) {
+    return choice_of(params, known_key(path));
+}
+
+double choice_index(const Key& key, std::string_view word) {
+    const auto found = std::ranges::find(key.choices, word);
+    if (found == key.choices.end())
+        throw Error(ARM3R_E_INTERNAL, "no choice '" + std::string(word) + "' at '" + key.path + "' in the schema");
+    return static_cast<double>(found - key.choices.begin());
+}
+
 bool key_exists(const Key& key, std::span<const double> params) {
-    if (key.when_key.empty()) return true;
-    const std::string& chosen = choice_of(params, key.when_key);
-    for (const std::string& word : key.when) {
-        if (word == chosen) return key_exists(known_key(key.when_key), params);
-    }
-    return false;
+    if (!key.decided_by) return true;
+    const std::string& chosen = choice_of(params, *key.decided_by);
+    return std::ranges::find(key.when, chosen) != key.when.end() && key_exists(*key.decided_by, params);
 }
 
 }  // namespace arm3r

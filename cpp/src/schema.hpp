@@ -21,6 +21,8 @@ enum class Kind {
     section,  // a map that may be absent; the parameter is 1 where it is present (only `wall`)
 };
 
+const char* kind_name(Kind kind);
+
 enum class Source { lecture, inferred, ours };  // where a default comes from
 
 // How the `size` numbers of a key may be written.
@@ -54,13 +56,17 @@ struct Key {
     std::vector<std::string> when = {};  // ... is one of these words
     bool required = false;               // must be given (where it exists at all)
     std::string unset = {};              // what NaN means: "length/2", "as the plant"
-    std::size_t offset = 0;              // first index in the flat array; filled by schema()
+    std::size_t offset = 0;              // first index in the flat array; this and the next two: filled by schema()
+    const Key* decided_by = nullptr;     // the key at when_key
+    const Key* plant = nullptr;          // of a key of controller.model: the plant's
 };
 
 // Every key, in the order of the reference page. `name` (text), `format` and `checks` are the reader's own.
 const std::vector<Key>& schema();
 const Key* find_key(std::string_view path);
+const Key& known_key(std::string_view path);  // for paths that stand in the code
 std::size_t param_count();
+const Key& key_at(std::size_t index);            // whose number stands there in the flat array
 std::string param_name(std::size_t index);       // "initial.q[1]"
 std::size_t param_index(std::string_view name);  // throws Error ARM3R_E_INDEX, with the nearest right name
 std::vector<double> param_defaults();
@@ -71,9 +77,11 @@ std::vector<double> default_of(const Key& key, std::span<const double> params);
 
 double param(std::span<const double> params, std::string_view path, std::size_t item = 0);
 
-// The word stored for a choice (one that is not given in controller.model is the plant's), and whether the key exists
-// for the choices made in `params`.
+// The word stored for a choice (one that is not given in controller.model is the plant's), the number that stands for a
+// word, and whether the key exists for the choices made in `params`.
+const std::string& choice_of(std::span<const double> params, const Key& key);
 const std::string& choice_of(std::span<const double> params, std::string_view path);
+double choice_index(const Key& key, std::string_view word);
 bool key_exists(const Key& key, std::span<const double> params);
 
 // Every rule that one key alone can break (range, shape, word), and those between keys. Empty when all is well.

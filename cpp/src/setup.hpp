@@ -1,19 +1,20 @@
 #pragma once
 // From the flat parameters to the typed things that a run works on. Slide convention from here on.
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "arm3r/plant.hpp"
-#include "error.hpp"
+#include "findings.hpp"
 
 namespace arm3r {
 
 struct Solver {
-    enum Method { dopri5, rk4 } method;
-    double rtol, atol, max_step, step;  // s; max_step may be inf
+    enum Method { dopri5, rk4, taylor } method;
+    double rtol, atol;      // of dopri5
+    double tol;             // of taylor
+    double max_step, step;  // s; max_step may be inf
     double max_steps;
 };
 
@@ -25,15 +26,23 @@ struct Setup {
     double stop, log_every;  // s
 };
 
-// `params` must have passed validate() (schema.hpp); only rules between keys are left to `check_setup`.
+// The choices in `params` must be in order; what their numbers must keep to is said by validate() (schema.hpp), of
+// which `check_setup` is the last part.
 Arm<double> make_arm(std::span<const double> params);
 Setup make_setup(std::span<const double> params);
 
-// The same parameters with whatever controller.model says in the place of the plant's arm.
-std::vector<double> with_model(std::span<const double> params);
+// Every number of controller.model, and the number of the plant's arm that it replaces where it is given.
+struct Replacement {
+    std::size_t from, to;
+};
+const std::vector<Replacement>& model_numbers();
 
-// What no single key can break: the mass matrix over the whole workspace (3.10), inertia inequalities, the start.
-std::vector<Problem> check_setup(std::span<const double> params);
+// The same parameters with whatever controller.model says in the place of the plant's arm, and whether it says anything.
+std::vector<double> with_model(std::span<const double> params);
+bool model_differs(std::span<const double> params);
+
+// What no single key can break: the mass matrix over the whole workspace (3.10), the start, what a method cannot do.
+void check_setup(std::span<const double> params, Findings& findings);
 
 // What is allowed but probably a slip, each one sentence with the numbers.
 std::vector<std::string> likely_slips(std::span<const double> params);

@@ -20,18 +20,25 @@ void refuse_above(double needed, double most, Problem problem) {
     throw Error(ARM3R_E_SIZE_CAP, {std::move(problem)});
 }
 
+double fixed_steps_allowed(const Solver& solver) { return std::min(most_fixed_steps, solver.max_steps); }
+
 }  // namespace
 
-void refuse_too_large(const Setup& setup) {
-    refuse_above(setup.stop / setup.log_every, most_bytes / double(columns_of(setup).size() * sizeof(double)),
-                 {.code = "budget.rows",
-                  .path = "time.log_every",
-                  .message = "the run would need too many rows",
-                  .got = "",
-                  .allowed = "",
-                  .hint = "log less often"});
-    if (setup.solver.method == Solver::rk4)
-        refuse_above(setup.stop / setup.solver.step, std::min(most_fixed_steps, setup.solver.max_steps),
+bool has_too_many_steps(const Setup& setup) {
+    return setup.solver.method == Solver::rk4 && setup.stop / setup.solver.step > fixed_steps_allowed(setup.solver);
+}
+
+void refuse_too_large(const Setup& setup, bool rows) {
+    if (rows)
+        refuse_above(setup.stop / setup.log_every, most_bytes / double(columns_of(setup).size() * sizeof(double)),
+                     {.code = "budget.rows",
+                      .path = "time.log_every",
+                      .message = "the run would need too many rows",
+                      .got = "",
+                      .allowed = "",
+                      .hint = "log less often"});
+    if (has_too_many_steps(setup))
+        refuse_above(setup.stop / setup.solver.step, fixed_steps_allowed(setup.solver),
                      {.code = "budget.steps",
                       .path = "solver.step",
                       .message = "the run would need too many steps",

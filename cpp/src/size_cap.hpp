@@ -5,8 +5,11 @@
 
 namespace arm3r {
 
-// Throws Error ARM3R_E_SIZE_CAP.
-void refuse_too_large(const Setup& setup);
+// rows: whether they are wanted. Throws Error ARM3R_E_SIZE_CAP.
+void refuse_too_large(const Setup& setup, bool rows = true);
+
+// Whether a fixed step makes more steps than allowed.
+bool has_too_many_steps(const Setup& setup);
 
 // Which columns of column_table() a run has, in order.
 std::vector<std::size_t> columns_of(const Setup& setup);

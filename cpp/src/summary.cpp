@@ -3,7 +3,7 @@
 namespace arm3r {
 
 const std::vector<SummaryNumber>& summary_table() {
-    using R = const Run&;
+    using R = const Metrics&;
     static const std::vector<SummaryNumber> table = {
         {"outcome", "1", "how the run ended: 0 ok, else the index of its name", [](R r) { return double(r.outcome); }},
         {"t_end", "s", "time reached", [](R r) { return r.t_end; }},

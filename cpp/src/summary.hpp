@@ -10,7 +10,7 @@ namespace arm3r {
 
 struct SummaryNumber {
     std::string_view name, unit, meaning;
-    double (*of)(const Run&);  // NaN: the run has no such number
+    double (*of)(const Metrics&);  // NaN: the run has no such number
 };
 
 // In the order of a batch's table.

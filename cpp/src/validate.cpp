@@ -1,9 +1,12 @@
 // The rules of the flat parameters: what each key allows, then what only holds between keys (setup.cpp).
 
+#include "validate.hpp"
+
+#include <algorithm>
 #include <cmath>
 
+#include "at.hpp"
 #include "numbers.hpp"
-#include "schema.hpp"
 #include "setup.hpp"
 
 namespace arm3r {
@@ -29,7 +32,7 @@ bool within(const Key& key, double value) {
 std::size_t expected_count(const Key& key, std::span<const double> params) {
     if (key.form == Form::number_or_vector && std::isnan(params[key.offset + 1]) && std::isnan(params[key.offset + 2]))
         return 1;
-    if (key.form == Form::by_choice) return choice_of(params, key.when_key) == key.when.front() ? 1 : key.size;
+    if (key.form == Form::by_choice) return choice_of(params, *key.decided_by) == key.when.front() ? 1 : key.size;
     return key.size;
 }
 
@@ -44,122 +47,188 @@ Problem missing(const Key& key, std::size_t count) {
 }
 
 // A choice must be the index of one of its words; everything else is read only when all of them are.
-void check_choice(const Key& key, std::span<const double> params, std::vector<Problem>& problems) {
+void check_choice(const Key& key, std::span<const double> params, Findings& findings) {
     const double stored = params[key.offset];
     if (std::isnan(stored) && key.unset == "as the plant") return;
     const double count = key.kind == Kind::choice ? double(key.choices.size()) : 2;
     if (!(stored >= 0 && stored < count && stored == std::floor(stored)))
-        problems.push_back({.code = "scenario.choice",
-                            .path = key.path,
-                            .message = "no such choice",
-                            .got = shortest(stored),
-                            .allowed = "an index from 0 to " + shortest(count - 1),
-                            .hint = ""});
+        findings.add([&] {
+            return Problem{.code = "scenario.choice",
+                           .path = key.path,
+                           .message = "no such choice",
+                           .got = shortest(stored),
+                           .allowed = "an index from 0 to " + shortest(count - 1),
+                           .hint = ""};
+        });
 }
 
-void check_numbers(const Key& key, std::span<const double> params, std::vector<Problem>& problems) {
+void check_number(const Key& key, double value, std::size_t item, std::size_t count, Findings& findings) {
+    const auto broken = [&](const char* code, const char* message) {
+        findings.add([&] {
+            return Problem{.code = code,
+                           .path = item_path(key, item, count),
+                           .message = message,
+                           .got = shortest(value),
+                           .allowed = range_of(key),
+                           .hint = ""};
+        });
+    };
+    if (!within(key, value)) broken("scenario.range", "out of range");
+    else if (key.kind == Kind::integer && value != std::floor(value)) broken("scenario.type", "not a whole number");
+}
+
+void check_numbers(const Key& key, std::span<const double> params, Findings& findings) {
     const std::size_t count = expected_count(key, params);
     std::size_t absent = 0;
     for (std::size_t i = 0; i < count; ++i) absent += std::isnan(params[key.offset + i]);
     if (absent == count && !key.unset.empty()) return;
-    if (absent > 0) {
-        problems.push_back(missing(key, count));
-        return;
+    if (absent > 0) return findings.add([&] { return missing(key, count); });
+    for (std::size_t i = 0; i < count; ++i) check_number(key, params[key.offset + i], i, count, findings);
+}
+
+template <Name path>
+void need_number(std::span<const double> params, const char* hint, Findings& findings) {
+    if (!std::isnan(at<path>(params))) return;
+    findings.add([&] {
+        Problem problem = missing(known_key(path), 1);
+        problem.hint = hint;
+        return problem;
+    });
+}
+
+// What a shape cannot give must be given.
+template <Name link>
+void check_slender(std::span<const double> params, Findings& findings) {
+    if (is<link + ".shape", "slender">(params))
+        need_number<link + ".mass">(params, "a slender link has no density: give its mass", findings);
+}
+
+void check_shapes(std::span<const double> params, Findings& findings) {
+    check_slender<"arm.link1">(params, findings);
+    check_slender<"arm.link2">(params, findings);
+    check_slender<"arm.link3">(params, findings);
+    if (!is<"arm.link1.shape", "explicit">(params)) return;
+    const char* hint = "shape explicit takes nothing from a shape";
+    need_number<"arm.link1.mass">(params, hint, findings);
+    need_number<"arm.link1.com">(params, hint, findings);
+    need_number<"arm.link1.inertia_axial">(params, hint, findings);
+}
+
+template <Name path>
+void check_inertia(std::span<const double> params, Findings& findings) {
+    const Vec3<double> inertia = vector_at<path>(params);
+    for (int i = 0; i < 3; ++i) {
+        const double own = inertia[i], others = inertia[(i + 1) % 3] + inertia[(i + 2) % 3];
+        if (own > others * (1 + 1e-12))
+            findings.add([&] {
+                return Problem{.code = "scenario.inertia",
+                               .path = std::string(path),
+                               .message = "no body has one principal inertia above the sum of the other two",
+                               .got = shortest(own) + " > " + shortest(others),
+                               .allowed = "Ix <= Iy + Iz, and so on in turn",
+                               .hint = ""};
+            });
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        const double value = params[key.offset + i];
-        if (!within(key, value))
-            problems.push_back({.code = "scenario.range",
-                                .path = item_path(key, i, count),
-                                .message = "out of range",
-                                .got = shortest(value),
-                                .allowed = range_of(key),
-                                .hint = ""});
-        else if (key.kind == Kind::integer && value != std::floor(value))
-            problems.push_back({.code = "scenario.type",
-                                .path = item_path(key, i, count),
-                                .message = "not a whole number",
-                                .got = shortest(value),
-                                .allowed = range_of(key),
-                                .hint = ""});
-    }
+}
+
+// The rules of `arm`, its keys and what holds between them.
+void check_arm(std::span<const double> params, const std::vector<const Key*>& keys, Findings& findings) {
+    for (const Key* key : keys) check_numbers(*key, params, findings);
+    check_shapes(params, findings);
+    check_inertia<"arm.link2.inertia">(params, findings);
+    check_inertia<"arm.link3.inertia">(params, findings);
+}
+
+// The controller's copy must be an arm too: what is not given there is the plant's.
+void check_model(std::span<const double> params, const std::vector<const Key*>& keys, Findings& findings) {
+    check_arm(with_model(params), keys, findings);
+    for (Problem& problem : findings.problems)
+        problem.path.replace(0, std::string_view("arm").size(), "controller.model");
+}
+
+void check_all(std::span<const double> params, const NumberKeys& keys, Findings& findings) {
+    check_arm(params, keys.arm, findings);
+    for (const Key* key : keys.others) check_numbers(*key, params, findings);
+    if (findings.none() && is<"controller.type", "gravity_compensation">(params) && model_differs(params))
+        check_model(params, keys.model, findings);
+    if (findings.none()) check_setup(params, findings);
 }
 
 bool is_choice(const Key& key) {
     return key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section;
 }
 
-void need_number(std::span<const double> params, const std::string& path, const char* hint,
-                 std::vector<Problem>& problems) {
-    if (!std::isnan(param(params, path))) return;
-    problems.push_back(missing(*find_key(path), 1));
-    problems.back().hint = hint;
-}
-
-// What a shape cannot give must be given.
-void check_shapes(std::span<const double> params, std::vector<Problem>& problems) {
-    for (const char* link : {"arm.link1", "arm.link2", "arm.link3"})
-        if (choice_of(params, std::string(link) + ".shape") == "slender")
-            need_number(params, std::string(link) + ".mass", "a slender link has no density: give its mass", problems);
-    if (choice_of(params, "arm.link1.shape") == "explicit")
-        for (const char* key : {"arm.link1.mass", "arm.link1.com", "arm.link1.inertia_axial"})
-            need_number(params, key, "shape explicit takes nothing from a shape", problems);
-}
-
-void check_inertia(std::span<const double> params, const std::string& path, std::vector<Problem>& problems) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double own = param(params, path, i),
-                     others = param(params, path, (i + 1) % 3) + param(params, path, (i + 2) % 3);
-        if (own > others * (1 + 1e-12))
-            problems.push_back({.code = "scenario.inertia",
-                                .path = path,
-                                .message = "no body has one principal inertia above the sum of the other two",
-                                .got = shortest(own) + " > " + shortest(others),
-                                .allowed = "Ix <= Iy + Iz, and so on in turn",
-                                .hint = ""});
-    }
-}
-
-// The rules of `arm`, its keys and what holds between them.
-std::vector<Problem> arm_problems(std::span<const double> params) {
-    std::vector<Problem> problems;
+void check_choices(std::span<const double> params, Findings& findings) {
+    if (params.size() != param_count())
+        return findings.add([&] {
+            return Problem{.code = "argument.size",
+                           .path = "",
+                           .message = "wrong number of parameters",
+                           .got = std::to_string(params.size()),
+                           .allowed = std::to_string(param_count()),
+                           .hint = ""};
+        });
     for (const Key& key : schema())
-        if (key.path.starts_with("arm.") && !is_choice(key) && key_exists(key, params))
-            check_numbers(key, params, problems);
-    check_shapes(params, problems);
-    check_inertia(params, "arm.link2.inertia", problems);
-    check_inertia(params, "arm.link3.inertia", problems);
-    return problems;
+        if (is_choice(key)) check_choice(key, params, findings);
 }
 
-// The controller's copy must be an arm too: what is not given there is the plant's.
-std::vector<Problem> model_problems(std::span<const double> params) {
-    std::vector<Problem> problems = arm_problems(with_model(params));
-    for (Problem& problem : problems) problem.path.replace(0, std::string_view("arm").size(), "controller.model");
-    return problems;
+enum class Part { arm, others };
+
+// The keys of numbers that exist for the choices made.
+std::vector<const Key*> number_keys(std::span<const double> params, Part part) {
+    std::vector<const Key*> keys;
+    for (const Key& key : schema())
+        if (key.path.starts_with("arm.") == (part == Part::arm) && !is_choice(key) && key_exists(key, params))
+            keys.push_back(&key);
+    return keys;
+}
+
+NumberKeys number_keys(std::span<const double> params) {
+    return {number_keys(params, Part::arm), number_keys(params, Part::others),
+            number_keys(with_model(params), Part::arm)};
+}
+
+// The same numbers, but in the place of those of controller.model those that they replace.
+std::vector<std::size_t> in_plant(std::span<const std::size_t> varied) {
+    std::vector<std::size_t> numbers(varied.begin(), varied.end());
+    for (const auto [from, to] : model_numbers()) std::ranges::replace(numbers, from, to);
+    return numbers;
+}
+
+// Leaves the keys in which one of the numbers `varied` is, and those that are wrong in `params`.
+void drop_settled(std::vector<const Key*>& keys, std::span<const double> params, std::span<const std::size_t> varied) {
+    std::erase_if(keys, [&](const Key* key) {
+        const auto has = [&](std::size_t number) { return number - key->offset < key->size; };
+        Findings findings(Findings::verdict);
+        check_numbers(*key, params, findings);
+        return findings.none() && std::ranges::none_of(varied, has);
+    });
 }
 
 }  // namespace
 
 std::vector<Problem> validate(std::span<const double> params) {
-    if (params.size() != param_count())
-        return {{.code = "argument.size",
-                 .path = "",
-                 .message = "wrong number of parameters",
-                 .got = std::to_string(params.size()),
-                 .allowed = std::to_string(param_count()),
-                 .hint = ""}};
-    std::vector<Problem> problems;
-    for (const Key& key : schema())
-        if (is_choice(key)) check_choice(key, params, problems);
-    if (!problems.empty()) return problems;
-    problems = arm_problems(params);
-    for (const Key& key : schema())
-        if (!key.path.starts_with("arm.") && !is_choice(key) && key_exists(key, params))
-            check_numbers(key, params, problems);
-    if (problems.empty() && choice_of(params, "controller.type") == "gravity_compensation")
-        problems = model_problems(params);
-    return problems.empty() ? check_setup(params) : problems;
+    Findings findings(Findings::messages);
+    check_choices(params, findings);
+    if (findings.none()) check_all(params, number_keys(params), findings);
+    return findings.problems;
+}
+
+Checker::Checker(std::span<const double> params, std::span<const std::size_t> varied) {
+    Findings findings(Findings::verdict);
+    check_choices(params, findings);
+    readable_ = findings.none();
+    if (!readable_) return;
+    keys_ = number_keys(params);
+    drop_settled(keys_.arm, params, varied);
+    drop_settled(keys_.others, params, varied);
+    drop_settled(keys_.model, with_model(params), in_plant(varied));
+}
+
+bool Checker::operator()(std::span<const double> params) const {
+    Findings findings(Findings::verdict);
+    if (readable_) check_all(params, keys_, findings);
+    return readable_ && findings.none();
 }
 
 }  // namespace arm3r

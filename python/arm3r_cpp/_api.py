@@ -2,6 +2,7 @@
 
 from ._native import version as __version__
 from .arm import Arm
+from .batch import Batch
 from .errors import (
     Arm3rError,
     BudgetError,
@@ -13,13 +14,17 @@ from .errors import (
     ScenarioError,
     UsageError,
 )
-from .params import param_count, param_defaults, param_index, param_name
+from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
 from .run import Event, Run
 from .scenario import Scenario
+from .sweep_file import Sweep
+from .sweep_run import sweep
+from .sweep_table import SweepTable
 
 __all__ = [
     "Arm",
     "Arm3rError",
+    "Batch",
     "BudgetError",
     "ControllerError",
     "Event",
@@ -27,13 +32,18 @@ __all__ = [
     "InternalError",
     "NumericalError",
     "OutputError",
+    "ParamKey",
     "Run",
     "Scenario",
     "ScenarioError",
+    "Sweep",
+    "SweepTable",
     "UsageError",
     "__version__",
     "param_count",
     "param_defaults",
     "param_index",
+    "param_key",
     "param_name",
+    "sweep",
 ]

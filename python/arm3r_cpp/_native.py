@@ -7,7 +7,8 @@ import math
 import os
 import re
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -88,6 +89,13 @@ def string(pointer: Any) -> str:
     return ffi.string(pointer).decode()
 
 
+def yaml(text: bytes, file: str) -> dict[str, Any]:
+    """A YAML file as the library reads it: nodes as arm3r_yaml_json describes them."""
+    out = ffi.new("const char **")
+    call(lib.arm3r_yaml_json, text, len(text), *utf8(file, "file"), out)
+    return json.loads(ffi.string(out[0]))
+
+
 # ---- handles --------------------------------------------------------------------------------------------------------
 
 
@@ -101,19 +109,22 @@ def create(kind: str, function: Callable[..., int], *arguments: Any) -> Any:
 # ---- arrays ---------------------------------------------------------------------------------------------------------
 
 
-def finite(value: Any, name: str) -> Floats:
-    """`value` as float64, C-contiguous and aligned. TypeError: not real numbers; ValueError: not finite."""
+def reals(value: Any, name: str) -> Floats:
+    """`value` as float64, C-contiguous and aligned, itself where it is. TypeError: not real numbers."""
     if np.ma.isMaskedArray(value):
         raise TypeError(f"{name}: a masked array has holes; fill them first")
     array = np.asarray(value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: real numbers are needed, got an array of {array.dtype}")
-    array = np.require(array, np.float64, ["C", "A"])
+    return np.require(array, np.float64, ["C", "A"])
+
+
+def check_finite(array: Floats, name: str) -> None:
+    """ValueError: not finite."""
     good = np.isfinite(array)
     if not good.all():
         index = tuple(int(i) for i in np.argwhere(~good)[0])
         raise ValueError(f"{name}{_brackets(index)}: a finite number is needed, got {array[index]}")
-    return array
 
 
 def _brackets(index: Iterable[int]) -> str:
@@ -124,9 +135,9 @@ class States:
     """Arrays (..., 3), broadcast over their leading axes, as the library takes them: n states in a row."""
 
     def __init__(self, **values: Any) -> None:
-        """TypeError, ValueError: not real numbers, not finite, or of shapes that do not fit. f_on_tip may be None."""
+        """TypeError, ValueError: not real numbers, or of shapes that do not fit. f_on_tip may be None."""
         given = {name: value for name, value in values.items() if name != "f_on_tip" or value is not None}
-        arrays = {name: finite(value, name) for name, value in given.items()}
+        self._arrays = arrays = {name: reals(value, name) for name, value in given.items()}
         for name, array in arrays.items():
             if array.ndim == 0 or array.shape[-1] != 3:
                 raise ValueError(f"{name}: the shape (..., 3) is needed, got {array.shape}")
@@ -140,8 +151,12 @@ class States:
         self._pointers = [readable(full[name]) if name in full else ffi.NULL for name in values]
 
     def call(self, function: Callable[..., int], handle: Any, *arguments: Any) -> None:
-        """Call a function that takes a handle, n, the states, and more."""
-        status = function(handle, math.prod(self.leading), *self._pointers, *arguments)
+        """Call a function that takes a handle, n, the states, and more. ValueError: not finite."""
+        n = math.prod(self.leading)
+        status = function(handle, n, *self._pointers, *arguments)
+        if status or n == 0:  # the library looks at every number, but cannot tell it as the caller gave it
+            for name, array in self._arrays.items():
+                check_finite(array, name)
         if status:
             raise error(status, self)
 
@@ -184,17 +199,33 @@ class _Column:
 # ---- runs -----------------------------------------------------------------------------------------------------------
 
 Progress = Callable[[float, float, int], Any]
+BatchProgress = Callable[[int, int], Any]
 
 
 class _Call:
-    """One run in progress: what is to be called, and what that raised."""
+    """One run, or one batch, in progress: what is to be called, and what that raised."""
 
-    def __init__(self, progress: Progress | None) -> None:
+    def __init__(self, progress: Callable[..., Any] | None) -> None:
         self.progress = progress
         self.raised: BaseException | None = None
 
 
 _here = threading.local()  # .call: this thread's run in progress
+
+
+@contextmanager
+def _in_progress(progress: Callable[..., Any] | None) -> Iterator[None]:
+    """While the library calls `progress`. What that raises comes out again."""
+    this, outer = _Call(progress), getattr(_here, "call", None)
+    _here.call = this
+    try:
+        yield
+    except Arm3rError:
+        if this.raised is None:
+            raise
+        raise this.raised from None
+    finally:
+        _here.call = outer
 
 
 def _keep(kind: type[BaseException], raised: BaseException, traceback: Any) -> None:
@@ -214,22 +245,52 @@ def start(function: Callable[..., int], *arguments: Any, progress: Progress | No
     options.struct_size = ffi.sizeof("arm3r_run_options")
     options.progress = lib.arm3r_python_progress
     options.time_limit = 0.0 if time_limit is None else time_limit
-    this, outer = _Call(progress), getattr(_here, "call", None)
-    _here.call = this
-    try:
+    with _in_progress(progress):
         return create("run", function, *arguments, options)
-    except Arm3rError:
-        if this.raised is None:
-            raise
-    finally:
-        _here.call = outer
-    raise this.raised
 
 
 def outcome(run: Any) -> str:
     out = ffi.new("int32_t *")
     call(lib.arm3r_run_outcome, run, out)
-    return string(lib.arm3r_outcome_name(out[0]))
+    return outcome_name(out[0])
+
+
+def outcome_name(number: int) -> str:
+    """ "ok", "stopped", ...; "" of an unknown one."""
+    return string(lib.arm3r_outcome_name(number))
+
+
+@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+def arm3r_python_batch_progress(user: Any, runs_done: int, runs: int) -> int:
+    progress = _here.call.progress
+    return int(progress is not None and bool(progress(runs_done, runs)))
+
+
+def batch(
+    params: Floats, varied: list[int], values: Floats, *, threads: int | None, progress: BatchProgress | None
+) -> Floats:
+    """The table of (varied, runs) values in the places of the varied numbers: (columns, runs)."""
+    options = ffi.new("arm3r_batch_options *")
+    options.struct_size = ffi.sizeof("arm3r_batch_options")
+    options.progress = lib.arm3r_python_batch_progress
+    options.threads = threads or 0
+    runs = values.shape[1]
+    results = np.empty((lib.arm3r_summary_count(), runs))
+    places = ffi.new("size_t[]", varied or 1)
+    given = (readable(params), params.size, places, len(varied), readable(values), runs, options, writable(results))
+    with _in_progress(progress):
+        call(lib.arm3r_batch_run, *given)
+    return results
+
+
+def summary_columns() -> dict[str, str]:
+    """Units of a batch's columns, by name."""
+    name, unit, meaning = (ffi.new("const char **") for _ in range(3))
+    units = {}
+    for index in range(lib.arm3r_summary_count()):
+        call(lib.arm3r_summary_column, index, name, unit, meaning)
+        units[string(name[0])] = string(unit[0])
+    return units
 
 
 def columns(run: Any) -> tuple[dict[str, Floats], dict[str, str]]:

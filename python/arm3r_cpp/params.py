@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
+from typing import NamedTuple
+
 import numpy as np
 
 from . import _native
@@ -33,6 +36,39 @@ def param_name(index: int) -> str:
     if index < 0:
         raise IndexError(f"index: a parameter has an index from 0 to {param_count() - 1}, got {index}")
     return _native.text(lib.arm3r_param_name, index)
+
+
+class ParamKey(NamedTuple):
+    """The key of the scenario file that a parameter belongs to."""
+
+    path: str
+    """ "wall.contact.stiffness" """
+    kind: str
+    """ "number", "angle", "integer", "flag", "choice" or "section" """
+    unit: str
+    """ "N/m"; "" for none"""
+
+
+def param_key(index: int) -> ParamKey:
+    """The key that a parameter belongs to.
+
+    Raises:
+        UsageError: the index is not below `param_count()`.
+    """
+    if index < 0:
+        raise IndexError(f"index: a parameter has an index from 0 to {param_count() - 1}, got {index}")
+    out = [ffi.new("const char **") for _ in ParamKey._fields]
+    _native.call(lib.arm3r_param_key, index, *out)
+    return ParamKey(*(_native.string(pointer[0]) for pointer in out))
+
+
+@cache
+def places() -> dict[str, list[int]]:
+    """The indices that every key, "initial.q", and every name of a number, "initial.q[1]", stands for."""
+    found: dict[str, list[int]] = {}
+    for index in range(param_count()):
+        found.setdefault(param_key(index).path, []).append(index)
+    return found | {param_name(index): [index] for index in range(param_count())}
 
 
 def param_defaults() -> Floats:

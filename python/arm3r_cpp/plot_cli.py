@@ -3,32 +3,29 @@
 from __future__ import annotations
 
 import argparse
-import os
 import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
-from .errors import Arm3rError, BudgetError, IncompatibleError, NumericalError, OutputError, ScenarioError, UsageError
+from .errors import Arm3rError, OutputError, UsageError
+from .exits import die_of, exit_code
+from .plot_style import FORMATS
 
 if TYPE_CHECKING:
     from .run import Run
 
-FORMATS = ("png", "pdf", "svg")
 SCENARIOS = (".yaml", ".yml")
-EXIT = {
-    UsageError: 2,
-    ScenarioError: 3,
-    NumericalError: 4,
-    BudgetError: 5,
-    OutputError: 6,
-    IncompatibleError: 9,
-}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-plot`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
+    argv = sys.argv[1:] if argv is None else argv
+    if argv[:1] == ["sweep"]:
+        from .plot_sweep_cli import main as draw_sweep
+
+        return draw_sweep(argv[1:])
     options = parser().parse_args(argv)
     try:
         target = target_of(options)
@@ -38,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             raise failure
     except Arm3rError as error:
         print(f"arm3r-plot: {error}", file=sys.stderr)
-        return next((code for kind, code in EXIT.items() if isinstance(error, kind)), 1)
+        return exit_code(error)
     except KeyboardInterrupt:
         die_of(signal.SIGINT)
     return 0
@@ -46,7 +43,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="arm3r-plot", description="Draw a run: an overview in one figure, or the lecture's figures."
+        prog="arm3r-plot",
+        description="Draw a run: an overview in one figure, or the lecture's figures.",
+        epilog="arm3r-plot sweep DIR draws the table of a sweep: see arm3r-plot sweep --help.",
     )
     add = parser.add_argument
     add("run", type=Path, metavar="RUN", help="RUN.csv with RUN.json beside it, RUN.npz, or a scenario .yaml to run")
@@ -105,13 +104,6 @@ def save(run: Run, options: argparse.Namespace, target: tuple[Path, str]) -> Non
             print(f"{name}.{suffix}")
     except OSError as error:
         raise OutputError(f"cannot write figures: {error}") from error
-
-
-def die_of(number: signal.Signals) -> NoReturn:
-    """End by the signal itself, so that the caller sees what happened."""
-    signal.signal(number, signal.SIG_DFL)
-    os.kill(os.getpid(), number)
-    raise SystemExit(128 + number)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ TRIPLE = ({"color": BLUE, "ls": "-"}, {"color": RED, "ls": "--"}, {"color": GREE
 XYZ, JOINTS = "xyz", "123"
 DASHES = {"make": ":", "break": (0, (4, 2))}
 LABELLED_EVENTS = 4
+FORMATS = ("png", "pdf", "svg")
 
 RC: Any = {
     "font.size": 9,

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from . import _native
-from ._native import Floats, Progress, lib
+from ._native import BatchProgress, Floats, Progress, lib
 from .arm import Arm
+from .batch import Batch, run_batch
 from .errors import UsageError, class_of_outcome
 from .params import param_count
 from .run import Run
@@ -96,7 +97,12 @@ class Scenario:
             TypeError: the value is none of these, or the path is not text.
         """
         place = _native.utf8(path, "path")
-        _native.call(lib.arm3r_scenario_set, self._handle, *place, *_native.utf8(_flow(value, path), path))
+        _native.call(lib.arm3r_scenario_set, self._handle, *place, *_native.utf8(flow(value, path), path))
+
+    def _edit(self, path: str, value: str, origin: str) -> None:
+        """Put YAML text at a path; messages call the place it came from `origin`."""
+        texts = [part for word in (path, value, origin) for part in _native.utf8(word, path)]
+        _native.call(lib.arm3r_scenario_set_from, self._handle, *texts)
 
     def __contains__(self, path: str) -> bool:
         """Whether there is a value at a path, a default included.
@@ -157,6 +163,36 @@ class Scenario:
             )
         return run
 
+    def batch(
+        self,
+        values: Mapping[str, Any],
+        *,
+        grid: bool = False,
+        threads: int | None = None,
+        progress: BatchProgress | None = None,
+    ) -> Batch:
+        """Many runs at once: a table of their summaries, without rows. Ctrl-C ends it at once with KeyboardInterrupt.
+
+        >>> batch = scenario.batch({"wall.contact.stiffness": np.geomspace(1e2, 1e6, 1000)})
+        >>> batch["peak_force"]
+
+        A run that fails is one row; one whose values are not valid has the outcome `invalid`, and NaN.
+
+        Args:
+            values: arrays by key, SI units and radians: (..., k) of a key with several numbers, (...) of any other and
+                of a single place, "initial.q[1]". Words and flags may vary too: {"solver.method": ["rk4", "dopri5"]}.
+            grid: False: the arrays broadcast as NumPy's do; True: every value of each with every one of the others.
+            threads: how many; None: one for each CPU that this process may use. It never changes a result.
+            progress: called as progress(runs_done, runs) at most every 20 ms; a true result ends the runs left as
+                `stopped`, and what it raises comes out unchanged.
+
+        Raises:
+            UsageError: a key that there is not, or arrays of shapes that do not fit.
+            TypeError: not numbers.
+            ScenarioError: the scenario itself is not valid, or a word is none of its key's.
+        """
+        return run_batch(self, values, grid=grid, threads=threads, progress=progress)
+
 
 def _restore(text: str, file: str) -> Scenario:
     return Scenario(text, file=file)
@@ -177,7 +213,7 @@ def _plain(value: Any) -> Any:
     return math.inf if value == "inf" else value
 
 
-def _flow(value: Any, path: str) -> str:
+def flow(value: Any, path: str) -> str:
     """A value in YAML's flow style."""
     if isinstance(value, (np.ndarray, np.generic)):
         value = value.tolist()
@@ -190,7 +226,7 @@ def _flow(value: Any, path: str) -> str:
     if isinstance(value, str):
         return value if _PLAIN.fullmatch(value) else json.dumps(value, ensure_ascii=False)
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(_flow(item, f'{path}[{i}]') for i, item in enumerate(value))}]"
+        return f"[{', '.join(flow(item, f'{path}[{i}]') for i, item in enumerate(value))}]"
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key}: {_flow(item, f'{path}.{key}')}" for key, item in value.items()) + "}"
+        return "{" + ", ".join(f"{key}: {flow(item, f'{path}.{key}')}" for key, item in value.items()) + "}"
     raise TypeError(f"{path}: a number, text, flag, list, array or map is needed, got {type(value).__name__}")

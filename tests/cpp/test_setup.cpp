@@ -130,6 +130,41 @@ BOOST_AUTO_TEST_CASE(a_start_deep_in_the_wall_is_refused_and_one_behind_the_plat
             .empty());
 }
 
+BOOST_AUTO_TEST_CASE(taylor_is_refused_where_the_law_has_corners) {
+    Params params =
+        unequal_params().choose("solver.method", "taylor").choose("controller.type", "gravity_compensation");
+    BOOST_TEST(validate(params).empty());
+    const Problem problem = only_problem(params.set("arm.torque_limit", {HUGE_VAL, 20, HUGE_VAL}));
+    BOOST_TEST(problem.code == "scenario.corner");
+    BOOST_TEST(problem.path == "solver.method");
+    BOOST_TEST(contains(problem.message, "arm.torque_limit"));
+    BOOST_TEST(contains(problem.message, "controller.type"));
+    BOOST_TEST(contains(problem.hint, "dopri5"));
+    BOOST_TEST(validate(Params(params).choose("solver.method", "dopri5")).empty());
+    BOOST_TEST(validate(Params(params).choose("controller.type", "none")).empty());
+    params.choose("controller.type", "constant").set("controller.torque", {1, 30, 1});
+    BOOST_TEST(validate(params).empty());
+}
+
+// ---- the solver
+
+BOOST_AUTO_TEST_CASE(the_solver_is_as_it_was_asked_for) {
+    Params params = unequal_params().set("solver.rtol", 1e-5).set("solver.atol", 1e-6).set("solver.tol", 1e-7);
+    params.set("solver.step", 0.25).set("solver.max_steps", 12);
+    const std::pair<const char*, Solver::Method> methods[] = {
+        {"dopri5", Solver::dopri5}, {"rk4", Solver::rk4}, {"taylor", Solver::taylor}};
+    for (const auto& [word, method] : methods)
+        BOOST_TEST(make_setup(params.choose("solver.method", word)).solver.method == method);
+    BOOST_TEST(make_setup(params).solver.max_step == HUGE_VAL);
+    const Solver solver = make_setup(params.set("solver.max_step", 0.5)).solver;
+    BOOST_TEST(solver.rtol == 1e-5);
+    BOOST_TEST(solver.atol == 1e-6);
+    BOOST_TEST(solver.tol == 1e-7);
+    BOOST_TEST(solver.max_step == 0.5);
+    BOOST_TEST(solver.step == 0.25);
+    BOOST_TEST(solver.max_steps == 12);
+}
+
 // ---- what shapes give
 
 BOOST_AUTO_TEST_CASE(shapes_give_mass_centre_and_inertia) {

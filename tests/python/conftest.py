@@ -14,6 +14,12 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(arm3r.__file__).parent
 
+
+def scenario_files() -> list[Path]:
+    """Every scenario of the repository; sweeps are files of another kind."""
+    return sorted(path for path in (ROOT / "scenarios").rglob("*.yaml") if path.parent.name != "sweeps")
+
+
 Cli = Callable[..., "subprocess.CompletedProcess[str]"]
 
 

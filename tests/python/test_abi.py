@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import subprocess
 import threading
@@ -30,7 +31,7 @@ class Argument:
 
     @property
     def is_pointer(self) -> bool:
-        return "*" in self.type or self.type in ("arm3r_progress", "arm3r_sink")
+        return "*" in self.type or self.type in ("arm3r_progress", "arm3r_batch_progress", "arm3r_sink")
 
 
 @dataclass(frozen=True)
@@ -100,8 +101,8 @@ class Caller:
             return getattr(self, handle[1])()
         if kind == "arm3r_sink":
             return self.keep(ffi.callback("int32_t(void *, const char *, size_t)", lambda user, data, size: 0))
-        if name == "options":
-            return self.options()
+        if options := re.fullmatch(r"const (arm3r_\w+_options) \*", kind):
+            return self.options(options[1])
         if kind == "void *":
             return ffi.NULL
         if kind.endswith("*"):
@@ -122,9 +123,9 @@ class Caller:
         assert lib.arm3r_param_defaults(values, self.count) == 0
         return values
 
-    def options(self) -> Any:
-        options = self.keep(ffi.new("arm3r_run_options *"))
-        options.struct_size = ffi.sizeof("arm3r_run_options")
+    def options(self, kind: str = "arm3r_run_options") -> Any:
+        options = self.keep(ffi.new(f"{kind} *"))
+        options.struct_size = ffi.sizeof(kind)
         return options
 
     def arm(self) -> Any:
@@ -230,6 +231,21 @@ def test_overlapping_arrays_are_refused(call: Caller, function: Function, read: 
     assert list(memory[0:4]) == [1.2, -0.5, 0.9, 0]
 
 
+@pytest.mark.parametrize(("function", "read", "written"), OVERLAPS, ids=lambda part: getattr(part, "name", part))
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -2e100])
+def test_nothing_is_written_where_one_number_is_bad(
+    call: Caller, function: Function, read: str, written: str, bad: float
+) -> None:
+    states = 11
+    arguments = {i: ffi.new("double[]", [1.2, -0.5, 0.9] * states) for i, _ in _inputs_and_outputs(function)}
+    arguments[read][3 * states - 2] = bad
+    result = ffi.new("double[]", [7.0] * 18 * states)
+    others = {o: ffi.new("double[]", 18 * states) for _, o in _inputs_and_outputs(function)}
+    assert call(function, **others | arguments | {written: result, "n": states}) == lib.ARM3R_E_VALUE
+    assert f"{read}[10][1]" in message()
+    assert list(result) == [7.0] * 18 * states
+
+
 def test_neighbouring_arrays_do_not_overlap(call: Caller) -> None:
     memory = ffi.new("double[9]", [0, 1.2, -0.5, 0.9])
     tip = by_name("arm3r_arm_tip_position")
@@ -296,7 +312,7 @@ def test_stop_flag_ends_the_run(call: Caller) -> None:
     lib.arm3r_scenario_free(scenario[0])
 
 
-@pytest.mark.parametrize("outcome", [-1, 8, 2**31 - 1])
+@pytest.mark.parametrize("outcome", [-1, 9, 2**31 - 1])
 def test_unknown_outcomes_have_no_name(outcome: int) -> None:
     assert ffi.string(lib.arm3r_outcome_name(outcome)) == b""
 

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import arm3r_cpp as arm3r
 import pytest
+from conftest import scenario_files
 
 SCENARIO_EXIT, USAGE_EXIT, FORMAT_EXIT = 3, 2, 9
 HEAD = "format: 1\n"
@@ -228,7 +229,7 @@ def shortened(text: str) -> list[str]:
 
 def test_a18_m2_every_prefix_and_every_deletion_is_valid_or_refused(root):
     deadline = time.monotonic() + 20
-    files = sorted((root / "scenarios").rglob("*.yaml"))
+    files = scenario_files()
     texts = [FULL, *(file.read_text() for file in files)]
     judged = 0
     for text in texts:
@@ -283,7 +284,7 @@ def test_m1_mutated_scenarios_never_crash(root):
         "  ",
         "\t",
     ]
-    texts = [FULL, *(file.read_text() for file in sorted((root / "scenarios").rglob("*.yaml")))]
+    texts = [FULL, *(file.read_text() for file in scenario_files())]
     chance = random.Random(20)
     deadline = time.monotonic() + 10
     while time.monotonic() < deadline:
@@ -586,7 +587,7 @@ def test_one_event_is_one_event():
 
 
 def test_the_resolved_scenario_is_a_scenario_with_the_same_numbers(root):
-    for file in [*sorted((root / "scenarios").rglob("*.yaml"))]:
+    for file in scenario_files():
         first = arm3r.Scenario.load(file)
         again = arm3r.Scenario(first.to_yaml())
         assert again.to_yaml() == first.to_yaml()

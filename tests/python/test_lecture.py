@@ -10,10 +10,11 @@ from pathlib import Path
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from conftest import scenario_files
 from numpy.typing import NDArray
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-NAMES = sorted(str(path.relative_to(SCENARIOS)) for path in SCENARIOS.rglob("*.yaml"))
+NAMES = sorted(str(path.relative_to(SCENARIOS)) for path in scenario_files())
 LECTURE = [name for name in NAMES if name.startswith("lecture/")]
 D = np.array([1, -1, -1])
 Array = NDArray[np.float64]

@@ -18,6 +18,7 @@ import subprocess
 import sys
 import threading
 import time
+import tracemalloc
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -86,7 +87,7 @@ def test_leading_axes_are_kept(arm: arm3r.Arm, name: str, leading: tuple[int, ..
 @each_function
 def test_a_batch_equals_its_states_one_by_one(arm: arm3r.Arm, name: str) -> None:
     rng = np.random.default_rng(7)
-    states = [rng.uniform(-2, 2, (6, 3)) for _ in SHAPES[name][0]]
+    states = [rng.uniform(-2, 2, (19, 3)) for _ in SHAPES[name][0]]  # two groups of eight, and three more
     function = getattr(arm, name)
     for batch, *single in zip(
         _results(function, *states), *(_results(function, *s) for s in np.stack(states, 1)), strict=True
@@ -114,6 +115,17 @@ def test_the_lecture_arm(arm: arm3r.Arm) -> None:
 
 def test_no_tip_force_is_zero_tip_force(arm: arm3r.Arm) -> None:
     assert np.array_equal(arm.forward_dynamics(POSE, RATE, RATE), arm.forward_dynamics(POSE, RATE, RATE, np.zeros(3)))
+
+
+def test_arrays_are_read_where_they_lie(arm: arm3r.Arm) -> None:
+    states = np.zeros((100_000, 3))
+    tracemalloc.start()
+    try:
+        result = arm.forward_dynamics(states, states, states)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 1.1 * result.nbytes
 
 
 def test_results_are_fresh_arrays(arm: arm3r.Arm) -> None:
@@ -173,6 +185,11 @@ def test_what_is_not_finite_is_named_by_index(arm: arm3r.Arm, bad: float) -> Non
         arm.energy(POSE, qd)
 
 
+def test_what_is_not_finite_is_refused_for_no_states_too(arm: arm3r.Arm) -> None:
+    with pytest.raises(ValueError, match=r"\bqd\[1\]: a finite number is needed, got nan"):
+        arm.energy(np.zeros((0, 3)), [0, math.nan, 0])
+
+
 @pytest.mark.parametrize("shape", [(), (2,), (4,), (3, 1), (3, 4)])
 def test_wrong_shapes_are_named(arm: arm3r.Arm, shape: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r"q: the shape \(\.\.\., 3\) is needed"):
@@ -225,6 +242,26 @@ def test_singular_poses_are_named_by_index(arm: arm3r.Arm) -> None:
     with pytest.raises(arm3r.UsageError, match=r" q\[1\]\[0\]: .* singular") as raised:
         arm.operational_space_inertia(poses)
     assert raised.value.index == (1, 0)
+
+
+@pytest.mark.parametrize("singular", [0, 7, 8, 511, 512, 1026])
+def test_the_first_singular_pose_of_many_is_named(arm: arm3r.Arm, singular: int) -> None:
+    poses = np.full((1027, 3), 0.5)
+    poses[singular:, 2] = 0
+    with pytest.raises(arm3r.UsageError, match=rf" q\[{singular}\]: .* singular"):
+        arm.operational_space_inertia(poses)
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"), [([0, 0, 0], "a direction needs a length"), ([0, 1, 0], "the tip cannot move along")]
+)
+def test_directions_without_a_mass_are_named_by_index(arm: arm3r.Arm, bad: list[float], message: str) -> None:
+    poses, directions = np.full((20, 3), 0.5), np.ones((20, 3))
+    poses[17] = [0, 0, math.pi]  # folded back onto the shoulder: no joint moves the tip sideways
+    directions[17] = bad
+    with pytest.raises(arm3r.UsageError, match=message) as raised:
+        arm.effective_mass(poses, directions)
+    assert raised.value.index == (17,)
 
 
 def test_inverse_kinematics_options_are_checked(arm: arm3r.Arm) -> None:

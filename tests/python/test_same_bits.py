@@ -12,6 +12,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from conftest import scenario_files
 
 # Everything that computes: both methods, contact both ways, friction, the recursion, every motion of the wall.
 TEXTS = {
@@ -59,7 +60,7 @@ def files(root: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     folder = tmp_path_factory.mktemp("scenarios")
     for name, text in TEXTS.items():
         (folder / f"{name}.yaml").write_text(text)
-    return sorted(folder.iterdir()) + sorted((root / "scenarios").rglob("*.yaml"))
+    return sorted(folder.iterdir()) + scenario_files()
 
 
 def hashes(executable: Path, files: list[Path], **environment: str) -> dict[str, str]:

@@ -88,6 +88,8 @@ ARM3R_API const char *arm3r_outcome_name(int32_t outcome); /* "ok", "stopped", .
 ARM3R_API size_t arm3r_param_count(void);
 ARM3R_API int32_t arm3r_param_index(const char *name, size_t name_size, size_t *index);
 ARM3R_API int32_t arm3r_param_name(size_t index, const char **name);
+/* The key that a number belongs to; what it is: "number", "angle", "integer", "flag", "choice" or "section"; its unit, "" for none. */
+ARM3R_API int32_t arm3r_param_key(size_t index, const char **key, const char **kind, const char **unit);
 ARM3R_API int32_t arm3r_param_defaults(double *params, size_t count); /* the lecture's arm, at rest, no wall, no control */
 
 /* ---- numbers: the arm --------------------------------------------------------------------------------------------- */
@@ -174,7 +176,7 @@ typedef struct arm3r_batch_options {
     arm3r_batch_progress progress;  /* Nullable */
     void *user;                     /* Nullable: handed to progress */
     int32_t threads;                /* 0: as many as the CPUs that this process may use */
-    int32_t lanes;                  /* runs that march side by side in one thread: 1 or 8; 0: as is fastest. Never changes a result */
+    int32_t lanes;                  /* runs that march side by side in a thread: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
     int64_t reserved[4];            /* 0 */
 } arm3r_batch_options;
 
@@ -212,6 +214,11 @@ ARM3R_API int32_t arm3r_scenario_yaml(const arm3r_scenario *scenario, int32_t an
 ARM3R_API int32_t arm3r_scenario_warnings(const arm3r_scenario *scenario, const char **text);
 ARM3R_API int32_t arm3r_scenario_params(const arm3r_scenario *scenario, double *params, size_t count);
 ARM3R_API int32_t arm3r_scenario_run(const arm3r_scenario *scenario, const arm3r_run_options *options /* Nullable */, arm3r_run **run);
+
+/* YAML, read as strictly as a scenario, as JSON: what else is written in files stands on this reader. A node is an object with
+ * line, column and one of: `map` (nodes, with key, key_line, key_column), `list` (nodes), `text` (with `quoted`, and `number` where
+ * it is one; where not, `fault` says why; `degrees` is true of `VALUE deg`), `nothing`. The text stays until this thread asks again. */
+ARM3R_API int32_t arm3r_yaml_json(const char *text, size_t text_size, const char *file, size_t file_size, const char **json);
 
 /* ---- text: results ------------------------------------------------------------------------------------------------- */
 

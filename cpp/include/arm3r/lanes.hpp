@@ -54,6 +54,7 @@ void copy_choices(const Plant<P>& from, auto& to) {
     copy_arm(from.arm, to.arm);
     copy_arm(from.controller.model, to.controller.model);
     to.wall.motion = from.wall.motion;
+    to.wall.has_outline = from.wall.has_outline;
     to.contact.law = from.contact.law;
     to.controller.type = from.controller.type;
     to.controller.algorithm = from.controller.algorithm;

@@ -39,7 +39,7 @@ public:
     explicit RightHandSide(const Plant<P>& plant)
         : plant_(plant),
           needs_azimuth_(!plant.arm.gravity_is_vertical || !plant.controller.model.gravity_is_vertical ||
-                         plant.acts_on_arm) {}
+                         plant.has_wall) {}
 
     Touch touch = Touch::none;
 
@@ -56,7 +56,7 @@ public:
 
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
-        WallState<T> wall;
+        WallState<T> wall = no_wall<T>();
         if (plant_.acts_on_arm && touch != Touch::none) wall = wall_at(plant_.wall, t);
         derivative(wall, pose_near(y), y, dy);
     }
@@ -102,7 +102,7 @@ private:
         return nearest_integer(T(angle * points_per_radian)) * (1 / points_per_radian);
     }
 
-    void move_anchor(const Vec3<T>& nearest) {
+    ARM3R_INLINE void move_anchor(const Vec3<T>& nearest) {
         const SinCos<T> first = sincos(nearest[0]), second = sincos(nearest[1]), third = sincos(nearest[2]);
         anchor_q_ = nearest;
         anchor_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};

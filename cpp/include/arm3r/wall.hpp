@@ -12,6 +12,7 @@ struct Wall {
     Vec3<P> point;      // m, origin of the plate's frame at t = 0
     Vec3<P> n, e1, e2;  // unit: towards the arm, and along the plate's sides (4.1)
     P half1, half2;     // m, half its sides; inf: half-space
+    bool has_outline;   // some lane's half is finite
     P face_offset;      // m, of the contact face in front of the frame
     Motion motion;
     Vec3<P> velocity;               // m/s, for constant
@@ -22,6 +23,12 @@ template <class T>
 struct WallState {
     Vec3<T> position, velocity, acceleration;  // of the frame's origin: m, m/s, m/s^2
 };
+
+template <class T>
+ARM3R_INLINE WallState<T> no_wall() {
+    const T o(0.0);
+    return {{o, o, o}, {o, o, o}, {o, o, o}};
+}
 
 template <class P, class T>
 ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)

@@ -1,0 +1,16 @@
+# The Taylor kernels: printed by a program of ours, compiled into the core.
+
+add_executable(derive_taylor cpp/src/derive_taylor.cpp)
+target_include_directories(derive_taylor PRIVATE cpp/include)
+target_link_libraries(derive_taylor PRIVATE arm3r_flags Eigen3::Eigen)
+target_compile_options(derive_taylor PRIVATE $<$<CONFIG:Release>:-O0>) # it runs for an instant
+
+set(_kernels ${CMAKE_CURRENT_BINARY_DIR}/taylor/taylor_kernels.hpp)
+file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/taylor)
+add_custom_command(OUTPUT ${_kernels} COMMAND derive_taylor ${_kernels} DEPENDS derive_taylor VERBATIM)
+target_sources(arm3r_core PRIVATE ${_kernels})
+target_include_directories(arm3r_core PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/taylor)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # The kernels fill the registers as they are; vectorized loops over the orders would be slower.
+  set_source_files_properties(cpp/src/taylor.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
+endif()

@@ -1,0 +1,59 @@
+#include "contact_step.hpp"
+
+namespace arm3r {
+namespace {
+
+Polynomial<double> negative(Polynomial<double> p) {
+    for (int i = 0; i <= p.degree; ++i) p.c[i] = -p.c[i];
+    return p;
+}
+
+// Distance from one edge: half - sign*across.
+Polynomial<double> inside_edge(double half, double sign, Polynomial<double> across) {
+    if (sign > 0) across = negative(across);
+    across.c[0] += half;
+    return across;
+}
+
+bool within_outline(const Wall<double>& wall, const ContactSignals<double>& signals, double theta) {
+    if (!wall.has_outline) return true;
+    return abs(value(signals.across1, theta)) <= wall.half1 && abs(value(signals.across2, theta)) <= wall.half2;
+}
+
+class Earliest {
+public:
+    Earliest(double from, double resolution) : from_(from), resolution_(resolution) {}
+
+    void fall_of(const Polynomial<double>& g, Mode next) {
+        if (range_of(g).low > 0) return;
+        const std::optional<double> theta = first_fall(g, from_, resolution_);
+        if (theta && (!found_ || *theta < found_->theta)) found_ = {*theta, next};
+    }
+    std::optional<Crossing> found() const { return found_; }
+
+private:
+    double from_, resolution_;
+    std::optional<Crossing> found_;
+};
+
+}  // namespace
+
+std::optional<Crossing> next_crossing(const Wall<double>& wall, const ContactSignals<double>& signals, double from,
+                                      Mode mode, double resolution) {
+    Earliest earliest(from, resolution);
+    if (mode == Mode::free) {
+        earliest.fall_of(negative(signals.depth), Mode::contact);
+        std::optional<Crossing> crossing = earliest.found();
+        if (crossing && !within_outline(wall, signals, crossing->theta)) crossing->next = Mode::embedded;
+        return crossing;
+    }
+    earliest.fall_of(signals.depth, Mode::free);
+    if (mode == Mode::contact && wall.has_outline)
+        for (const double sign : {-1.0, 1.0}) {
+            earliest.fall_of(inside_edge(wall.half1, sign, signals.across1), Mode::embedded);
+            earliest.fall_of(inside_edge(wall.half2, sign, signals.across2), Mode::embedded);
+        }
+    return earliest.found();
+}
+
+}  // namespace arm3r

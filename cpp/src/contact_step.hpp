@@ -1,0 +1,56 @@
+#pragma once
+// Contact within one step, from polynomials of the step's share theta in [0, 1]: how deep the tip is, and where on the
+// plate. One lane at a time here; what is usual, that nothing happens, is seen for all lanes at once. docs/model.md (4.8).
+
+#include <optional>
+
+#include "arm3r/polynomial.hpp"
+#include "sample.hpp"
+
+namespace arm3r {
+
+struct Crossing {
+    double theta;  // where in the step, in (from, 1]
+    Mode next;
+};
+
+// A crossing that has been made: where in the step, in seconds too, and what it cost.
+struct Change {
+    double theta, t, lost;  // s, J
+    Mode from, to;
+};
+
+template <class T>
+struct ContactSignals {
+    Polynomial<T> depth, across1, across2;  // m
+};
+
+template <class T>
+struct Range {
+    T low, high;
+};
+
+// Between these a polynomial lies on [0, 1].
+template <class T>
+ARM3R_INLINE Range<T> range_of(const Polynomial<T>& p) {
+    Range<T> range{p.c[0], p.c[0]};
+    for (int i = 1; i <= p.degree; ++i) {
+        range.low = range.low + min(p.c[i], T(0.0));
+        range.high = range.high + max(p.c[i], T(0.0));
+    }
+    return range;
+}
+
+// The same for a cubic, closer: its Bernstein coefficients.
+template <class T>
+ARM3R_INLINE Range<T> range_of_cubic(const Polynomial<T>& p) {
+    const T end = p.c[0] + p.c[1] + p.c[2] + p.c[3];
+    const T second = p.c[0] + (1.0 / 3) * p.c[1], third = second + (1.0 / 3) * (p.c[1] + p.c[2]);
+    return {min(min(p.c[0], end), min(second, third)), max(max(p.c[0], end), max(second, third))};
+}
+
+// The first change of mode after `from`, if there is one. resolution: of theta.
+std::optional<Crossing> next_crossing(const Wall<double>& wall, const ContactSignals<double>& signals, double from,
+                                      Mode mode, double resolution);
+
+}  // namespace arm3r

@@ -1,0 +1,504 @@
+// Writes the Taylor kernels: for each recipe the arm's motion is recorded, turned into a system of sums, products and
+// quotients of series (docs/model.md, 5.5), and printed as a C++ struct. Run by the build: derive_taylor FILE.
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "arm3r/eigen_traits.hpp"
+#include "arm3r/lanes.hpp"
+#include "taylor_recipes.hpp"
+
+namespace arm3r {
+namespace {
+
+// ---- what is recorded ------------------------------------------------------------------------------------------------
+
+// The states whose start is given: the wall, then the motion and the books. Functions of them join later.
+constexpr std::size_t wall_size = 9, given_size = wall_size + state_size;
+
+// Inputs: the squared angular frequency of the wall, its state, the motion, the numbers of the plant.
+// Outputs: the derivatives of the given states, then the signals.
+struct Recording {
+    Tape tape;
+
+    explicit Recording(const Recipe& recipe) {
+        const Expr frequency_2 = tape.input();
+        WallState<Expr> wall;
+        for (Vec3<Expr>* const vector : {&wall.position, &wall.velocity, &wall.acceleration})
+            for (Expr& x : *vector) x = tape.input();
+        State<Expr, state_size> y, dy;
+        for (std::size_t i = 0; i < motion_size; ++i) y[i] = tape.input();
+        Plant<Expr> plant = chosen(recipe);
+        each_number([&](Expr& x) { x = tape.input(); }, plant);
+
+        RightHandSide<Expr, Expr> rhs(plant);
+        rhs.touch = recipe.force ? Touch::pressed : Touch::none;
+        const Pose<Expr> p = rhs.pose_near(y);
+        rhs.derivative(wall, p, y, dy);
+
+        for (const Expr& x : wall.velocity) tape.output(x);
+        for (const Expr& x : wall.acceleration) tape.output(x);
+        for (const Expr& x : wall.velocity) tape.output(-(frequency_2 * x));  // zero unless the wall swings
+        for (const Expr& x : dy) tape.output(x);
+        if (!recipe.signals) return;
+        const Vec3<Expr> still{0.0, 0.0, 0.0};
+        const Indentation<Expr> in = indentation(plant.wall, wall, tip_position(plant.arm, p), still);
+        for (const Expr& x : {in.depth, in.across1, in.across2}) tape.output(x);
+    }
+
+private:
+    static Plant<Expr> chosen(const Recipe& recipe) {
+        Plant<Expr> plant;
+        plant.has_wall = plant.acts_on_arm = recipe.signals;
+        plant.wall.motion = Motion::fixed;
+        plant.contact.law = Law::spring;
+        plant.controller.type = recipe.control;
+        plant.controller.algorithm = Algorithm::closed_form;
+        plant.arm.gravity_is_vertical = plant.controller.model.gravity_is_vertical = !recipe.azimuth;
+        plant.arm.has_damping = recipe.damping;
+        plant.arm.has_dry_friction = recipe.friction;
+        plant.arm.has_torque_limit = recipe.control == Controls::constant;
+        return plant;
+    }
+};
+
+// ---- the same as series ----------------------------------------------------------------------------------------------
+
+// Nodes of a formula in which a product of series is the only costly operation. Factors without a series are kept in
+// front: (s x) y = s (x y), so that equal products show; x (1/y) is x/y.
+class Series {
+public:
+    struct Function {  // a function of a series, kept as a state of its own
+        Op op;
+        int argument, state, derivative = -1;
+    };
+
+    int number(double x) { return record({.op = Op::constant, .number = x}); }
+    int input(bool is_state) {
+        tape_.input();
+        series_.push_back(is_state);
+        return size() - 1;
+    }
+
+    const Node& operator[](int i) const { return tape_.nodes()[i]; }
+    int size() const { return static_cast<int>(tape_.nodes().size()); }
+    bool is_series(int i) const { return series_[i]; }
+    bool is_state(int i) const { return series_[i] && (*this)[i].op == Op::input; }
+    bool is_number(int i, double x) const { return (*this)[i].op == Op::constant && (*this)[i].number == x; }
+    bool is_scaled(int i) const { return is_series(i) && (*this)[i].op == Op::multiply && !is_series((*this)[i].a); }
+    bool is_convolution(int i) const {
+        const Node& n = (*this)[i];
+        return is_series(i) && ((n.op == Op::multiply && is_series(n.a)) || n.op == Op::divide);
+    }
+    const std::vector<Function>& functions() const { return functions_; }
+    const Function* function_of(int state) const {
+        const auto is = [state](const Function& f) { return f.state == state; };
+        const auto found = std::find_if(functions_.begin(), functions_.end(), is);
+        return found == functions_.end() ? nullptr : &*found;
+    }
+
+    int add(int a, int b) {
+        if (is_number(a, 0)) return b;
+        return is_number(b, 0) ? a : record({.op = Op::add, .a = a, .b = b});
+    }
+
+    int subtract(int a, int b) {
+        if (is_number(a, 0)) return negate(b);
+        return is_number(b, 0) ? a : record({.op = Op::subtract, .a = a, .b = b});
+    }
+
+    int negate(int a) {
+        if ((*this)[a].op == Op::constant) return number(-(*this)[a].number);
+        if ((*this)[a].op == Op::negate) return (*this)[a].a;
+        if (is_scaled(a)) return multiply(negate((*this)[a].a), (*this)[a].b);
+        return record({.op = Op::negate, .a = a});
+    }
+
+    int multiply(int a, int b) {
+        for (const auto& [x, y] : {std::pair(a, b), std::pair(b, a)}) {
+            if (is_number(x, 0)) return x;
+            if (is_number(x, 1)) return y;
+        }
+        if (!is_series(b)) std::swap(a, b);
+        if (is_scaled(b)) return multiply(multiply(a, (*this)[b].a), (*this)[b].b);
+        if (is_series(a) && is_scaled(a)) return multiply((*this)[a].a, multiply((*this)[a].b, b));
+        if (is_series(a) && (*this)[a].op == Op::negate) return negate(multiply((*this)[a].a, b));
+        if ((*this)[b].op == Op::negate && is_series(b)) return negate(multiply(a, (*this)[b].a));
+        if (is_series(b) && !is_series(a)) return record({.op = Op::multiply, .a = a, .b = b});
+        if (is_reciprocal(a)) return divide(b, (*this)[a].b);
+        if (is_reciprocal(b)) return divide(a, (*this)[b].b);
+        return record({.op = Op::multiply, .a = std::min(a, b), .b = std::max(a, b)});
+    }
+
+    int divide(int a, int b) {
+        if (!is_series(b) && is_series(a)) return multiply(record({.op = Op::divide, .a = number(1), .b = b}), a);
+        return record({.op = Op::divide, .a = a, .b = b});
+    }
+
+    // Of a series: sine, cosine or tanh, a state of its own.
+    int function(Op op, int a, int b = -1) {
+        if (!is_series(a) && (b < 0 || !is_series(b))) return record({.op = op, .a = a, .b = b});
+        for (const Function& f : functions_)
+            if (f.op == op && f.argument == a) return f.state;
+        functions_.push_back({op, a, input(true)});
+        return functions_.back().state;
+    }
+
+    // The derivatives of the functions, from those of the given states; they join them.
+    void differentiate(std::map<int, int>& derivatives) {
+        for (std::size_t i = 0; i < functions_.size(); ++i) {
+            const Function f = functions_[i];
+            const int slope = derivative(f.argument, derivatives);
+            derivatives[f.state] = functions_[i].derivative = multiply(outer_derivative(f), slope);
+        }
+    }
+
+private:
+    bool is_reciprocal(int i) const { return is_series(i) && (*this)[i].op == Op::divide && is_number((*this)[i].a, 1); }
+
+    int outer_derivative(const Function& f) {
+        switch (f.op) {
+            case Op::sine: return function(Op::cosine, f.argument);
+            case Op::cosine: return negate(function(Op::sine, f.argument));
+            case Op::tanh: return subtract(number(1), multiply(f.state, f.state));
+            default: throw std::logic_error("no series is known for a function in the motion");
+        }
+    }
+
+    int derivative(int i, const std::map<int, int>& derivatives) {
+        const Node n = (*this)[i];
+        if (!is_series(i)) return number(0);
+        if (is_state(i)) return derivatives.at(i);
+        if (n.op == Op::negate) return negate(derivative(n.a, derivatives));
+        if (is_scaled(i)) return multiply(n.a, derivative(n.b, derivatives));
+        if (n.op == Op::add) return add(derivative(n.a, derivatives), derivative(n.b, derivatives));
+        throw std::logic_error("the argument of a function is not linear in the states");
+    }
+
+    int record(const Node& node) {
+        const int place = tape_.record(node);
+        if (place == static_cast<int>(series_.size()))
+            series_.push_back((node.a >= 0 && series_[node.a]) || (node.b >= 0 && series_[node.b]));
+        return place;
+    }
+
+    Tape tape_;
+    std::vector<bool> series_;
+    std::vector<Function> functions_;
+};
+
+// ---- the system of a recipe ------------------------------------------------------------------------------------------
+
+struct System {
+    Series series;
+    std::vector<int> numbers;           // of the plant
+    int frequency_2 = -1;
+    std::vector<int> given;             // states; one of the books is -1
+    std::vector<int> rates;             // the derivatives of the given states
+    std::vector<int> signals;
+    std::vector<int> states;            // that matter: each before its derivative where that is a state too
+    std::map<int, int> derivatives;     // of the states
+    std::vector<int> live;              // all nodes that matter, operands first
+
+    explicit System(const Tape& tape) {
+        std::vector<int> place;
+        for (const Node& node : tape.nodes()) place.push_back(translated(node, place));
+        for (const int output : tape.outputs()) {
+            std::vector<int>& list = rates.size() < given_size ? rates : signals;
+            list.push_back(place[output]);
+        }
+        given.resize(given_size, -1);
+        for (std::size_t i = 0; i < given.size(); ++i)
+            if (given[i] >= 0) derivatives[given[i]] = rates[i];
+        series.differentiate(derivatives);
+        find_live();
+    }
+
+private:
+    int translated(const Node& n, const std::vector<int>& place) {
+        if (n.op == Op::input) return input();
+        if (n.op == Op::constant) return series.number(n.number);
+        const int a = place[n.a], b = n.b < 0 ? -1 : place[n.b];
+        switch (n.op) {
+            case Op::add: return series.add(a, b);
+            case Op::subtract: return series.subtract(a, b);
+            case Op::negate: return series.negate(a);
+            case Op::multiply: return series.multiply(a, b);
+            case Op::divide: return series.divide(a, b);
+            default: return series.function(n.op, a, b);
+        }
+    }
+
+    int input() {
+        if (frequency_2 < 0) return frequency_2 = series.input(false);
+        const bool is_state = given.size() < wall_size + motion_size;
+        std::vector<int>& list = is_state ? given : numbers;
+        list.push_back(series.input(is_state));
+        return list.back();
+    }
+
+    void find_live() {
+        std::set<int> found;
+        for (std::size_t i = wall_size; i < given.size(); ++i) {
+            if (given[i] >= 0) reach(given[i], found);
+            reach(rates[i], found);
+        }
+        for (const int i : signals) reach(i, found);
+        live.assign(found.begin(), found.end());
+        for (const int i : given)
+            if (found.contains(i)) states.push_back(i);
+        for (const Series::Function& f : series.functions())
+            if (found.contains(f.state)) states.push_back(f.state);
+    }
+
+    void reach(int i, std::set<int>& found) const {
+        if (i < 0 || !found.insert(i).second) return;
+        reach(series[i].a, found), reach(series[i].b, found);
+        const auto rate = derivatives.find(i);
+        if (rate != derivatives.end()) reach(rate->second, found);
+        if (const Series::Function* f = series.function_of(i)) reach(f->argument, found);
+    }
+};
+
+// ---- the printed kernel ----------------------------------------------------------------------------------------------
+
+constexpr std::size_t most_sums_at_once = 12;  // what the registers hold
+
+std::string named(char kind, int i) { return kind + std::to_string(i); }
+
+// zI is the first coefficient of node I, or the node where it is no series; xI its coefficient of order k; mI the inner
+// part of a product, without its first and its newest factors; nodes with a row keep all their coefficients in r.
+class Printer {
+public:
+    Printer(const System& system, std::ostream& out) : system_(system), series_(system.series), out_(out) {
+        for (const int i : system.live)
+            if (series_.is_convolution(i))
+                for (const int factor : factors(i)) rows_.try_emplace(factor, static_cast<int>(rows_.size()));
+    }
+
+    void print(std::size_t recipe) {
+        out_ << "\ntemplate <class T>\nstruct Recurrence<" << recipe << ", T> {\n"
+             << "    ARM3R_INLINE static void expand(const Plant<T>& plant, [[maybe_unused]] const T& frequency_2,\n"
+             << "                                    const T* given, int order, T (*c)[quantities]) {\n"
+             << "        constexpr int rows = " << rows_.size() << ";\n"
+             << "        alignas(64) T r[(most_degree + 1) * rows];\n"
+             << "        const Numbers<T> numbers(plant);\n";
+        print_first();
+        out_ << "        for (;; ++k) {\n";
+        print_states("            c[k]", 'x');
+        out_ << "            if (k == order) break;\n"
+             << "            T* const now = r + k * rows;\n";
+        for (const int i : system_.states) print_row("            now", 'x', i);
+        print_nodes("            ", nodes_of(roots()), true);
+        print_signals("            c[k]", 'x');
+        print_advance("            ", 'x', " * one_over[k + 1]");
+        out_ << "        }\n";
+        print_nodes("        ", nodes_of(system_.signals), false);
+        print_signals("        c[k]", 'x');
+        out_ << "    }\n};\n";
+    }
+
+private:
+    void print_first() {
+        std::set<int> turned, divisors;
+        for (const int i : system_.live) {
+            if (const Series::Function* f = series_.function_of(i); f && f->op != Op::tanh)
+                if (turned.insert(f->argument).second)
+                    out_ << "        const SinCos<T> turn" << f->argument << " = sincos(" << named('z', f->argument) << ");\n";
+            out_ << "        const T " << named('z', i) << " = " << first(i) << ";\n";
+            print_row("        r", 'z', i);
+            if (series_.is_convolution(i) && series_[i].op == Op::divide) divisors.insert(series_[i].b);
+        }
+        for (const int i : divisors) out_ << "        const T over" << i << " = 1.0 / " << named('z', i) << ";\n";
+        print_states("        c[0]", 'z');
+        print_signals("        c[0]", 'z');
+        print_advance("        T ", 'z', "");
+        out_ << "        int k = 1;\n";
+    }
+
+    std::string first(int i) const {
+        const auto position = [i](const std::vector<int>& list) {
+            return std::to_string(std::find(list.begin(), list.end(), i) - list.begin());
+        };
+        const Node& n = series_[i];
+        if (const Series::Function* f = series_.function_of(i)) {
+            if (f->op == Op::tanh) return "tanh(" + named('z', f->argument) + ")";
+            return "turn" + std::to_string(f->argument) + (f->op == Op::sine ? ".sin" : ".cos");
+        }
+        if (i == system_.frequency_2) return "frequency_2";
+        if (series_.is_state(i)) return "given[" + position(system_.given) + "]";
+        if (n.op == Op::input) return "*numbers.at[" + position(system_.numbers) + "]";
+        const std::string a = n.a < 0 ? "" : named('z', n.a), b = n.b < 0 ? "" : named('z', n.b);
+        switch (n.op) {
+            case Op::constant: return literal(n.number);
+            case Op::add: return a + " + " + b;
+            case Op::subtract: return a + " - " + b;
+            case Op::multiply: return a + " * " + b;
+            case Op::divide: return a + " / " + b;
+            case Op::negate: return "-" + a;
+            case Op::min: return "min(" + a + ", " + b + ")";
+            case Op::max: return "max(" + a + ", " + b + ")";
+            default: throw std::logic_error("an operation that no kernel knows");
+        }
+    }
+
+    static std::string literal(double x) {
+        std::ostringstream text;
+        text << "T(" << std::hexfloat << x << ")";
+        return text.str();
+    }
+
+    // Of order k >= 1. Each adds what is known last at the end: the newest coefficients come as a chain.
+    std::string next(int i) const {
+        const Node& n = series_[i];
+        const auto x = [](int operand) { return named('x', operand); };
+        const auto z = [](int operand) { return named('z', operand); };
+        const bool a_moves = series_.is_series(n.a), b_moves = n.b >= 0 && series_.is_series(n.b);
+        switch (n.op) {
+            case Op::add: return !a_moves ? x(n.b) : !b_moves ? x(n.a) : x(n.a) + " + " + x(n.b);
+            case Op::subtract: return !a_moves ? "-" + x(n.b) : !b_moves ? x(n.a) : x(n.a) + " - " + x(n.b);
+            case Op::negate: return "-" + x(n.a);
+            case Op::multiply:
+                if (!a_moves) return z(n.a) + " * " + x(n.b);
+                return "(" + named('m', i) + " + " + x(n.a) + " * " + z(n.b) + ") + " + z(n.a) + " * " + x(n.b);
+            default: {
+                const std::string known = "(" + named('m', i) + " + " + x(n.b) + " * " + z(i) + ")";
+                return (a_moves ? "(" + x(n.a) + " - " + known + ")" : "-" + known) + " * over" + std::to_string(n.b);
+            }
+        }
+    }
+
+    void print_nodes(const std::string& indent, const std::vector<int>& nodes, bool kept) {
+        print_inner_sums(indent, nodes);
+        for (const int i : nodes) {
+            out_ << indent << "const T " << named('x', i) << " = " << next(i) << ";\n";
+            if (kept) print_row(indent + "now", 'x', i);
+        }
+    }
+
+    void print_row(const std::string& where, char kind, int i) {
+        const auto row = rows_.find(i);
+        if (row != rows_.end()) out_ << where << "[" << row->second << "] = " << named(kind, i) << ";\n";
+    }
+
+    void print_states(const std::string& where, char kind) {
+        for (std::size_t j = 0; j < state_size; ++j) {
+            const int i = system_.given[wall_size + j];
+            const std::string book = kind == 'z' ? "given[" + std::to_string(wall_size + j) + "]" : named('b', j);
+            out_ << where << "[" << j << "] = " << (j < motion_size ? named(kind, i) : book) << ";\n";
+        }
+    }
+
+    void print_signals(const std::string& where, char kind) {
+        for (std::size_t j = state_size; j < quantities; ++j) {
+            const std::size_t signal = j - state_size;
+            out_ << where << "[" << j << "] = "
+                 << (signal < system_.signals.size() ? named(kind, system_.signals[signal]) : "T(0.0)") << ";\n";
+        }
+    }
+
+    // The states' coefficients of the next order.
+    void print_advance(const std::string& indent, char kind, const std::string& scale) {
+        const auto rate = [&](int i) {
+            if (kind == 'x' && !series_.is_series(i)) return std::string("T(0.0)");
+            return named(kind, i) + scale;
+        };
+        for (std::size_t j = motion_size; j < state_size; ++j)
+            out_ << indent << named('b', j) << " = " << rate(system_.rates[wall_size + j]) << ";\n";
+        for (const int i : system_.states) out_ << indent << named('x', i) << " = " << rate(system_.derivatives.at(i)) << ";\n";
+    }
+
+    // What must be known, beside the states, for the coefficients of these nodes.
+    std::vector<int> nodes_of(std::vector<int> roots) const {
+        std::set<int> found;
+        while (!roots.empty()) {
+            const int i = roots.back();
+            roots.pop_back();
+            if (i < 0 || !series_.is_series(i) || series_.is_state(i) || !found.insert(i).second) continue;
+            roots.insert(roots.end(), {series_[i].a, series_[i].b});
+        }
+        return {found.begin(), found.end()};
+    }
+
+    std::vector<int> roots() const {
+        std::vector<int> all = system_.signals;
+        all.insert(all.end(), system_.rates.begin() + wall_size, system_.rates.end());
+        for (const int state : system_.states) all.push_back(system_.derivatives.at(state));
+        return all;
+    }
+
+    // ---- inner sums: of first[i] second[k - i], 0 < i < k
+    std::array<int, 2> factors(int i) const {
+        const Node& n = series_[i];
+        return n.op == Op::divide ? std::array{n.b, i} : std::array{n.a, n.b};
+    }
+
+    void print_inner_sums(const std::string& indent, const std::vector<int>& nodes) {
+        std::vector<int> waiting;
+        for (const int i : nodes)
+            if (series_.is_convolution(i)) waiting.push_back(i);
+        while (!waiting.empty()) print_loop(indent, waiting);
+    }
+
+    // One loop over as many sums as the registers hold, those that share their loads.
+    void print_loop(const std::string& indent, std::vector<int>& waiting) {
+        std::set<std::pair<bool, int>> loaded;
+        std::string sums;
+        for (std::size_t count = 0; count < most_sums_at_once && !waiting.empty(); ++count) {
+            const auto loads = [&](int first, int second) {
+                return !loaded.contains({false, first}) + !loaded.contains({true, second});
+            };
+            const auto fewest = [&](int i) {
+                const auto [a, b] = factors(i);
+                return std::min(loads(a, b), loads(b, a));
+            };
+            const auto best = std::min_element(waiting.begin(), waiting.end(), [&](int i, int j) { return fewest(i) < fewest(j); });
+            auto [a, b] = factors(*best);
+            if (loads(b, a) < loads(a, b)) std::swap(a, b);
+            loaded.insert({false, a}), loaded.insert({true, b});
+            const std::string m = named('m', *best);
+            out_ << indent << "T " << m << "(0.0);\n";
+            sums += indent + "    " + m + " += up[" + std::to_string(rows_.at(a)) + "] * down[" + std::to_string(rows_.at(b)) + "];\n";
+            waiting.erase(best);
+        }
+        out_ << indent << "for (const T *up = r + rows, *down = r + (k - 1) * rows; down > r; up += rows, down -= rows) {\n"
+             << sums << indent << "}\n";
+    }
+
+    const System& system_;
+    const Series& series_;
+    std::ostream& out_;
+    std::map<int, int> rows_;
+};
+
+}  // namespace
+
+void derive(std::ostream& out) {
+    std::size_t numbers = 0;
+    Plant<Expr> plant;
+    each_number([&](Expr&) { ++numbers; }, plant);
+    out << "// Made by derive_taylor from the recorded motion of the arm.\n\n"
+        << "template <class T>\nstruct Numbers {\n    std::array<const T*, " << numbers << "> at;\n"
+        << "    ARM3R_INLINE explicit Numbers(const Plant<T>& plant) {\n        int i = 0;\n"
+        << "        each_number([&](const T& x) ARM3R_INLINE_LAMBDA { at[i++] = &x; }, plant);\n    }\n};\n\n"
+        << "template <std::size_t recipe, class T>\nstruct Recurrence;\n";
+    for (std::size_t i = 0; i < recipes.size(); ++i) {
+        const Recording recording(recipes[i]);
+        Printer(System(recording.tape), out).print(i);
+    }
+}
+
+}  // namespace arm3r
+
+int main(int count, char** arguments) {
+    std::ofstream file(count == 2 ? arguments[1] : "");
+    arm3r::derive(file);
+    return file.flush() ? 0 : 1;
+}

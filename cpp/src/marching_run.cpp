@@ -1,0 +1,85 @@
+// Runs by the methods that march (march.hpp), with a single lane.
+
+#include "fixed_march.hpp"
+#include "numbers.hpp"
+#include "recorder.hpp"
+#include "runs.hpp"
+
+namespace arm3r {
+namespace {
+
+Inside solution(const FixedMarch<double>& march) {
+    return hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f(0));
+}
+
+template <class Marching>
+class MarchingRun : Recorder {
+public:
+    MarchingRun(std::span<const double> params, const RunOptions& options)
+        : Recorder(params, options), march_(setup_) {}
+
+    Run run() {
+        march_.put(0, setup_);
+        march_.begin();
+        begin(march_.y(0), march_.f(0), march_.mode(0), march_.energy_at_start(0));
+        while (is_going_on() && !march_.has_ended(0))
+            if (poll()) step();
+        return finish(march_.y(0), theta_, note_end());
+    }
+
+private:
+    void step() {
+        bool is_known = false;
+        const auto know = [&] {
+            if (!is_known) inside_ = solution(march_);
+            is_known = true;
+        };
+        march_.step([&](int, const Change& change) {
+            know();
+            note_change(change, inside_(change.theta));
+        });
+        know();
+        theta_ = 1;
+        run_.t_end = march_.t(0);
+        log_until(run_.t_end);
+        static_cast<Steps&>(run_.steps) = march_.metrics(0).steps;
+    }
+
+    Flows note_end() {
+        const arm3r_outcome asked = run_.outcome;
+        static_cast<Metrics&>(run_) = march_.metrics(0);
+        run_.outcome = asked;
+        const arm3r_outcome outcome = march_.outcome(0);
+        if (outcome != ARM3R_RUN_OK) end(outcome, reason(outcome));
+        return march_.flows(0);
+    }
+
+    std::string reason(arm3r_outcome outcome) const {
+        const double t = run_.t_end;
+        switch (outcome) {
+            case ARM3R_RUN_BUDGET: return steps_used_up(t);
+            case ARM3R_RUN_EVENT_STORM: return event_storm(t);
+            case ARM3R_RUN_ILL_CONDITIONED:
+                return "the mass matrix is no longer positive definite to rounding" + at_time(t);
+            default: return divergence(t);
+        }
+    }
+
+    std::string divergence(double t) const {
+        for (int i = 0; i < 3; ++i)
+            if (!(std::abs(run_.q[i]) <= sincos_limit))
+                return "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad" + at_time(t);
+        return "the motion is no longer finite after t = " + shortest(t) + " s; a smaller solver.step may hold it";
+    }
+
+    Marching march_;
+    double theta_ = 0;
+};
+
+}  // namespace
+
+Run run_marching(std::span<const double> params, const RunOptions& options) {
+    return MarchingRun<FixedMarch<double>>(params, options).run();
+}
+
+}  // namespace arm3r

@@ -1,0 +1,107 @@
+#include "recorder.hpp"
+
+#include <algorithm>
+
+#include "numbers.hpp"
+#include "schema.hpp"
+#include "size_cap.hpp"
+
+namespace arm3r {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Setup small_enough(Setup setup, bool rows) {
+    refuse_too_large(setup, rows);
+    return setup;
+}
+
+std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
+
+}  // namespace
+
+Recorder::Recorder(std::span<const double> params, const RunOptions& options)
+    : setup_(small_enough(make_setup(params), options.rows)), options_(options), rows_(setup_, run_, options.rows) {
+    if (!options.rows) return;
+    run_.events.reserve(static_cast<std::size_t>(most_events));
+    run_.warnings = likely_slips(params);
+}
+
+void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start) {
+    mode_ = mode;
+    energy_at_start_ = energy_at_start;
+    if (mode == Mode::contact) record(Event::make, 0.0, y);
+    constexpr double a_moment = 1e-3;  // s
+    FullState ahead;
+    for (std::size_t i = 0; i < state_size; ++i) ahead[i] = y[i] + a_moment * f[i];
+    inside_ = hermite(0.0, a_moment, y, f, ahead, f);
+    if (options_.rows && setup_.stop > 0) rows_.log(scene(), 0.0, y, 0.0);  // whatever becomes of the first step
+}
+
+void Recorder::note_change(const Change& change, const FullState& y) {
+    log_until(change.t);
+    inside_.c[0][8] += change.lost;  // for the rows of this step that are still to come
+    if (change.to == Mode::contact) record(Event::make, change.t, y);
+    if (change.from == Mode::contact) record(Event::brk, change.t, y);
+    mode_ = change.to;
+}
+
+void Recorder::record(Event::Type type, double t, const FullState& y) {
+    if (options_.rows && double(run_.events.size()) < most_events)
+        run_.events.push_back({type, t, joints_out(angles(y)), joints_out(rates(y)),
+                               plain(tip_position(setup_.plant.arm, pose(angles(y))))});
+}
+
+std::array<double, 3> Recorder::joints_out(const Vec3<double>& v) const {
+    return plain(setup_.simscape ? flipped(v) : v);
+}
+
+std::string Recorder::at_time(double t) const { return " at t = " + shortest(t) + " s"; }
+
+void Recorder::end(arm3r_outcome outcome, std::string message) {
+    if (run_.outcome != ARM3R_RUN_OK) return;
+    run_.outcome = outcome;
+    run_.message = std::move(message);
+}
+
+bool Recorder::poll() {
+    const bool stop = (options_.stop && *options_.stop) || (options_.should_stop && *options_.should_stop);
+    if (stop) end(ARM3R_RUN_STOPPED, "stopped" + at_time(run_.t_end));
+    if (++polls_ % 256 == 0) read_clock();
+    return is_going_on();
+}
+
+void Recorder::read_clock() {
+    const double elapsed = seconds_since(begun_);
+    if (options_.time_limit > 0 && elapsed > options_.time_limit)
+        end(ARM3R_RUN_BUDGET,
+            "the time limit of " + shortest(options_.time_limit) + " s is used up" + at_time(run_.t_end));
+    if (!options_.progress || elapsed < next_report_) return;
+    next_report_ = elapsed + 0.02;
+    const std::int32_t answer =
+        options_.progress(options_.user, run_.t_end, setup_.stop, run_.steps.accepted + run_.steps.rejected);
+    if (answer < 0) throw Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer));
+    if (answer > 0) end(ARM3R_RUN_STOPPED, "stopped" + at_time(run_.t_end));
+}
+
+Run Recorder::finish(const FullState& y, double theta, const Flows& flows) {
+    if (is_going_on()) {
+        if (options_.rows) rows_.log(scene(), run_.t_end, y, theta);
+        if (const std::optional<std::string> complaint = balance_complaint(setup_.solver, flows)) {
+            if (is_strict(setup_.solver)) end(ARM3R_RUN_ENERGY, *complaint);
+            else run_.warnings.push_back(*complaint);
+        }
+    }
+    if (rows_.link_behind_wall_since() >= 0)
+        run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
+                                shortest(rows_.link_behind_wall_since()) + " s on; only the tip feels the wall");
+    run_.t_end = std::max(run_.t_end, rows_.last_time());
+    run_.ledger_residual = flows.residual;
+    run_.energy_residual_max = std::max(run_.energy_residual_max, flows.residual);
+    run_.elapsed_s = seconds_since(begun_);
+    return std::move(run_);
+}
+
+}  // namespace arm3r

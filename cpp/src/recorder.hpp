@@ -1,0 +1,62 @@
+#pragma once
+// What every method of simulation shares: the rows, events and messages of a run, and the questions whether to go on.
+
+#include <chrono>
+
+#include "contact_step.hpp"
+#include "row_log.hpp"
+
+namespace arm3r {
+
+inline constexpr double most_events = 4096;
+
+class Recorder {
+public:
+    Recorder(std::span<const double> params, const RunOptions& options);
+    Recorder(const Recorder&) = delete;
+    Recorder& operator=(const Recorder&) = delete;
+
+protected:
+    using Clock = std::chrono::steady_clock;
+
+    // The first row, and the present mode. Before the first step the solution is a straight line.
+    void begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start);
+
+    // All rows before t, from the solution within the last step.
+    void log_until(double t) {
+        if (options_.rows) rows_.log_until(t, scene(), [this] { return poll(); });
+    }
+
+    // A change of contact at place theta within the last step: its rows before, the event, and what it cost.
+    void note_change(const Change& change, const FullState& y);
+
+    void end(arm3r_outcome outcome, std::string message);
+    bool is_going_on() const { return run_.outcome == ARM3R_RUN_OK; }
+    // Whether to go on; the clock is read now and then only.
+    bool poll();
+
+    // The last row, the verdict of the books, and what is left to say.
+    Run finish(const FullState& y, double theta, const Flows& flows);
+
+    std::array<double, 3> joints_out(const Vec3<double>& v) const;
+    std::string at_time(double t) const;  // " at t = 1.5 s"
+
+    const Clock::time_point begun_ = Clock::now();
+    const Setup setup_;
+    const RunOptions options_;
+    Run run_;  // its t_end is the present time
+    Mode mode_ = Mode::free;
+    Inside inside_;  // the solution within the last step
+
+private:
+    Scene scene() const { return {setup_.plant, setup_.simscape, energy_at_start_, mode_, inside_}; }
+    void record(Event::Type type, double t, const FullState& y);
+    void read_clock();
+
+    RowLog rows_;
+    double energy_at_start_ = 0;
+    unsigned polls_ = 0;
+    double next_report_ = 0;
+};
+
+}  // namespace arm3r

@@ -1,0 +1,110 @@
+// What is allowed but probably a slip.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "at.hpp"
+#include "numbers.hpp"
+#include "setup.hpp"
+
+namespace arm3r {
+namespace {
+
+using std::numbers::pi;
+
+double norm(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
+
+void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
+    if (setup.plant.controller.type != Controls::gravity_compensation) return;
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.plant.controller.model.gravity;
+    const double apart = norm(minus(feels, compensates));
+    if (apart > 0 && apart < 0.01 * norm(feels))
+        slips.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
+                        shortest(norm(compensates)) +
+                        ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
+}
+
+void slip_of_angles(std::span<const double> params, std::vector<std::string>& slips) {
+    for (int i = 0; i < 3; ++i) {
+        const double angle = at<"initial.q">(params, std::size_t(i)), in_degrees = angle * 180 / pi;
+        const bool was_degrees = std::abs(in_degrees - std::round(in_degrees)) < 1e-9 * std::abs(in_degrees);
+        if (std::abs(angle) > 2 * pi && !was_degrees)
+            slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " + shortest(angle) +
+                            " rad; plain numbers are radians: write `" + shortest(angle) +
+                            " deg` if degrees were meant");
+    }
+}
+
+void slip_of_links(const Arm<double>& arm, std::vector<std::string>& slips) {
+    const Link<double>* links[] = {&arm.link2, &arm.link3};
+    for (int i = 0; i < 2; ++i) {
+        if (links[i]->com < 0 || links[i]->com > links[i]->length)
+            slips.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " +
+                            shortest(links[i]->com) + " m of " + shortest(links[i]->length) + " m");
+    }
+}
+
+// Units that are off by powers of ten show in the proportions of a link.
+void slip_of_units(const Arm<double>& arm, std::vector<std::string>& slips) {
+    constexpr double a_long_link = 50;  // m
+    const Link<double>* links[] = {&arm.link2, &arm.link3};
+    for (int i = 0; i < 2; ++i) {
+        const Link<double>& link = *links[i];
+        const std::string name = "arm.link" + std::to_string(i + 2);
+        const double largest = std::max({link.inertia[0], link.inertia[1], link.inertia[2]});
+        const double whole_mass_at_the_end = link.mass * link.length * link.length;
+        if (link.length > a_long_link)
+            slips.push_back(name + ".length is " + shortest(link.length) + " m; was it given in millimetres?");
+        if (largest > whole_mass_at_the_end)
+            slips.push_back(name + ".inertia has " + shortest(largest) +
+                            " kg m^2, more than mass*length^2 = " + shortest(whole_mass_at_the_end) +
+                            ": no body within the link has as much; was it given in g cm^2 (1e-7 kg m^2)?");
+    }
+}
+
+// How far the wall's plane comes past joint 2 at the worst moment of the run, m; < 0 when it never does.
+double past_shoulder(const Setup& setup) {
+    const Wall<double>& wall = setup.plant.wall;
+    const Vec3<double> shoulder(0, 0, setup.plant.arm.base_height);
+    double deepest = -std::numeric_limits<double>::infinity();
+    const auto look = [&](double t) {
+        const Indentation<double> in = indentation(wall, wall_at(wall, t), shoulder, {0, 0, 0});
+        if (inside_outline(wall, in) >= 0) deepest = std::max(deepest, in.depth);
+    };
+    constexpr int looks = 1000;
+    for (int i = 0; i <= looks; ++i) look(setup.stop * i / looks);
+    return deepest;
+}
+
+void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
+    if (!setup.plant.has_wall) return;
+    const double past = past_shoulder(setup);
+    if (past > 0)
+        slips.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
+                        " m at the most; the arm's base is then behind it");
+    if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) {
+        const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
+        const double angle = setup.solver.step * std::sqrt(setup.plant.contact.stiffness[0] / m_n);
+        if (angle > 1.414)
+            slips.push_back(
+                "step*sqrt(K_E/m_n) is " + shortest(angle) +
+                ", more than half of what rk4 bears (2.828): the contact will not be resolved; take a smaller solver.step");
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> likely_slips(std::span<const double> params) {
+    const Setup setup = make_setup(params);
+    std::vector<std::string> slips;
+    slip_of_gravity(setup, slips);
+    slip_of_angles(params, slips);
+    slip_of_links(setup.plant.arm, slips);
+    slip_of_units(setup.plant.arm, slips);
+    slip_of_wall(setup, slips);
+    return slips;
+}
+
+}  // namespace arm3r

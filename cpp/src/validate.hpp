@@ -1,0 +1,31 @@
+#pragma once
+// validate() (schema.hpp) for many arrays that differ in a few numbers: whether it would find nothing, and no messages.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "findings.hpp"
+#include "schema.hpp"
+
+namespace arm3r {
+
+// Keys whose numbers are to be looked at: those of the plant's arm, all others, and those of the controller's copy of the
+// arm, which are the first again as with_model() (setup.hpp) puts them.
+struct NumberKeys {
+    std::vector<const Key*> arm, others, model;
+};
+
+class Checker {
+public:
+    // The arrays will differ from `params` in the numbers `varied` only, none of them a choice, a flag or a section.
+    Checker(std::span<const double> params, std::span<const std::size_t> varied);
+
+    bool operator()(std::span<const double> params) const;
+
+private:
+    bool readable_;    // the choices are words
+    NumberKeys keys_;  // what varies, and what is wrong in all
+};
+
+}  // namespace arm3r

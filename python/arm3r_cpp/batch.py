@@ -1,0 +1,274 @@
+"""Many runs through one call: a scenario, arrays in the places of some of its values, and a table of summaries."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._native import BatchProgress, Floats, lib
+from .errors import ScenarioError, UsageError
+from .params import param_index, param_key, places
+from .run import Run
+
+Scenario = Any  # the class stands above this module
+Index = int | tuple[int, ...]
+
+# What no number could mend: the fault lies in the axes as such, not in one of the runs.
+SLIPS = {f"scenario.{slip}" for slip in ("unknown_word", "type", "unknown_key", "other_choice", "missing_key")}
+
+
+class Axis(NamedTuple):
+    """What one key takes on."""
+
+    key: str
+    indices: list[int]
+    """of its numbers among all of a scenario; none for words and flags"""
+    values: NDArray[Any]
+    """(..., numbers), float64; of words and flags (..., 1)"""
+
+    def at(self, place: tuple[int, ...], shape: tuple[int, ...]) -> Any:
+        """Its value in one run, as `Scenario` takes it."""
+        value = np.broadcast_to(self.values, (*shape, self.values.shape[-1]))[place].tolist()
+        if self.indices and param_key(self.indices[0]).kind == "integer":
+            value = [int(number) if number.is_integer() else number for number in value]
+        return value if len(value) > 1 else value[0]
+
+
+class Batch:
+    """A table of runs: `batch["peak_force"]` is a column, in the shape that the axes broadcast to.
+
+    Columns are read-only arrays of float64 in SI units and radians, NaN where a run has no such number. Each has the
+    bits of the summary of that run alone.
+
+    Attributes:
+        axes: the values by key, in shapes that broadcast to `shape`; of a key with several numbers with these last.
+        shape: of every column.
+        names: of the columns, in order.
+        units: of the columns, by name; "1" for none.
+    """
+
+    def __init__(
+        self, scenario: Scenario, axes: list[Axis], columns: Mapping[str, Floats], shape: tuple[int, ...]
+    ) -> None:
+        """`Scenario.batch` makes batches."""
+        self._scenario, self._axes, self._columns = scenario, axes, dict(columns)
+        self.axes = {axis.key: axis.values if axis.values.shape[-1] > 1 else axis.values[..., 0] for axis in axes}
+        self.shape = shape
+        self.units = _native.summary_columns()
+        self.names = list(columns)
+        for column in columns.values():
+            column.flags.writeable = False
+
+    def __getitem__(self, name: str) -> Floats:
+        """A column.
+
+        Raises:
+            KeyError: there is no such column; the message names the nearest one.
+        """
+        if name in self._columns:
+            return self._columns[name]
+        near = difflib.get_close_matches(str(name), self.names, n=1) or self.names
+        raise KeyError(f"no column {name!r}; near: {', '.join(near)}")
+
+    def __iter__(self) -> Iterator[str]:
+        """The columns' names, in order."""
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        """How many runs there are."""
+        return math.prod(self.shape)
+
+    def __repr__(self) -> str:
+        over = ", ".join(self.axes) or "nothing"
+        return f"<Batch of {len(self)} runs over {over}: {np.count_nonzero(self.ok)} ok>"
+
+    @property
+    def outcomes(self) -> NDArray[np.str_]:
+        """How every run ended, in words: "ok", "diverged", ..., "invalid" where its numbers are not valid."""
+        numbers, which = np.unique(self["outcome"], return_inverse=True)
+        words = np.array([_native.outcome_name(int(number)) for number in numbers], np.str_)
+        return words[which].reshape(self.shape)
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """Which runs reached their end."""
+        return self["outcome"] == lib.ARM3R_RUN_OK
+
+    def scenario(self, index: Index) -> Scenario:
+        """The scenario of one run, without checks: those of the base were not meant for it.
+
+        index: of one run, as for a column.
+        """
+        place = index if isinstance(index, tuple) else (index,)
+        if len(place) != len(self.shape):
+            raise IndexError(f"index {index}: one run of a batch of shape {self.shape} has {len(self.shape)} of them")
+        return _scenario(self._scenario, self._axes, place, self.shape)
+
+    def run(self, index: Index) -> Run:
+        """One run alone, with all its rows and the same bits. Raises as `Scenario.run`.
+
+        index: of one run, as for a column.
+        """
+        return self.scenario(index).run()
+
+
+def run_batch(
+    scenario: Scenario,
+    values: Mapping[str, Any],
+    *,
+    grid: bool = False,
+    threads: int | None = None,
+    progress: BatchProgress | None = None,
+) -> Batch:
+    """What `Scenario.batch` does."""
+    if threads is not None and threads < 1:
+        raise UsageError(f"threads: at least 1 is needed, got {threads}", code="usage")
+    scenario.validate()
+    base = scenario.copy()
+    base["checks"] = []
+    axes = [axis_of(base, key, value) for key, value in values.items()]
+    axes = _crossed(axes) if grid else axes
+    shape = _shape(axes)
+    runs = math.prod(shape)
+    varied = [index for axis in axes for index in axis.indices]
+    numbers = _numbers(axes, shape)
+    names = list(_native.summary_columns())
+    done = 0
+
+    def report(runs_done: int, _: int) -> Any:
+        return progress and progress(done + runs_done, runs)
+
+    def table_of(group: NDArray[np.intp] | slice) -> Floats:
+        params, values = _params(base, axes, shape, group), np.ascontiguousarray(numbers[:, group])
+        if params is not None:
+            return _native.batch(params, varied, values, threads=threads, progress=report)
+        table = np.full((len(names), values.shape[1]), np.nan)
+        table[names.index("outcome")] = lib.ARM3R_RUN_INVALID
+        return table
+
+    groups = _groups(axes, shape)
+    if len(groups) == 1:
+        table = table_of(groups[0])
+    else:
+        table = np.empty((len(names), runs))
+        for group in groups:
+            table[:, group] = table_of(group)
+            done += len(group)
+    columns = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
+    return Batch(base, axes, columns, shape)
+
+
+# ---- axes -----------------------------------------------------------------------------------------------------------
+
+
+def axis_of(base: Scenario, key: str, value: Any) -> Axis:
+    """What `value` means for a key. UsageError: there is no such key, or its shape does not fit."""
+    if key not in places():
+        param_index(key)  # raises, and names the nearest one
+    indices = places()[key]
+    kind = param_key(indices[0]).kind
+    if kind == "section":
+        raise UsageError(f"{key}: a section cannot vary; name a key in it, such as {_below(key)}", code="usage")
+    array = np.asarray(value)
+    if array.dtype.kind in "Ub":
+        return Axis(key, [], array[..., np.newaxis])
+    if kind in ("choice", "flag"):
+        raise UsageError(f"{key}: {_WORDS[kind]} are needed, got an array of {array.dtype}", code="usage")
+    array = _native.reals(value, key)
+    if np.isnan(array).any():
+        place = "".join(f"[{i}]" for i in np.argwhere(np.isnan(array))[0])
+        raise UsageError(f"{key}: {key}{place} is nan; a key that is to keep its default is left out", code="usage")
+    width = _width(base, key, indices, array)
+    if width == 1:
+        return Axis(key, indices[:1], array[..., np.newaxis] + 0.0)
+    if array.shape[-1:] != (width,):
+        fix = f"one of its numbers alone is {key}[0]"
+        raise UsageError(f"{key}: the shape (..., {width}) is needed, got {array.shape}; {fix}", code="usage")
+    return Axis(key, indices, array + 0.0)
+
+
+_WORDS = {"choice": "words", "flag": "true or false"}
+
+
+def _below(key: str) -> str:
+    return next(place for place in places() if place.startswith(f"{key}."))
+
+
+def _width(base: Scenario, key: str, indices: list[int], array: NDArray[Any]) -> int:
+    """How many numbers of the key stand together: of one that takes a number or a list, as many as in the base."""
+    if len(indices) == 1:
+        return 1
+    now = base[key]
+    if now is None:
+        return len(indices) if array.shape[-1:] == (len(indices),) else 1
+    return 1 if isinstance(now, (int, float)) else len(indices)
+
+
+def _crossed(axes: Sequence[Axis]) -> list[Axis]:
+    """Every axis with dimensions of its own."""
+    crossed, behind = [], sum(axis.values.ndim - 1 for axis in axes)
+    for axis in axes:
+        own = axis.values.shape[:-1]
+        behind -= len(own)
+        crossed.append(axis._replace(values=axis.values.reshape(*own, *[1] * behind, axis.values.shape[-1])))
+    return crossed
+
+
+def _shape(axes: Sequence[Axis]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(axis.values.shape[:-1] for axis in axes))
+    except ValueError:
+        shapes = ", ".join(f"{axis.key} {axis.values.shape[:-1]}" for axis in axes)
+        raise UsageError(f"the axes do not broadcast: {shapes}; grid=True crosses them", code="usage") from None
+
+
+def _numbers(axes: Sequence[Axis], shape: tuple[int, ...]) -> Floats:
+    """What the library varies: a row a number, a column a run."""
+    numbers = np.empty((sum(len(axis.indices) for axis in axes), math.prod(shape)))
+    rows = iter(numbers)
+    for axis in axes:
+        for i, row in zip(range(len(axis.indices)), rows, strict=False):
+            row.reshape(shape)[...] = axis.values[..., i]
+    return numbers
+
+
+# ---- words ----------------------------------------------------------------------------------------------------------
+
+
+def _groups(axes: Sequence[Axis], shape: tuple[int, ...]) -> list[Any]:
+    """The runs that have all their words and flags in common: each group is a call of the library."""
+    words = [axis.values[..., 0] for axis in axes if not axis.indices]
+    if not words:
+        return [slice(None)]
+    label = np.zeros(shape, np.intp)
+    for values in words:
+        known, which = np.unique(values, return_inverse=True)
+        label = label * len(known) + which.reshape(values.shape)
+    return [np.flatnonzero(label == number) for number in np.unique(label)]
+
+
+def _scenario(base: Scenario, axes: Sequence[Axis], place: tuple[int, ...], shape: tuple[int, ...]) -> Scenario:
+    scenario = base.copy()
+    for axis in sorted(axes, key=lambda axis: bool(axis.indices)):  # words first: keys exist only under some
+        scenario[axis.key] = axis.at(place, shape)
+    return scenario
+
+
+def _params(base: Scenario, axes: Sequence[Axis], shape: tuple[int, ...], group: Any) -> Floats | None:
+    """The numbers of any valid run of a group; the varied ones do not matter. None: no run of it is valid."""
+    if isinstance(group, slice) and all(axis.key in base for axis in axes):
+        return base.params
+    for run in np.arange(math.prod(shape))[group]:
+        place = tuple(int(i) for i in np.unravel_index(run, shape))
+        try:
+            return _scenario(base, axes, place, shape).params
+        except ScenarioError as error:
+            if any(problem["code"] in SLIPS for problem in error.problems):
+                raise
+    return None

@@ -1,0 +1,40 @@
+"""How the commands end: the exit codes of `arm3r`, and signals."""
+
+from __future__ import annotations
+
+import os
+import signal
+from typing import NoReturn
+
+from .errors import (
+    Arm3rError,
+    BudgetError,
+    ControllerError,
+    IncompatibleError,
+    NumericalError,
+    OutputError,
+    ScenarioError,
+    UsageError,
+)
+
+FAILED_RUNS = 7
+_CODES: dict[type[Arm3rError], int] = {
+    UsageError: 2,
+    ScenarioError: 3,
+    NumericalError: 4,
+    BudgetError: 5,
+    OutputError: 6,
+    ControllerError: 8,
+    IncompatibleError: 9,
+}
+
+
+def exit_code(error: Arm3rError) -> int:
+    return next((code for kind, code in _CODES.items() if isinstance(error, kind)), 1)
+
+
+def die_of(number: signal.Signals) -> NoReturn:
+    """End by the signal itself, so that the caller sees what happened."""
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+    raise SystemExit(128 + number)

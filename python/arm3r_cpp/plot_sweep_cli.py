@@ -1,0 +1,58 @@
+"""arm3r-plot sweep: a figure of a sweep's table."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from .errors import Arm3rError, OutputError, UsageError
+from .exits import die_of, exit_code
+
+
+def main(argv: Sequence[str]) -> int:
+    """argv without "arm3r-plot sweep". Returns an exit code, one of those of `arm3r`."""
+    options = parser().parse_args(argv)
+    try:
+        save(options)
+    except Arm3rError as error:
+        print(f"arm3r-plot: {error}", file=sys.stderr)
+        return exit_code(error)
+    except KeyboardInterrupt:
+        die_of(signal.SIGINT)
+    return 0
+
+
+def parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="arm3r-plot sweep", description="Draw a sweep: a metric against an axis, a heat map over a grid of two."
+    )
+    add = parser.add_argument
+    add("folder", type=Path, metavar="DIR", help="folder of a finished sweep")
+    add("-o", dest="out", type=Path, metavar="OUT.png", default=Path("sweep.png"), help="also .pdf or .svg")
+    add("--metric", metavar="NAME", help="column that is drawn (default: the first one kept)")
+    add("--log", action="store_true", help="logarithmic scale of the metric")
+    return parser
+
+
+def save(options: argparse.Namespace) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from .plot_style import FORMATS, style
+    from .plot_sweep import sweep
+    from .sweep_table import SweepTable
+
+    out: Path = options.out
+    if out.suffix[1:] not in FORMATS:
+        raise UsageError(f"-o {out}: cannot write {out.suffix or 'that'}; use one of {', '.join(FORMATS)}")
+    figure = sweep(SweepTable(options.folder), metric=options.metric, log=options.log)
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with style():
+            figure.savefig(out)
+    except OSError as error:
+        raise OutputError(f"cannot write figures: {error}") from error
+    print(out)

@@ -1,0 +1,78 @@
+"""Tables as bytes: CSV, or Parquet where pyarrow is installed; the same numbers give the same bytes."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import UsageError
+
+KINDS = ("csv", "parquet")
+
+
+def encode(columns: Mapping[str, NDArray[Any]], kind: str) -> bytes:
+    """Rows of a table, without CSV's line of names. NaN becomes an empty cell, or null."""
+    if kind == "csv":
+        return "".join(f"{','.join(row)}\n" for row in zip(*map(_cells, columns.values()), strict=True)).encode()
+    arrow = pyarrow()
+    out = io.BytesIO()
+    table = arrow.table({name: arrow.array(column, from_pandas=True) for name, column in columns.items()})
+    arrow.parquet.write_table(table, out)
+    return out.getvalue()
+
+
+def merge(pieces: Iterable[Path], names: Sequence[str], kind: str, out: BinaryIO) -> None:
+    """One table of its pieces, in their order; never more than one of them in memory."""
+    if kind == "csv":
+        out.write(f"{','.join(names)}\n".encode())
+        for piece in pieces:
+            out.write(piece.read_bytes())
+        return
+    parquet = pyarrow().parquet
+    writer = None
+    for piece in pieces:
+        table = parquet.read_table(piece)
+        writer = writer or parquet.ParquetWriter(out, table.schema)
+        writer.write_table(table)
+    if writer:
+        writer.close()
+
+
+def decode(path: Path, kind: str) -> dict[str, NDArray[Any]]:
+    """The columns of a table, by name: float64, NaN where there is nothing; or text."""
+    if kind == "parquet":
+        table = pyarrow().parquet.read_table(path)
+        return {name: table[name].to_numpy() for name in table.column_names}
+    names, *rows = (line.split(",") for line in path.read_text().splitlines())
+    return {name: _column(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
+
+
+def pyarrow() -> Any:
+    """pyarrow with its Parquet part. UsageError: it is not installed."""
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError as error:
+        raise UsageError("Parquet needs pyarrow: pip install 'arm3r_cpp[parquet]'", code="extra") from error
+    return pyarrow
+
+
+def _cells(column: NDArray[Any]) -> list[str]:
+    if column.dtype.kind == "b":
+        return ["true" if value else "false" for value in column.tolist()]
+    if column.dtype.kind == "f":
+        return ["" if math.isnan(value) else repr(value).removesuffix(".0") for value in column.tolist()]
+    return [str(value) for value in column.tolist()]
+
+
+def _column(cells: Sequence[str]) -> NDArray[Any]:
+    try:
+        return np.array([float(cell) if cell else math.nan for cell in cells])
+    except ValueError:
+        return np.array(cells)

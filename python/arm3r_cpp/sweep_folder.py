@@ -1,0 +1,201 @@
+"""The folder of a sweep: what was asked, finished shards, and the ledger that says which of them can be trusted."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any, BinaryIO
+
+from .errors import IncompatibleError, OutputError
+
+MANIFEST, LEDGER, LOCK, SHARDS = "sweep.json", "ledger.jsonl", "lock", "shards"
+
+
+def sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+class SweepFolder:
+    """A folder that this process holds the lock of.
+
+    A shard counts as finished when the ledger has a whole line of it, and its file the size and checksum of that line;
+    nothing else is believed.
+    """
+
+    def __init__(self, path: Path, manifest: Mapping[str, Any]) -> None:
+        """`SweepFolder.held` makes folders."""
+        self.path, self.manifest = path, manifest
+        self.ledger: dict[int, dict[str, Any]] = {}
+
+    @classmethod
+    @contextmanager
+    def held(cls, path: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iterator[SweepFolder]:
+        """The folder for a sweep, new or resumed.
+
+        Raises:
+            OutputError: it cannot be written, another process works in it, or it is not empty without `resume`.
+            IncompatibleError: it was begun with something else; all that differs is listed.
+        """
+        with _writing(path):
+            path.mkdir(parents=True, exist_ok=True)
+            lock = (path / LOCK).open("a+")
+        with lock:
+            _take(lock, path)
+            folder = cls(path, manifest)
+            with _writing(path):
+                folder._begin(resume)
+            yield folder
+
+    def _begin(self, resume: bool) -> None:
+        inside = {entry.name for entry in self.path.iterdir()} - {LOCK}
+        begun = MANIFEST in inside
+        if inside and not resume:
+            raise OutputError(f"{self.path}: exists; give another folder, or --resume to go on in it", code="output")
+        if inside - {name for name in inside if name.endswith(".part")} and not begun:
+            raise OutputError(
+                f"{self.path}: there is no {MANIFEST} in it: it is not the folder of a sweep", code="output"
+            )
+        if begun:
+            self._compare(json.loads((self.path / MANIFEST).read_bytes()))
+        else:
+            publish(self.path / MANIFEST, json.dumps(self.manifest, indent=1).encode() + b"\n")
+        (self.path / SHARDS).mkdir(exist_ok=True)
+        self._clear()
+        self._read_ledger()
+
+    def _compare(self, begun: Mapping[str, Any]) -> None:
+        keys = dict.fromkeys([*begun, *self.manifest])
+        differing = [key for key in keys if begun.get(key) != self.manifest.get(key)]
+        if differing:
+            lines = [
+                f"  {key}: {_short(begun.get(key))} then, {_short(self.manifest.get(key))} now" for key in differing
+            ]
+            raise IncompatibleError(
+                f"{self.path}: was begun with something else; resume with the same, or give another folder\n"
+                + "\n".join(lines),
+                code="sweep.differs",
+            )
+
+    def _clear(self) -> None:
+        """Take away what a killed process left half written."""
+        for part in [*self.path.glob("*.part"), *(self.path / SHARDS).glob("*.part")]:
+            part.unlink()
+
+    # ---- shards
+
+    def shard(self, number: int) -> Path:
+        return self.path / SHARDS / f"{number:06}.{self.manifest['table']}"
+
+    def store(self, number: int, first: int, count: int, data: bytes, outcomes: Mapping[str, int]) -> None:
+        """Publish a finished shard, then acknowledge it. A shard that is stored already stays."""
+        if number in self.ledger:
+            return
+        file = self.shard(number)
+        publish(file, data)
+        line = {"first": first, "count": count, "file": f"{SHARDS}/{file.name}", "size": len(data)}
+        line |= {"sha256": sha256(data), "outcomes": dict(outcomes)}
+        with _writing(self.path), (self.path / LEDGER).open("ab") as ledger:
+            ledger.write(_sealed(line))
+        self.ledger[number] = line
+
+    def _read_ledger(self) -> None:
+        """Believe what can be checked, say what cannot, and keep the ledger clean of it."""
+        path = self.path / LEDGER
+        lines = path.read_bytes().splitlines() if path.exists() else []
+        for text in lines:
+            line = _unsealed(text)
+            if line is None:
+                warnings.warn(f"{path}: a line is torn; its runs are done again", stacklevel=2)
+                continue
+            number = line["first"] // self.manifest["shard"]
+            if fault := self._fault(number, line):
+                last = line["first"] + line["count"] - 1
+                warnings.warn(f"{line['file']}: {fault}; runs {line['first']} to {last} are done again", stacklevel=2)
+            else:
+                self.ledger[number] = line
+        publish(path, b"".join(map(_sealed, self.ledger.values())))
+
+    def _fault(self, number: int, line: Mapping[str, Any]) -> str:
+        """Why a shard's file is not what the ledger says; "" when it is."""
+        path = self.shard(number)
+        if not path.is_file():
+            return "is missing"
+        data = path.read_bytes()
+        if len(data) != line["size"]:
+            return f"has {len(data)} bytes, not {line['size']}"
+        return "" if sha256(data) == line["sha256"] else "does not have the checksum that the ledger says"
+
+    @property
+    def outcomes(self) -> dict[str, int]:
+        """How many runs ended in which way, of the shards that are finished."""
+        counts: dict[str, int] = {}
+        for line in self.ledger.values():
+            for outcome, count in line["outcomes"].items():
+                counts[outcome] = counts.get(outcome, 0) + count
+        return dict(sorted(counts.items()))
+
+
+def publish(path: Path, data: bytes) -> None:
+    """Write a file under a name of its own, then give it the right one: there is never half of it."""
+    with publishing(path) as file:
+        file.write(data)
+
+
+@contextmanager
+def publishing(path: Path) -> Iterator[BinaryIO]:
+    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    with _writing(path):
+        try:
+            with part.open("wb") as file:
+                yield file
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}", code="output") from error
+
+
+def _take(lock: IO[str], path: Path) -> None:
+    """The lock goes with the process, however that ends."""
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        lock.seek(0)
+        raise OutputError(f"{path}: in use by pid {lock.read().strip() or '?'}", code="output.in_use") from None
+    lock.seek(0)
+    lock.truncate()
+    lock.write(f"{os.getpid()}\n")
+    lock.flush()
+
+
+def _sealed(line: Mapping[str, Any]) -> bytes:
+    text = json.dumps(line)
+    return json.dumps({**line, "check": sha256(text.encode())[:16]}).encode() + b"\n"
+
+
+def _unsealed(text: bytes) -> dict[str, Any] | None:
+    try:
+        line = json.loads(text)
+        check = line.pop("check")
+        return line if check == sha256(json.dumps(line).encode())[:16] else None
+    except (ValueError, KeyError, AttributeError, TypeError):
+        return None
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{len(text)} characters with sha256 {sha256(text.encode())[:12]}"

@@ -1,0 +1,93 @@
+"""The table of a finished sweep, read from its folder."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import os
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import UsageError
+from .sweep_axes import SweepAxis
+from .sweep_encode import decode
+from .sweep_folder import MANIFEST
+
+
+class SweepTable:
+    """The table of a sweep: `table["peak_force"]` is a column of one number a run, in the order of the runs.
+
+    Columns are float64 in SI units and radians, NaN where a run has no such number; outcomes and words are text.
+
+    Attributes:
+        path: the file, table.csv or table.parquet.
+        axes: what varied, in order.
+        mode: "grid", "list", "random" or "latin_hypercube".
+        units: by column; "" for none.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        """Read from a sweep's folder.
+
+        Raises:
+            UsageError: there is no finished sweep in it.
+        """
+        self.folder = Path(folder)
+        try:
+            manifest = json.loads((self.folder / MANIFEST).read_bytes())
+        except OSError as error:
+            raise UsageError(f"{self.folder}: {MANIFEST} cannot be read: {error.strerror}", code="file") from error
+        self._kind = manifest["table"]
+        self.path = self.folder / f"table.{self._kind}"
+        if not self.path.is_file():
+            raise UsageError(f"{self.folder}: the sweep is not finished; go on with --resume", code="file")
+        self.mode: str = manifest["mode"]
+        self.units: dict[str, str] = manifest["columns"]
+        self.axes = [SweepAxis(**axis) for axis in manifest["axes"]]
+
+    @cached_property
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        return decode(self.path, self._kind)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A column.
+
+        Raises:
+            KeyError: there is no such column; the message names the nearest one.
+        """
+        if name in self.units:
+            return self._columns[name]
+        near = difflib.get_close_matches(str(name), self.units, n=1) or self.names
+        raise KeyError(f"no column {name!r}; near: {', '.join(near)}")
+
+    def __iter__(self) -> Iterator[str]:
+        """The columns' names, in order."""
+        return iter(self.units)
+
+    def __len__(self) -> int:
+        """How many runs there are."""
+        return len(self["run"])
+
+    def __repr__(self) -> str:
+        return f"<SweepTable {self.path}: {len(self)} runs>"
+
+    @property
+    def names(self) -> list[str]:
+        """The columns' names, in order."""
+        return list(self.units)
+
+    @property
+    def ok(self) -> NDArray[np.bool_]:
+        """Which runs reached their end."""
+        return self["outcome"] == "ok"
+
+    @property
+    def outcomes(self) -> dict[str, int]:
+        """How many runs ended in which way."""
+        names, counts = np.unique(self["outcome"], return_counts=True)
+        return dict(zip(names.tolist(), counts.tolist(), strict=True))

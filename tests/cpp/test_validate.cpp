@@ -1,0 +1,200 @@
+#include <boost/test/unit_test.hpp>
+
+#include "at.hpp"
+#include "fixtures.hpp"
+#include "validate.hpp"
+
+namespace arm3r {
+
+BOOST_AUTO_TEST_SUITE(validating)
+
+using Numbers = std::vector<double>;
+
+static Numbers numbers_of(const Params& params) {
+    const std::span<const double> all = params;
+    return {all.begin(), all.end()};
+}
+
+static std::size_t place(std::string_view path, std::size_t item = 0) { return find_key(path)->offset + item; }
+
+static bool is_number(const Key& key) {
+    return key.kind == Kind::number || key.kind == Kind::angle || key.kind == Kind::integer;
+}
+
+// One scenario for each thing that decides which keys exist.
+static std::vector<Params> bases() {
+    const Params compensated = unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1);
+    const Params constant = unequal_params().choose("controller.type", "constant").set("controller.torque", {1, 2, 3});
+    return {
+        unequal_params(),
+        compensated,
+        constant,
+        Params(compensated).set("controller.model.link3.mass", 0.9).set("controller.model.armature", {0, 0.1, 0}),
+        Params(compensated)
+            .choose("controller.model.link2.shape", "cylinder")
+            .set("controller.model.link2.radius", 0.1),
+        Params(compensated).choose("controller.model.link1.shape", "slender").set("controller.model.link1.length", 1),
+        Params(compensated).choose("solver.method", "taylor").set("wall.acts_on_arm", 1),
+        Params(constant).choose("solver.method", "rk4").set("wall", 1).choose("wall.motion.type", "fixed"),
+        Params().set("wall", 1).choose("wall.contact.law", "diagonal").set("wall.contact.stiffness", {1e3, 10, 20}),
+        Params()
+            .set("wall", 1)
+            .choose("wall.motion.type", "sinusoid")
+            .set("wall.motion.amplitude", 0.1)
+            .set("wall.motion.frequency", 2),
+        Params().choose("arm.link1.shape", "slender").set("arm.link1.length", 0.4).set("arm.link1.mass", 3),
+        Params().choose("arm.link3.shape", "slender"),
+        Params().set("arm.link2.density", -1),
+        Params(compensated).set("controller.model.link3.inertia", {0.1, 0.2, 0.31}),
+    };
+}
+
+// Numbers as a user might type them, and those that only an attack would hold.
+static double hostile(const Key& key, Random& random) {
+    const double kind = random.in(0, 1), within = random.in(0, 1);
+    if (kind < 0.05) return std::nan("");
+    if (kind < 0.08) return random.in(-1, 1) < 0 ? -HUGE_VAL : HUGE_VAL;
+    if (kind < 0.12) return key.bounds.low;
+    if (kind < 0.16) return key.bounds.high;
+    if (kind < 0.18) return std::nextafter(key.bounds.low, -HUGE_VAL);
+    if (kind < 0.20) return std::nextafter(key.bounds.high, HUGE_VAL);
+    if (kind < 0.25) return 0;
+    if (kind < 0.30) return -within;
+    if (key.kind == Kind::angle) return 6 * within - 3;
+    return key.kind == Kind::integer ? std::floor(100 * within) + 1 : within;
+}
+
+struct Varied {
+    const Key* key;
+    std::size_t number;
+};
+
+static std::vector<Varied> some_numbers(double share, Random& random) {
+    std::vector<Varied> varied;
+    for (const Key& key : schema())
+        for (std::size_t i = 0; is_number(key) && i < key.size; ++i)
+            if (random.in(0, 1) < share) varied.push_back({&key, key.offset + i});
+    return varied;
+}
+
+static std::vector<std::size_t> places(const std::vector<Varied>& varied) {
+    std::vector<std::size_t> numbers;
+    for (const Varied& v : varied) numbers.push_back(v.number);
+    return numbers;
+}
+
+BOOST_AUTO_TEST_CASE(the_quick_verdict_is_that_of_validate_for_any_numbers) {
+    Random random(31);
+    std::size_t valid = 0, invalid = 0;
+    for (const Params& base : bases()) {
+        for (int i = 0; i < 60; ++i) {
+            const std::vector<Varied> varied = some_numbers(random.in(0, 1) < 0.7 ? 0.04 : 0.4, random);
+            const Checker is_valid(base, places(varied));
+            for (int j = 0; j < 20; ++j) {
+                Numbers params = numbers_of(base);
+                for (const Varied& v : varied)
+                    if (random.in(0, 1) < 0.4) params[v.number] = hostile(*v.key, random);
+                const std::vector<Problem> problems = validate(params);
+                (problems.empty() ? valid : invalid) += 1;
+                BOOST_REQUIRE_MESSAGE(is_valid(params) == problems.empty(),
+                                      (problems.empty() ? "valid, yet refused" : describe(problems.front())));
+            }
+        }
+    }
+    BOOST_TEST(valid > 3000u);
+    BOOST_TEST(invalid > 3000u);
+}
+
+// Each rule once: a number that breaks it, and the key whose rule it is.
+struct Breach {
+    Params base;
+    std::size_t number;
+    double fine, broken;
+    std::string code;
+};
+
+static std::vector<Breach> breaches() {
+    const Params compensated = unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1);
+    const Params near = Params(compensated).set("wall.point", {1.08, 0, 0});
+    const Params flat = unequal_params().choose("arm.link2.shape", "slender").choose("arm.link3.shape", "slender");
+    const Params inertia = unequal_params().set("arm.link3.inertia", {0.1, 0.2, 0.3});
+    const Params model = Params(compensated).set("controller.model.link2.inertia", {0.1, 0.2, 0.3});
+    const Params taylor = Params(compensated).choose("solver.method", "taylor");
+    return {
+        {compensated, place("wall.contact.stiffness"), 1e7, -1, "scenario.range"},
+        {compensated, place("wall.contact.stiffness"), 1e7, std::nan(""), "scenario.missing_key"},
+        {compensated, place("controller.gravity", 1), std::nan(""), 1, "scenario.missing_key"},
+        {compensated, place("solver.max_steps"), 10, 10.5, "scenario.type"},
+        {compensated, place("arm.link3.com"), std::nan(""), HUGE_VAL, "scenario.range"},
+        {compensated, place("controller.model.link3.length"), 0.4, 1e-7, "scenario.range"},
+        {compensated, place("wall.point"), 2, 0.9, "scenario.starts_inside_wall"},
+        {near, place("initial.q"), 0.4, 0, "scenario.starts_inside_wall"},
+        {compensated, place("wall.normal"), -2, 0, "scenario.range"},
+        {flat, place("arm.link1.inertia_axial"), 2e-9, 0, "scenario.singular_mass_matrix"},
+        {flat, place("arm.link2.mass"), 1, std::nan(""), "scenario.missing_key"},
+        {inertia, place("arm.link3.inertia", 2), 0.29, 0.31, "scenario.inertia"},
+        {model, place("controller.model.link2.inertia", 2), 0.29, 0.31, "scenario.inertia"},
+        {taylor, place("arm.torque_limit", 1), HUGE_VAL, 10, "scenario.corner"},
+        {taylor, place("solver.tol"), 1e-12, 1e-16, "scenario.range"},
+    };
+}
+
+BOOST_AUTO_TEST_CASE(each_rule_is_seen_through_the_number_that_breaks_it) {
+    for (const Breach& breach : breaches()) {
+        BOOST_TEST_CONTEXT(param_name(breach.number) << " = " << breach.broken) {
+            Numbers fine = numbers_of(breach.base), broken = fine;
+            fine[breach.number] = breach.fine;
+            broken[breach.number] = breach.broken;
+            BOOST_TEST(validate(fine).empty());
+            BOOST_REQUIRE(!validate(broken).empty());
+            BOOST_TEST(validate(broken).front().code == breach.code);
+            for (const Numbers& base : {fine, broken}) {
+                const Checker is_valid(base, std::array{breach.number});
+                BOOST_TEST(is_valid(fine));
+                BOOST_TEST(!is_valid(broken));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_wrong_in_the_base_and_never_varied_is_wrong_in_all) {
+    const std::array varied{place("initial.q")};
+    for (const Params& base :
+         {Params().set("arm.payload.mass", -1), Params().set("solver.rtol", 1), Params().set("solver.method", 3),
+          Params().choose("arm.link3.shape", "slender"), Params().set("arm.link2.inertia", {1, 0, 0}),
+          Params().choose("controller.type", "gravity_compensation").set("controller.model.payload.mass", -1),
+          Params().choose("controller.type", "gravity_compensation").set("controller.model.link1.shape", -1)})
+        BOOST_TEST(!Checker(base, varied)(base));
+    BOOST_TEST(Checker(Params(), varied)(Params()));
+    const Numbers short_of_one(param_count() - 1);
+    BOOST_TEST(!Checker(short_of_one, varied)(short_of_one));
+}
+
+BOOST_AUTO_TEST_CASE(what_the_controller_does_not_use_is_no_matter) {
+    const Params base = Params().set("controller.model.link2.inertia", {1, 0, 0});
+    BOOST_TEST(Checker(base, std::array{place("controller.model.link2.inertia")})(base));
+}
+
+// ---- names that the compiler knows
+
+BOOST_AUTO_TEST_CASE(a_name_that_the_compiler_knows_reads_what_the_schema_says) {
+    const Params params = unequal_params().choose("solver.method", "rk4");
+    BOOST_TEST(at<"initial.q">(params, 2) == param(params, "initial.q", 2));
+    BOOST_TEST((at<Name("arm.link2") + ".length">(params)) == 0.8);
+    BOOST_TEST(vector_at<"initial.q">(params)[1] == 0.7);
+    BOOST_TEST((is<"solver.method", "rk4">(params)));
+    BOOST_TEST((!is<"solver.method", "taylor">(params)));
+}
+
+BOOST_AUTO_TEST_CASE(a_name_that_is_not_in_the_schema_is_a_bug_that_is_named) {
+    const Params params;
+    const auto names = [](const char* part) {
+        return [part](const Error& error) { return std::string(error.what()).find(part) != std::string::npos; };
+    };
+    BOOST_CHECK_EXCEPTION(at<"wall.pointe">(params), Error, names("wall.pointe"));
+    BOOST_CHECK_EXCEPTION((is<"solver.method", "rk5">(params)), Error, names("rk5"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace arm3r

@@ -1,0 +1,380 @@
+"""Sweeps from end to end: the same bytes always, nothing lost, nothing believed."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from conftest import Cli
+
+SWEEP = """\
+format: 1
+scenario: {wall: {point: [1.78, 0, 0], acts_on_arm: true}, controller: {type: gravity_compensation}, time: {stop: 1.2}}
+mode: random
+runs: 95
+axes:
+  - {key: wall.contact.stiffness, log_uniform: [1e2, 1e6]}
+  - {key: initial.qd, values: [[0, 0, 0], [0, 0.1, 0]]}
+  - {key: solver.method, values: [dopri5, rk4]}
+  - {key: solver.max_steps, values: [20, 1000000]}
+  - {key: "wall.point[0]", uniform: [1.5, 1.9]}
+metrics: [peak_force, first_contact, steps.accepted]
+statistics: [{column: depth, of: max}, {column: q2, of: mean}, {column: f_on_wall_x, of: max_abs}]
+shard: 10
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "sweep.yaml"
+    path.write_text(SWEEP)
+    return path
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path_factory.mktemp("reference") / "out").folder
+
+
+@pytest.fixture
+def started(reference: Path, tmp_path: Path) -> Path:
+    """A finished sweep without its table, to be resumed."""
+    shutil.copytree(reference, tmp_path / "out")
+    (tmp_path / "out/table.csv").unlink()
+    return tmp_path / "out"
+
+
+@pytest.fixture
+def command(scripts: Path) -> Cli:
+    def call(*arguments: object) -> subprocess.CompletedProcess[str]:
+        call = [scripts / "arm3r-sweep", *map(str, arguments)]
+        return subprocess.run(call, capture_output=True, text=True, timeout=120)
+
+    return call
+
+
+def bytes_of(folder: Path) -> bytes:
+    return (folder / "table.csv").read_bytes()
+
+
+# ---- the table ------------------------------------------------------------------------------------------------------
+
+
+def test_one_row_a_run_with_the_runs_own_numbers(reference: Path) -> None:
+    table, plan = arm3r.SweepTable(reference), arm3r.Sweep(SWEEP)
+    assert len(table) == 95 and table["run"].tolist() == list(range(95))
+    values = plan.values()
+    batch = plan.scenario.batch(values)
+    assert table["outcome"].tolist() == batch.outcomes.tolist()
+    assert {"ok", "invalid", "budget"} == set(table.outcomes)
+    assert table["solver.method"].tolist() == values["solver.method"].tolist()
+    assert np.array_equal(table["initial.qd[1]"], values["initial.qd"][:, 1])
+    for name in plan.metrics:
+        assert np.array_equal(table[name], batch[name], equal_nan=True), name
+    index = int(np.flatnonzero(table.ok & (table["peak_force"] > 0))[0])
+    run = batch.run(index)
+    assert table["depth.max"][index] == run["depth"].max()
+    assert table["q2.mean"][index] == pytest.approx(run["q2"].mean(), rel=1e-15)
+    assert table["f_on_wall_x.max_abs"][index] == abs(run["f_on_wall_x"]).max() > 0
+
+
+def test_the_file_is_plain(reference: Path) -> None:
+    header, *rows = bytes_of(reference).decode().split("\n")
+    assert header.startswith("run,wall.contact.stiffness,initial.qd[0],initial.qd[1],initial.qd[2],solver.method,")
+    assert rows[-1] == "" and "nan" not in "".join(rows) and "inf" not in "".join(rows)
+    invalid = next(row for row in rows if ",invalid," in row)
+    assert invalid.endswith(",invalid,,,,,,")
+
+
+def test_columns_have_units_and_mistaken_names_a_hint(reference: Path) -> None:
+    table = arm3r.SweepTable(reference)
+    assert (table.units["peak_force"], table.units["depth.max"], table.units["initial.qd[2]"]) == ("N", "m", "rad/s")
+    assert table.units["steps.accepted"] == "" and list(table) == table.names
+    with pytest.raises(KeyError, match="peak_force"):
+        table["peak_forc"]
+
+
+@pytest.mark.parametrize("shard", [1, 7, 1000])
+def test_shards_do_not_show_in_the_table(reference: Path, tmp_path: Path, shard: int) -> None:
+    plan = arm3r.Sweep(SWEEP.replace("shard: 10", f"shard: {shard}"))
+    assert bytes_of(arm3r.sweep(plan, out=tmp_path / "out", jobs=1).folder) == bytes_of(reference)
+
+
+def test_parquet_holds_the_same(reference: Path, tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow")
+    first = arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path / "a", parquet=True, jobs=1)
+    second = arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path / "b", parquet=True)
+    assert first.path.name == "table.parquet" and first.path.read_bytes() == second.path.read_bytes()
+    plain = arm3r.SweepTable(reference)
+    for name in plain:
+        same = plain[name] == first[name] if plain[name].dtype.kind == "U" else None
+        assert same.all() if same is not None else np.array_equal(plain[name], first[name], equal_nan=True), name
+
+
+def test_without_pyarrow_parquet_names_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(arm3r.UsageError, match=r"arm3r_cpp\[parquet\]"):
+        arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path / "out", parquet=True)
+
+
+# ---- resuming -------------------------------------------------------------------------------------------------------
+
+
+def resumed(folder: Path) -> tuple[bytes, list[str]]:
+    with pytest.warns() as told:
+        import warnings
+
+        warnings.warn("so that there is one", stacklevel=1)
+        arm3r.sweep(arm3r.Sweep(SWEEP), out=folder, resume=True)
+    return bytes_of(folder), [str(warning.message) for warning in told][1:]
+
+
+def times(folder: Path) -> dict[str, int]:
+    return {path.name: path.stat().st_mtime_ns for path in (folder / "shards").iterdir()}
+
+
+def test_resume_does_nothing_again(reference: Path, started: Path) -> None:
+    before = times(started)
+    assert resumed(started) == (bytes_of(reference), [])
+    assert times(started) == before
+
+
+def damage_flip(folder: Path) -> None:
+    data = bytearray((folder / "shards/000003.csv").read_bytes())
+    data[40] ^= 1
+    (folder / "shards/000003.csv").write_bytes(data)
+
+
+def damage_cut(folder: Path) -> None:
+    os.truncate(folder / "shards/000003.csv", 100)
+
+
+def damage_empty(folder: Path) -> None:
+    os.truncate(folder / "shards/000003.csv", 0)
+
+
+def damage_lose(folder: Path) -> None:
+    (folder / "shards/000003.csv").unlink()
+
+
+def damage_swap(folder: Path) -> None:
+    shutil.copy(folder / "shards/000004.csv", folder / "shards/000003.csv")
+
+
+def damage_ledger_line(folder: Path) -> None:
+    text = (folder / "ledger.jsonl").read_text()
+    (folder / "ledger.jsonl").write_text(text.replace('"first": 30', '"first": 31'))
+
+
+def damage_ledger_end(folder: Path) -> None:
+    os.truncate(folder / "ledger.jsonl", (folder / "ledger.jsonl").stat().st_size - 9)
+
+
+DAMAGES = [damage_flip, damage_cut, damage_empty, damage_lose, damage_swap, damage_ledger_line, damage_ledger_end]
+
+
+@pytest.mark.parametrize("damage", DAMAGES, ids=lambda damage: damage.__name__)
+def test_damage_is_said_and_mended(reference: Path, started: Path, damage: Any) -> None:
+    damage(started)
+    before = times(started)
+    table, told = resumed(started)
+    assert table == bytes_of(reference)
+    assert len(told) == 1 and "again" in told[0]
+    if "ledger" not in damage.__name__:
+        assert "000003" in told[0] and "runs 30 to 39" in told[0]
+    changed = {name for name, stamp in times(started).items() if before.get(name) != stamp}
+    assert len(changed) == 1
+
+
+def test_a_shard_without_its_line_is_not_believed(reference: Path, started: Path) -> None:
+    lines = (started / "ledger.jsonl").read_text().splitlines(keepends=True)
+    (started / "ledger.jsonl").write_text("".join(lines[1:]))
+    first = json.loads(lines[0])
+    (started / first["file"]).write_text("rubbish\n")
+    (started / "shards" / "000001.csv.99.part").write_text("half")
+    assert resumed(started) == (bytes_of(reference), [])
+    assert not list(started.rglob("*.part"))
+
+
+def test_other_inputs_are_refused_and_listed(started: Path) -> None:
+    plan = arm3r.Sweep(SWEEP.replace("runs: 95", "runs: 96"), overrides=["time.stop=1.3"])
+    with pytest.raises(arm3r.IncompatibleError) as raised:
+        arm3r.sweep(plan, out=started, resume=True)
+    assert all(word in str(raised.value) for word in ("runs: 95 then, 96 now", "scenario:", "sweep:", "hashes:"))
+
+
+def test_another_version_is_refused(started: Path) -> None:
+    manifest = json.loads((started / "sweep.json").read_text())
+    (started / "sweep.json").write_text(json.dumps({**manifest, "version": "0.0.1"}))
+    with pytest.raises(arm3r.IncompatibleError, match=r'version: "0\.0\.1" then'):
+        arm3r.sweep(arm3r.Sweep(SWEEP), out=started, resume=True)
+
+
+def test_a_stopped_sweep_goes_on(reference: Path, tmp_path: Path) -> None:
+    def stop(done: int, runs: int) -> bool:
+        assert runs == 95
+        return done >= 20
+
+    with pytest.raises(arm3r.Arm3rError, match="stopped after"):
+        arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path / "out", jobs=1, progress=stop)
+    kept = times(tmp_path / "out")
+    assert 2 <= len(kept) < 10 and not (tmp_path / "out/table.csv").exists()
+    with pytest.raises(arm3r.UsageError, match="not finished"):
+        arm3r.SweepTable(tmp_path / "out")
+    assert resumed(tmp_path / "out") == (bytes_of(reference), [])
+    assert kept.items() <= times(tmp_path / "out").items()
+
+
+# ---- the command ----------------------------------------------------------------------------------------------------
+
+
+def test_failed_runs_are_exit_7_with_their_count(command: Cli, file: Path, reference: Path, tmp_path: Path) -> None:
+    done = command(file, "-o", tmp_path / "out")
+    assert done.returncode == 7 and done.stderr == ""
+    failed = (~arm3r.SweepTable(reference).ok).sum()
+    assert f"95 runs, {failed} not ok: " in done.stdout.splitlines()[-1] and "invalid" in done.stdout
+    assert bytes_of(tmp_path / "out") == bytes_of(reference)
+
+
+def test_all_ok_is_exit_0(command: Cli, file: Path, tmp_path: Path) -> None:
+    file.write_text("{format: 1, scenario: {}, axes: [{key: time.stop, values: [0, 0.1]}], metrics: [t_end]}")
+    done = command(file, "-o", tmp_path / "out", "--set", "time.log_every=0.1")
+    assert (done.returncode, done.stdout) == (0, f"{tmp_path / 'out/table.csv'}: 2 runs, all ok\n")
+    assert bytes_of(tmp_path / "out") == b"run,time.stop,outcome,t_end\n0,0,ok,0\n1,0.1,ok,0.1\n"
+
+
+def test_an_existing_folder_is_exit_6(command: Cli, file: Path, started: Path) -> None:
+    done = command(file, "-o", started)
+    assert done.returncode == 6 and "--resume" in done.stderr
+    assert command(file, "-o", started, "--resume").returncode == 7
+    (started.parent / "mine").mkdir()
+    (started.parent / "mine/letter.txt").write_text("dear")
+    done = command(file, "-o", started.parent / "mine", "--resume")
+    assert done.returncode == 6 and "not the folder of a sweep" in done.stderr
+    assert command(file, "-o", file / "below").returncode == 6
+
+
+def test_exit_codes_of_mistakes(command: Cli, file: Path, started: Path, tmp_path: Path) -> None:
+    assert command("nowhere.yaml", "-o", tmp_path / "x").returncode == 2
+    assert command(file).returncode == 2
+    file.write_text(SWEEP.replace("runs: 95", "runs: 96"))
+    done = command(file, "-o", started, "--resume")
+    assert done.returncode == 9 and "runs: 95 then, 96 now" in done.stderr
+    file.write_text(SWEEP.replace("runs: 95", "run: 96"))
+    done = command(file, "-o", tmp_path / "x")
+    assert done.returncode == 3 and "did you mean runs?" in done.stderr and not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize("jobs", ["0", "-1", "10000"])
+def test_jobs_are_clamped_and_said_once(command: Cli, file: Path, reference: Path, tmp_path: Path, jobs: str) -> None:
+    done = command(file, "-o", tmp_path / "out", f"--jobs={jobs}")
+    assert done.returncode == 7 and bytes_of(tmp_path / "out") == bytes_of(reference)
+    assert done.stderr.count("\n") == 1 and f"{jobs} jobs" in done.stderr and "CPUs" in done.stderr
+
+
+LONG = """\
+format: 1
+scenario: {wall: {acts_on_arm: true}, controller: {type: gravity_compensation}, time: {stop: 8}}
+axes: [{key: wall.contact.stiffness, geomspace: [1e2, 1e6, 600]}]
+metrics: [peak_force, impulse]
+statistics: [{column: depth, of: max}]
+shard: 10
+"""
+
+
+@pytest.fixture
+def long(tmp_path: Path, scripts: Path) -> Any:
+    (tmp_path / "long.yaml").write_text(LONG)
+
+    def start(*more: str) -> subprocess.Popen[str]:
+        return subprocess.Popen([scripts / "arm3r-sweep", tmp_path / "long.yaml", "-o", tmp_path / "long", *more],
+                                stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # fmt: skip
+
+    return start
+
+
+def wait_for(path: Path) -> None:
+    end = time.monotonic() + 30
+    while not (path.exists() and path.stat().st_size):
+        assert time.monotonic() < end
+        time.sleep(0.005)
+
+
+def test_a_second_driver_is_told_who_is_there(long: Any, command: Cli, tmp_path: Path) -> None:
+    first = long()
+    wait_for(tmp_path / "long/ledger.jsonl")
+    first.send_signal(signal.SIGSTOP)
+    done = command(tmp_path / "long.yaml", "-o", tmp_path / "long", "--resume")
+    first.kill()
+    first.communicate()
+    assert done.returncode == 6 and f"in use by pid {first.pid}" in done.stderr
+
+
+def test_interrupt_keeps_what_is_finished(long: Any, tmp_path: Path) -> None:
+    process = long()
+    wait_for(tmp_path / "long/ledger.jsonl")
+    sent = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=20)
+    assert time.monotonic() - sent < 0.5
+    assert process.returncode == -signal.SIGINT and "--resume" in error and "Traceback" not in error
+    kept = times(tmp_path / "long")
+    again = long("--resume")
+    assert again.wait(60) == 0
+    assert kept and kept.items() <= times(tmp_path / "long").items()
+
+
+def _rounds(long: Any, tmp_path: Path, rounds: int) -> None:
+    expected = bytes_of(arm3r.sweep(arm3r.Sweep(LONG), out=tmp_path / "whole").folder)
+    chance, killed = random.Random(1), 0
+    for _ in range(rounds):
+        folder = tmp_path / "long"
+        shutil.rmtree(folder, ignore_errors=True)
+        while True:
+            process = long("--resume")
+            time.sleep(chance.uniform(0.25, 0.8))
+            process.kill()
+            _, error = process.communicate()
+            if process.returncode == 0:
+                break
+            killed += 1
+            ledger = folder / "ledger.jsonl"
+            acknowledged = ledger.read_text().splitlines() if ledger.exists() else []
+            assert all((folder / json.loads(line)["file"]).exists() for line in acknowledged)
+            assert "again" not in error
+        assert bytes_of(folder) == expected
+        assert len(list((folder / "shards").iterdir())) == 60
+    assert killed >= rounds
+
+
+def test_kill_loses_no_finished_shard(long: Any, tmp_path: Path) -> None:
+    _rounds(long, tmp_path, 1)
+
+
+@pytest.mark.gate
+def test_twenty_rounds_of_kills_lose_no_finished_shard(long: Any, tmp_path: Path) -> None:
+    _rounds(long, tmp_path, 20)
+
+
+def test_the_bar_shows_rate_and_time_left(long: Any, tmp_path: Path, scripts: Path) -> None:
+    (tmp_path / "long.yaml").write_text(LONG.replace("600", "1500"))
+    parent, child = os.openpty()
+    process = subprocess.Popen([scripts / "arm3r-sweep", tmp_path / "long.yaml", "-o", tmp_path / "long"], stderr=child)
+    os.close(child)
+    shown = b""
+    while b" left" not in shown and process.poll() is None:
+        shown += os.read(parent, 1024)
+    process.kill()
+    process.wait()
+    assert b"runs/s" in shown and b" of 1500" in shown and b"[" in shown

@@ -1,0 +1,143 @@
+"""Sweep files: what is wrong is named with its place, all of it at once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+
+GOOD = """\
+format: 1
+scenario: {time: {stop: 0.1}}
+axes:
+  - {key: time.stop, values: [0.1, 0.2]}
+"""
+HEAD = "format: 1\nscenario: {wall: {}, time: {stop: 0.1}}\n"
+
+
+def message(text: str, **options: object) -> str:
+    with pytest.raises(arm3r.ScenarioError) as raised:
+        arm3r.Sweep(text, file="s.yaml", **options)
+    assert len(raised.value.problems) == len(str(raised.value).splitlines())
+    return str(raised.value)
+
+
+def axis(text: str, more: str = "") -> str:
+    return f"{HEAD}axes:\n  - {text}\n{more}"
+
+
+MISTAKES = [
+    (GOOD.replace("axes", "axis"),
+     ["s.yaml:3:1: ", "axis", "did you mean axes?", "s.yaml:1:1: ", "axes: there are none"]),
+    (GOOD.replace("format: 1\n", ""), ["format", "write format: 1"]),
+    (GOOD.replace("format: 1", "format: 2"), ["s.yaml:1:1: ", "format", "got 2"]),
+    ("format: 1\naxes: []\n", ["s.yaml:2:1: ", "axes: must not be empty"]),
+    (axis("{key: wall.contact.stifness, values: [1]}"),
+     ["s.yaml:4:6: ", "wall.contact.stifness", "mean wall.contact.stiffness?"]),
+    (axis("{key: time.stop, value: [1]}"), ["s.yaml:4:22: ", "axes[0].value", "mean values?", "one rule is needed"]),
+    (axis("{key: time.stop, values: []}"), ["s.yaml:4:22: ", "axes[0].values: must not be empty"]),
+    (axis("{key: time.stop, values: [1, 2 s]}"), ["s.yaml:4:34: ", "axes[0].values[1]", "got 2 s", "write 2 (s)"]),
+    (axis("{key: time.stop, values: [10 deg]}"), ["only angles"]),
+    (axis("{key: time.stop, values: [1, [2, 3]]}"), ["s.yaml:4:22: ", "alike"]),
+    (axis("{key: time.stop, linspace: [0, 1]}"), ["[from, to, count] is needed", "a list of 2"]),
+    (axis("{key: time.stop, linspace: [0, 1, 2.5]}"), ["s.yaml:4:39: ", "whole number", "got 2.5"]),
+    (axis("{key: time.stop, linspace: [0, 1, 0]}"), ["whole number from 1"]),
+    (axis("{key: time.stop, geomspace: [0, 1, 3]}"), ["geomspace", "two numbers above 0"]),
+    (axis("{key: time.stop, uniform: [0, 1]}"), ["mode grid does not draw numbers", "latin_hypercube"]),
+    (axis("{key: time.stop, uniform: [1, 0]}", "mode: random\nruns: 3\n"), ["the smaller one first", "got [1, 0]"]),
+    (axis("{key: time.stop, normal: [1, 0]}", "mode: random\nruns: 3\n"), ["deviation above 0"]),
+    (axis("{key: time.stop, uniform: [0, 1]}", "mode: random\n"), ["s.yaml:5:1: ", "mode random needs `runs`"]),
+    (axis("{key: time.stop, values: [1]}", "runs: 3\n"), ["s.yaml:5:1: ", "the axes say how many"]),
+    (axis("{key: time.stop, values: [1]}", "mode: gird\n"), ["s.yaml:5:1: ", "got gird", "did you mean grid?"]),
+    (axis("{key: time.stop, values: [1]}\n  - {key: time.stop, values: [2]}"), ["s.yaml:5:5: ", "twice", "time.stop"]),
+    (axis("{key: time.stop, values: [1, 2]}\n  - {key: \"initial.q[0]\", values: [2]}", "mode: list\n"),
+     ["one length", "time.stop 2, initial.q[0] 1"]),
+    (axis("{key: time.stop, linspace: [1, 2, 1000000]}\n  - {key: \"initial.q[0]\", linspace: [0, 1, 1000000]}"),
+     ["1000000 x 1000000 = 1000000000000", "at most 10000000000"]),
+    (axis("{key: solver.method, values: [rk4, rk5]}"), ["s.yaml:4:5: ", "solver.method", "got rk5", "mean rk4?"]),
+    (axis("{key: solver.method, values: [1]}"), ["solver.method", "got 1"]),
+    (axis("{key: initial.q, values: [[1, 2]]}"), ["s.yaml:4:5: ", "initial.q", "(..., 3)"]),
+    (axis("{key: solver.step, values: [1e-3]}"), ["s.yaml:4:5: ", "solver.step", "rk4"]),
+    (axis("{key: wall, values: [1]}"), ["section"]),
+    (axis("{key: time.stop, values: [1]}", "metrics: [peak_forc]\n"), ["s.yaml:5:11: ", "did you mean peak_force?"]),
+    (axis("{key: time.stop, values: [1]}", "metrics: [q1, q1]\n"), ["s.yaml:5:15: ", "twice"]),
+    (axis("{key: time.stop, values: [1]}", "statistics: [{column: dept, of: max}]\n"),
+     ["s.yaml:5:15: ", "mean depth?"]),
+    (axis("{key: time.stop, values: [1]}", "statistics: [{column: q1, of: median}]\n"), ["got median", "max_abs"]),
+    (axis("{key: time.stop, values: [1]}", "statistics: [{column: q1}]\n"), ["`of` is missing", "such as"]),
+    (axis("{key: time.stop, values: [1]}", "shard: 0\n"), ["s.yaml:5:1: ", "shard", "from 1 to 1000000"]),
+    (axis("{key: time.stop, values: [1]}", "set: {time.stopp: 3}\n"), ["s.yaml:5:7: set time.stopp=3", "mean stop?"]),
+    (axis("{key: time.stop, values: [1]}", "set: {time.log_every: -3}\n"), ["s.yaml:5:7: set time.log_every=-3"]),
+    (GOOD.replace("stop: 0.1}", "stop: 0.1, stap: 1}"), ["s.yaml:2:30: ", "time.stap"]),
+    (GOOD.replace("{time: {stop: 0.1}}", "\n  time:\n    stop: -1"), ["s.yaml:4:5: ", "time.stop", "got -1"]),
+    (GOOD.replace("{time: {stop: 0.1}}", "nowhere.yaml"), ["s.yaml:2:1: ", "nowhere.yaml", "cannot be read"]),
+    (GOOD + "  - *x\n", ["anchors and aliases"]),
+    (GOOD + "mode: grid\nmode: list\n", ["s.yaml:6:1: ", "mode", "on line 5"]),
+    ("format: 1\nscenario: [\n", ["s.yaml:3:1: ", "not valid YAML"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "words"), MISTAKES, ids=lambda part: part[-1][:40] if isinstance(part, list) else "")
+def test_mistakes_have_a_place_and_a_fix(text: str, words: list[str]) -> None:
+    found = message(text)
+    assert all(word in found for word in words), found
+
+
+def test_all_mistakes_are_listed_at_once() -> None:
+    found = message(axis("{key: tim.stop, values: [1]}", "mods: grid\nshard: -1\nmetrics: [x]\n"))
+    assert len(found.splitlines()) == 4
+
+
+def test_problems_are_dicts_as_of_a_scenario() -> None:
+    with pytest.raises(arm3r.ScenarioError) as raised:
+        arm3r.Sweep(axis("{key: tim.stop, values: [1]}"), file="s.yaml")
+    (problem,) = raised.value.problems
+    assert set(problem) == {"code", "message", "file", "line", "column", "path", "got", "allowed", "hint"}
+
+
+def test_a_scenario_lies_beside_its_sweep(tmp_path: Path, moving_wall: Path) -> None:
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep/base.yaml").write_bytes(moving_wall.read_bytes())
+    (tmp_path / "deep/sweep.yaml").write_text(GOOD.replace("{time: {stop: 0.1}}", "base.yaml"))
+    plan = arm3r.Sweep.load(tmp_path / "deep/sweep.yaml", overrides=["wall.contact.stiffness=77"])
+    assert plan.scenario.name == "moving-wall" and plan.scenario["wall.contact.stiffness"] == 77
+
+
+def test_faults_of_the_scenarios_file_have_its_own_places(tmp_path: Path) -> None:
+    (tmp_path / "base.yaml").write_text("format: 1\ntime: {stop: -1}\n")
+    (tmp_path / "sweep.yaml").write_text(GOOD.replace("{time: {stop: 0.1}}", "base.yaml"))
+    with pytest.raises(arm3r.ScenarioError, match=r"base\.yaml:2:14: .*time\.stop"):
+        arm3r.Sweep.load(tmp_path / "sweep.yaml")
+
+
+def test_set_goes_before_the_overrides() -> None:
+    text = GOOD + "set: {time.log_every: 0.05, initial.q: [0, 10 deg, 0]}\n"
+    plan = arm3r.Sweep(text, overrides=["initial.q[1]=0.5"])
+    assert plan.scenario["time.log_every"] == 0.05 and plan.scenario["initial.q[1]"] == 0.5
+
+
+def test_angles_may_be_in_degrees() -> None:
+    plan = arm3r.Sweep(axis('{key: "initial.q[1]", linspace: [-30 deg, -20 deg, 3]}'))
+    assert plan.values()["initial.q[1]"] == pytest.approx(np.deg2rad([-30, -25, -20]), rel=1e-13)
+
+
+def test_a_map_is_as_good_as_a_file() -> None:
+    plan = arm3r.Sweep({"format": 1, "scenario": {"name": "a, b"}, "axes": [{"key": "time.stop", "values": (1, 2.5)}]})
+    assert plan.scenario.name == "a, b" and plan.values()["time.stop"].tolist() == [1, 2.5]
+
+
+def test_what_cannot_be_read() -> None:
+    with pytest.raises(arm3r.UsageError, match=r"nowhere\.yaml"):
+        arm3r.Sweep.load("nowhere.yaml")
+    with pytest.raises(arm3r.UsageError, match="PATH=VALUE"):
+        arm3r.Sweep(GOOD, overrides=["time.stop"])
+    with pytest.raises(arm3r.ScenarioError, match=r"s\.yaml:1:11: .*UTF-8"):
+        arm3r.Sweep(b"format: 1 \xff", file="s.yaml")
+
+
+def test_the_examples_are_good(root: Path) -> None:
+    files = sorted((root / "scenarios/sweeps").glob("*.yaml"))
+    assert len(files) >= 4
+    assert all(arm3r.Sweep.load(file).runs > 10 for file in files)
