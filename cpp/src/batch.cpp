@@ -27,11 +27,6 @@ int allowed_threads() {
     return std::max(1, allowed);
 }
 
-const Key& key_of(std::size_t number) {
-    const auto holds = [&](const Key& key) { return number < key.offset + key.size; };
-    return *std::find_if(schema().begin(), schema().end(), holds);
-}
-
 void check_variation(const Variation& variation) {
     std::vector<bool> seen(param_count());
     for (const std::size_t number : variation.varied) {
@@ -40,7 +35,7 @@ void check_variation(const Variation& variation) {
                                            std::to_string(param_count()));
         if (seen[number]) throw Error(ARM3R_E_INDEX, "varied: " + param_name(number) + " is named twice");
         seen[number] = true;
-        const Key& key = key_of(number);
+        const Key& key = key_at(number);
         if (key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section)
             throw Error(ARM3R_E_INDEX, "varied: " + key.path + " is no number but a choice; make a batch for each");
     }

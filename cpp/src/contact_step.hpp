@@ -41,14 +41,6 @@ ARM3R_INLINE Range<T> range_of(const Polynomial<T>& p) {
     return range;
 }
 
-// The same for a cubic, closer: its Bernstein coefficients.
-template <class T>
-ARM3R_INLINE Range<T> range_of_cubic(const Polynomial<T>& p) {
-    const T end = p.c[0] + p.c[1] + p.c[2] + p.c[3];
-    const T second = p.c[0] + (1.0 / 3) * p.c[1], third = second + (1.0 / 3) * (p.c[1] + p.c[2]);
-    return {min(min(p.c[0], end), min(second, third)), max(max(p.c[0], end), max(second, third))};
-}
-
 // The first change of mode after `from`, if there is one. resolution: of theta.
 std::optional<Crossing> next_crossing(const Wall<double>& wall, const ContactSignals<double>& signals, double from,
                                       Mode mode, double resolution);

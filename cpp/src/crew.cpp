@@ -8,6 +8,7 @@
 #include "runs.hpp"
 #include "size_cap.hpp"
 #include "summary.hpp"
+#include "taylor_march.hpp"
 
 namespace arm3r {
 namespace {
@@ -65,19 +66,17 @@ private:
     std::array<std::size_t, Marching::lanes> run_{};
 };
 
-// As wide as the instructions go: wider packs than registers are slow.
+// Packs as wide as the registers: wider ones are slow.
 template <template <class> class Marching>
 struct Lineups {
     static void one(Crew& crew, const Setup& first, std::size_t run) { march<double>(crew, first, run); }
     static void two(Crew& crew, const Setup& first, std::size_t run) { march<Pack<2>>(crew, first, run); }
-#if defined(__x86_64__)
-    __attribute__((target("arch=x86-64-v3"))) static void four(Crew& crew, const Setup& first, std::size_t run) {
+    ARM3R_FOR_FOUR static void four(Crew& crew, const Setup& first, std::size_t run) {
         march<Pack<4>>(crew, first, run);
     }
-    __attribute__((target("arch=x86-64-v4"))) static void eight(Crew& crew, const Setup& first, std::size_t run) {
+    ARM3R_FOR_EIGHT static void eight(Crew& crew, const Setup& first, std::size_t run) {
         march<Pack<8>>(crew, first, run);
     }
-#endif
 
     template <class T>
     ARM3R_INLINE static void march(Crew& crew, const Setup& first, std::size_t run) {
@@ -87,24 +86,14 @@ struct Lineups {
     static void of(int lanes, Crew& crew, const Setup& first, std::size_t run) {
         switch (lanes) {
             case 1: return one(crew, first, run);
-#if defined(__x86_64__)
+            case 2: return two(crew, first, run);
             case 4: return four(crew, first, run);
-            case 8: return eight(crew, first, run);
-#endif
-            default: return two(crew, first, run);
+            default: return eight(crew, first, run);
         }
     }
 };
 
 }  // namespace
-
-int widest_lanes() {
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("x86-64-v4")) return 8;
-    if (__builtin_cpu_supports("x86-64-v3")) return 4;
-#endif
-    return 2;
-}
 
 Crew::Crew(Work& work) : work_(work), params_(work.variation.params.begin(), work.variation.params.end()) {}
 
@@ -119,7 +108,8 @@ void Crew::march(const Setup& first, std::size_t run) {
     if (first.solver.method == Solver::dopri5) {
         store(run, run_adaptively(params_, {.should_stop = &work_.stop, .rows = false}));
     } else {
-        Lineups<FixedMarch>::of(work_.lanes, *this, first, run);
+        const auto lineups = first.solver.method == Solver::rk4 ? Lineups<FixedMarch>::of : Lineups<TaylorMarch>::of;
+        lineups(work_.lanes, *this, first, run);
         again_.insert(again_.end(), aside_.begin(), aside_.end());
         aside_.clear();
     }

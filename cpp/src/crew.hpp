@@ -11,9 +11,6 @@
 
 namespace arm3r {
 
-// How many runs march side by side at best: as many as the registers of this processor hold.
-int widest_lanes();
-
 // What the threads of a batch share. The rows are each written by one thread.
 struct Work {
     const Variation& variation;

@@ -76,8 +76,10 @@ private:
 class Series {
 public:
     struct Function {  // a function of a series, kept as a state of its own
-        Op op;
-        int argument, state, derivative = -1;
+        Op op = Op::constant;
+        int argument = -1, state = -1;
+        int start = -1;  // node of the first coefficient; none: by op
+        int derivative = -1;
     };
 
     int number(double x) { return record({.op = Op::constant, .number = x}); }
@@ -106,12 +108,15 @@ public:
 
     int add(int a, int b) {
         if (is_number(a, 0)) return b;
-        return is_number(b, 0) ? a : record({.op = Op::add, .a = a, .b = b});
+        if (is_number(b, 0)) return a;
+        return turned(Op::cosine, record({.op = Op::add, .a = a, .b = b}));
     }
 
     int subtract(int a, int b) {
         if (is_number(a, 0)) return negate(b);
-        return is_number(b, 0) ? a : record({.op = Op::subtract, .a = a, .b = b});
+        if (is_number(b, 0)) return a;
+        if ((*this)[a].op == Op::add && (*this)[a].a == b) return (*this)[a].b;
+        return turned(Op::sine, record({.op = Op::subtract, .a = a, .b = b}));
     }
 
     int negate(int a) {
@@ -142,13 +147,9 @@ public:
         return record({.op = Op::divide, .a = a, .b = b});
     }
 
-    // Of a series: sine, cosine or tanh, a state of its own.
     int function(Op op, int a, int b = -1) {
         if (!is_series(a) && (b < 0 || !is_series(b))) return record({.op = op, .a = a, .b = b});
-        for (const Function& f : functions_)
-            if (f.op == op && f.argument == a) return f.state;
-        functions_.push_back({op, a, input(true)});
-        return functions_.back().state;
+        return function_with_start(op, a, -1);
     }
 
     // The derivatives of the functions, from those of the given states; they join them.
@@ -161,7 +162,37 @@ public:
     }
 
 private:
-    bool is_reciprocal(int i) const { return is_series(i) && (*this)[i].op == Op::divide && is_number((*this)[i].a, 1); }
+    bool is_reciprocal(int i) const {
+        return is_series(i) && (*this)[i].op == Op::divide && is_number((*this)[i].a, 1);
+    }
+
+    int function_with_start(Op op, int argument, int start) {
+        for (const Function& f : functions_)
+            if (f.op == op && f.argument == argument) return f.state;
+        functions_.push_back({.op = op, .argument = argument, .state = input(true), .start = start});
+        return functions_.back().state;
+    }
+
+    // cos a cos b + sin a sin b is cos(b - a), sin b cos a - sin a cos b is sin(b - a): a state instead of two products.
+    int turned(Op op, int sum) {
+        auto p = two_functions((*this)[sum].a), q = two_functions((*this)[sum].b);
+        if (op == Op::cosine && p[0].op == Op::sine) std::swap(p, q);
+        const Op first = op == Op::cosine ? Op::cosine : Op::sine;
+        const bool fits = p[0].op == first && p[1].op == Op::cosine && q[0].op == Op::sine &&
+                          q[1].op == (op == Op::cosine ? Op::sine : Op::cosine);
+        const int b = p[op == Op::cosine].argument, a = p[op == Op::sine].argument;
+        if (!fits || q[0].argument != a || q[1].argument != b) return sum;
+        return function_with_start(op, subtract(b, a), sum);
+    }
+
+    // The factors of a product of two, sines first, then by their arguments.
+    std::array<Function, 2> two_functions(int i) const {
+        if (!is_convolution(i)) return {};
+        const Function *f = function_of((*this)[i].a), *g = function_of((*this)[i].b);
+        if (!f || !g) return {};
+        if (std::pair(f->op, f->argument) > std::pair(g->op, g->argument)) std::swap(f, g);
+        return {*f, *g};
+    }
 
     int outer_derivative(const Function& f) {
         switch (f.op) {
@@ -179,6 +210,7 @@ private:
         if (n.op == Op::negate) return negate(derivative(n.a, derivatives));
         if (is_scaled(i)) return multiply(n.a, derivative(n.b, derivatives));
         if (n.op == Op::add) return add(derivative(n.a, derivatives), derivative(n.b, derivatives));
+        if (n.op == Op::subtract) return subtract(derivative(n.a, derivatives), derivative(n.b, derivatives));
         throw std::logic_error("the argument of a function is not linear in the states");
     }
 
@@ -198,14 +230,14 @@ private:
 
 struct System {
     Series series;
-    std::vector<int> numbers;           // of the plant
+    std::vector<int> numbers;  // of the plant
     int frequency_2 = -1;
-    std::vector<int> given;             // states; one of the books is -1
-    std::vector<int> rates;             // the derivatives of the given states
+    std::vector<int> given;  // states; one of the books is -1
+    std::vector<int> rates;  // the derivatives of the given states
     std::vector<int> signals;
-    std::vector<int> states;            // that matter: each before its derivative where that is a state too
-    std::map<int, int> derivatives;     // of the states
-    std::vector<int> live;              // all nodes that matter, operands first
+    std::vector<int> states;         // that matter: each before its derivative where that is a state too
+    std::map<int, int> derivatives;  // of the states
+    std::vector<int> live;           // all nodes that matter, operands first
 
     explicit System(const Tape& tape) {
         std::vector<int> place;
@@ -263,13 +295,13 @@ private:
         reach(series[i].a, found), reach(series[i].b, found);
         const auto rate = derivatives.find(i);
         if (rate != derivatives.end()) reach(rate->second, found);
-        if (const Series::Function* f = series.function_of(i)) reach(f->argument, found);
+        if (const Series::Function* f = series.function_of(i)) reach(f->start < 0 ? f->argument : f->start, found);
     }
 };
 
 // ---- the printed kernel ----------------------------------------------------------------------------------------------
 
-constexpr std::size_t most_sums_at_once = 12;  // what the registers hold
+constexpr std::size_t most_sums_at_once = 10;  // what the registers hold
 
 std::string named(char kind, int i) { return kind + std::to_string(i); }
 
@@ -278,7 +310,7 @@ std::string named(char kind, int i) { return kind + std::to_string(i); }
 class Printer {
 public:
     Printer(const System& system, std::ostream& out) : system_(system), series_(system.series), out_(out) {
-        for (const int i : system.live)
+        for (const int i : nodes_of(roots()))
             if (series_.is_convolution(i))
                 for (const int factor : factors(i)) rows_.try_emplace(factor, static_cast<int>(rows_.size()));
     }
@@ -309,9 +341,10 @@ private:
     void print_first() {
         std::set<int> turned, divisors;
         for (const int i : system_.live) {
-            if (const Series::Function* f = series_.function_of(i); f && f->op != Op::tanh)
+            if (const Series::Function* f = series_.function_of(i); f && f->op != Op::tanh && f->start < 0)
                 if (turned.insert(f->argument).second)
-                    out_ << "        const SinCos<T> turn" << f->argument << " = sincos(" << named('z', f->argument) << ");\n";
+                    out_ << "        const SinCos<T> turn" << f->argument << " = sincos(" << named('z', f->argument)
+                         << ");\n";
             out_ << "        const T " << named('z', i) << " = " << first(i) << ";\n";
             print_row("        r", 'z', i);
             if (series_.is_convolution(i) && series_[i].op == Op::divide) divisors.insert(series_[i].b);
@@ -329,6 +362,7 @@ private:
         };
         const Node& n = series_[i];
         if (const Series::Function* f = series_.function_of(i)) {
+            if (f->start >= 0) return named('z', f->start);
             if (f->op == Op::tanh) return "tanh(" + named('z', f->argument) + ")";
             return "turn" + std::to_string(f->argument) + (f->op == Op::sine ? ".sin" : ".cos");
         }
@@ -367,6 +401,7 @@ private:
             case Op::negate: return "-" + x(n.a);
             case Op::multiply:
                 if (!a_moves) return z(n.a) + " * " + x(n.b);
+                if (n.a == n.b) return "2.0 * (" + named('m', i) + " + " + z(n.a) + " * " + x(n.a) + ")";
                 return "(" + named('m', i) + " + " + x(n.a) + " * " + z(n.b) + ") + " + z(n.a) + " * " + x(n.b);
             default: {
                 const std::string known = "(" + named('m', i) + " + " + x(n.b) + " * " + z(i) + ")";
@@ -376,8 +411,16 @@ private:
     }
 
     void print_nodes(const std::string& indent, const std::vector<int>& nodes, bool kept) {
-        print_inner_sums(indent, nodes);
+        std::vector<int> sums;
+        for (const int i : nodes)
+            if (series_.is_convolution(i)) sums.push_back(i);
+        auto waiting = sums.cbegin();
         for (const int i : nodes) {
+            if (waiting != sums.cend() && i == *waiting) {
+                const auto last = std::min(sums.cend(), waiting + most_sums_at_once);
+                print_loop(indent, {waiting, last});
+                waiting = last;
+            }
             out_ << indent << "const T " << named('x', i) << " = " << next(i) << ";\n";
             if (kept) print_row(indent + "now", 'x', i);
         }
@@ -399,8 +442,9 @@ private:
     void print_signals(const std::string& where, char kind) {
         for (std::size_t j = state_size; j < quantities; ++j) {
             const std::size_t signal = j - state_size;
-            out_ << where << "[" << j << "] = "
-                 << (signal < system_.signals.size() ? named(kind, system_.signals[signal]) : "T(0.0)") << ";\n";
+            out_ << where << "[" << j
+                 << "] = " << (signal < system_.signals.size() ? named(kind, system_.signals[signal]) : "T(0.0)")
+                 << ";\n";
         }
     }
 
@@ -412,7 +456,8 @@ private:
         };
         for (std::size_t j = motion_size; j < state_size; ++j)
             out_ << indent << named('b', j) << " = " << rate(system_.rates[wall_size + j]) << ";\n";
-        for (const int i : system_.states) out_ << indent << named('x', i) << " = " << rate(system_.derivatives.at(i)) << ";\n";
+        for (const int i : system_.states)
+            out_ << indent << named('x', i) << " = " << rate(system_.derivatives.at(i)) << ";\n";
     }
 
     // What must be known, beside the states, for the coefficients of these nodes.
@@ -434,42 +479,34 @@ private:
         return all;
     }
 
-    // ---- inner sums: of first[i] second[k - i], 0 < i < k
+    // ---- inner sums: a[1] b[k-1] + ... + a[k-1] b[1], from the middle outwards, so that the newest come last; of a
+    // square, half of it
     std::array<int, 2> factors(int i) const {
         const Node& n = series_[i];
         return n.op == Op::divide ? std::array{n.b, i} : std::array{n.a, n.b};
     }
 
-    void print_inner_sums(const std::string& indent, const std::vector<int>& nodes) {
-        std::vector<int> waiting;
-        for (const int i : nodes)
-            if (series_.is_convolution(i)) waiting.push_back(i);
-        while (!waiting.empty()) print_loop(indent, waiting);
-    }
+    bool is_square(int i) const { return factors(i)[0] == factors(i)[1]; }
 
-    // One loop over as many sums as the registers hold, those that share their loads.
-    void print_loop(const std::string& indent, std::vector<int>& waiting) {
-        std::set<std::pair<bool, int>> loaded;
-        std::string sums;
-        for (std::size_t count = 0; count < most_sums_at_once && !waiting.empty(); ++count) {
-            const auto loads = [&](int first, int second) {
-                return !loaded.contains({false, first}) + !loaded.contains({true, second});
-            };
-            const auto fewest = [&](int i) {
-                const auto [a, b] = factors(i);
-                return std::min(loads(a, b), loads(b, a));
-            };
-            const auto best = std::min_element(waiting.begin(), waiting.end(), [&](int i, int j) { return fewest(i) < fewest(j); });
-            auto [a, b] = factors(*best);
-            if (loads(b, a) < loads(a, b)) std::swap(a, b);
-            loaded.insert({false, a}), loaded.insert({true, b});
-            const std::string m = named('m', *best);
-            out_ << indent << "T " << m << "(0.0);\n";
-            sums += indent + "    " + m + " += up[" + std::to_string(rows_.at(a)) + "] * down[" + std::to_string(rows_.at(b)) + "];\n";
-            waiting.erase(best);
-        }
-        out_ << indent << "for (const T *up = r + rows, *down = r + (k - 1) * rows; down > r; up += rows, down -= rows) {\n"
-             << sums << indent << "}\n";
+    void print_loop(const std::string& indent, const std::vector<int>& sums) {
+        const auto term = [&](int i, const std::string& a, const std::string& b) {
+            return a + "[" + std::to_string(rows_.at(factors(i)[0])) + "] * " + b + "[" +
+                   std::to_string(rows_.at(factors(i)[1])) + "]";
+        };
+        out_ << indent << "T";
+        for (const int i : sums) out_ << (i == sums.front() ? " " : ", ") << named('m', i) << "(0.0)";
+        out_ << ";\n" << indent << "if (k % 2 == 0) {\n" << indent << "    const T* const mid = r + k / 2 * rows;\n";
+        for (const int i : sums)
+            out_ << indent << "    " << named('m', i) << " = "
+                 << (is_square(i) ? "0.5 * (" + term(i, "mid", "mid") + ")" : term(i, "mid", "mid")) << ";\n";
+        out_
+            << indent << "}\n"
+            << indent
+            << "for (const T *up = r + (k - 1) / 2 * rows, *down = r + (k - (k - 1) / 2) * rows; up > r; up -= rows, down += rows) {\n";
+        for (const int i : sums)
+            out_ << indent << "    " << named('m', i) << " += " << term(i, "up", "down")
+                 << (is_square(i) ? "" : " + " + term(i, "down", "up")) << ";\n";
+        out_ << indent << "}\n";
     }
 
     const System& system_;

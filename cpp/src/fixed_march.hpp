@@ -27,7 +27,7 @@ public:
         t0_ = this->t_;
         y0_ = this->y_;
         f0_ = this->f_;
-        const Indentation<T> before = this->in_;
+        before_ = this->in_;
         const T aim = min(this->stop_, T((this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
@@ -37,7 +37,7 @@ public:
         this->evaluations_ = this->evaluations_ + 4.0;
         if (any(!finite && this->alive_)) diverge(finite);
         this->observe();
-        if (this->plant_.has_wall) watch(before, moved, changed);
+        if (this->plant_.has_wall) watch(moved, changed);
         this->close_books();
         this->judge_lanes();
     }
@@ -54,28 +54,41 @@ private:
             if (this->is_running(lane) && !Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);
     }
 
+    // A signal over the step: the cubic through its values and rates at both ends, by its Bernstein coefficients.
+    struct Cubic {
+        T first, second, third, fourth;
+
+        ARM3R_INLINE Cubic(const T& y0, const T& d0, const T& y1, const T& d1)
+            : first(y0), second(y0 + (1.0 / 3) * d0), third(y1 - (1.0 / 3) * d1), fourth(y1) {}
+        ARM3R_INLINE T low() const { return min(min(first, second), min(third, fourth)); }
+        ARM3R_INLINE T high() const { return max(max(first, second), max(third, fourth)); }
+        ARM3R_INLINE T mean() const { return 0.25 * ((first + fourth) + (second + third)); }
+    };
+
     template <class Changed>
-    ARM3R_INLINE void watch(const Indentation<T>& before, const Mask& moved, Changed& changed) {
-        const Indentation<T>& after = this->in_;
-        const T& h = this->h_;
-        signals_.depth = hermite_cubic(before.depth, T(h * before.rate), after.depth, T(h * after.rate));
-        if (this->plant_.wall.has_outline) {
-            signals_.across1 = hermite_cubic(before.across1, T(h * before.slip1), after.across1, T(h * after.slip1));
-            signals_.across2 = hermite_cubic(before.across2, T(h * before.slip2), after.across2, T(h * after.slip2));
-        }
-        Mask special =
-            this->eventful(signals_, [](const Polynomial<T>& p) ARM3R_INLINE_LAMBDA { return range_of_cubic(p); });
+    ARM3R_INLINE void watch(const Mask& moved, Changed& changed) {
+        const T &h = this->h_, o(0.0);
+        const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
+        Mask special = Base::select_mask(this->touching_ || this->embedded_, depth.low() <= o, depth.high() > o);
         if (this->any_touching_) {
-            special =
-                special || (this->touching_ && range_of_cubic(signals_.depth).high > max(this->deepest_, after.depth));
+            special = special || (this->touching_ && depth.high() > max(this->deepest_, depth.fourth));
+            if (this->plant_.wall.has_outline) special = special || (this->touching_ && comes_near_edge());
             const Mask plainly = this->touching_ && !special && moved;
-            this->deepest_ = select(plainly, max(this->deepest_, after.depth), this->deepest_);
-            const T mean = signals_.depth.c[0] + 0.5 * signals_.depth.c[1] + (1.0 / 3) * signals_.depth.c[2] +
-                           0.25 * signals_.depth.c[3];
-            this->depth_time_ = this->depth_time_ + select(plainly, T(h * mean), T(0.0));
+            this->deepest_ = select(plainly, max(this->deepest_, depth.fourth), this->deepest_);
+            this->depth_time_ = this->depth_time_ + select(plainly, T(h * depth.mean()), o);
         }
         special = special && moved;
         if (any(special)) settle(special, changed);
+    }
+
+    ARM3R_INLINE Mask comes_near_edge() const {
+        const Indentation<T>&a = before_, &b = this->in_;
+        const T& h = this->h_;
+        const Cubic across1(a.across1, T(h * a.slip1), b.across1, T(h * b.slip1));
+        const Cubic across2(a.across2, T(h * a.slip2), b.across2, T(h * b.slip2));
+        const Wall<T>& wall = this->plant_.wall;
+        return max(across1.high(), T(-across1.low())) >= wall.half1 ||
+               max(across2.high(), T(-across2.low())) >= wall.half2;
     }
 
     template <class Changed>
@@ -89,15 +102,23 @@ private:
         if (anew) this->evaluate_anew();
     }
 
+    ContactSignals<double> signals_of(int lane) const {
+        const Indentation<T>&a = before_, &b = this->in_;
+        const double h = this->h(lane);
+        const auto cubic = [&](const T& y0, const T& d0, const T& y1, const T& d1) {
+            const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+            return hermite_cubic(get(y0), h * get(d0), get(y1), h * get(d1));
+        };
+        return {cubic(a.depth, a.rate, b.depth, b.rate), cubic(a.across1, a.slip1, b.across1, b.slip1),
+                cubic(a.across2, a.slip2, b.across2, b.slip2)};
+    }
+
     template <class Changed>
     bool settle_lane(int lane, Changed& changed) {
         const Wall<double>& wall = this->setup(lane).plant.wall;
         const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane);
         const double resolution = event_resolution(this->t(lane), h);
-        ContactSignals<double> signals;
-        signals.depth = Base::polynomial_of(signals_.depth, lane);
-        signals.across1 = Base::polynomial_of(signals_.across1, lane);
-        signals.across2 = Base::polynomial_of(signals_.across2, lane);
+        const ContactSignals<double> signals = signals_of(lane);
         double from = 0;
         bool anew = false;
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
@@ -116,7 +137,7 @@ private:
 
     T step_{1.0}, t0_{0.0};
     State<T, state_size> y0_{}, f0_{};
-    ContactSignals<T> signals_{};
+    Indentation<T> before_{};
 };
 
 }  // namespace arm3r

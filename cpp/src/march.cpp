@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "recorder.hpp"
+#include "taylor.hpp"
 
 namespace arm3r {
 namespace {
@@ -31,7 +32,7 @@ Structure structure_of(const Setup& setup) {
     const Plant<double>& plant = setup.plant;
     const Arm<double>&arm = plant.arm, &model = plant.controller.model;
     return {setup.solver.method,
-            0,
+            setup.solver.method == Solver::taylor ? order_of(setup.solver.tol) : 0,
             plant.has_wall,
             plant.acts_on_arm,
             plant.wall.has_outline,
@@ -124,8 +125,8 @@ void March<T>::set_mode(int lane, Mode mode) {
     embedded_ = mask_where<T>(mode_, Mode::embedded);
     any_touching_ = any(touching_);
     any_embedded_ = any(embedded_);
-    Lanes<T>::set(plant_.contact.stiffness[0], lane,
-                  mode == Mode::embedded ? 0.0 : setups_[lane].plant.contact.stiffness[0]);
+    const bool feels = only_contact_is_felt_ ? mode == Mode::contact && plant_.acts_on_arm : mode != Mode::embedded;
+    Lanes<T>::set(plant_.contact.stiffness[0], lane, feels ? setups_[lane].plant.contact.stiffness[0] : 0.0);
 }
 
 template <class T>

@@ -102,6 +102,9 @@ protected:
         for (std::size_t i = 0; i < state_size; ++i) one[i] = Lanes<T>::get(y[i], lane);
         return one;
     }
+    ARM3R_INLINE static Mask select_mask(const Mask& which, const Mask& a, const Mask& b) {
+        return (which && a) || (!which && b);
+    }
     static Polynomial<double> polynomial_of(const Polynomial<T>& p, int lane) {
         Polynomial<double> one{p.degree, {}};
         for (int i = 0; i <= p.degree; ++i) one.c[i] = Lanes<T>::get(p.c[i], lane);
@@ -171,22 +174,6 @@ protected:
 
     // ---- contact
 
-    // Lanes in which something changes within the step, or the depth may have passed a new maximum.
-    template <class RangeOf>
-    ARM3R_INLINE Mask eventful(const ContactSignals<T>& signals, RangeOf range) const {
-        const Range<T> depth = range(signals.depth);
-        Mask events = (touching_ || embedded_) && depth.low <= T(0.0);
-        events = events || (!touching_ && !embedded_ && depth.high > T(0.0));
-        if (plant_.wall.has_outline) {
-            const Range<T> across1 = range(signals.across1), across2 = range(signals.across2);
-            const auto is_near = [&](const T& half, const Range<T>& across)
-                                     ARM3R_INLINE_LAMBDA { return across.high >= half || across.low <= -half; };
-            events =
-                events || (touching_ && (is_near(plant_.wall.half1, across1) || is_near(plant_.wall.half2, across2)));
-        }
-        return events;
-    }
-
     // The depth from a to b within the step has been gone through.
     void pass(int lane, const Polynomial<double>& depth, double a, double b);
     void change_mode(int lane, const Change& change);
@@ -206,9 +193,9 @@ protected:
 
     void fail_lanes(const Mask& bad);
 
-    Plant<T> plant_;  // its stiffness is 0 in lanes that are embedded
+    Plant<T> plant_;  // its stiffness is 0 in lanes that are embedded, or free where so decided
     RightHandSide<T, T> rhs_;
-    bool needs_derivative_ = true, may_be_ill_conditioned_;
+    bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
 
     T t_{0.0}, h_{0.0}, stop_{0.0};
     State<T, state_size> y_{}, f_{};

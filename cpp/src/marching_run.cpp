@@ -1,9 +1,11 @@
 // Runs by the methods that march (march.hpp), with a single lane.
 
+#include "at.hpp"
 #include "fixed_march.hpp"
 #include "numbers.hpp"
 #include "recorder.hpp"
 #include "runs.hpp"
+#include "taylor_march.hpp"
 
 namespace arm3r {
 namespace {
@@ -11,6 +13,13 @@ namespace {
 Inside solution(const FixedMarch<double>& march) {
     return hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f(0));
 }
+
+Inside solution(const TaylorMarch<double>& march) { return march.solution(); }
+
+double place(const FixedMarch<double>&) { return 1; }
+double place(const TaylorMarch<double>& march) { return march.theta(0); }
+
+FullState straight_on(const FullState& y) { return {y[3], y[4], y[5]}; }
 
 template <class Marching>
 class MarchingRun : Recorder {
@@ -21,7 +30,7 @@ public:
     Run run() {
         march_.put(0, setup_);
         march_.begin();
-        begin(march_.y(0), march_.f(0), march_.mode(0), march_.energy_at_start(0));
+        begin(march_.y(0), straight_on(march_.y(0)), march_.mode(0), march_.energy_at_start(0));
         while (is_going_on() && !march_.has_ended(0))
             if (poll()) step();
         return finish(march_.y(0), theta_, note_end());
@@ -39,7 +48,7 @@ private:
             note_change(change, inside_(change.theta));
         });
         know();
-        theta_ = 1;
+        theta_ = place(march_);
         run_.t_end = march_.t(0);
         log_until(run_.t_end);
         static_cast<Steps&>(run_.steps) = march_.metrics(0).steps;
@@ -61,6 +70,9 @@ private:
             case ARM3R_RUN_EVENT_STORM: return event_storm(t);
             case ARM3R_RUN_ILL_CONDITIONED:
                 return "the mass matrix is no longer positive definite to rounding" + at_time(t);
+            case ARM3R_RUN_STEP_COLLAPSE:
+                return "the step fell to " + shortest(march_.h(0)) + " s" + at_time(t) +
+                       ": the motion changes faster than the clock resolves";
             default: return divergence(t);
         }
     }
@@ -79,6 +91,7 @@ private:
 }  // namespace
 
 Run run_marching(std::span<const double> params, const RunOptions& options) {
+    if (is<"solver.method", "taylor">(params)) return MarchingRun<TaylorMarch<double>>(params, options).run();
     return MarchingRun<FixedMarch<double>>(params, options).run();
 }
 

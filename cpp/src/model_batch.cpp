@@ -5,6 +5,7 @@
 
 #include "arm3r/dynamics.hpp"
 #include "arm3r/eigen_traits.hpp"
+#include "arm3r/lanes.hpp"
 #include "arm3r/recursion.hpp"
 
 namespace arm3r {
@@ -83,29 +84,12 @@ private:
     ARM3R_INLINE Vec3<Eight> flipped(const Vec3<Eight>& v) const { return {v[0], v[1] * flip, v[2] * flip}; }
 };
 
-ARM3R_INLINE Link<Eight> lifted_link(const Link<double>& l) {
-    return {l.length, l.mass, l.com, lifted<Eight>(l.inertia)};
-}
-
 // The parameters in all lanes, so that no formula has to spread them.
-ARM3R_INLINE Arm<Eight> lifted_arm(const Arm<double>& a) {
-    const Lumped<double>& l = a.lumped;
-    return {a.base_height,
-            {a.link1.mass, a.link1.com, a.link1.inertia_axial},
-            lifted_link(a.link2),
-            lifted_link(a.link3),
-            a.payload,
-            lifted<Eight>(a.gravity),
-            lifted<Eight>(a.armature),
-            lifted<Eight>(a.damping),
-            lifted<Eight>(a.friction),
-            a.friction_velocity,
-            lifted<Eight>(a.torque_limit),
-            {l.A1, l.A2, l.A3, l.B, l.B2, l.B3, l.J3, l.G2, l.G3},
-            a.gravity_is_vertical,
-            a.has_damping,
-            a.has_dry_friction,
-            a.has_torque_limit};
+ARM3R_INLINE Arm<Eight> lifted_arm(const Arm<double>& from) {
+    Arm<Eight> arm;
+    each_arm_number([](Eight& to, const double& number) ARM3R_INLINE_LAMBDA { to = number; }, arm, from);
+    copy_arm_choices(from, arm);
+    return arm;
 }
 
 template <class Formula>

@@ -1,9 +1,11 @@
 #pragma once
 // One row: everything about one instant, from t and the state at that instant alone. Nothing is remembered.
 
+#include <algorithm>
 #include <array>
 
 #include "arm3r/plant.hpp"
+#include "arm3r/polynomial.hpp"
 
 namespace arm3r {
 
@@ -12,7 +14,39 @@ enum class Mode { free, contact, embedded };  // embedded: behind the plate with
 inline constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 
 using FullState = State<double, state_size>;
-using Inside = Interpolant<double, state_size>;
+
+// The solution within a step, for any method: an interpolant, or a power series in the seconds since its begin.
+struct Inside {
+    double t0 = 0, h = 0;
+    int order = -1;  // of the series; < 0: an interpolant
+    std::array<FullState, most_degree + 1> c;
+
+    Inside() = default;
+    Inside(double t0, double h, int order) : t0(t0), h(h), order(order) {}
+    Inside(const Interpolant<double, state_size>& from) : t0(from.t0), h(from.h) {
+        std::copy(from.c.begin(), from.c.end(), c.begin());
+    }
+
+    // One component at theta, the share of the step: at one instant or at several side by side.
+    template <class S>
+    ARM3R_INLINE S component(std::size_t i, const S& theta) const {
+        return order < 0 ? interpolated(c, i, theta) : summed(i, S(theta * h));
+    }
+
+    FullState operator()(double theta) const {
+        FullState y;
+        for (std::size_t i = 0; i < state_size; ++i) y[i] = component(i, theta);
+        return y;
+    }
+
+private:
+    template <class S>
+    ARM3R_INLINE S summed(std::size_t i, const S& seconds) const {
+        S sum(c[order][i]);
+        for (int k = order - 1; k >= 0; --k) sum = sum * seconds + c[k][i];
+        return sum;
+    }
+};
 
 inline Vec3<double> angles(const FullState& y) { return {y[0], y[1], y[2]}; }
 inline Vec3<double> rates(const FullState& y) { return {y[3], y[4], y[5]}; }

@@ -15,7 +15,7 @@ constexpr std::array<double, most_degree + 1> one_over = [] {
     return table;
 }();
 
-#include "taylor_kernels.hpp"
+#include <taylor_kernels.hpp>  // made by derive_taylor
 
 // The squared angular frequency of the wall, 1/s^2.
 template <class T>
@@ -25,8 +25,12 @@ ARM3R_INLINE T frequency_2(const Wall<T>& wall) {
     return wall.motion == Motion::sinusoid ? T(omega * omega) : T(0.0);
 }
 
+template <class T>
+using Expand = void (*)(const Plant<T>&, const T&, const State<T, state_size>&, int, T (*)[quantities]);
+
 template <std::size_t recipe, class T>
-ARM3R_WIDEST void expand_by(const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order, T (*c)[quantities]) {
+ARM3R_INLINE void expand_here(const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
+                              T (*c)[quantities]) {
     alignas(64) T given[9 + state_size];
     if constexpr (recipes[recipe].signals) {
         const WallState<T> wall = wall_at(plant.wall, t);
@@ -40,13 +44,34 @@ ARM3R_WIDEST void expand_by(const Plant<T>& plant, const T& t, const State<T, st
     Recurrence<recipe, T>::expand(plant, frequency_2(plant.wall), given, order, c);
 }
 
-template <class T>
-using Expand = void (*)(const Plant<T>&, const T&, const State<T, state_size>&, int, T (*)[quantities]);
+template <std::size_t recipe>
+ARM3R_WIDEST void expand_by(const Plant<double>& plant, const double& t, const State<double, state_size>& y, int order,
+                            double (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
+
+template <std::size_t recipe>
+void expand_by(const Plant<Pack<2>>& plant, const Pack<2>& t, const State<Pack<2>, state_size>& y, int order,
+               Pack<2> (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
+
+template <std::size_t recipe>
+ARM3R_FOR_FOUR void expand_by(const Plant<Pack<4>>& plant, const Pack<4>& t, const State<Pack<4>, state_size>& y,
+                              int order, Pack<4> (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
+
+template <std::size_t recipe>
+ARM3R_FOR_EIGHT void expand_by(const Plant<Pack<8>>& plant, const Pack<8>& t, const State<Pack<8>, state_size>& y,
+                               int order, Pack<8> (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
 
 template <class T>
 Expand<T> expand_of(Kernel kernel) {
     static constexpr auto table = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::array<Expand<T>, sizeof...(i)>{expand_by<i, T>...};
+        return std::array<Expand<T>, sizeof...(i)>{static_cast<Expand<T>>(expand_by<i>)...};
     }(std::make_index_sequence<recipes.size()>());
     return table[static_cast<std::size_t>(kernel)];
 }
@@ -64,8 +89,8 @@ Recipe needs(const Plant<double>& plant, bool pressed) {
 }
 
 bool covers(const Recipe& recipe, const Recipe& needed) {
-    const bool controls = recipe.control == needed.control ||
-                          (needed.control == Controls::none && recipe.control == Controls::constant);
+    const bool controls =
+        recipe.control == needed.control || (needed.control == Controls::none && recipe.control == Controls::constant);
     return controls && recipe.damping >= needed.damping && recipe.azimuth >= needed.azimuth &&
            recipe.signals >= needed.signals && recipe.force >= needed.force && recipe.friction >= needed.friction;
 }
@@ -77,17 +102,21 @@ Kernel kernel_of(const Plant<double>& plant, bool pressed) {
     return Kernel(std::find_if(recipes.begin(), recipes.end(), fits) - recipes.begin());
 }
 
-void expand(Kernel kernel, const Plant<double>& plant, const double& t, const State<double, state_size>& y, int order,
-            Expansion<double>& expansion) {
+template <class T>
+void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
+            Expansion<T>& expansion) {
     expansion.order = order;
-    expand_of<double>(kernel)(plant, t, y, order, expansion.c);
+    expand_of<T>(kernel)(plant, t, y, order, expansion.c);
 }
 
-void expand(Kernel kernel, const Plant<Pack<8>>& plant, const Pack<8>& t, const State<Pack<8>, state_size>& y,
-            int order, Expansion<Pack<8>>& expansion) {
-    expansion.order = order;
-    expand_of<Pack<8>>(kernel)(plant, t, y, order, expansion.c);
-}
+template void expand(Kernel, const Plant<double>&, const double&, const State<double, state_size>&, int,
+                     Expansion<double>&);
+template void expand(Kernel, const Plant<Pack<2>>&, const Pack<2>&, const State<Pack<2>, state_size>&, int,
+                     Expansion<Pack<2>>&);
+template void expand(Kernel, const Plant<Pack<4>>&, const Pack<4>&, const State<Pack<4>, state_size>&, int,
+                     Expansion<Pack<4>>&);
+template void expand(Kernel, const Plant<Pack<8>>&, const Pack<8>&, const State<Pack<8>, state_size>&, int,
+                     Expansion<Pack<8>>&);
 
 int order_of(double tol) {
     constexpr double each_order = 0x1.152aaa3bf81ccp-3;  // exp(-2)

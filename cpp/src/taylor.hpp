@@ -25,10 +25,10 @@ enum class Kernel : std::size_t {};  // a place in the list of recipes
 Kernel kernel_of(const Plant<double>& plant, bool pressed);
 
 // 1 <= order <= most_degree. The plant has no more than the kernel; a control of type none has torque zero.
-void expand(Kernel kernel, const Plant<double>& plant, const double& t, const State<double, state_size>& y, int order,
-            Expansion<double>& expansion);
-void expand(Kernel kernel, const Plant<Pack<8>>& plant, const Pack<8>& t, const State<Pack<8>, state_size>& y,
-            int order, Expansion<Pack<8>>& expansion);
+// T: double, or Pack<2>, Pack<4>, Pack<8> up to widest_lanes().
+template <class T>
+void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
+            Expansion<T>& expansion);
 
 // The order that costs least for a tolerance of each step, 2 to most_degree.
 int order_of(double tol);
@@ -44,8 +44,9 @@ ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
         last = max(last, T(abs(e.c[e.order][j]) * scale));
     }
     const T infinite(std::numeric_limits<double>::infinity());
-    const auto trusted = [&](const T& size, int k)
-                             ARM3R_INLINE_LAMBDA { return select(size > T(0.0), rough_root(T(tol / size), k), infinite); };
+    const auto trusted = [&](const T& size, int k) ARM3R_INLINE_LAMBDA {
+        return select(size > T(0.0), rough_root(T(tol / size), k), infinite);
+    };
     return min(trusted(last, e.order), e.order > 1 ? trusted(before, e.order - 1) : infinite);
 }
 

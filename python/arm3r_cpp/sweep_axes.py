@@ -55,7 +55,7 @@ class SweepAxis:
     def draw(self, fraction: Floats) -> NDArray[Any]:
         """The values at these fractions, in (0, 1), of their distribution; of a list or space each is as likely."""
         if self.count is not None:
-            return self.take((fraction * self.count).astype(np.uint64))
+            return self.take(np.minimum(fraction * self.count, self.count - 1).astype(np.uint64))
         a, b = self.items
         if self.rule == "normal":
             normal = NormalDist(a, b)
@@ -111,7 +111,7 @@ def _rounded(values: Floats) -> Floats:
 
 def _fraction(key: str, mode: str, seed: int, total: int, runs: Runs) -> Floats:
     """A number in (0, 1) for each run; in a Latin hypercube each of `total` equal slices has exactly one."""
-    chance = ((_mix(runs + _stream(seed, key)) >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
+    chance = ((_mix(runs + _stream(seed, key)) >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
     if mode == "random":
         return chance
     inside = (_shuffled(runs, total, _stream(seed, f"{key} order")).astype(np.float64) + chance) / total

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from .errors import UsageError
 
-KINDS = ("csv", "parquet")
+ROWS_AT_A_TIME = 10_000
 
 
 def encode(columns: Mapping[str, NDArray[Any]], kind: str) -> bytes:
@@ -49,8 +50,10 @@ def decode(path: Path, kind: str) -> dict[str, NDArray[Any]]:
     if kind == "parquet":
         table = pyarrow().parquet.read_table(path)
         return {name: table[name].to_numpy() for name in table.column_names}
-    names, *rows = (line.split(",") for line in path.read_text().splitlines())
-    return {name: _column(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
+    with path.open() as file:
+        names = next(file).rstrip("\n").split(",")
+        pieces = list(_pieces(file))
+    return {name: _column([piece[i] for piece in pieces]) for i, name in enumerate(names)}
 
 
 def pyarrow() -> Any:
@@ -64,15 +67,23 @@ def pyarrow() -> Any:
 
 
 def _cells(column: NDArray[Any]) -> list[str]:
-    if column.dtype.kind == "b":
-        return ["true" if value else "false" for value in column.tolist()]
     if column.dtype.kind == "f":
         return ["" if math.isnan(value) else repr(value).removesuffix(".0") for value in column.tolist()]
     return [str(value) for value in column.tolist()]
 
 
-def _column(cells: Sequence[str]) -> NDArray[Any]:
+def _pieces(lines: Iterator[str]) -> Iterator[list[NDArray[Any]]]:
+    """The columns of some rows at a time: text takes more room than the numbers that it says."""
+    while rows := [line.rstrip("\n").split(",") for line in islice(lines, ROWS_AT_A_TIME)]:
+        yield [_numbers(cells) for cells in zip(*rows, strict=True)]
+
+
+def _numbers(cells: Sequence[str]) -> NDArray[Any]:
     try:
         return np.array([float(cell) if cell else math.nan for cell in cells])
     except ValueError:
         return np.array(cells)
+
+
+def _column(pieces: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    return np.concatenate(pieces) if pieces else np.empty(0)

@@ -50,8 +50,10 @@ class Sweep:
 
         Raises:
             ScenarioError: it is not valid; all that is wrong is listed.
-            UsageError: a file cannot be read.
+            UsageError: a file cannot be read, or the text is the name of one.
         """
+        if isinstance(source, str) and os.path.isfile(source):
+            raise UsageError(f"source: a file's name instead of a sweep; use Sweep.load({source!r})", code="usage")
         text = flow_of(source, "") if isinstance(source, Mapping) else source
         data = text.encode() if isinstance(text, str) else text
         self.text, self.file = data.decode(errors="replace"), file

@@ -7,7 +7,8 @@ import hashlib
 import json
 import os
 import warnings
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, BinaryIO
@@ -31,7 +32,8 @@ class SweepFolder:
     def __init__(self, path: Path, manifest: Mapping[str, Any]) -> None:
         """`SweepFolder.held` makes folders."""
         self.path, self.manifest = path, manifest
-        self.ledger: dict[int, dict[str, Any]] = {}
+        self.finished: set[int] = set()
+        self.runs_done = 0
 
     @classmethod
     @contextmanager
@@ -94,7 +96,7 @@ class SweepFolder:
 
     def store(self, number: int, first: int, count: int, data: bytes, outcomes: Mapping[str, int]) -> None:
         """Publish a finished shard, then acknowledge it. A shard that is stored already stays."""
-        if number in self.ledger:
+        if number in self.finished:
             return
         file = self.shard(number)
         publish(file, data)
@@ -102,28 +104,31 @@ class SweepFolder:
         line |= {"sha256": sha256(data), "outcomes": dict(outcomes)}
         with _writing(self.path), (self.path / LEDGER).open("ab") as ledger:
             ledger.write(_sealed(line))
-        self.ledger[number] = line
+        self._acknowledge(number, count)
+
+    def _acknowledge(self, number: int, count: int) -> None:
+        self.finished.add(number)
+        self.runs_done += count
 
     def _read_ledger(self) -> None:
         """Believe what can be checked, say what cannot, and keep the ledger clean of it."""
         path = self.path / LEDGER
-        lines = path.read_bytes().splitlines() if path.exists() else []
-        for text in lines:
-            line = _unsealed(text)
-            if line is None:
-                warnings.warn(f"{path}: a line is torn; its runs are done again", stacklevel=2)
-                continue
-            number = line["first"] // self.manifest["shard"]
-            if fault := self._fault(number, line):
-                last = line["first"] + line["count"] - 1
-                warnings.warn(f"{line['file']}: {fault}; runs {line['first']} to {last} are done again", stacklevel=2)
-            else:
-                self.ledger[number] = line
-        publish(path, b"".join(map(_sealed, self.ledger.values())))
+        path.touch()
+        with path.open("rb") as ledger, publishing(path) as clean:
+            for text in ledger:
+                line = _unsealed(text)
+                if line is None:
+                    warnings.warn(f"{path}: a line is torn; its runs are done again", stacklevel=2)
+                elif fault := self._fault(line):
+                    runs = f"runs {line['first']} to {line['first'] + line['count'] - 1}"
+                    warnings.warn(f"{line['file']}: {fault}; {runs} are done again", stacklevel=2)
+                else:
+                    clean.write(_sealed(line))
+                    self._acknowledge(line["first"] // self.manifest["shard"], line["count"])
 
-    def _fault(self, number: int, line: Mapping[str, Any]) -> str:
+    def _fault(self, line: Mapping[str, Any]) -> str:
         """Why a shard's file is not what the ledger says; "" when it is."""
-        path = self.shard(number)
+        path = self.path / line["file"]
         if not path.is_file():
             return "is missing"
         data = path.read_bytes()
@@ -131,14 +136,13 @@ class SweepFolder:
             return f"has {len(data)} bytes, not {line['size']}"
         return "" if sha256(data) == line["sha256"] else "does not have the checksum that the ledger says"
 
-    @property
-    def outcomes(self) -> dict[str, int]:
-        """How many runs ended in which way, of the shards that are finished."""
-        counts: dict[str, int] = {}
-        for line in self.ledger.values():
-            for outcome, count in line["outcomes"].items():
-                counts[outcome] = counts.get(outcome, 0) + count
-        return dict(sorted(counts.items()))
+
+def count_outcomes(lines: Iterable[Mapping[str, Any]]) -> dict[str, int]:
+    """How many runs ended in which way, by the lines of a ledger."""
+    counts: Counter[str] = Counter()
+    for line in lines:
+        counts.update(line["outcomes"])
+    return dict(sorted(counts.items()))
 
 
 def publish(path: Path, data: bytes) -> None:

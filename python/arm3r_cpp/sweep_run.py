@@ -113,8 +113,7 @@ def _run(
     progress: Callable[[int, int], Any] | None,
 ) -> None:
     """Compute and store every shard that the folder does not have; at most `at_a_time` are on their way."""
-    missing = (number for number in range(_shards(plan)) if number not in folder.ledger)
-    done = sum(line["count"] for line in folder.ledger.values())
+    missing = (number for number in range(_shards(plan)) if number not in folder.finished)
     pending: dict[Future[Done], tuple[int, int, int]] = {}
     try:
         while True:
@@ -129,9 +128,8 @@ def _run(
             for future in finished:
                 shard = pending.pop(future)
                 folder.store(*shard, *future.result())
-                done += shard[2]
-            if progress and progress(done, plan.runs):
-                raise Arm3rError(f"{folder.path}: stopped after {done} of {plan.runs} runs", code="stopped")
+            if progress and progress(folder.runs_done, plan.runs):
+                raise Arm3rError(f"{folder.path}: stopped after {folder.runs_done} of {plan.runs} runs", code="stopped")
     finally:
         for future in pending:
             future.cancel()

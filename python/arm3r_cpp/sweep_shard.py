@@ -98,7 +98,8 @@ def _preflight(job: Job) -> None:
 def _axes(job: Job) -> dict[str, NDArray[Any]]:
     """The values that vary, a column a number."""
     columns: dict[str, NDArray[Any]] = {}
-    for key, values in job.values.items():
+    for key, given in job.values.items():
+        values = np.where(given, "true", "false") if given.dtype.kind == "b" else given
         wide = values.ndim > 1
         columns |= {f"{key}[{i}]": values[:, i] for i in range(values.shape[1])} if wide else {key: values}
     return columns

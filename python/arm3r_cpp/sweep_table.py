@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .errors import UsageError
 from .sweep_axes import SweepAxis
 from .sweep_encode import decode
-from .sweep_folder import MANIFEST
+from .sweep_folder import LEDGER, MANIFEST, count_outcomes
 
 
 class SweepTable:
@@ -89,5 +89,5 @@ class SweepTable:
     @property
     def outcomes(self) -> dict[str, int]:
         """How many runs ended in which way."""
-        names, counts = np.unique(self["outcome"], return_counts=True)
-        return dict(zip(names.tolist(), counts.tolist(), strict=True))
+        with (self.folder / LEDGER).open("rb") as ledger:
+            return count_outcomes(map(json.loads, ledger))

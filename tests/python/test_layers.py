@@ -9,7 +9,7 @@ from pathlib import Path
 LAYERS = [
     ["arm3r", "primitives", "row_memory"],
     ["elementary", "numbers text"],
-    ["real", "error"],
+    ["real", "error", "rough_root"],
     ["dual", "expr", "pack", "schema suggest", "columns", "findings"],
     ["eigen_traits"],
     ["vectors", "integrators", "polynomial"],
@@ -18,11 +18,11 @@ LAYERS = [
     ["dynamics"],
     ["controllers"],
     ["plant"],
-    ["lanes"],
-    ["setup setup_rules setup_slips", "sample", "model_batch"],
+    ["lanes", "taylor_recipes"],
+    ["setup setup_rules setup_slips", "sample", "model_batch", "derive_taylor", "taylor"],
     ["validate", "contact_step", "size_cap"],
     ["events"],
-    ["simulation ledger row_log recorder runs adaptive_run marching_run march fixed_march"],
+    ["simulation ledger row_log recorder runs adaptive_run marching_run march fixed_march taylor_march"],
     ["summary"],
     ["batch crew"],
     ["yaml_events", "input", "output"],
@@ -39,7 +39,7 @@ PART = {stem: part for layer in LAYERS for part in layer for stem in part.split(
 # What only these parts may include.
 RESERVED = {
     r"yaml-cpp/.*": {"yaml_events"},
-    r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {"input", "output", "cli", "row_memory"},
+    r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {"input", "output", "cli", "row_memory", "derive_taylor"},
     r"iostream": {"cli"},
 }
 

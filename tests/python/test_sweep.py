@@ -97,6 +97,21 @@ def test_the_file_is_plain(reference: Path) -> None:
     assert invalid.endswith(",invalid,,,,,,")
 
 
+def test_outcomes_are_counted(reference: Path) -> None:
+    table = arm3r.SweepTable(reference)
+    names, counts = np.unique(table["outcome"], return_counts=True)
+    assert table.outcomes == dict(zip(names.tolist(), counts.tolist(), strict=True))
+
+
+def test_flags_are_words(tmp_path: Path) -> None:
+    axes = [{"key": "wall.acts_on_arm", "values": [True, False]}]
+    plan = {"format": 1, "scenario": {"time": {"stop": 0}}, "axes": axes, "metrics": ["t_end"]}
+    table = arm3r.sweep(plan, out=tmp_path / "out")
+    assert table["wall.acts_on_arm"].tolist() == ["true", "false"]
+    pytest.importorskip("pyarrow")
+    assert arm3r.sweep(plan, out=tmp_path / "p", parquet=True)["wall.acts_on_arm"].tolist() == ["true", "false"]
+
+
 def test_columns_have_units_and_mistaken_names_a_hint(reference: Path) -> None:
     table = arm3r.SweepTable(reference)
     assert (table.units["peak_force"], table.units["depth.max"], table.units["initial.qd[2]"]) == ("N", "m", "rad/s")
@@ -179,6 +194,13 @@ def damage_ledger_line(folder: Path) -> None:
 
 def damage_ledger_end(folder: Path) -> None:
     os.truncate(folder / "ledger.jsonl", (folder / "ledger.jsonl").stat().st_size - 9)
+
+
+def test_a_line_without_its_end_is_whole(reference: Path, started: Path) -> None:
+    damage_lose(started)
+    os.truncate(started / "ledger.jsonl", (started / "ledger.jsonl").stat().st_size - 1)
+    assert resumed(started)[0] == bytes_of(reference)
+    assert resumed(started) == (bytes_of(reference), [])
 
 
 DAMAGES = [damage_flip, damage_cut, damage_empty, damage_lose, damage_swap, damage_ledger_line, damage_ledger_end]
@@ -368,7 +390,7 @@ def test_twenty_rounds_of_kills_lose_no_finished_shard(long: Any, tmp_path: Path
 
 
 def test_the_bar_shows_rate_and_time_left(long: Any, tmp_path: Path, scripts: Path) -> None:
-    (tmp_path / "long.yaml").write_text(LONG.replace("600", "1500"))
+    (tmp_path / "long.yaml").write_text(LONG.replace("600", "60000"))
     parent, child = os.openpty()
     process = subprocess.Popen([scripts / "arm3r-sweep", tmp_path / "long.yaml", "-o", tmp_path / "long"], stderr=child)
     os.close(child)
@@ -377,4 +399,4 @@ def test_the_bar_shows_rate_and_time_left(long: Any, tmp_path: Path, scripts: Pa
         shown += os.read(parent, 1024)
     process.kill()
     process.wait()
-    assert b"runs/s" in shown and b" of 1500" in shown and b"[" in shown
+    assert b"runs/s" in shown and b" of 60000" in shown and b"[" in shown

@@ -14,17 +14,22 @@ namespace arm3r {
 template <class T, std::size_t N>
 using State = std::array<T, N>;
 
+// Component i from the coefficients of an interpolant, at one instant or at several side by side.
+template <class Coefficients, class S>
+ARM3R_INLINE S interpolated(const Coefficients& c, std::size_t i, const S& theta) {
+    const S rest = 1.0 - theta;
+    return c[0][i] + theta * (c[1][i] + rest * (c[2][i] + theta * (c[3][i] + rest * c[4][i])));
+}
+
 // The solution within a step: y(theta), theta = (t - t0)/h in [0, 1], a polynomial of degree 4 (5.2) or 3 (5.1).
 template <class T, std::size_t N>
 struct Interpolant {
     T t0, h;
     std::array<State<T, N>, 5> c;
 
-    // One component, at one instant or at several side by side.
     template <class S>
     ARM3R_INLINE S component(std::size_t i, const S& theta) const {
-        const S rest = 1.0 - theta;
-        return c[0][i] + theta * (c[1][i] + rest * (c[2][i] + theta * (c[3][i] + rest * c[4][i])));
+        return interpolated(c, i, theta);
     }
 
     State<T, N> operator()(const T& theta) const {

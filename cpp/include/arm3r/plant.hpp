@@ -71,11 +71,16 @@ public:
         const Vec3<T> tau_f = friction_torque(arm, qd);
         Vec3<T> drive = minus(tau, tau_f);
         T wall_power(0.0), contact_loss(0.0);
-        if (plant_.acts_on_arm && touch != Touch::none) {
-            const ContactForce<T> force = force_at(wall, p, qd);
+        const auto feel = [&](const ContactForce<T>& force) ARM3R_INLINE_LAMBDA {
             drive = plus(drive, tip_force_torque(arm, p, force.on_tip));
             wall_power = dot(force.on_tip, wall.velocity);
             contact_loss = force.dissipated;
+        };
+        if (plant_.acts_on_arm && touch != Touch::none) {
+            const Indentation<T> in = tip_indentation(plant_, wall, p, qd);
+            const ContactForce<T> force = contact_force(plant_.wall, plant_.contact, in);
+            if (touch == Touch::pressed) feel(force);
+            else if (const auto inside = in.depth > T(0.0); any(inside)) feel(only_where(inside && within(in), force));
         }
         const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive);
         if constexpr (N == motion_size) dy = {qd[0], qd[1], qd[2], qdd[0], qdd[1], qdd[2]};
@@ -108,13 +113,9 @@ private:
         anchor_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
     }
 
-    ARM3R_INLINE ContactForce<T> force_at(const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd) const {
-        const Indentation<T> in = tip_indentation(plant_, wall, p, qd);
-        const ContactForce<T> force = contact_force(plant_.wall, plant_.contact, in);
-        if (touch == Touch::pressed) return force;
+    ARM3R_INLINE auto within(const Indentation<T>& in) const {
         const T zero(0.0);
-        const T within = select(in.depth > zero, inside_outline(plant_.wall, in), T(-1.0));
-        return only_where(within >= zero, force);
+        return plant_.wall.has_outline ? inside_outline(plant_.wall, in) >= zero : zero >= zero;
     }
 
     const Plant<P>& plant_;

@@ -10,9 +10,7 @@ template <Lanewise T>
 ARM3R_INLINE T rough_root(const T& x, int k) {
     const T exponent = with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (i >> 52) | 0x4330000000000000; }) -
                        (0x1p52 + 1023);  // the integer i is read as the low bits of the double 2^52 + i
-    const T m = with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA {
-        i = (i & 0x000fffffffffffff) | 0x3ff0000000000000;
-    });
+    const T m = with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (i & 0x000fffffffffffff) | 0x3ff0000000000000; });
     const T log = exponent + ((-2.14494063 + m * 3.02947821) + (m * m) * (-1.03925816 + m * 0.15544586));
     const T y = log * (1.0 / k);
     const T rounded = y + round_magic;

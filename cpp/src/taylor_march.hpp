@@ -1,0 +1,184 @@
+#pragma once
+// Runs that march by Taylor series (5.5): each lane by steps of its own, which end where its contact changes.
+
+#include "march.hpp"
+#include "taylor.hpp"
+
+namespace arm3r {
+
+template <class T>
+class TaylorMarch : public March<T> {
+    using Base = March<T>;
+    using Mask = typename Base::Mask;
+
+public:
+    explicit TaylorMarch(const Setup& any_lane)
+        : Base(any_lane),
+          order_(order_of(any_lane.solver.tol)),
+          free_kernel_(kernel_of(any_lane.plant, false)),
+          pressed_kernel_(kernel_of(any_lane.plant, true)) {
+        this->needs_derivative_ = false;
+        this->only_contact_is_felt_ = true;
+    }
+
+    void put(int lane, const Setup& setup) {
+        Base::put(lane, setup);
+        Lanes<T>::set(tol_, lane, setup.solver.tol);
+        Lanes<T>::set(max_step_, lane, setup.solver.max_step);
+    }
+
+    // changed(lane, change) is told of each change of contact, before it is made.
+    template <class Changed>
+    ARM3R_INLINE void step(Changed changed) {
+        t0_ = this->t_;
+        const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
+        expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
+        const T wanted = min(step_of(series_, tol_), max_step_), rest = this->stop_ - t0_;
+        const Mask is_last = wanted >= rest;
+        this->h_ = select(is_last, rest, wanted);
+        const Mask finite = is_finite(), stands = !is_last && this->h_ < smallest_step(t0_);
+        const Mask moved = this->alive_ && finite && !stands;
+        if (any(this->alive_ && !moved)) give_up(finite);
+
+        crosses_ = false;
+        theta_ = T(1.0);
+        if (this->plant_.has_wall) watch(moved);
+        T h = this->h_, t1 = select(is_last, this->stop_, T(t0_ + h));
+        if (crosses_) {
+            h = select(theta_ < T(1.0), T(theta_ * h), h);
+            t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
+        }
+        State<T, state_size> y1;
+        for (std::size_t i = 0; i < state_size; ++i) y1[i] = value(series_, i, h);
+        this->accept(moved, t1, y1);
+        this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
+        this->observe();
+        if (crosses_) cross(changed);
+        this->close_books();
+        this->judge_lanes();
+    }
+
+    // The solution within the last step.
+    Inside solution() const
+        requires std::same_as<T, double>
+    {
+        Inside inside(t0_, this->h_, order_);
+        for (int i = 0; i <= order_; ++i)
+            for (std::size_t j = 0; j < state_size; ++j) inside.c[i][j] = series_.c[i][j];
+        return inside;
+    }
+    double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
+
+private:
+    enum Signal : std::size_t { depth = state_size, across1, across2 };
+
+    ARM3R_INLINE static T smallest_step(const T& t) {
+        return 16 * std::numeric_limits<double>::epsilon() * max(t, T(1e-3));
+    }
+
+    ARM3R_INLINE Mask is_finite() const {
+        T zero(0.0);
+        for (std::size_t j = 0; j < quantities; ++j) zero = zero + series_.c[order_][j] * 0.0;
+        return zero == T(0.0);
+    }
+
+    [[gnu::noinline]] void give_up(const Mask& finite) {
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            if (!this->is_running(lane)) continue;
+            const bool stands = Lanes<T>::get(this->h_, lane) < Lanes<T>::get(smallest_step(t0_), lane) &&
+                                Lanes<T>::get(T(t0_ + this->h_), lane) < Lanes<T>::get(this->stop_, lane);
+            if (!Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);
+            else if (stands) this->stop_lane(lane, ARM3R_RUN_STEP_COLLAPSE);
+        }
+    }
+
+    // ---- contact
+
+    ARM3R_INLINE void watch(const Mask& moved) {
+        T power(1.0), low = series_.c[0][depth], high = low, end = low, sum = low;
+        for (int i = 1; i <= order_; ++i) {
+            power = power * this->h_;
+            const T term = series_.c[i][depth] * power;
+            low = low + min(term, T(0.0));
+            high = high + max(term, T(0.0));
+            end = end + term;
+            sum = sum + reciprocals[i + 1] * term;
+        }
+        Mask special = Base::select_mask(this->touching_ || this->embedded_, low <= T(0.0), high > T(0.0));
+        if (this->any_touching_) {
+            special = special || (this->touching_ && high > max(this->deepest_, end));
+            if (this->plant_.wall.has_outline) special = special || (this->touching_ && comes_near_edge());
+            const Mask plainly = this->touching_ && !special && moved;
+            this->deepest_ = select(plainly, max(this->deepest_, end), this->deepest_);
+            this->depth_time_ = this->depth_time_ + select(plainly, T(this->h_ * sum), T(0.0));
+        }
+        special = special && moved;
+        if (any(special)) settle(special);
+    }
+
+    ARM3R_INLINE Mask comes_near_edge() const {
+        return reach(across1) >= this->plant_.wall.half1 || reach(across2) >= this->plant_.wall.half2;
+    }
+
+    ARM3R_INLINE T reach(Signal signal) const {
+        T power(1.0), most = abs(series_.c[0][signal]);
+        for (int i = 1; i <= order_; ++i) {
+            power = power * this->h_;
+            most = most + abs(series_.c[i][signal]) * power;
+        }
+        return most;
+    }
+
+    [[gnu::noinline]] void settle(const Mask& special) {
+        for (int lane = 0; lane < Base::lanes; ++lane)
+            if (this->is_running(lane) && Lanes<T>::is(special, lane)) settle_lane(lane);
+    }
+
+    void settle_lane(int lane) {
+        const ContactSignals<double> signals{polynomial(lane, depth), polynomial(lane, across1),
+                                             polynomial(lane, across2)};
+        const double h = this->h(lane), t = Lanes<T>::get(t0_, lane) + h;
+        const auto crossing =
+            next_crossing(this->setup(lane).plant.wall, signals, 0, this->mode(lane), event_resolution(t, h));
+        this->pass(lane, signals.depth, 0, crossing ? crossing->theta : 1);
+        if (!crossing) return;
+        crosses_ = true;
+        Lanes<T>::set(theta_, lane, crossing->theta);
+        crossings_[lane] = {true, crossing->next, this->stored_at(lane, value(signals.depth, crossing->theta))};
+    }
+
+    Polynomial<double> polynomial(int lane, Signal signal) const {
+        Polynomial<double> p{order_, {}};
+        double power = 1;
+        for (int i = 0; i <= order_; ++i, power *= this->h(lane))
+            p.c[i] = Lanes<T>::get(series_.c[i][signal], lane) * power;
+        return p;
+    }
+
+    template <class Changed>
+    [[gnu::noinline]] void cross(Changed& changed) {
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            auto& [is_due, next, lost] = crossings_[lane];
+            if (!is_due) continue;
+            is_due = false;
+            const Change change{theta(lane), this->t(lane), lost, this->mode(lane), next};
+            changed(lane, change);
+            this->change_mode(lane, change);
+        }
+    }
+
+    struct Due {
+        bool is_due = false;
+        Mode next = Mode::free;
+        double lost = 0;
+    };
+
+    const int order_;
+    const Kernel free_kernel_, pressed_kernel_;
+    T tol_{1e-9}, max_step_{1.0}, t0_{0.0}, theta_{1.0};
+    bool crosses_ = false;
+    std::array<Due, Base::lanes> crossings_{};
+    Expansion<T> series_;
+};
+
+}  // namespace arm3r

@@ -1,0 +1,231 @@
+#include "batch.hpp"
+
+#include <boost/test/unit_test.hpp>
+#include <cstring>
+
+#include "crew.hpp"
+#include "error.hpp"
+#include "fixtures.hpp"
+#include "summary.hpp"
+
+namespace arm3r {
+
+// A batch is what its runs are alone, bit for bit: for every width, number of threads and order.
+BOOST_AUTO_TEST_SUITE(batch)
+
+// Runs that differ in some numbers: varied[j] is values[j][i] in run i.
+struct Runs {
+    Params base;
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> values;
+
+    std::size_t count() const { return values.front().size(); }
+
+    Params alone(std::size_t run) const {
+        Params params = base;
+        for (std::size_t j = 0; j < names.size(); ++j) params.set(names[j], values[j][run]);
+        return params;
+    }
+
+    std::vector<double> together(const BatchOptions& options) const {
+        std::vector<std::size_t> varied;
+        std::vector<double> flat;
+        for (std::size_t j = 0; j < names.size(); ++j) {
+            varied.push_back(param_index(names[j]));
+            flat.insert(flat.end(), values[j].begin(), values[j].end());
+        }
+        std::vector<double> results(summary_table().size() * count(), -1);
+        run_batch({base, varied, flat, count()}, options, results.data());
+        return results;
+    }
+
+    double number(const std::vector<double>& results, std::string_view name, std::size_t run) const {
+        for (std::size_t i = 0; i < summary_table().size(); ++i)
+            if (summary_table()[i].name == name) return results[i * count() + run];
+        throw std::invalid_argument("no such column");
+    }
+};
+
+static std::vector<int> widths() {
+    std::vector<int> all = {1};
+    for (int width = 2; width <= widest_lanes(); width *= 2) all.push_back(width);
+    return all;
+}
+
+// Both may be no number; else the bits decide.
+static bool same(double a, double b) { return same_bits(a, b) || (std::isnan(a) && std::isnan(b)); }
+
+static void check_against_single_runs(const Runs& runs, const std::vector<double>& results) {
+    for (std::size_t i = 0; i < runs.count(); ++i) {
+        const Run alone = runs.alone(i).run();
+        for (std::size_t c = 0; c < summary_table().size(); ++c) {
+            const double together = results[c * runs.count() + i], single = summary_table()[c].of(alone) + 0.0;
+            BOOST_TEST(same(together, single),
+                       "run " << i << ", " << summary_table()[c].name << ": " << together << " and " << single);
+        }
+    }
+}
+
+// Every width and number of threads gives the same table; it is returned.
+static std::vector<double> check_widths_and_threads(const Runs& runs) {
+    const std::vector<double> reference = runs.together({.threads = 1, .lanes = 1});
+    for (const int lanes : widths()) {
+        for (const int threads : {1, 3}) {
+            const std::vector<double> other = runs.together({.threads = threads, .lanes = lanes});
+            BOOST_TEST((std::memcmp(other.data(), reference.data(), reference.size() * sizeof(double)) == 0),
+                       lanes << " lanes, " << threads << " threads");
+        }
+    }
+    return reference;
+}
+
+static std::vector<double> spread(Random& random, double low, double high, int count) {
+    std::vector<double> values;
+    for (int i = 0; i < count; ++i) values.push_back(random.in(low, high));
+    return values;
+}
+
+// An arm of its own in every lane, and a wall in front of it.
+static Runs pushed_arms(Random& random, std::string_view method, int count) {
+    Runs runs;
+    runs.base.choose("solver.method", method).choose("controller.type", "gravity_compensation").set("wall", 1);
+    runs.base.set("wall.acts_on_arm", 1).set("wall.point", {1.9, 0.05, 0.1}).set("wall.motion.velocity", 0.3);
+    runs.base.set("time.stop", 1).set("time.log_every", 0.1).set("arm.damping", {0.02, 0.03, 0.01});
+    const auto vary = [&](const char* name, double low, double high) {
+        runs.names.emplace_back(name);
+        runs.values.push_back(spread(random, low, high, count));
+    };
+    vary("initial.q[0]", -0.3, 0.3);
+    vary("initial.q[1]", -0.7, -0.4);
+    vary("initial.q[2]", 0.9, 1.3);
+    vary("initial.qd[1]", -0.3, 0.3);
+    vary("wall.contact.stiffness", 10, 3000);
+    vary("wall.normal[1]", -0.2, 0.2);
+    vary("arm.link3.density", 4000, 9000);
+    vary("arm.damping[1]", 0.001, 0.05);
+    vary("controller.gravity", 9.7, 9.9);
+    return runs;
+}
+
+BOOST_AUTO_TEST_CASE(runs_with_arms_and_walls_of_their_own_have_the_bits_of_the_run_alone) {
+    Random random(31);
+    for (const char* method : {"rk4", "dopri5", "taylor"}) {
+        const Runs runs = pushed_arms(random, method, 45);
+        const std::vector<double> table = check_widths_and_threads(runs);
+        check_against_single_runs(runs, table);
+        double contacts = 0;
+        for (std::size_t i = 0; i < runs.count(); ++i) contacts += runs.number(table, "contacts", i);
+        BOOST_TEST(contacts > 20);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(so_have_random_arms_that_fall_under_any_gravity_beside_an_oscillating_plate) {
+    Random random(32);
+    for (const char* method : {"rk4", "dopri5", "taylor"}) {
+        Runs runs;
+        runs.base = unequal_params();
+        runs.base.choose("solver.method", method)
+            .set("time.stop", 0.7)
+            .set("wall", 1)
+            .set("wall.point", {0.9, 0.2, 0.1});
+        runs.base.set("wall.size", {0.6, 0.5}).choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.2);
+        runs.base.set("wall.motion.frequency", 2).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 800);
+        for (const char* name :
+             {"initial.q[0]", "initial.q[1]", "initial.q[2]", "arm.gravity[0]", "wall.motion.phase"}) {
+            runs.names.emplace_back(name);
+            runs.values.push_back(spread(random, -1, 1, 21));
+        }
+        runs.names.emplace_back("wall.size[0]");
+        runs.values.push_back(spread(random, 0.1, 1, 21));
+        check_against_single_runs(runs, check_widths_and_threads(runs));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_that_fails_ends_with_its_outcome_and_disturbs_no_other) {
+    Random random(33);
+    for (const char* method : {"rk4", "dopri5", "taylor"}) {
+        Runs calm = pushed_arms(random, method, 32);
+        calm.names.insert(calm.names.end(), {"initial.qd[0]", "solver.max_steps"});
+        calm.values.push_back(std::vector<double>(32, 0.1));
+        calm.values.push_back(std::vector<double>(32, 1e6));
+        Runs troubled = calm;
+        std::vector<double>&rate = troubled.values[9], &most = troubled.values[10];
+        troubled.values[4][1] = -1;  // no stiffness
+        rate[3] = 9e5;               // beyond 1e5 rad soon
+        most[6] = 2;
+        most[20] = 3;
+        const std::vector<double> quiet = check_widths_and_threads(calm), table = check_widths_and_threads(troubled);
+        for (std::size_t i = 0; i < 32; ++i) {
+            const auto outcome = int(troubled.number(table, "outcome", i));
+            if (i == 1) {
+                BOOST_TEST(outcome == ARM3R_RUN_INVALID);
+                BOOST_TEST(std::isnan(troubled.number(table, "t_end", i)));
+            } else if (i == 3) {
+                BOOST_TEST((outcome != ARM3R_RUN_OK && outcome != ARM3R_RUN_INVALID));
+            } else if (i == 6 || i == 20) {
+                BOOST_TEST(outcome == ARM3R_RUN_BUDGET);
+            } else {
+                for (std::size_t c = 0; c < summary_table().size(); ++c)
+                    BOOST_TEST(same(table[c * 32 + i], quiet[c * 32 + i]));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_in_every_lane) {
+    for (const char* method : {"rk4", "taylor"}) {
+        Runs runs;
+        runs.base.choose("solver.method", method).set("solver.step", 0.01).set("time.stop", 100);
+        runs.base.set("arm.damping", {3, 3, 3}).set("arm.gravity", {0, 0, 0}).set("time.log_every", 1);
+        runs.names = {"initial.qd[0]", "arm.damping[2]"};
+        runs.values = {{0.1, 1, 0.2, 0.4, -0.3, 0.5, 0.6, 0.7, 0.8}, {5, 6, 7, 8, 9, 10, 11, 12, 13}};
+        const std::vector<double> table = check_widths_and_threads(runs);
+        for (std::size_t i = 0; i < runs.count(); ++i)
+            for (const char* rate : {"qd1", "qd2", "qd3"}) BOOST_TEST(runs.number(table, rate, i) == 0);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_of_no_length_and_a_batch_of_no_runs_are_fine) {
+    Runs runs;
+    runs.base.set("time.stop", 0).choose("solver.method", "rk4");
+    runs.names = {"initial.q[0]"};
+    runs.values = {{0.1, 0.2}};
+    check_against_single_runs(runs, check_widths_and_threads(runs));
+    runs.values = {{}};
+    BOOST_TEST(runs.together({}).empty());
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_vary_is_refused_by_name) {
+    Runs runs;
+    runs.values = {{1}};
+    for (const char* name : {"solver.method", "wall", "wall.acts_on_arm"}) {
+        runs.names = {name};
+        BOOST_CHECK_EXCEPTION(runs.together({}), Error,
+                              [&](const Error& e) { return std::string(e.what()).find(name) != std::string::npos; });
+    }
+    runs.names = {"initial.q[0]", "initial.q[0]"};
+    runs.values = {{1}, {1}};
+    BOOST_CHECK_THROW(runs.together({}), Error);
+}
+
+static std::int32_t ask_to_stop(void* user, std::int64_t, std::int64_t) { return *static_cast<std::int32_t*>(user); }
+
+BOOST_AUTO_TEST_CASE(a_batch_that_is_stopped_says_so_in_every_row_that_is_not_finished) {
+    Random random(34);
+    Runs runs = pushed_arms(random, "rk4", 300);
+    runs.base.set("time.stop", 1000).set("wall.motion.velocity", 0).set("time.log_every", 100);
+    for (std::int32_t answer : {1, -1}) {
+        BatchOptions options{.progress = ask_to_stop, .user = &answer, .threads = 2};
+        if (answer < 0) {
+            BOOST_CHECK_THROW(runs.together(options), Error);
+            continue;
+        }
+        const std::vector<double> table = runs.together(options);
+        for (std::size_t i = 0; i < runs.count(); ++i)
+            BOOST_TEST(runs.number(table, "outcome", i) == ARM3R_RUN_STOPPED);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace arm3r
