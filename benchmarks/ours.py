@@ -65,7 +65,8 @@ class Batch:
     ) -> None:
         """`varied`: n values a number, by its name, such as "initial.q[1]"."""
         scenario = arm3r.Scenario(text)
-        scenario["solver"] = dict(solver)
+        self._solver = dict(solver)
+        scenario["solver"] = self._solver
         self._params = scenario.params
         self._varied = np.array([arm3r.param_index(name) for name in varied], dtype=np.uintp)
         self._values = np.array(list(varied.values()), dtype=float)
@@ -86,9 +87,10 @@ class Batch:
             self._options,
             _native.writable(self._results),
         )
-        failed = int(np.count_nonzero(self["outcome"]))
-        if failed:
-            raise SystemExit(f"{failed} of {self.runs} runs failed, outcomes {np.unique(self['outcome'])}")
+        failed = self["outcome"] != lib.ARM3R_RUN_OK
+        if failed.any():
+            why = ffi.string(lib.arm3r_outcome_name(int(self["outcome"][failed][0]))).decode()
+            raise SystemExit(f"{self._solver}: {failed.sum()} of {self.runs} runs failed, the first as `{why}`")
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A column of the last results: shape (runs,)."""

@@ -14,6 +14,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
+ALONE = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # numpy's idle threads would take the second core
 
 
 def script(name: str, *words: str | Path) -> list[str | Path]:
@@ -23,7 +24,7 @@ def script(name: str, *words: str | Path) -> list[str | Path]:
 def rows(*command: str | Path) -> list[str]:
     """The lines that a program prints: the header first."""
     begun = time.perf_counter()
-    lines = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
+    lines = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=ALONE).stdout.splitlines()
     names = " ".join(Path(word).name for word in command if word != sys.executable)
     print(f"{names}: {time.perf_counter() - begun:.0f} s", file=sys.stderr)
     return lines

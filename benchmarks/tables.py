@@ -1,67 +1,90 @@
-"""The tables of docs/benchmarks.md, in Markdown, from the table of a run: python benchmarks/tables.py [TABLE.csv]"""
+"""Renew the tables of docs/benchmarks.md from the table of a run: python benchmarks/tables.py [TABLE.csv]
+
+Each stands between the line <!-- NAME --> and the next empty line.
+"""
 
 from __future__ import annotations
 
 import csv
+import re
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
+PAGE = ROOT / "docs" / "benchmarks.md"
 GOALS = 1e-9, 1e-12  # rad
 LARGE = "n=4096"
 
 Row = dict[str, str]
 
 
-def figure(text: str, unit: str) -> str:
-    """Three digits: "17.3 ns"."""
+def digits(text: str, unit: str) -> str:
+    """Three of them: "17.3 ns"."""
     value = float(text)
-    return f"{value:.3g} {unit}" if value < 1000 else f"{value:.0f} {unit}"
+    return (f"{value:.3g} {unit}" if value < 1000 else f"{value:.0f} {unit}").strip()
 
 
-def markdown(rows: Iterable[Row]) -> None:
-    print("| job | who | median | min | times ours | error |\n|---|---|---|---|---|---|")
-    shown = ""
-    for row in rows:
-        job, who = row["job"] if row["job"] != shown else "", row["who"]
-        shown = row["job"]
-        if not row["median"]:
-            print(f"| {job} | {who} | {row['build']} |  |  |  |")
-            continue
-        unit = row["unit"].replace("us", "µs")
-        ours = f"**{who}**" if who.startswith("arm3r") else who
-        setting = f", {row['setting']}" if row["setting"] else ""
-        times = f"{float(row['times_ours']):.3g}" if row["times_ours"] else ""
-        median, least = figure(row["median"], unit), figure(row["min"], unit)
-        print(f"| {job} | {ours}{setting} | {median} | {least} | {times} | {row['error']} |")
-    print()
+def line(row: Row, job: str) -> str:
+    who = f"**{row['who']}**" if row["who"].startswith("arm3r") else row["who"]
+    if not row["median"]:
+        return f"| {job} | {who} | {row['build']} |  |  |  |"
+    setting = f", {row['setting']}" if row["setting"] else ""
+    unit = row["unit"].replace("us", "µs")
+    times = f"{float(row['times_ours']):.3g}" if row["times_ours"] else ""
+    median, least = (digits(row[name], unit) for name in ("median", "min"))
+    return f"| {job} | {who}{setting} | {median} | {least} | {times} | {row['error']} |"
+
+
+def markdown(rows: list[Row]) -> str:
+    jobs = [row["job"] for row in rows]
+    new = [job if job != before else "" for job, before in zip(jobs, ["", *jobs], strict=False)]
+    head = ["| job | who | median | min | times ours | error, rad |", "|---|---|---|---|---|---|"]
+    return "\n".join(head + [line(row, job) for row, job in zip(rows, new, strict=True)])
+
+
+def beside_our_best(rows: list[Row]) -> list[Row]:
+    """The measured rows of a job, the quickest first, as multiples of the quickest of ours on one thread."""
+    ranked = sorted((row for row in rows if row["median"]), key=lambda row: float(row["median"]))
+    alone = (row for row in ranked if row["who"].startswith("arm3r") and not row["who"].endswith(" threads"))
+    ours = next((float(row["median"]) for row in alone), float("nan"))
+    return [row | {"times_ours": str(float(row["median"]) / ours)} for row in ranked]
 
 
 def cheapest(rows: list[Row], job: str, goal: float) -> list[Row]:
-    """Of each method, the quickest setting that is good enough; the ratio is to ours that leads among them."""
-    best: dict[str, Row] = {}
-    for row in rows:
-        if row["job"] == job and row["error"] and float(row["error"]) <= goal:
-            who = row["who"]
-            if who not in best or float(row["median"]) < float(best[who]["median"]):
-                best[who] = row
-    ranked = sorted(best.values(), key=lambda row: float(row["median"]))
-    ours = next((float(row["median"]) for row in ranked if row["who"].startswith("arm3r")), float("nan"))
-    named = f"{job}, error at most {goal:g} rad"
-    return [row | {"job": named, "times_ours": str(float(row["median"]) / ours)} for row in ranked]
+    """Of each method the quickest setting that is good enough."""
+    good = [row for row in rows if row["job"] == job and row["error"] and float(row["error"]) <= goal]
+    ranked = beside_our_best(good)
+    firsts = {row["who"]: row for row in reversed(ranked)}
+    return [row | {"job": f"{job}, error at most {goal:.0e} rad"} for row in ranked if firsts[row["who"]] is row]
+
+
+def tables(rows: list[Row]) -> dict[str, list[Row]]:
+    single = [row for row in rows if not row["setting"]]
+    return {
+        "one after the other": [row for row in single if row["unit"] != "1"],
+        "instructions": [row | {"unit": ""} for row in single if row["unit"] == "1"],
+        "many arms": [row for row in rows if row["setting"] == LARGE],
+        "precision": [
+            row
+            for job in ("2 s of free fall", "10 s, pushed by the wall")
+            for goal in GOALS
+            for row in cheapest(rows, job, goal)
+        ],
+        "lecture runs": beside_our_best([row for row in rows if row["job"] == "lecture run, stiffness at random"]),
+    }
 
 
 def main() -> None:
-    table = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "out" / "bench.csv"
-    with table.open(newline="") as file:
+    source = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "out" / "bench.csv"
+    with source.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    markdown(row for row in rows if not row["setting"])
-    markdown(row for row in rows if row["setting"] == LARGE)
-    markdown(
-        row for job in ("2 s of free fall", "10 s, pushed by the wall") for g in GOALS for row in cheapest(rows, job, g)
-    )
-    markdown(row for row in rows if row["job"].startswith("lecture run, stiffness at random"))
+    page = PAGE.read_text()
+    for name, its in tables(rows).items():
+        place = re.compile(rf"(?<=<!-- {name} -->\n).*?(?=\n\n|\n\Z)", re.DOTALL)
+        page, found = place.subn(lambda _, its=its: markdown(its), page)
+        if found != 1:
+            raise SystemExit(f"{PAGE.name}: {found} places for the table <!-- {name} -->, one is needed")
+    PAGE.write_text(page)
 
 
 main()

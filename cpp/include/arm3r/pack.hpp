@@ -35,6 +35,11 @@ struct PackMask {
     ARM3R_INLINE friend bool any(const PackMask& a) {
         if constexpr (N == 2) {
             return (a.v[0] | a.v[1]) != 0;
+        } else if constexpr (N == 8) {
+            typename Register<std::int8_t, 8>::type narrow = __builtin_convertvector(a.v, decltype(narrow));
+            std::int64_t lanes;
+            __builtin_memcpy(&lanes, &narrow, sizeof lanes);
+            return lanes != 0;
         } else {
             typename PackMask<N / 2>::Vector half[2];
             __builtin_memcpy(half, &a.v, sizeof half);
@@ -81,12 +86,12 @@ struct Pack {
     ARM3R_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
     ARM3R_INLINE Pack& operator/=(const Pack& b) { return *this = *this / b; }
 
-    ARM3R_INLINE friend Mask operator<(const Pack& a, const Pack& b) { return Mask(a.v < b.v); }
-    ARM3R_INLINE friend Mask operator>(const Pack& a, const Pack& b) { return Mask(a.v > b.v); }
-    ARM3R_INLINE friend Mask operator<=(const Pack& a, const Pack& b) { return Mask(a.v <= b.v); }
-    ARM3R_INLINE friend Mask operator>=(const Pack& a, const Pack& b) { return Mask(a.v >= b.v); }
-    ARM3R_INLINE friend Mask operator==(const Pack& a, const Pack& b) { return Mask(a.v == b.v); }
-    ARM3R_INLINE friend Mask operator!=(const Pack& a, const Pack& b) { return Mask(a.v != b.v); }
+    ARM3R_INLINE friend Mask operator<(const Pack& a, const Pack& b) { return where(a.v < b.v); }
+    ARM3R_INLINE friend Mask operator>(const Pack& a, const Pack& b) { return where(a.v > b.v); }
+    ARM3R_INLINE friend Mask operator<=(const Pack& a, const Pack& b) { return where(a.v <= b.v); }
+    ARM3R_INLINE friend Mask operator>=(const Pack& a, const Pack& b) { return where(a.v >= b.v); }
+    ARM3R_INLINE friend Mask operator==(const Pack& a, const Pack& b) { return where(a.v == b.v); }
+    ARM3R_INLINE friend Mask operator!=(const Pack& a, const Pack& b) { return where(a.v != b.v); }
 
     ARM3R_INLINE friend Pack select(const Mask& mask, const Pack& a, const Pack& b) { return Pack(mask.v ? a.v : b.v); }
     ARM3R_INLINE friend Pack min(const Pack& a, const Pack& b) { return Pack(b.v < a.v ? b.v : a.v); }
@@ -110,6 +115,14 @@ struct Pack {
 
 private:
     static constexpr std::int64_t sign_bit = INT64_MIN;
+
+    // g++ 12 takes a bare comparison of packs of 8 apart into scalars, but not a choice between numbers.
+    template <class Comparison>
+    ARM3R_INLINE static Mask where(const Comparison& holds) {
+        if constexpr (N < 8) return Mask(holds);
+        const Vector all_bits = (Vector)(BitVector{} - std::int64_t{1});
+        return Mask((BitVector)(holds ? all_bits : Vector{}));
+    }
 };
 
 static_assert(Real<Pack<2>> && Real<Pack<8>>);
@@ -135,6 +148,20 @@ ARM3R_INLINE std::array<SinCos<T>, 2> sincos_near_pair(const T& first_base, cons
                                                        const T& second_base, const SinCos<T>& at_second,
                                                        const T& second) {
     return {sincos_near(first_base, at_first, first), sincos_near(second_base, at_second, second)};
+}
+
+// One look decides for both.
+template <int N>
+ARM3R_INLINE std::array<SinCos<Pack<N>>, 2> sincos_near_pair(const Pack<N>& first_base, const SinCos<Pack<N>>& at_first,
+                                                             const Pack<N>& first, const Pack<N>& second_base,
+                                                             const SinCos<Pack<N>>& at_second, const Pack<N>& second) {
+    const Pack<N> first_delta = first - first_base, second_delta = second - second_base, reach(sincos_reach);
+    const PackMask<N> first_near = abs(first_delta) <= reach, second_near = abs(second_delta) <= reach;
+    const SinCos<Pack<N>> a = sincos_rotated(at_first, first_delta), b = sincos_rotated(at_second, second_delta);
+    if (all(first_near && second_near)) return {a, b};
+    const SinCos<Pack<N>> full_a = sincos(first), full_b = sincos(second);
+    return {SinCos<Pack<N>>{select(first_near, a.sin, full_a.sin), select(first_near, a.cos, full_a.cos)},
+            SinCos<Pack<N>>{select(second_near, b.sin, full_b.sin), select(second_near, b.cos, full_b.cos)}};
 }
 
 ARM3R_INLINE std::array<SinCos<double>, 2> sincos_near_pair(double first_base, const SinCos<double>& at_first,

@@ -48,9 +48,9 @@ public:
     template <std::size_t N>
     ARM3R_INLINE void begin_step(const State<T, N>& y) {
         const Vec3<T> nearest(on_grid(y[0]), on_grid(y[1]), on_grid(T(y[1] + y[2])));
-        if (all(nearest[1] == anchor_q_[1]) && all(nearest[2] == anchor_q_[2]) &&
-            (!needs_azimuth_ || all(nearest[0] == anchor_q_[0])))
-            return;
+        auto is_kept = nearest[1] == anchor_q_[1] && nearest[2] == anchor_q_[2];
+        if (needs_azimuth_) is_kept = is_kept && nearest[0] == anchor_q_[0];
+        if (all(is_kept)) return;
         move_anchor(nearest);
     }
 
