@@ -15,6 +15,13 @@ Polynomial<double> inside_edge(double half, double sign, Polynomial<double> acro
     return across;
 }
 
+// No value on [0, 1] is larger, either way.
+double reach(const Polynomial<double>& p) {
+    double sum = 0;
+    for (int i = 0; i <= p.degree; ++i) sum += abs(p.c[i]);
+    return sum;
+}
+
 bool within_outline(const Wall<double>& wall, const ContactSignals<double>& signals, double theta) {
     if (!wall.has_outline) return true;
     return abs(value(signals.across1, theta)) <= wall.half1 && abs(value(signals.across2, theta)) <= wall.half2;
@@ -48,11 +55,13 @@ std::optional<Crossing> next_crossing(const Wall<double>& wall, const ContactSig
         return crossing;
     }
     earliest.fall_of(signals.depth, Mode::free);
-    if (mode == Mode::contact && wall.has_outline)
-        for (const double sign : {-1.0, 1.0}) {
-            earliest.fall_of(inside_edge(wall.half1, sign, signals.across1), Mode::embedded);
-            earliest.fall_of(inside_edge(wall.half2, sign, signals.across2), Mode::embedded);
-        }
+    if (mode != Mode::contact || !wall.has_outline) return earliest.found();
+    const auto edges = [&](double half, const Polynomial<double>& across) {
+        if (reach(across) < half) return;
+        for (const double sign : {-1.0, 1.0}) earliest.fall_of(inside_edge(half, sign, across), Mode::embedded);
+    };
+    edges(wall.half1, signals.across1);
+    edges(wall.half2, signals.across2);
     return earliest.found();
 }
 

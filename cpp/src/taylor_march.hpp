@@ -95,25 +95,43 @@ private:
     // ---- contact
 
     ARM3R_INLINE void watch(const Mask& moved) {
-        T power(1.0), low = series_.c[0][depth], high = low, end = low, sum = low;
-        for (int i = 1; i <= order_; ++i) {
-            power = power * this->h_;
+        Polynomial<T> over_step{order_, {}};
+        T power(1.0), low(0.0), high(0.0), end(0.0), mean(0.0);
+        for (int i = 0; i <= order_; ++i, power = power * this->h_) {
             const T term = series_.c[i][depth] * power;
-            low = low + min(term, T(0.0));
-            high = high + max(term, T(0.0));
+            over_step.c[i] = term;
+            low = low + (i == 0 ? term : min(term, T(0.0)));
+            high = high + (i == 0 ? term : max(term, T(0.0)));
             end = end + term;
-            sum = sum + reciprocals[i + 1] * term;
+            mean = mean + reciprocals[i + 1] * term;
         }
-        Mask special = Base::select_mask(this->touching_ || this->embedded_, low <= T(0.0), high > T(0.0));
+        Mask special = moved && is_eventful(low, high, high, end);
+        if (any(special)) special = special && looks_eventful(over_step);
         if (this->any_touching_) {
-            special = special || (this->touching_ && high > max(this->deepest_, end));
-            if (this->plant_.wall.has_outline) special = special || (this->touching_ && comes_near_edge());
+            if (this->plant_.wall.has_outline) special = special || (moved && this->touching_ && comes_near_edge());
             const Mask plainly = this->touching_ && !special && moved;
             this->deepest_ = select(plainly, max(this->deepest_, end), this->deepest_);
-            this->depth_time_ = this->depth_time_ + select(plainly, T(this->h_ * sum), T(0.0));
+            this->depth_time_ = this->depth_time_ + select(plainly, T(this->h_ * mean), T(0.0));
         }
-        special = special && moved;
         if (any(special)) settle(special);
+    }
+
+    // Whether a depth between low and high, below `before_end` but for its end, may change the contact or its maximum.
+    ARM3R_INLINE Mask is_eventful(const T& low, const T& high, const T& before_end, const T& end) const {
+        const T o(0.0);
+        const Mask crosses = Base::select_mask(this->touching_ || this->embedded_, low <= o, high > o);
+        return crosses || (this->touching_ && before_end > max(this->deepest_, end));
+    }
+
+    // The same seen more sharply, by Bernstein coefficients.
+    ARM3R_INLINE Mask looks_eventful(const Polynomial<T>& p) const {
+        const Coefficients<T> b = bernstein(p);
+        T low = min(b[0], b[order_]), before_end = b[0];
+        for (int i = 1; i < order_; ++i) {
+            low = min(low, b[i]);
+            before_end = max(before_end, b[i]);
+        }
+        return is_eventful(low, max(before_end, b[order_]), before_end, b[order_]);
     }
 
     ARM3R_INLINE Mask comes_near_edge() const {
