@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 from arm3r_cpp.plot_style import AMBER, BLACK, BLUE, GREEN, PINK, RED, SKY, style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
+from matplotlib.ticker import NullFormatter, NullLocator
 
 ROOT = Path(__file__).parent.parent
 IMAGES = ROOT / "docs" / "images"
@@ -61,10 +61,11 @@ def draw(axes: Axes, by_who: dict[str, list[Row]], x: Callable[[Row], float], y:
         axes.plot([x(row) for row in rows], [y(row) for row in rows], label=who, markersize=5, **LOOKS[who])
     axes.set(xscale="log", yscale="log")
     axes.xaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_minor_formatter(NullFormatter())
 
 
-def pair(title: str, width: float = 9.5) -> tuple[Figure, list[Axes]]:
-    figure, axes = plt.subplots(1, 2, figsize=(width, 4.2), layout="constrained")
+def pair(title: str, *, sharey: bool) -> tuple[Figure, list[Axes]]:
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.2), sharey=sharey, layout="constrained")
     figure.suptitle(title)
     return figure, list(axes)
 
@@ -77,7 +78,7 @@ def legend(figure: Figure, axes: list[Axes]) -> None:
 
 
 def precision(rows: list[Row]) -> Figure:
-    figure, panels = pair("Time a run against the error of its final angles")
+    figure, panels = pair("Time a run against the error of its final angles", sharey=True)
     for axes, job in zip(panels, ("2 s of free fall", "10 s, pushed by the wall"), strict=True):
         draw(axes, lines(rows, job), error, time)
         axes.set(title=job, xlabel="largest error of a joint angle at the end (rad)", ylabel="time a run (µs)")
@@ -87,7 +88,7 @@ def precision(rows: list[Row]) -> Figure:
 
 
 def count(rows: list[Row]) -> Figure:
-    figure, panels = pair("RK4 steps of 1 ms of n arms at once")
+    figure, panels = pair("RK4 steps of 1 ms of n arms at once", sharey=True)
     for axes, job in zip(panels, ("free fall", "compensation and two-way wall"), strict=True):
         draw(axes, lines(rows, f"RK4 step of many arms, {job}"), setting, time)
         axes.set(title=job, xlabel="number of arms n", ylabel="time an arm and step (ns)")
@@ -96,7 +97,7 @@ def count(rows: list[Row]) -> Figure:
 
 
 def stiffness(rows: list[Row]) -> Figure:
-    figure, panels = pair("Lecture run, the wall pushing: ten seconds, one make and one break")
+    figure, panels = pair("Lecture run, the wall pushing: ten seconds, one make and one break", sharey=False)
     by_who = lines(rows, "lecture run, by stiffness")
     for axes, y, label in zip(
         panels, (time, error), ("time a run (µs)", "error of the final angles (rad)"), strict=True

@@ -15,7 +15,7 @@ from table import Racer, Runner, Table, installed, race
 STEPS = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4]
 TOLERANCES = np.geomspace(1e-5, 1e-13, 13).tolist()
 EXACT = 1e-16  # the tolerance of the reference
-MANY, SOME, FEW = 256, 16, 1  # runs a turn: they share what a call costs
+MANY, SOME, FEW = 256, 64, 4  # runs a turn: they share what a call costs
 SECONDS = 10.0  # a race
 
 

@@ -28,12 +28,10 @@ public:
 
     ARM3R_INLINE void run() {
         march_.begin();
-        turn_over();
-        while (march_.is_anyone_running()) {
+        while (true) {
+            while ((march_.someone_ended() || crew_.is_stopped()) && turn_over()) march_.begin();
+            if (!march_.is_anyone_running()) return;
             march_.step([](int, const Change&) {});
-            if (march_.someone_ended() || crew_.is_stopped()) {
-                if (turn_over()) march_.begin();
-            }
         }
     }
 

@@ -115,8 +115,12 @@ protected:
 
     // Pose, wall, indentation, derivative and energies at the present state.
     ARM3R_INLINE void observe() {
-        rhs_.begin_step(y_);
-        p_ = rhs_.pose_near(y_);
+        if (needs_derivative_) {
+            rhs_.begin_step(y_);
+            p_ = rhs_.pose_near(y_);
+        } else {
+            p_ = pose(Vec3<T>(y_[0], y_[1], y_[2]));
+        }
         const Vec3<T> qd(y_[3], y_[4], y_[5]);
         if (plant_.has_wall) {
             wall_ = wall_at(plant_.wall, t_);
@@ -136,16 +140,18 @@ protected:
 
     // To `t1`, `y1` where `moved`; rates that are next to nothing become nothing.
     ARM3R_INLINE void accept(const Mask& moved, const T& t1, const State<T, state_size>& y1) {
-        for (std::size_t i = 0; i < state_size; ++i) y_[i] = select(moved, y1[i], y_[i]);
+        if (all(moved)) y_ = y1;
+        else
+            for (std::size_t i = 0; i < state_size; ++i) y_[i] = select(moved, y1[i], y_[i]);
         for (std::size_t i = 3; i < motion_size; ++i) y_[i] = select(abs(y_[i]) < T(smallest_rate), T(0.0), y_[i]);
         t_ = select(moved, t1, t_);
         accepted_ = accepted_ + select(moved, T(1.0), T(0.0));
     }
 
     ARM3R_INLINE static Mask is_finite(const State<T, state_size>& y) {
-        T zero(0.0);
-        for (std::size_t i = 0; i < state_size; ++i) zero = zero + y[i] * 0.0;
-        return zero == T(0.0);
+        T sum = y[0];
+        for (std::size_t i = 1; i < state_size; ++i) sum = sum + y[i];
+        return sum * 0.0 == T(0.0);
     }
 
     ARM3R_INLINE void close_books() {
@@ -159,7 +165,7 @@ protected:
     }
 
     ARM3R_INLINE void judge_lanes() {
-        Mask bad = !(abs(y_[0]) <= T(sincos_limit) && abs(y_[1]) <= T(sincos_limit) && abs(y_[2]) <= T(sincos_limit));
+        Mask bad = max(max(abs(y_[0]), abs(y_[1])), abs(y_[2])) > T(sincos_limit);
         if (may_be_ill_conditioned_) bad = bad || !well_conditioned();
         bad = bad || (accepted_ + rejected_ >= max_steps_ && t_ < stop_);
         bad = bad && alive_;

@@ -33,13 +33,20 @@ void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, sta
 // The order that costs least for a tolerance of each step, 2 to most_degree.
 int order_of(double tol);
 
+// 1/x for a power of two, between 1/x and 2/x elsewhere.
+template <class T>
+ARM3R_INLINE T inverse_power(const T& x) {
+    return with_bits(
+        x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (std::int64_t{2046} << 52) - (i & (std::int64_t{2047} << 52)); });
+}
+
 // How far the last two orders let the series be trusted, s: infinite where they are zero. tol is relative where a
 // quantity of the state exceeds 1, absolute else and for the signals.
 template <class T>
 ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
     T before(0.0), last(0.0);
     for (std::size_t j = 0; j < quantities; ++j) {
-        const T scale = j < state_size ? T(1.0 / max(T(1.0), abs(e.c[0][j]))) : T(1.0);
+        const T scale = j < state_size ? inverse_power(max(T(1.0), abs(e.c[0][j]))) : T(1.0);
         before = max(before, T(abs(e.c[e.order - 1][j]) * scale));
         last = max(last, T(abs(e.c[e.order][j]) * scale));
     }

@@ -127,8 +127,8 @@ BOOST_AUTO_TEST_CASE(so_have_random_arms_that_fall_under_any_gravity_beside_an_o
         runs.base.choose("solver.method", method)
             .set("time.stop", 0.7)
             .set("wall", 1)
-            .set("wall.point", {0.9, 0.2, 0.1});
-        runs.base.set("wall.size", {0.6, 0.5}).choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.2);
+            .set("wall.point", {1.5, 0.2, 0.1});
+        runs.base.set("wall.size", {0.9, 0.8}).choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.4);
         runs.base.set("wall.motion.frequency", 2).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 800);
         for (const char* name :
              {"initial.q[0]", "initial.q[1]", "initial.q[2]", "arm.gravity[0]", "wall.motion.phase"}) {
@@ -152,8 +152,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_fails_ends_with_its_outcome_and_disturbs_no_othe
         std::vector<double>&rate = troubled.values[9], &most = troubled.values[10];
         troubled.values[4][1] = -1;  // no stiffness
         rate[3] = 9e5;               // beyond 1e5 rad soon
-        most[6] = 2;
-        most[20] = 3;
+        most[6] = most[20] = 1;
         const std::vector<double> quiet = check_widths_and_threads(calm), table = check_widths_and_threads(troubled);
         for (std::size_t i = 0; i < 32; ++i) {
             const auto outcome = int(troubled.number(table, "outcome", i));
@@ -175,13 +174,14 @@ BOOST_AUTO_TEST_CASE(a_run_that_fails_ends_with_its_outcome_and_disturbs_no_othe
 BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_in_every_lane) {
     for (const char* method : {"rk4", "taylor"}) {
         Runs runs;
-        runs.base.choose("solver.method", method).set("solver.step", 0.01).set("time.stop", 100);
+        runs.base.choose("solver.method", method).set("solver.step", 0.01).set("time.stop", 250);
         runs.base.set("arm.damping", {3, 3, 3}).set("arm.gravity", {0, 0, 0}).set("time.log_every", 1);
         runs.names = {"initial.qd[0]", "arm.damping[2]"};
         runs.values = {{0.1, 1, 0.2, 0.4, -0.3, 0.5, 0.6, 0.7, 0.8}, {5, 6, 7, 8, 9, 10, 11, 12, 13}};
         const std::vector<double> table = check_widths_and_threads(runs);
+        const double rest = std::string_view(method) == "taylor" ? 1e-9 : 0;  // to its tolerance
         for (std::size_t i = 0; i < runs.count(); ++i)
-            for (const char* rate : {"qd1", "qd2", "qd3"}) BOOST_TEST(runs.number(table, rate, i) == 0);
+            for (const char* rate : {"qd1", "qd2", "qd3"}) BOOST_TEST(std::abs(runs.number(table, rate, i)) <= rest);
     }
 }
 

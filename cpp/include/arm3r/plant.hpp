@@ -71,16 +71,22 @@ public:
         const Vec3<T> tau_f = friction_torque(arm, qd);
         Vec3<T> drive = minus(tau, tau_f);
         T wall_power(0.0), contact_loss(0.0);
-        const auto feel = [&](const ContactForce<T>& force) ARM3R_INLINE_LAMBDA {
-            drive = plus(drive, tip_force_torque(arm, p, force.on_tip));
-            wall_power = dot(force.on_tip, wall.velocity);
-            contact_loss = force.dissipated;
-        };
         if (plant_.acts_on_arm && touch != Touch::none) {
             const Indentation<T> in = tip_indentation(plant_, wall, p, qd);
             const ContactForce<T> force = contact_force(plant_.wall, plant_.contact, in);
-            if (touch == Touch::pressed) feel(force);
-            else if (const auto inside = in.depth > T(0.0); any(inside)) feel(only_where(inside && within(in), force));
+            const auto felt = [&] ARM3R_INLINE_LAMBDA { return plus(drive, tip_force_torque(arm, p, force.on_tip)); };
+            if (touch == Touch::pressed) {
+                drive = felt();
+                wall_power = dot(force.on_tip, wall.velocity);
+                contact_loss = force.dissipated;
+            } else if (const auto inside = in.depth > T(0.0); any(inside)) {
+                const auto touching = inside && within(in);
+                const Vec3<T> with = felt();
+                drive = {select(touching, with[0], drive[0]), select(touching, with[1], drive[1]),
+                         select(touching, with[2], drive[2])};
+                wall_power = select(touching, dot(force.on_tip, wall.velocity), wall_power);
+                contact_loss = select(touching, force.dissipated, contact_loss);
+            }
         }
         const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive);
         if constexpr (N == motion_size) dy = {qd[0], qd[1], qd[2], qdd[0], qdd[1], qdd[2]};
