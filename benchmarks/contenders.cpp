@@ -53,6 +53,15 @@ Contender our_steps(std::string job, std::vector<double> (*params)()) {
             }};
 }
 
+template <std::size_t Size>
+Contender our_packs(std::string job, std::vector<double> (*params)()) {
+    return {std::move(job), "arm3r in packs of " + std::to_string(arm3r::widest_lanes()) + ", per arm", our_build,
+            [params] {
+                return over_steps<PackStepper<Size>>(std::make_shared<PackStepper<Size>>(params()),
+                                                     &PackStepper<Size>::start);
+            }};
+}
+
 Contender our_runs(std::string job, std::vector<double> (*params)()) {
     return {std::move(job), "arm3r simulate()", our_build,
             [params] { return [setup = params()](int times) { run_fixed_steps(setup, times); }; }};
@@ -154,14 +163,18 @@ std::vector<Contender> contenders() {
         casadi(),
         pinocchio(),
         our_steps<motion_size>(falls, free_fall),
+        our_packs<motion_size>(falls, free_fall),
         casadi(falls, false),
         mujoco(falls),
         our_steps<state_size>(falls + books, free_fall),
+        our_packs<state_size>(falls + books, free_fall),
         our_runs(falls + books, free_fall),
         our_steps<motion_size>(pushed, compensated_at_wall),
+        our_packs<motion_size>(pushed, compensated_at_wall),
         casadi(pushed, true),
         mujoco(pushed),
         our_steps<state_size>(pushed + books, compensated_at_wall),
+        our_packs<state_size>(pushed + books, compensated_at_wall),
         our_runs(pushed + books, compensated_at_wall),
     };
 }

@@ -2,6 +2,8 @@
 
 #include <random>
 
+#include "arm3r/eigen_traits.hpp"
+#include "arm3r/lanes.hpp"
 #include "schema.hpp"
 #include "simulation.hpp"
 
@@ -81,6 +83,64 @@ void Stepper<Size>::advance(int steps) {
 
 template class Stepper<motion_size>;
 template class Stepper<state_size>;
+
+template <int N, std::size_t Size>
+ARM3R_INLINE void march_packs(const Plant<Pack<N>>& plant, State<Pack<N>, Size>& y, int steps) {
+    RightHandSide<Pack<N>, Pack<N>> rhs(plant);
+    if (plant.acts_on_arm) rhs.touch = Touch::each_stage;
+    State<Pack<N>, Size> f;
+    Pack<N> t(0.0), h(step);
+    rhs.begin_step(y);
+    rhs(t, y, f);
+    for (int i = 0; i < steps; ++i) {
+        y = rk4_step(rhs, t, y, f, h);
+        t += h;
+        rhs.begin_step(y);
+        rhs(t, y, f);
+    }
+}
+
+template <std::size_t Size>
+void march_by(const Plant<Pack<2>>& plant, State<Pack<2>, Size>& y, int steps) {
+    march_packs(plant, y, steps);
+}
+template <std::size_t Size>
+ARM3R_FOR_FOUR void march_by(const Plant<Pack<4>>& plant, State<Pack<4>, Size>& y, int steps) {
+    march_packs(plant, y, steps);
+}
+template <std::size_t Size>
+ARM3R_FOR_EIGHT void march_by(const Plant<Pack<8>>& plant, State<Pack<8>, Size>& y, int steps) {
+    march_packs(plant, y, steps);
+}
+
+template <std::size_t Size>
+PackStepper<Size>::PackStepper(const std::vector<double>& params) : setup_(make_setup(params)) {}
+
+template <std::size_t Size>
+template <int N>
+void PackStepper<Size>::march(int steps) {
+    Plant<Pack<N>> plant;
+    copy_choices(setup_.plant, plant);
+    each_number([](Pack<N>& all, const double& one) { all = one; }, plant, setup_.plant);
+    State<Pack<N>, Size> y{};
+    for (int i = 0; i < 3; ++i)
+        for (int lane = 0; lane < N; ++lane) y[i].set(lane, setup_.q[i] + 0.01 * lane);
+    march_by(plant, y, steps);
+    sum_ += y[1][0] + y[2][N - 1];
+}
+
+template <std::size_t Size>
+void PackStepper<Size>::advance(int steps) {
+    const int lanes = widest_lanes(), before = taken_ / lanes;
+    taken_ += steps;
+    const int each = taken_ / lanes - before;
+    if (lanes == 8) march<8>(each);
+    else if (lanes == 4) march<4>(each);
+    else march<2>(each);
+}
+
+template class PackStepper<motion_size>;
+template class PackStepper<state_size>;
 
 void run_fixed_steps(const std::vector<double>& params, int steps) {
     std::vector<double> run = params;

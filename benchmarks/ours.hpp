@@ -42,6 +42,24 @@ private:
     double t_;
 };
 
+// The same steps of as many arms side by side as this processor's registers hold, each with numbers and a pose of its
+// own; they count arm by arm.
+template <std::size_t Size>
+class PackStepper {
+public:
+    explicit PackStepper(const std::vector<double>& params);
+    void start() { taken_ = 0; }
+    void advance(int steps);
+
+private:
+    template <int N>
+    void march(int steps);
+
+    arm3r::Setup setup_;
+    int taken_ = 0;
+    double sum_ = 0;  // so that the result is used
+};
+
 // The same steps within a whole run: contact watched, books kept and the state judged after each, two rows logged.
 void run_fixed_steps(const std::vector<double>& params, int steps);
 

@@ -194,7 +194,7 @@ Metrics March<T>::metrics(int lane) const {
     m.contacts = contacts.count;
     m.first_contact = contacts.first_contact;
     m.first_release = contacts.first_release;
-    m.steps = {std::int64_t(get(accepted_)), std::int64_t(get(rejected_)), std::int64_t(get(evaluations_))};
+    m.steps = steps(lane);
     const bool balances = m.ledger_residual <= balance_limit(setup.solver, flows(lane));
     if (m.outcome == ARM3R_RUN_OK && is_strict(setup.solver) && !balances) m.outcome = ARM3R_RUN_ENERGY;
     return m;

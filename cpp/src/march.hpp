@@ -86,6 +86,10 @@ public:
     }
     Metrics metrics(int lane) const;
     Flows flows(int lane) const;
+    Steps steps(int lane) const {
+        const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
+        return {count(accepted_), count(rejected_), count(evaluations_)};
+    }
 
     // One lane, in doubles.
     double t(int lane) const { return Lanes<T>::get(t_, lane); }

@@ -33,25 +33,29 @@ public:
         begin(march_.y(0), straight_on(march_.y(0)), march_.mode(0), march_.energy_at_start(0));
         while (is_going_on() && !march_.has_ended(0))
             if (poll()) step();
+        know_solution();
         return finish(march_.y(0), theta_, note_end());
     }
 
 private:
     void step() {
-        bool is_known = false;
-        const auto know = [&] {
-            if (!is_known) inside_ = solution(march_);
-            is_known = true;
-        };
+        is_known_ = false;
         march_.step([&](int, const Change& change) {
-            know();
+            know_solution();
             note_change(change, inside_(change.theta));
         });
-        know();
         theta_ = place(march_);
         run_.t_end = march_.t(0);
+        run_.steps = march_.steps(0);
+        if (!is_row_due(run_.t_end)) return;
+        know_solution();
         log_until(run_.t_end);
-        static_cast<Steps&>(run_.steps) = march_.metrics(0).steps;
+    }
+
+    // The solution within the last step; it is asked for only where rows or events lie in the step.
+    void know_solution() {
+        if (!is_known_) inside_ = solution(march_);
+        is_known_ = true;
     }
 
     Flows note_end() {
@@ -86,6 +90,7 @@ private:
 
     Marching march_;
     double theta_ = 0;
+    bool is_known_ = true;
 };
 
 }  // namespace

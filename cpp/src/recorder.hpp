@@ -22,6 +22,8 @@ protected:
     // The first row, and the present mode. Before the first step the solution is a straight line.
     void begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start);
 
+    // Whether there are rows before t still to log.
+    bool is_row_due(double t) const { return options_.rows && rows_.is_due(t); }
     // All rows before t, from the solution within the last step.
     void log_until(double t) {
         if (options_.rows) rows_.log_until(t, scene(), [this] { return poll(); });

@@ -20,6 +20,8 @@ public:
         }
     }
 
+    bool is_due(double until) const { return stands_before(run_.rows, until); }
+
     void log(const Scene& scene, double t, const FullState& y, double theta);
 
     // Of the last row, s; 0 where there is none.
