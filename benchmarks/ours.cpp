@@ -104,6 +104,7 @@ template <std::size_t Size>
 void march_by(const Plant<Pack<2>>& plant, State<Pack<2>, Size>& y, int steps) {
     march_packs(plant, y, steps);
 }
+#if ARM3R_WIDE_PACKS
 template <std::size_t Size>
 ARM3R_FOR_FOUR void march_by(const Plant<Pack<4>>& plant, State<Pack<4>, Size>& y, int steps) {
     march_packs(plant, y, steps);
@@ -112,6 +113,7 @@ template <std::size_t Size>
 ARM3R_FOR_EIGHT void march_by(const Plant<Pack<8>>& plant, State<Pack<8>, Size>& y, int steps) {
     march_packs(plant, y, steps);
 }
+#endif
 
 template <std::size_t Size>
 PackStepper<Size>::PackStepper(const std::vector<double>& params) : setup_(make_setup(params)) {}
@@ -134,9 +136,11 @@ void PackStepper<Size>::advance(int steps) {
     const int lanes = widest_lanes(), before = taken_ / lanes;
     taken_ += steps;
     const int each = taken_ / lanes - before;
-    if (lanes == 8) march<8>(each);
-    else if (lanes == 4) march<4>(each);
-    else march<2>(each);
+#if ARM3R_WIDE_PACKS
+    if (lanes == 8) return march<8>(each);
+    if (lanes == 4) return march<4>(each);
+#endif
+    march<2>(each);
 }
 
 template class PackStepper<motion_size>;

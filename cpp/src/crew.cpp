@@ -69,12 +69,14 @@ template <template <class> class Marching>
 struct Lineups {
     static void one(Crew& crew, const Setup& first, std::size_t run) { march<double>(crew, first, run); }
     static void two(Crew& crew, const Setup& first, std::size_t run) { march<Pack<2>>(crew, first, run); }
+#if ARM3R_WIDE_PACKS
     ARM3R_FOR_FOUR static void four(Crew& crew, const Setup& first, std::size_t run) {
         march<Pack<4>>(crew, first, run);
     }
     ARM3R_FOR_EIGHT static void eight(Crew& crew, const Setup& first, std::size_t run) {
         march<Pack<8>>(crew, first, run);
     }
+#endif
 
     template <class T>
     ARM3R_INLINE static void march(Crew& crew, const Setup& first, std::size_t run) {
@@ -84,9 +86,11 @@ struct Lineups {
     static void of(int lanes, Crew& crew, const Setup& first, std::size_t run) {
         switch (lanes) {
             case 1: return one(crew, first, run);
-            case 2: return two(crew, first, run);
+#if ARM3R_WIDE_PACKS
             case 4: return four(crew, first, run);
-            default: return eight(crew, first, run);
+            case 8: return eight(crew, first, run);
+#endif
+            default: return two(crew, first, run);
         }
     }
 };

@@ -207,7 +207,9 @@ Flows March<T>::flows(int lane) const {
 
 template class March<double>;
 template class March<Pack<2>>;
+#if ARM3R_WIDE_PACKS
 template class March<Pack<4>>;
 template class March<Pack<8>>;
+#endif
 
 }  // namespace arm3r

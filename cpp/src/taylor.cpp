@@ -56,6 +56,7 @@ void expand_by(const Plant<Pack<2>>& plant, const Pack<2>& t, const State<Pack<2
     expand_here<recipe>(plant, t, y, order, c);
 }
 
+#if ARM3R_WIDE_PACKS
 template <std::size_t recipe>
 ARM3R_FOR_FOUR void expand_by(const Plant<Pack<4>>& plant, const Pack<4>& t, const State<Pack<4>, state_size>& y,
                               int order, Pack<4> (*c)[quantities]) {
@@ -67,6 +68,7 @@ ARM3R_FOR_EIGHT void expand_by(const Plant<Pack<8>>& plant, const Pack<8>& t, co
                                int order, Pack<8> (*c)[quantities]) {
     expand_here<recipe>(plant, t, y, order, c);
 }
+#endif
 
 template <class T>
 Expand<T> expand_of(Kernel kernel) {
@@ -113,10 +115,12 @@ template void expand(Kernel, const Plant<double>&, const double&, const State<do
                      Expansion<double>&);
 template void expand(Kernel, const Plant<Pack<2>>&, const Pack<2>&, const State<Pack<2>, state_size>&, int,
                      Expansion<Pack<2>>&);
+#if ARM3R_WIDE_PACKS
 template void expand(Kernel, const Plant<Pack<4>>&, const Pack<4>&, const State<Pack<4>, state_size>&, int,
                      Expansion<Pack<4>>&);
 template void expand(Kernel, const Plant<Pack<8>>&, const Pack<8>&, const State<Pack<8>, state_size>&, int,
                      Expansion<Pack<8>>&);
+#endif
 
 int order_of(double tol) {
     constexpr double each_order = 0x1.152aaa3bf81ccp-3;  // exp(-2)

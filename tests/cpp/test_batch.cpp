@@ -1,5 +1,6 @@
 #include "batch.hpp"
 
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cstring>
 
@@ -182,6 +183,27 @@ BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_in_every_lane) {
         const double rest = std::string_view(method) == "taylor" ? 1e-9 : 0;  // to its tolerance
         for (std::size_t i = 0; i < runs.count(); ++i)
             for (const char* rate : {"qd1", "qd2", "qd3"}) BOOST_TEST(std::abs(runs.number(table, rate, i)) <= rest);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(neither_order_nor_the_callers_rounding_of_tiny_numbers_matters) {
+    Random random(35);
+    for (const char* method : {"rk4", "taylor"}) {
+        const Runs runs = pushed_arms(random, method, 40);
+        const std::vector<double> table = runs.together({});
+        Runs backwards = runs;
+        for (std::vector<double>& values : backwards.values) std::reverse(values.begin(), values.end());
+        const std::vector<double> reversed = backwards.together({});
+        for (std::size_t c = 0; c < summary_table().size(); ++c)
+            for (std::size_t i = 0; i < 40; ++i) BOOST_TEST(same(table[c * 40 + i], reversed[c * 40 + 39 - i]));
+#if defined(__x86_64__)
+        constexpr unsigned flush_to_zero = 0x8040;  // and subnormal operands are zero
+        const unsigned usual = __builtin_ia32_stmxcsr();
+        __builtin_ia32_ldmxcsr(usual | flush_to_zero);
+        const std::vector<double> flushed = runs.together({});
+        __builtin_ia32_ldmxcsr(usual);
+        for (std::size_t i = 0; i < table.size(); ++i) BOOST_TEST(same(table[i], flushed[i]));
+#endif
     }
 }
 

@@ -39,7 +39,13 @@ PART = {stem: part for layer in LAYERS for part in layer for stem in part.split(
 # What only these parts may include.
 RESERVED = {
     r"yaml-cpp/.*": {"yaml_events"},
-    r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {"input", "output", "cli", "row_memory", "derive_taylor"},
+    r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {
+        "input",
+        "output",
+        "cli",
+        "row_memory",
+        "derive_taylor",
+    },
     r"iostream": {"cli"},
 }
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import scenario_files
 
-# Everything that computes: both methods, contact both ways, friction, the recursion, every motion of the wall.
+# Everything that computes: all methods, contact both ways, friction, the recursion, every motion of the wall.
 TEXTS = {
     "bounce": """
 format: 1
@@ -49,6 +49,21 @@ initial: {q: [0.4, -0.7, 0.9]}
 wall: {point: [1.6, 0.2, 0], motion: {type: constant, velocity: [-0.3, 0.1, 0.05]}, acts_on_arm: true}
 controller: {type: constant, torque: [0.1, -9, -2]}
 solver: {method: rk4, step: 0.001}
+time: {stop: 3.0}
+""",
+    "series": """
+format: 1
+arm: {damping: [0.05, 0.1, 0.05], friction: [0, 0, 0.05], friction_velocity: 0.1, link3: {length: 0.7}}
+initial: {q: [0.3, -0.5, 1.0], qd: [0.1, 0, 0.2]}
+wall:
+  point: [1.75, 0.1, 0]
+  normal: [-1, 0.1, 0.2]
+  size: infinite
+  motion: {type: sinusoid, amplitude: 0.5, frequency: 0.7}
+  contact: {stiffness: 2000}
+  acts_on_arm: true
+controller: {type: gravity_compensation, gravity: 9.7}
+solver: {method: taylor, tol: 1e-10}
 time: {stop: 3.0}
 """,
 }
@@ -127,3 +142,35 @@ def test_other_optimisation_gives_the_same(
     cmake("-S", root, "-B", tmp_path, "-G", "Ninja", *flags)
     cmake("--build", tmp_path, "--target", "arm3r_cli")
     assert hashes(tmp_path / "arm3r", files) == expected
+
+
+def table(batch: arm3r.Batch, order: np.ndarray | slice = slice(None)) -> bytes:
+    return np.stack([batch[name][order] for name in batch]).tobytes()
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "taylor"])
+def test_two_thousand_runs_in_any_company(method: str) -> None:
+    """Threads, order and neighbours change nothing, and each run is what it is alone."""
+    scenario = arm3r.Scenario(TEXTS["bounce"].replace("stop: 3.0", "stop: 0.4"))
+    scenario["solver.method"] = method
+    random, count = np.random.default_rng(5), 2000
+    values = {
+        "initial.q": random.uniform([0.3, -0.8, 1.1], [0.5, -0.6, 1.3], (count, 3)),
+        "wall.contact.stiffness": np.geomspace(1e2, 1e5, count),
+        "wall.motion.phase": random.uniform(-3, 3, count),
+        "arm.link2.density": random.uniform(5e3, 9e3, count),
+    }
+    together = scenario.batch(values, threads=1)
+    assert together.ok.all() and (together["contacts"] > 0).mean() > 0.2
+    for threads in (2, 8):
+        assert table(scenario.batch(values, threads=threads)) == table(together)
+    order = random.permutation(count)
+    shuffled = scenario.batch({key: value[order] for key, value in values.items()})
+    assert table(shuffled, np.argsort(order)) == table(together)
+    parts = [scenario.batch({key: value[i : i + 17] for key, value in values.items()}) for i in range(0, count, 17)]
+    for name in together:
+        assert np.concatenate([part[name] for part in parts]).tobytes() == together[name].tobytes(), name
+    for index in range(0, count, 50):
+        run = together.run(index)
+        assert [run["q1"][-1], run["qd3"][-1]] == [together["q1"][index], together["qd3"][index]]
+        assert run.summary["peak_force"] == together["peak_force"][index]

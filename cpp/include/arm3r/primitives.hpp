@@ -8,15 +8,16 @@
 
 // A function of packs that is built for several instruction sets, the widest that the CPU has being taken at run time.
 // All that it calls must be inlined into it. Every variant gives the same bits. The other two: a function of packs of 4 or
-// of 8, built for the registers that hold them, and to be called only where the processor has these (widest_lanes).
+// of 8, built for the registers that hold them, and to be called only where the processor has these (widest_lanes); where
+// there are no such registers to build for (ARM3R_WIDE_PACKS 0), packs of 2 are all there is.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
 #define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #define ARM3R_FOR_FOUR __attribute__((target("arch=x86-64-v3")))
 #define ARM3R_FOR_EIGHT __attribute__((target("arch=x86-64-v4")))
+#define ARM3R_WIDE_PACKS 1
 #else
 #define ARM3R_WIDEST
-#define ARM3R_FOR_FOUR
-#define ARM3R_FOR_EIGHT
+#define ARM3R_WIDE_PACKS 0
 #endif
 #define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
 
@@ -24,7 +25,7 @@ namespace arm3r {
 
 // How many lanes the registers of this processor hold.
 inline int widest_lanes() {
-#if defined(__x86_64__)
+#if ARM3R_WIDE_PACKS
     if (__builtin_cpu_supports("x86-64-v4")) return 8;
     if (__builtin_cpu_supports("x86-64-v3")) return 4;
 #endif
