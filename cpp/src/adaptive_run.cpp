@@ -175,12 +175,12 @@ private:
         inside_ = stepper_.interpolant(run_.t_end, y_, h);
         double deepest = 0;
         const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, deepest);
-        note_depth(deepest);
         const double theta = crossing ? crossing->theta : 1;
-        note_passage(theta);
         const double t1 = crossing ? run_.t_end + theta * h : last ? setup_.stop : run_.t_end + h;
         log_until(t1);
         if (!is_going_on()) return;
+        note_depth(deepest);
+        note_passage(theta);
         theta_ = theta;
         y_ = crossing ? inside_(theta) : stepper_.y1;
         const bool came_to_rest = accept(t1);
@@ -240,8 +240,7 @@ private:
     void note_end() {
         run_.q = joints_out(angles(y_));
         run_.qd = joints_out(rates(y_));
-        const Vec3<double> tip = tip_position(setup_.plant.arm, pose(angles(y_)));
-        run_.tip = {tip[0] + 0.0, tip[1] + 0.0, tip[2] + 0.0};
+        run_.tip = plain(tip_position(setup_.plant.arm, pose(angles(y_))));
         for (std::size_t i = motion_size; i < state_size; ++i) run_.books[i - motion_size] = y_[i];
         if (mode_ != Mode::contact) return;
         run_.contact_time += run_.t_end - touching_since_;

@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -53,8 +54,13 @@ public:
         const std::size_t wanted = options_.threads > 0 ? options_.threads : allowed_threads();
         const std::size_t count = std::clamp<std::size_t>(runs / least_runs_per_thread, 1, wanted);
         std::vector<std::thread> threads;
-        for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { work(); });
-        while (!has_ended(count)) watch();
+        threads.reserve(count);
+        try {
+            while (threads.size() < count) threads.emplace_back([this] { work(); });
+        } catch (const std::system_error&) {  // fewer will do
+            if (threads.empty()) throw;
+        }
+        while (!has_ended(threads.size())) watch();
         for (std::thread& thread : threads) thread.join();
         if (failure_) std::rethrow_exception(failure_);
     }

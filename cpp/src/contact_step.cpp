@@ -3,11 +3,6 @@
 namespace arm3r {
 namespace {
 
-Polynomial<double> negative(Polynomial<double> p) {
-    for (int i = 0; i <= p.degree; ++i) p.c[i] = -p.c[i];
-    return p;
-}
-
 // Distance from one edge: half - sign*across.
 Polynomial<double> inside_edge(double half, double sign, Polynomial<double> across) {
     if (sign > 0) across = negative(across);

@@ -9,6 +9,8 @@
 
 namespace arm3r {
 
+inline constexpr double finest_event = 1e-14;  // s
+
 struct Crossing {
     double theta;  // where in the step, in (from, 1]
     Mode next;

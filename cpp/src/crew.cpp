@@ -13,7 +13,7 @@
 namespace arm3r {
 namespace {
 
-constexpr std::size_t runs_at_a_time = 256;
+constexpr std::size_t runs_at_a_time = 256, most_aside = 1024;
 
 // Lets runs of one structure march until there are no more.
 template <class Marching>
@@ -49,7 +49,7 @@ private:
         march_.forget_failures();
         for (int lane = 0; lane < Marching::lanes; ++lane) {
             if (!march_.is_running(lane)) continue;
-            if (crew_.is_stopped()) march_.stop_lane(lane, ARM3R_RUN_STOPPED);
+            if (crew_.is_stopped() && !march_.has_ended(lane)) march_.stop_lane(lane, ARM3R_RUN_STOPPED);
             if (!march_.has_ended(lane)) continue;
             crew_.store(run_[lane], march_.metrics(lane));
             if (fill(lane)) anyone_new = true;
@@ -118,7 +118,7 @@ void Crew::march(const Setup& first, std::size_t run) {
 }
 
 bool Crew::next(const Structure& structure, Setup& setup, std::size_t& run) {
-    while (take(run)) {
+    while (aside_.size() < most_aside && take(run)) {
         if (!prepare(run, setup)) continue;
         if (structure_of(setup) == structure) return true;
         aside_.push_back(run);
@@ -147,28 +147,26 @@ bool Crew::prepare(std::size_t run, Setup& setup) {
     const Variation& variation = work_.variation;
     for (std::size_t j = 0; j < variation.varied.size(); ++j)
         params_[variation.varied[j]] = variation.values[j * variation.runs + run];
-    Metrics metrics;
-    if (is_stopped()) {
-        metrics.outcome = ARM3R_RUN_STOPPED;
-    } else if (!work_.is_valid(params_)) {
-        metrics.outcome = ARM3R_RUN_INVALID;
-    } else {
-        setup = make_setup(params_);
-        if (!has_too_many_steps(setup)) return true;
-        metrics.outcome = ARM3R_RUN_BUDGET;
-    }
-    store(run, metrics);
-    return false;
+    if (is_stopped()) return refuse(run, ARM3R_RUN_STOPPED), false;
+    if (!work_.is_valid(params_)) return refuse(run, ARM3R_RUN_INVALID), false;
+    setup = make_setup(params_);
+    if (has_too_many_steps(setup)) return refuse(run, ARM3R_RUN_BUDGET), false;
+    return true;
 }
 
 void Crew::store(std::size_t run, const Metrics& metrics) {
-    const bool was_begun = metrics.t_end > 0 || metrics.outcome == ARM3R_RUN_OK || metrics.steps.evaluations > 0;
     double* cell = work_.results + run;
     for (const SummaryNumber& number : summary_table()) {
-        const bool is_known = was_begun || &number == &summary_table().front();
-        *cell = is_known ? number.of(metrics) + 0.0 : std::numeric_limits<double>::quiet_NaN();
+        *cell = number.of(metrics) + 0.0;
         cell += work_.variation.runs;
     }
+    work_.done.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Crew::refuse(std::size_t run, arm3r_outcome why) {
+    for (std::size_t i = 0; i < summary_table().size(); ++i)
+        work_.results[i * work_.variation.runs + run] = std::numeric_limits<double>::quiet_NaN();
+    work_.results[run] = double(why);  // the outcome is the first column
     work_.done.fetch_add(1, std::memory_order_relaxed);
 }
 

@@ -31,6 +31,7 @@ public:
     // The next run whose structure is `structure`; those of others are put aside.
     bool next(const Structure& structure, Setup& setup, std::size_t& run);
     void store(std::size_t run, const Metrics& metrics);
+    void refuse(std::size_t run, arm3r_outcome why);  // not begun: its row has no other number
     bool is_stopped() const { return work_.stop.load(std::memory_order_relaxed); }
 
 private:

@@ -8,12 +8,11 @@ namespace arm3r {
 namespace {
 
 constexpr int depth_signal = 0, edges = 4;  // the distances inside the outline are signals 1 to 4
-constexpr double finest = 1e-14;            // s
 
 // A bracket of two instants that the clock can hardly tell apart.
 bool is_narrow(const Inside& inside, double a, double b) {
     const double t = std::abs(inside.t0 + inside.h * b);
-    return (b - a) * inside.h <= std::max(finest, 4 * std::numeric_limits<double>::epsilon() * t) ||
+    return (b - a) * inside.h <= std::max(finest_event, 4 * std::numeric_limits<double>::epsilon() * t) ||
            0.5 * (a + b) == a || 0.5 * (a + b) == b;
 }
 

@@ -8,8 +8,6 @@
 namespace arm3r {
 namespace {
 
-std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
-
 // A mask is set lane by lane through a number.
 template <class T, class Items, class Item>
 typename Lanes<T>::Mask mask_where(const Items& items, Item wanted) {

@@ -15,8 +15,6 @@
 
 namespace arm3r {
 
-inline constexpr double finest_event = 1e-14;  // s
-
 template <class T>
 struct Lanes {
     static constexpr int count = 1;
@@ -108,11 +106,6 @@ protected:
     }
     ARM3R_INLINE static Mask select_mask(const Mask& which, const Mask& a, const Mask& b) {
         return (which && a) || (!which && b);
-    }
-    static Polynomial<double> polynomial_of(const Polynomial<T>& p, int lane) {
-        Polynomial<double> one{p.degree, {}};
-        for (int i = 0; i <= p.degree; ++i) one.c[i] = Lanes<T>::get(p.c[i], lane);
-        return one;
     }
 
     // ---- one instant

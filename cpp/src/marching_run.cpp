@@ -85,7 +85,8 @@ private:
         for (int i = 0; i < 3; ++i)
             if (!(std::abs(run_.q[i]) <= sincos_limit))
                 return "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad" + at_time(t);
-        return "the motion is no longer finite after t = " + shortest(t) + " s; a smaller solver.step may hold it";
+        return "the motion is no longer finite after t = " + shortest(t) + " s; " +
+               (setup_.solver.method == Solver::rk4 ? "a smaller solver.step may hold it" : "tighten solver.tol");
     }
 
     Marching march_;

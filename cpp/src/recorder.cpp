@@ -18,8 +18,6 @@ Setup small_enough(Setup setup, bool rows) {
     return setup;
 }
 
-std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
-
 }  // namespace
 
 Recorder::Recorder(std::span<const double> params, const RunOptions& options)

@@ -48,6 +48,9 @@ private:
     }
 };
 
+// As it goes out: without negative zeros.
+inline std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
+
 inline Vec3<double> angles(const FullState& y) { return {y[0], y[1], y[2]}; }
 inline Vec3<double> rates(const FullState& y) { return {y[3], y[4], y[5]}; }
 

@@ -62,7 +62,7 @@ void check_start(const Setup& setup, Findings& findings) {
         });
 }
 
-void check_wall(std::span<const double> params, Findings& findings) {
+void check_normal(std::span<const double> params, Findings& findings) {
     const Vec3<double> normal = vector_at<"wall.normal">(params);
     if (sqrt(dot(normal, normal)) < 1e-9)
         findings.add([] {
@@ -73,6 +73,9 @@ void check_wall(std::span<const double> params, Findings& findings) {
                            .allowed = "any vector that is not zero",
                            .hint = ""};
         });
+}
+
+void check_law(std::span<const double> params, Findings& findings) {
     if (is<"wall.contact.law", "diagonal">(params) && at<"wall.acts_on_arm">(params) != 0)
         findings.add([] {
             return Problem{.code = "scenario.one_way_only",
@@ -100,6 +103,21 @@ void check_corners(const Setup& setup, Findings& findings) {
         });
 }
 
+// Its recurrences are those of the closed form.
+void check_algorithm(const Setup& setup, Findings& findings) {
+    const Controller<double>& controller = setup.plant.controller;
+    if (setup.solver.method == Solver::taylor && controller.type == Controls::gravity_compensation &&
+        controller.algorithm == Algorithm::recursion)
+        findings.add([] {
+            return Problem{.code = "scenario.no_series",
+                           .path = "controller.algorithm",
+                           .message = "taylor has no series of the Newton-Euler recursion",
+                           .got = "recursion",
+                           .allowed = "closed_form with solver.method: taylor",
+                           .hint = "use algorithm: closed_form, or method: dopri5"};
+        });
+}
+
 }  // namespace
 
 WorstPose smallest_M11(const Lumped<double>& l) {  // (3.10)
@@ -120,10 +138,12 @@ WorstPose smallest_lower_determinant(const Lumped<double>& l) {  // (3.10)
 }
 
 void check_setup(std::span<const double> params, Findings& findings) {
-    if (at<"wall">(params) != 0) check_wall(params, findings);
+    check_normal(params, findings);
+    if (at<"wall">(params) != 0) check_law(params, findings);
     if (!findings.none()) return;
     const Setup setup = make_setup(params);
     check_corners(setup, findings);
+    check_algorithm(setup, findings);
     check_mass_matrix(setup.plant.arm, findings);
     if (findings.none() && setup.plant.has_wall) check_start(setup, findings);
 }

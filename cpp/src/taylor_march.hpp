@@ -38,7 +38,7 @@ public:
         this->h_ = select(is_last, rest, wanted);
         const Mask finite = is_finite(), stands = !is_last && this->h_ < smallest_step(t0_);
         const Mask moved = this->alive_ && finite && !stands;
-        if (any(this->alive_ && !moved)) give_up(finite);
+        if (any(this->alive_ && !moved)) give_up(finite, stands);
 
         crosses_ = false;
         theta_ = T(1.0);
@@ -82,13 +82,11 @@ private:
         return zero == T(0.0);
     }
 
-    [[gnu::noinline]] void give_up(const Mask& finite) {
+    [[gnu::noinline]] void give_up(const Mask& finite, const Mask& stands) {
         for (int lane = 0; lane < Base::lanes; ++lane) {
             if (!this->is_running(lane)) continue;
-            const bool stands = Lanes<T>::get(this->h_, lane) < Lanes<T>::get(smallest_step(t0_), lane) &&
-                                Lanes<T>::get(T(t0_ + this->h_), lane) < Lanes<T>::get(this->stop_, lane);
             if (!Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);
-            else if (stands) this->stop_lane(lane, ARM3R_RUN_STEP_COLLAPSE);
+            else if (Lanes<T>::is(stands, lane)) this->stop_lane(lane, ARM3R_RUN_STEP_COLLAPSE);
         }
     }
 

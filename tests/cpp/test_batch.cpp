@@ -172,6 +172,18 @@ BOOST_AUTO_TEST_CASE(a_run_that_fails_ends_with_its_outcome_and_disturbs_no_othe
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_run_that_fails_in_its_first_step_has_the_numbers_of_its_start) {
+    Runs runs;
+    runs.base = unequal_params();
+    runs.base.choose("solver.method", "taylor").set("arm.friction_velocity", 1e-12);
+    runs.names = {"arm.friction[0]", "initial.qd[0]"};
+    runs.values = {{1e12, 0.1}, {1e-12, 0}};
+    const std::vector<double> table = check_widths_and_threads(runs);
+    BOOST_TEST(runs.number(table, "outcome", 0) == ARM3R_RUN_STEP_COLLAPSE);
+    BOOST_TEST(runs.number(table, "q1", 0) == 0.4);
+    BOOST_TEST(runs.number(table, "t_end", 0) == 0);
+}
+
 BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_in_every_lane) {
     for (const char* method : {"rk4", "taylor"}) {
         Runs runs;

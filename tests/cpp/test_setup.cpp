@@ -146,6 +146,17 @@ BOOST_AUTO_TEST_CASE(taylor_is_refused_where_the_law_has_corners) {
     BOOST_TEST(validate(params).empty());
 }
 
+BOOST_AUTO_TEST_CASE(taylor_is_refused_where_the_torque_is_to_come_from_the_recursion) {
+    Params params = unequal_params().choose("solver.method", "taylor");
+    params.choose("controller.type", "gravity_compensation").choose("controller.algorithm", "recursion");
+    const Problem problem = only_problem(params);
+    BOOST_TEST(problem.code == "scenario.no_series");
+    BOOST_TEST(problem.path == "controller.algorithm");
+    BOOST_TEST(contains(problem.hint, "dopri5"));
+    BOOST_TEST(validate(Params(params).choose("solver.method", "rk4")).empty());
+    BOOST_TEST(validate(Params(params).choose("controller.type", "none")).empty());
+}
+
 // ---- the solver
 
 BOOST_AUTO_TEST_CASE(the_solver_is_as_it_was_asked_for) {

@@ -99,6 +99,11 @@ ARM3R_INLINE Coefficients<T> bernstein(const Polynomial<T>& p) {
     return b;
 }
 
+inline Polynomial<double> negative(Polynomial<double> p) {
+    for (int i = 0; i <= p.degree; ++i) p.c[i] = -p.c[i];
+    return p;
+}
+
 namespace falls {
 
 using Bernstein = Coefficients<double>;
@@ -204,11 +209,6 @@ inline std::optional<double> first(const Polynomial<double>& p, double from, dou
     return close(p, *bracket, search.resolution);
 }
 
-inline Polynomial<double> negative(Polynomial<double> p) {
-    for (int i = 0; i <= p.degree; ++i) p.c[i] = -p.c[i];
-    return p;
-}
-
 inline Polynomial<double> lowered(Polynomial<double> p, double by) {
     p.c[0] -= by;
     return p;
@@ -222,7 +222,7 @@ inline Polynomial<double> lowered(Polynomial<double> p, double by) {
 inline std::optional<double> first_fall(const Polynomial<double>& g, double from, double resolution) {
     const double start = value(g, from);
     if (!(start < -falls::rounding(g) && from < 1)) return falls::first(g, from, 1.0, resolution);
-    const std::optional<double> up = falls::first(falls::negative(g), from, 1.0, resolution);
+    const std::optional<double> up = falls::first(negative(g), from, 1.0, resolution);
     if (!up || falls::first(falls::lowered(g, start), from, *up, resolution)) return from;
     return falls::first(g, *up, 1.0, resolution);
 }
@@ -232,10 +232,10 @@ inline double largest(const Polynomial<double>& p, double a, double b) {
     constexpr double resolution = 0x1p-32;  // p is flat where it turns
     double most = max(value(p, a), value(p, b));
     Polynomial<double> signed_slope = derivative(p);
-    if (value(signed_slope, a) < 0) signed_slope = falls::negative(signed_slope);
+    if (value(signed_slope, a) < 0) signed_slope = negative(signed_slope);
     while (const auto turn = falls::first(signed_slope, a, b, resolution)) {
         most = max(most, value(p, *turn));
-        signed_slope = falls::negative(signed_slope);
+        signed_slope = negative(signed_slope);
         a = *turn;
     }
     return most;
