@@ -33,7 +33,9 @@ public:
         t0_ = this->t_;
         const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
-        const T wanted = min(step_of(series_, tol_), max_step_), rest = this->stop_ - t0_;
+        T wanted = min(step_of(series_, tol_), max_step_);
+        if (this->plant_.arm.has_dry_friction) slow_before_friction(wanted);
+        const T rest = this->stop_ - t0_;
         const Mask is_last = wanted >= rest;
         this->h_ = select(is_last, rest, wanted);
         const Mask finite = is_finite(), stands = !is_last && this->h_ < smallest_step(t0_);
@@ -80,6 +82,25 @@ private:
         T zero(0.0);
         for (std::size_t j = 0; j < quantities; ++j) zero = zero + series_.c[order_][j] * 0.0;
         return zero == T(0.0);
+    }
+
+    // Far from rest dry friction looks constant, and no coefficient tells how suddenly it turns over where a joint stops:
+    // no step lets a rate change by more than half of it and the rate at which friction sets in (5.5).
+    ARM3R_INLINE void slow_before_friction(T& h) const {
+        constexpr int halvings = 64;
+        for (int n = 0; n < halvings; ++n) {
+            Mask is_long = false;
+            for (std::size_t i = 3; i < motion_size; ++i) {
+                T power(1.0), change(0.0);
+                for (int k = 1; k <= order_; ++k) {
+                    power = power * h;
+                    change = change + abs(series_.c[k][i]) * power;
+                }
+                is_long = is_long || change > 0.5 * abs(series_.c[0][i]) + this->plant_.arm.friction_velocity;
+            }
+            if (!any(is_long)) return;
+            h = select(is_long, T(0.5 * h), h);
+        }
     }
 
     [[gnu::noinline]] void give_up(const Mask& finite, const Mask& stands) {

@@ -127,6 +127,8 @@ private:
         Frame& frame = stack_.back();
         if (node.type != Node::scalar && node.type != Node::hole)
             problem(node.mark, "yaml.key", "a key must be a word", "got " + shape_of(node));
+        if (node.type == Node::scalar && node.text.empty())
+            problem(node.mark, "yaml.key", "a key must be a word", "got an empty text");
         if (node.type == Node::scalar && node.text == "<<")
             problem(node.mark, "yaml.merge", "merge keys are not supported", "write the keys out");
         frame.key = std::move(node.text);

@@ -1,4 +1,8 @@
-"""Every public name of the package."""
+"""Every public name of the package. What sweeps need is loaded when it is asked for."""
+
+from __future__ import annotations
+
+from importlib import import_module
 
 from ._native import version as __version__
 from .arm import Arm
@@ -17,9 +21,23 @@ from .errors import (
 from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
 from .run import Event, Run
 from .scenario import Scenario
-from .sweep_file import Sweep
-from .sweep_run import sweep
-from .sweep_table import SweepTable
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from .sweep_file import Sweep
+    from .sweep_run import sweep
+    from .sweep_table import SweepTable
+
+_LATER = {"Sweep": "sweep_file", "SweepTable": "sweep_table", "sweep": "sweep_run"}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_LATER[name]}", __package__), name)
+
 
 __all__ = [
     "Arm",

@@ -7,14 +7,13 @@ import math
 import os
 import re
 import threading
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import Arm3rError, IncompatibleError, class_of
+from .errors import Arm3rError, IncompatibleError, UsageError, class_of
 
 try:
     from ._arm3r import ffi as ffi
@@ -65,10 +64,13 @@ def call(function: Callable[..., int], *arguments: Any) -> None:
 
 
 def utf8(text: str, name: str) -> tuple[bytes, int]:
-    """Text as the library takes it: bytes and their number. TypeError: it is not text."""
+    """Text as the library takes it: bytes and their number. TypeError: it is not text. UsageError: not UTF-8."""
     if not isinstance(text, str):
         raise TypeError(f"{name}: text (str) is needed, got {type(text).__name__}")
-    data = text.encode()
+    try:
+        data = text.encode()
+    except UnicodeEncodeError as error:
+        raise UsageError(f"{name}: {text!a} is not UTF-8", code="argument.utf8") from error
     return data, len(data)
 
 
@@ -202,30 +204,23 @@ Progress = Callable[[float, float, int], Any]
 BatchProgress = Callable[[int, int], Any]
 
 
-class _Call:
-    """One run, or one batch, in progress: what is to be called, and what that raised."""
+class _InProgress:
+    """While the library calls `progress`, of one run or one batch. What that raises comes out again."""
 
     def __init__(self, progress: Callable[..., Any] | None) -> None:
         self.progress = progress
         self.raised: BaseException | None = None
 
+    def __enter__(self) -> None:
+        self._outer, _here.call = getattr(_here, "call", None), self
+
+    def __exit__(self, kind: Any, raised: BaseException | None, traceback: Any) -> None:
+        _here.call = self._outer
+        if self.raised is not None and isinstance(raised, Arm3rError):
+            raise self.raised from None
+
 
 _here = threading.local()  # .call: this thread's run in progress
-
-
-@contextmanager
-def _in_progress(progress: Callable[..., Any] | None) -> Iterator[None]:
-    """While the library calls `progress`. What that raises comes out again."""
-    this, outer = _Call(progress), getattr(_here, "call", None)
-    _here.call = this
-    try:
-        yield
-    except Arm3rError:
-        if this.raised is None:
-            raise
-        raise this.raised from None
-    finally:
-        _here.call = outer
 
 
 def _keep(kind: type[BaseException], raised: BaseException, traceback: Any) -> None:
@@ -245,7 +240,7 @@ def start(function: Callable[..., int], *arguments: Any, progress: Progress | No
     options.struct_size = ffi.sizeof("arm3r_run_options")
     options.progress = lib.arm3r_python_progress
     options.time_limit = 0.0 if time_limit is None else time_limit
-    with _in_progress(progress):
+    with _InProgress(progress):
         return create("run", function, *arguments, options)
 
 
@@ -278,7 +273,7 @@ def batch(
     results = np.empty((lib.arm3r_summary_count(), runs))
     places = ffi.new("size_t[]", varied or 1)
     given = (readable(params), params.size, places, len(varied), readable(values), runs, options, writable(results))
-    with _in_progress(progress):
+    with _InProgress(progress):
         call(lib.arm3r_batch_run, *given)
     return results
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,8 +13,8 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._native import BatchProgress, Floats, lib
-from .errors import ScenarioError, UsageError
-from .params import param_index, param_key, places
+from .errors import BudgetError, ScenarioError, UsageError
+from .params import param_index, param_key, param_name, places
 from .run import Run
 
 Scenario = Any  # the class stands above this module
@@ -21,6 +22,7 @@ Index = int | tuple[int, ...]
 
 # What no number could mend: the fault lies in the axes as such, not in one of the runs.
 SLIPS = {f"scenario.{slip}" for slip in ("unknown_word", "type", "unknown_key", "other_choice", "missing_key")}
+SLIPS.add("number.syntax")
 
 
 class Axis(NamedTuple):
@@ -62,8 +64,11 @@ class Batch:
         self.shape = shape
         self.units = _native.summary_columns()
         self.names = list(columns)
-        for column in columns.values():
-            column.flags.writeable = False
+        for array in (*columns.values(), *self.axes.values()):
+            array.flags.writeable = False
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Batch, (self._scenario, self._axes, self._columns, self.shape)
 
     def __getitem__(self, name: str) -> Floats:
         """A column.
@@ -108,6 +113,8 @@ class Batch:
         place = index if isinstance(index, tuple) else (index,)
         if len(place) != len(self.shape):
             raise IndexError(f"index {index}: one run of a batch of shape {self.shape} has {len(self.shape)} of them")
+        if not all(hasattr(i, "__index__") and not isinstance(i, (bool, np.bool_)) for i in place):
+            raise IndexError(f"index {index}: whole numbers tell one run of a batch of shape {self.shape}")
         return _scenario(self._scenario, self._axes, place, self.shape)
 
     def run(self, index: Index) -> Run:
@@ -127,18 +134,24 @@ def run_batch(
     progress: BatchProgress | None = None,
 ) -> Batch:
     """What `Scenario.batch` does."""
-    if threads is not None and threads < 1:
-        raise UsageError(f"threads: at least 1 is needed, got {threads}", code="usage")
+    if not isinstance(values, Mapping):
+        raise TypeError(f"values: a map of arrays by key is needed, got {type(values).__name__}")
+    if threads is not None and not (hasattr(threads, "__index__") and 1 <= threads < 2**31):
+        raise UsageError(f"threads: a whole number from 1 is needed, got {threads!r}", code="usage")
     scenario.validate()
     base = scenario.copy()
     base["checks"] = []
     axes = [axis_of(base, key, value) for key, value in values.items()]
+    for key, other in combinations(values, 2):
+        if twice := same_places(key, other):
+            raise UsageError(f"{twice[0]} varies twice, as {key} and as {other}; take one of them out", code="usage")
     axes = _crossed(axes) if grid else axes
     shape = _shape(axes)
     runs = math.prod(shape)
     varied = [index for axis in axes for index in axis.indices]
-    numbers = _numbers(axes, shape)
     names = list(_native.summary_columns())
+    _check_room(runs, len(varied) + len(names))
+    numbers = _numbers(axes, shape)
     done = 0
 
     def report(runs_done: int, _: int) -> Any:
@@ -175,8 +188,11 @@ def axis_of(base: Scenario, key: str, value: Any) -> Axis:
     kind = param_key(indices[0]).kind
     if kind == "section":
         raise UsageError(f"{key}: a section cannot vary; name a key in it, such as {_below(key)}", code="usage")
-    array = np.asarray(value)
-    if array.dtype.kind in "Ub":
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise UsageError(f"{key}: its values do not have one shape: {error}", code="usage") from error
+    if array.dtype.kind == "U" or (array.dtype.kind == "b" and kind == "flag"):
         return Axis(key, [], array[..., np.newaxis])
     if kind in ("choice", "flag"):
         raise UsageError(f"{key}: {_WORDS[kind]} are needed, got an array of {array.dtype}", code="usage")
@@ -194,6 +210,11 @@ def axis_of(base: Scenario, key: str, value: Any) -> Axis:
 
 
 _WORDS = {"choice": "words", "flag": "true or false"}
+
+
+def same_places(key: str, other: str) -> list[str]:
+    """The numbers that two keys have in common, by name: "initial.q" and "initial.q[1]" have the latter."""
+    return [param_name(index) for index in places()[key] if index in places()[other]]
 
 
 def _below(key: str) -> str:
@@ -226,6 +247,17 @@ def _shape(axes: Sequence[Axis]) -> tuple[int, ...]:
     except ValueError:
         shapes = ", ".join(f"{axis.key} {axis.values.shape[:-1]}" for axis in axes)
         raise UsageError(f"the axes do not broadcast: {shapes}; grid=True crosses them", code="usage") from None
+
+
+def _check_room(runs: int, numbers: int) -> None:
+    try:
+        np.empty((numbers, runs))
+    except (MemoryError, ValueError) as error:
+        gigabytes = 8e-9 * numbers * runs
+        raise BudgetError(
+            f"{runs} runs are a table of {gigabytes:.3g} GB, more than there is memory; a sweep keeps it in a folder",
+            code="budget.memory",
+        ) from error
 
 
 def _numbers(axes: Sequence[Axis], shape: tuple[int, ...]) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from typing import NoReturn
 
 from .errors import (
@@ -31,6 +32,21 @@ _CODES: dict[type[Arm3rError], int] = {
 
 def exit_code(error: Arm3rError) -> int:
     return next((code for kind, code in _CODES.items() if isinstance(error, kind)), 1)
+
+
+def tell(line: object) -> None:
+    """Print a line on stdout; where nobody reads it, end as a pipe's writer does.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    try:
+        print(line, flush=True)
+    except OSError as error:
+        sys.stdout = None  # else Python tries again when it ends
+        if isinstance(error, BrokenPipeError):
+            die_of(signal.SIGPIPE)
+        raise OutputError(f"standard output cannot be written: {error.strerror}", code="output") from error
 
 
 def die_of(number: signal.Signals) -> NoReturn:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .errors import Arm3rError, OutputError, UsageError
-from .exits import die_of, exit_code
+from .exits import die_of, exit_code, tell
 from .plot_style import FORMATS
 
 if TYPE_CHECKING:
@@ -101,7 +101,9 @@ def save(run: Run, options: argparse.Namespace, target: tuple[Path, str]) -> Non
         for name, figure in figures.items():
             with style():
                 figure.savefig(f"{name}.{suffix}")
-            print(f"{name}.{suffix}")
+            tell(f"{name}.{suffix}")
+    except OutputError:
+        raise
     except OSError as error:
         raise OutputError(f"cannot write figures: {error}") from error
 

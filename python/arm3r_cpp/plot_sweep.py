@@ -79,8 +79,10 @@ def sweep(table: SweepTable, *, metric: str | None = None, log: bool = False) ->
 def _metric(table: SweepTable, metric: str | None, log: bool) -> str:
     metrics = table.names[table.names.index("outcome") + 1 :]
     metric = metric or next(iter(metrics), "")
+    if not metric:
+        raise UsageError("the sweep kept no metric: there is nothing to draw", code="usage")
     if metric not in metrics:
-        raise UsageError(f"--metric {metric}: the sweep kept {', '.join(metrics) or 'none'}", code="usage")
+        raise UsageError(f"--metric {metric}: the sweep kept {', '.join(metrics)}", code="usage")
     values = _values(table, metric)
     if not np.isfinite(values).any():
         raise UsageError(f"--metric {metric}: no run that is ok has a value of it", code="usage")
@@ -110,7 +112,14 @@ def _parts(table: SweepTable, axis: SweepAxis) -> list[Drawn]:
         rows = zip(*(table[name].tolist() for name in names), strict=True)
         words = np.array([f"[{', '.join(f'{number:g}' for number in row)}]" for row in rows])
         return [Drawn(axis.key, words, axis.unit, False)]
-    return [Drawn(name, table[name], axis.unit, _is_geometric(axis, table[name])) for name in names]
+    return [_drawn_alone(name, table[name], axis) for name in names]
+
+
+def _drawn_alone(name: str, values: NDArray[Any], axis: SweepAxis) -> Drawn:
+    """Where some numbers are infinite, as words."""
+    if values.dtype.kind == "f" and not np.isfinite(values).all():
+        return Drawn(name, np.array([f"{value:g}" for value in values.tolist()]), axis.unit, False)
+    return Drawn(name, values, axis.unit, _is_geometric(axis, values))
 
 
 def _is_geometric(axis: SweepAxis, values: NDArray[Any]) -> bool:

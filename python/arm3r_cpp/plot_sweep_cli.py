@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .errors import Arm3rError, OutputError, UsageError
-from .exits import die_of, exit_code
+from .exits import die_of, exit_code, tell
 
 
 def main(argv: Sequence[str]) -> int:
@@ -55,4 +55,4 @@ def save(options: argparse.Namespace) -> None:
             figure.savefig(out)
     except OSError as error:
         raise OutputError(f"cannot write figures: {error}") from error
-    print(out)
+    tell(out)

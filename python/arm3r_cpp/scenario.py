@@ -187,8 +187,9 @@ class Scenario:
                 `stopped`, and what it raises comes out unchanged.
 
         Raises:
-            UsageError: a key that there is not, or arrays of shapes that do not fit.
+            UsageError: a key that there is not, a number that varies twice, or arrays of shapes that do not fit.
             TypeError: not numbers.
+            BudgetError: there is no memory for the table.
             ScenarioError: the scenario itself is not valid, or a word is none of its key's.
         """
         return run_batch(self, values, grid=grid, threads=threads, progress=progress)
@@ -228,5 +229,9 @@ def flow(value: Any, path: str) -> str:
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(flow(item, f'{path}[{i}]') for i, item in enumerate(value))}]"
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key}: {flow(item, f'{path}.{key}')}" for key, item in value.items()) + "}"
+        return (
+            "{"
+            + ", ".join(f"{flow(str(key), path)}: {flow(item, f'{path}.{key}')}" for key, item in value.items())
+            + "}"
+        )
     raise TypeError(f"{path}: a number, text, flag, list, array or map is needed, got {type(value).__name__}")

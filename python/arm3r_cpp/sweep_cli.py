@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from .errors import Arm3rError
-from .exits import FAILED_RUNS, die_of, exit_code
+from .exits import FAILED_RUNS, die_of, exit_code, tell
 
 BAR = 30  # characters
 
@@ -28,6 +28,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         plan = Sweep.load(options.sweep, overrides=options.set)
         table = sweep(plan, out=options.out, jobs=options.jobs, resume=options.resume, parquet=options.parquet,
                       progress=bar.draw)  # fmt: skip
+        bar.clear()
+        failed = {outcome: count for outcome, count in table.outcomes.items() if outcome != "ok"}
+        words = ", ".join(f"{count} {outcome}" for outcome, count in failed.items())
+        counted = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
+        tell(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
     except Arm3rError as error:
         bar.clear()
         print(f"arm3r-sweep: {error}", file=sys.stderr)
@@ -36,11 +41,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         bar.clear()
         print(f"arm3r-sweep: interrupted; --resume goes on in {options.out}", file=sys.stderr)
         die_of(signal.SIGINT)
-    bar.clear()
-    failed = {outcome: count for outcome, count in table.outcomes.items() if outcome != "ok"}
-    words = ", ".join(f"{count} {outcome}" for outcome, count in failed.items())
-    counted = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
-    print(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
     return FAILED_RUNS if failed else 0
 
 

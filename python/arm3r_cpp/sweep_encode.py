@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -14,13 +14,16 @@ from numpy.typing import NDArray
 
 from .errors import UsageError
 
-ROWS_AT_A_TIME = 10_000
+ROWS_AT_A_TIME = 2000
 
 
-def encode(columns: Mapping[str, NDArray[Any]], kind: str) -> bytes:
-    """Rows of a table, without CSV's line of names. NaN becomes an empty cell, or null."""
+def encode(columns: Mapping[str, NDArray[Any]], kind: str, go_on: Callable[[], Any]) -> bytes:
+    """Rows of a table, without CSV's line of names. NaN becomes an empty cell, or null.
+
+    go_on: called now and then; what it raises comes out.
+    """
     if kind == "csv":
-        return "".join(f"{','.join(row)}\n" for row in zip(*map(_cells, columns.values()), strict=True)).encode()
+        return b"".join(_lines(list(columns.values()), go_on))
     arrow = pyarrow()
     out = io.BytesIO()
     table = arrow.table({name: arrow.array(column, from_pandas=True) for name, column in columns.items()})
@@ -64,6 +67,13 @@ def pyarrow() -> Any:
     except ImportError as error:
         raise UsageError("Parquet needs pyarrow: pip install 'arm3r_cpp[parquet]'", code="extra") from error
     return pyarrow
+
+
+def _lines(columns: Sequence[NDArray[Any]], go_on: Callable[[], Any]) -> Iterator[bytes]:
+    for first in range(0, len(columns[0]), ROWS_AT_A_TIME):
+        go_on()
+        cells = (_cells(column[first : first + ROWS_AT_A_TIME]) for column in columns)
+        yield "".join(f"{','.join(row)}\n" for row in zip(*cells, strict=True)).encode()
 
 
 def _cells(column: NDArray[Any]) -> list[str]:

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from . import _native
-from .batch import SLIPS, axis_of
+from .batch import SLIPS, axis_of, same_places
 from .errors import Arm3rError, ScenarioError, UsageError
 from .params import param_key, places
 from .scenario import Scenario
 from .scenario import flow as flow_of
 from .sweep_axes import DISTRIBUTIONS, MODES, SPACES, SweepAxis, values_of
-from .sweep_reader import Node, Reader, below, did_you_mean, flow
+from .sweep_reader import Node, Reader, below, did_you_mean, flow, quoted
 from .sweep_shard import STATISTICS, Statistic
 
 MOST_RUNS = 10**10
@@ -61,7 +61,7 @@ class Sweep:
         top = reader.map(_native.yaml(data, file), "", KEYS)
         _read_format(reader, top)
         self.shard: int = _whole(reader, top, "shard", 1000, 1, 10**6)
-        self.seed: int = _whole(reader, top, "seed", 1, 0, 2**53)
+        self.seed: int = _whole(reader, top, "seed", 1, 0, 2**53 - 1)
         self.mode: str = (reader.word(top["mode"], "mode", MODES) if "mode" in top else None) or MODES[0]
         self.metrics = _read_metrics(reader, top)
         self.axes = _read_axes(reader, top, self.mode)
@@ -80,6 +80,8 @@ class Sweep:
     def load(cls, path: str | os.PathLike[str], *, overrides: Sequence[str] = ()) -> Sweep:
         """Read a sweep from a file. Raises as for a text."""
         try:
+            if not Path(path).is_file() and not Path(path).is_dir() and Path(path).exists():
+                raise UsageError(f"{os.fspath(path)}: cannot be read: not a regular file", code="file")
             data = Path(path).read_bytes()
         except OSError as error:
             raise UsageError(f"{os.fspath(path)}: cannot be read: {error.strerror}", code="file") from error
@@ -186,7 +188,8 @@ def _read_scenario(reader: Reader, top: dict[str, Node], overrides: Sequence[str
         return scenario
     except ScenarioError as error:
         inline = top["scenario"] if "map" in top.get("scenario", {}) else None
-        reader.problems += [_placed(reader, problem, inline) for problem in error.problems]
+        found = [_placed(reader, problem, inline) for problem in error.problems]
+        reader.problems += [problem for problem in found if problem not in reader.problems]
         reader.finish()
         raise
 
@@ -200,7 +203,7 @@ def _base(reader: Reader, top: dict[str, Node]) -> Scenario:
         reader.problem({"line": 1, "column": 1}, "sweep.missing_key", "scenario", "the scenario is missing",
                        hint="write scenario: FILE, or the scenario itself below it")  # fmt: skip
     elif "map" in node:
-        text = "".join(f"{child['key']}: {flow(child)}\n" for child in node["map"])
+        text = "".join(f"{quoted(child['key'])}: {flow(child)}\n" for child in node["map"])
         return Scenario(text if "format" in [child["key"] for child in node["map"]] else f"format: 1\n{text}",
                         file=reader.file)  # fmt: skip
     elif (name := reader.word(node, "scenario")) is not None:
@@ -246,11 +249,13 @@ def _read_axes(reader: Reader, top: dict[str, Node], mode: str) -> tuple[SweepAx
     axes: list[SweepAxis] = []
     for i, node in enumerate(reader.list(top["axes"], "axes")):
         axis = _read_axis(reader, node, f"axes[{i}]", mode)
-        if axis and any(axis.key == other.key for other in axes):
-            reader.problem(node, "sweep.duplicate", f"axes[{i}].key", "an axis over this key stands here twice",
-                           got=axis.key)  # fmt: skip
-        if axis:
-            axes.append(axis)
+        if axis is None:
+            continue
+        for other in axes:
+            if twice := same_places(axis.key, other.key):
+                both = f"{twice[0]} varies twice, as {other.key} and as {axis.key}"
+                reader.problem(node, "sweep.duplicate", f"axes[{i}].key", both, hint="take one of the two out")
+        axes.append(axis)
     return tuple(axes)
 
 
@@ -316,11 +321,11 @@ def _read_rule(reader: Reader, node: Node, path: str, key: str, rule: str) -> li
     if a is None or b is None or None in counts:
         return []
     good, allowed = {
-        "linspace": (math.isfinite(a) and math.isfinite(b), "two finite numbers"),
-        "geomspace": (0 < a < math.inf and 0 < b < math.inf, "two numbers above 0"),
-        "uniform": (-math.inf < a < b < math.inf, "two numbers, the smaller one first"),
-        "log_uniform": (0 < a < b < math.inf, "two numbers above 0, the smaller one first"),
-        "normal": (math.isfinite(a) and 0 < b < math.inf, "a mean, and a deviation above 0"),
+        "linspace": (math.isfinite(b - a), "two finite numbers"),
+        "geomspace": (a > 0 and b > 0 and 0 < b / a < math.inf, "two numbers above 0"),
+        "uniform": (a < b and math.isfinite(b - a), "two numbers, the smaller one first"),
+        "log_uniform": (0 < a < b and b / a < math.inf, "two numbers above 0, the smaller one first"),
+        "normal": (b > 0 and math.isfinite(abs(a) + 10 * b), "a mean, and a deviation above 0"),
     }[rule]
     if not good:
         reader.problem(node, "sweep.range", path, "out of range", got=flow(node), allowed=allowed)
@@ -333,7 +338,10 @@ def _check_axes(reader: Reader, top: dict[str, Node], sweep: Sweep) -> None:
     first = sweep.values(0, 1)
     for axis in sweep.axes:
         try:
-            axis_of(sweep.scenario, axis.key, first[axis.key])
+            shape = axis_of(sweep.scenario, axis.key, first[axis.key]).values.shape
+            if len(shape) > 2:
+                reader.problem(nodes[axis.key], "sweep.axis", axis.key, "in the scenario this is one number",
+                               got=f"a list of {shape[1]}", hint="`set` it to a list there too")  # fmt: skip
         except (Arm3rError, TypeError, ValueError) as error:
             reader.problem(nodes[axis.key], "sweep.axis", axis.key, str(error).removeprefix(f"{axis.key}: "))
     if reader.problems:

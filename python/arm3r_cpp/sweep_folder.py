@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, BinaryIO
 
-from .errors import IncompatibleError, OutputError
+from .errors import IncompatibleError, OutputError, UsageError
 
 MANIFEST, LEDGER, LOCK, SHARDS = "sweep.json", "ledger.jsonl", "lock", "shards"
 
@@ -32,6 +32,7 @@ class SweepFolder:
     def __init__(self, path: Path, manifest: Mapping[str, Any]) -> None:
         """`SweepFolder.held` makes folders."""
         self.path, self.manifest = path, manifest
+        self._seal = sha256(json.dumps(manifest).encode())
         self.finished: set[int] = set()
         self.runs_done = 0
 
@@ -44,27 +45,32 @@ class SweepFolder:
             OutputError: it cannot be written, another process works in it, or it is not empty without `resume`.
             IncompatibleError: it was begun with something else; all that differs is listed.
         """
+        folder = cls(path, manifest)
         with _writing(path):
             path.mkdir(parents=True, exist_ok=True)
+            folder._begun(resume)  # before anything is written: it may be a folder of another kind
             lock = (path / LOCK).open("a+")
         with lock:
-            _take(lock, path)
-            folder = cls(path, manifest)
             with _writing(path):
+                _take(lock, path)
                 folder._begin(resume)
             yield folder
 
-    def _begin(self, resume: bool) -> None:
-        inside = {entry.name for entry in self.path.iterdir()} - {LOCK}
+    def _begun(self, resume: bool) -> bool:
+        """Whether a sweep was begun here. OutputError: the folder is not for this sweep."""
+        inside = {entry.name for entry in self.path.iterdir() if not entry.name.endswith(".part")}
         begun = MANIFEST in inside
-        if inside and not resume:
+        if inside - {LOCK} and not resume:
             raise OutputError(f"{self.path}: exists; give another folder, or --resume to go on in it", code="output")
-        if inside - {name for name in inside if name.endswith(".part")} and not begun:
+        if inside - {LOCK} and not begun:
             raise OutputError(
                 f"{self.path}: there is no {MANIFEST} in it: it is not the folder of a sweep", code="output"
             )
-        if begun:
-            self._compare(json.loads((self.path / MANIFEST).read_bytes()))
+        return begun
+
+    def _begin(self, resume: bool) -> None:
+        if self._begun(resume):
+            self._compare(read_manifest(self.path))
         else:
             publish(self.path / MANIFEST, json.dumps(self.manifest, indent=1).encode() + b"\n")
         (self.path / SHARDS).mkdir(exist_ok=True)
@@ -103,7 +109,7 @@ class SweepFolder:
         line = {"first": first, "count": count, "file": f"{SHARDS}/{file.name}", "size": len(data)}
         line |= {"sha256": sha256(data), "outcomes": dict(outcomes)}
         with _writing(self.path), (self.path / LEDGER).open("ab") as ledger:
-            ledger.write(_sealed(line))
+            ledger.write(_sealed(line, self._seal))
         self._acknowledge(number, count)
 
     def _acknowledge(self, number: int, count: int) -> None:
@@ -116,14 +122,14 @@ class SweepFolder:
         path.touch()
         with path.open("rb") as ledger, publishing(path) as clean:
             for text in ledger:
-                line = _unsealed(text)
+                line = _unsealed(text, self._seal)
                 if line is None:
-                    warnings.warn(f"{path}: a line is torn; its runs are done again", stacklevel=2)
+                    warnings.warn(f"{path}: a line is torn or of another sweep; its runs are done again", stacklevel=2)
                 elif fault := self._fault(line):
                     runs = f"runs {line['first']} to {line['first'] + line['count'] - 1}"
                     warnings.warn(f"{line['file']}: {fault}; {runs} are done again", stacklevel=2)
-                else:
-                    clean.write(_sealed(line))
+                elif line["first"] // self.manifest["shard"] not in self.finished:
+                    clean.write(_sealed(line, self._seal))
                     self._acknowledge(line["first"] // self.manifest["shard"], line["count"])
 
     def _fault(self, line: Mapping[str, Any]) -> str:
@@ -186,16 +192,34 @@ def _take(lock: IO[str], path: Path) -> None:
     lock.flush()
 
 
-def _sealed(line: Mapping[str, Any]) -> bytes:
-    text = json.dumps(line)
-    return json.dumps({**line, "check": sha256(text.encode())[:16]}).encode() + b"\n"
+def read_manifest(path: Path) -> dict[str, Any]:
+    """What was asked of the sweep in a folder.
+
+    Raises:
+        UsageError: it cannot be read, or is damaged.
+    """
+    try:
+        manifest = json.loads((path / MANIFEST).read_bytes())
+        if isinstance(manifest, dict) and manifest.keys() >= {"table", "mode", "columns", "axes", "runs"}:
+            return manifest
+    except OSError as error:
+        raise UsageError(f"{path}: {MANIFEST} cannot be read: {error.strerror}", code="file") from error
+    except ValueError:
+        pass
+    raise UsageError(f"{path}: {MANIFEST} is damaged; run the sweep in another folder", code="file")
 
 
-def _unsealed(text: bytes) -> dict[str, Any] | None:
+def _sealed(line: Mapping[str, Any], seal: str) -> bytes:
+    """A line of the ledger with a checksum of it and of the sweep that it belongs to."""
+    check = sha256(f"{seal} {json.dumps(line)}".encode())[:16]
+    return json.dumps({**line, "check": check}).encode() + b"\n"
+
+
+def _unsealed(text: bytes, seal: str) -> dict[str, Any] | None:
     try:
         line = json.loads(text)
-        check = line.pop("check")
-        return line if check == sha256(json.dumps(line).encode())[:16] else None
+        del line["check"]
+        return line if _sealed(line, seal).rstrip() == text.rstrip() else None
     except (ValueError, KeyError, AttributeError, TypeError):
         return None
 

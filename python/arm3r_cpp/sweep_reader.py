@@ -92,7 +92,8 @@ def describe(problem: Mapping[str, Any]) -> str:
     allowed = f", allowed {problem['allowed']}" if problem["allowed"] else ""
     hint = f"; {problem['hint']}" if problem["hint"] else ""
     path = f"{problem['path']}: " if problem["path"] else ""
-    return f"{place}: error[{problem['code']}]: {path}{problem['message']}{got}{allowed}{hint}"
+    line = f"{place}: error[{problem['code']}]: {path}{problem['message']}{got}{allowed}{hint}"
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
 
 
 def did_you_mean(word: str, words: Iterable[str]) -> str:
@@ -113,11 +114,14 @@ def shape_of(node: Node) -> str:
 def flow(node: Node) -> str:
     """A node as YAML in flow style."""
     if "map" in node:
-        return "{" + ", ".join(f"{child['key']}: {flow(child)}" for child in node["map"]) + "}"
+        return "{" + ", ".join(f"{quoted(child['key'])}: {flow(child)}" for child in node["map"]) + "}"
     if "list" in node:
         return "[" + ", ".join(map(flow, node["list"])) + "]"
     if "text" not in node:
         return "null"
     text = str(node["text"])
-    plain = not node["quoted"] and text and not set(text) & set(",[]{}:#\"'")
-    return text if plain else json.dumps(text, ensure_ascii=False)
+    return quoted(text) if node["quoted"] or set(text) & set(",[]{}:#\"'") else text
+
+
+def quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

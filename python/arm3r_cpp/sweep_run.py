@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from operator import index
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,7 @@ def sweep(
         IncompatibleError: the folder was begun with something else, or a worker has another version.
         Arm3rError: `progress` ended the sweep.
     """
+    jobs = None if jobs is None else index(jobs)
     plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
     job = _first_job(plan, "parquet" if parquet else "csv")
     with SweepFolder.held(Path(out), _manifest(plan, job), resume=resume) as folder:

@@ -77,7 +77,8 @@ def work(job: Job, progress: Callable[[int, int], Any] | None = None) -> Done:
     columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
     columns |= {name: batch[name] for name in job.metrics}
     columns |= _statistics(job.statistics, batch, progress)
-    return Done(encode(columns, job.table), dict(sorted(Counter(outcomes.tolist()).items())))
+    data = encode(columns, job.table, lambda: progress and progress(len(batch), len(batch)))
+    return Done(data, dict(sorted(Counter(outcomes.tolist()).items())))
 
 
 def columns_of(job: Job) -> list[str]:
@@ -111,6 +112,8 @@ def _statistics(
     """Of every run once more, alone and with its rows."""
     rows = []
     for i, outcome in enumerate(batch.outcomes if wanted else ()):
+        if progress:
+            progress(i, len(batch))
         run = None if outcome == "invalid" else _run(batch, i, progress)
         rows.append([statistic(run) for statistic in wanted])
     return {statistic.name: np.array([row[j] for row in rows]) for j, statistic in enumerate(wanted)}

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .errors import UsageError
 from .sweep_axes import SweepAxis
 from .sweep_encode import decode
-from .sweep_folder import LEDGER, MANIFEST, count_outcomes
+from .sweep_folder import LEDGER, count_outcomes, read_manifest
 
 
 class SweepTable:
@@ -38,21 +38,28 @@ class SweepTable:
             UsageError: there is no finished sweep in it.
         """
         self.folder = Path(folder)
-        try:
-            manifest = json.loads((self.folder / MANIFEST).read_bytes())
-        except OSError as error:
-            raise UsageError(f"{self.folder}: {MANIFEST} cannot be read: {error.strerror}", code="file") from error
+        manifest = read_manifest(self.folder)
         self._kind = manifest["table"]
         self.path = self.folder / f"table.{self._kind}"
         if not self.path.is_file():
             raise UsageError(f"{self.folder}: the sweep is not finished; go on with --resume", code="file")
+        self._runs: int = manifest["runs"]
         self.mode: str = manifest["mode"]
         self.units: dict[str, str] = manifest["columns"]
         self.axes = [SweepAxis(**axis) for axis in manifest["axes"]]
 
     @cached_property
     def _columns(self) -> dict[str, NDArray[Any]]:
-        return decode(self.path, self._kind)
+        """Raises UsageError: the table is damaged."""
+        try:
+            columns = decode(self.path, self._kind)
+        except (OSError, ValueError, LookupError, StopIteration):
+            columns = {}
+        if list(columns) != self.names or {len(column) for column in columns.values()} != {self._runs}:
+            raise UsageError(
+                f"{self.path}: is not the table of {self._runs} runs; --resume makes it again", code="file"
+            )
+        return columns
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A column.
@@ -88,6 +95,9 @@ class SweepTable:
 
     @property
     def outcomes(self) -> dict[str, int]:
-        """How many runs ended in which way."""
-        with (self.folder / LEDGER).open("rb") as ledger:
-            return count_outcomes(map(json.loads, ledger))
+        """How many runs ended in which way, by the ledger. Raises UsageError: that is damaged."""
+        try:
+            with (self.folder / LEDGER).open("rb") as ledger:
+                return count_outcomes(map(json.loads, ledger))
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise UsageError(f"{self.folder}: {LEDGER} is damaged; --resume mends it", code="file") from error

@@ -59,6 +59,21 @@ BOOST_AUTO_TEST_CASE(series_find_the_contacts_forces_and_rows_that_dopri5_finds)
     BOOST_TEST(events > 20);
 }
 
+// Far from rest the torque of dry friction looks constant: its turning over, where a joint stops, must not be jumped.
+BOOST_AUTO_TEST_CASE(series_see_a_joint_stop_in_dry_friction) {
+    Params params;
+    params.choose("controller.type", "gravity_compensation").set("arm.friction", {0.1, 0.1, 0.1}).set("wall", 1);
+    params.set("wall.point", {1.78, 0, 0}).set("wall.acts_on_arm", 1).set("time.stop", 2.5);
+    const Run truth = tight(params, "dopri5").set("solver.rtol", 1e-11).run(), exact = tight(params, "taylor").run(),
+              usual = tight(params, "taylor").set("solver.tol", 1e-9).run();
+    BOOST_REQUIRE(truth.events.size() == 11);
+    for (const Run* run : {&exact, &usual}) {
+        BOOST_REQUIRE(run->events.size() == 11);
+        for (int i = 0; i < 3; ++i) BOOST_TEST(std::abs(run->q[i] - truth.q[i]) < 1e-7);
+        BOOST_TEST(std::abs(run->peak_force - truth.peak_force) < 1e-7);
+    }
+}
+
 // A wall that swings up to the tip of an arm at rest and past it by a hair.
 static Params swinging_wall(double past) {
     Params params = unequal_params();

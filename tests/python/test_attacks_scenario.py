@@ -435,6 +435,11 @@ def test_a28_no_scenario_loads_code(refused):
     assert "error[scenario.unknown_word]" in refused(HEAD + "controller: {type: ./evil.so}\n")
 
 
+@pytest.mark.parametrize("text", ['"": 1\n', 'time: {"": 3}\n'])
+def test_an_empty_key_is_no_word(refused, text):
+    assert "error[yaml.key]" in refused(HEAD + text)
+
+
 # ---- B: numbers -----------------------------------------------------------------------------------------------------
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import multiprocessing
 import os
+import pickle
 import signal
 import threading
 import time
@@ -157,7 +160,13 @@ MISTAKES: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
     ({"time.stop": [1.0, np.nan]}, arm3r.UsageError, ["time.stop[1]", "nan"]),
     ({"time.stop": [1j]}, TypeError, ["time.stop", "complex"]),
     ({"time.stop": [1.0, 2.0], "initial.q[0]": [0.0] * 3}, arm3r.UsageError, ["time.stop (2,)", "(3,)", "grid=True"]),
-    ({"initial.q": [[0, 0, 0]], "initial.q[1]": [1.0]}, arm3r.UsageError, ["initial.q[1]", "twice"]),
+    ({"initial.q": [[0, 0, 0]], "initial.q[1]": [1.0]}, arm3r.UsageError, ["initial.q[1]", "twice", "as initial.q "]),
+    ({"initial.q[1]": ["30 deg"], "initial.q": [[0, 0, 0]]}, arm3r.UsageError, ["initial.q[1]", "twice"]),
+    ({"wall.contact.stiffness": [True, False]}, TypeError, ["wall.contact.stiffness", "bool"]),
+    ({"wall.contact.stiffness": [[1.0], [1.0, 2.0]]}, arm3r.UsageError, ["wall.contact.stiffness", "one shape"]),
+    ({"wall.contact.stiffness": ["1 kN"]}, arm3r.ScenarioError, ["wall.contact.stiffness", "1 kN"]),
+    ({"wall.contact.stiffn\udcff": [1.0]}, arm3r.UsageError, ["UTF-8"]),
+    ([1.0], TypeError, ["a map of arrays by key"]),
     ({"solver.step": [1e-3]}, arm3r.ScenarioError, ["solver.step", "rk4"]),
 ]
 
@@ -169,6 +178,61 @@ def test_mistakes_are_named(
     with pytest.raises(error) as raised:
         hit.batch(values)
     assert all(word in str(raised.value) for word in words), raised.value
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, "2", 2**31, 10**30])
+def test_threads_are_a_whole_number(hit: arm3r.Scenario, threads: Any) -> None:
+    with pytest.raises(arm3r.UsageError, match="threads: a whole number from 1"):
+        hit.batch({"time.stop": [1.0]}, threads=threads)
+
+
+def test_a_table_that_fits_nowhere_is_told_first(hit: arm3r.Scenario) -> None:
+    many = np.broadcast_to(1.0, (10**7,))
+    with pytest.raises(arm3r.BudgetError, match="100000000000000 runs are a table of"):
+        hit.batch({"wall.contact.stiffness": many, "time.stop": many}, grid=True)
+
+
+ARRAYS = [
+    np.arange(1.0, 5.0)[::-1], np.arange(1.0, 12.0)[::3], np.asfortranarray(np.arange(1.0, 5.0).reshape(2, 2)),
+    np.array([1, 2], np.uint8), np.array([1.5, 2.0], np.float32), np.array([1.0, 2.0], ">f8"), np.array(3.0),
+    np.broadcast_to(2.0, (3,)), np.empty((0, 4)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("array", ARRAYS, ids=lambda array: f"{array.dtype}{array.shape}{array.strides}")
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "taylor"])
+def test_any_array_is_its_numbers(hit: arm3r.Scenario, array: Any, method: str) -> None:
+    hit["solver.method"] = method
+    batch = hit.batch({"initial.qd[0]": array, "time.stop": 0.01})
+    assert batch.shape == array.shape
+    plain = [hit.batch({"initial.qd[0]": float(number), "time.stop": 0.01})["q1"] for number in array.ravel()]
+    assert batch["q1"].ravel().tolist() == plain
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda batch: pickle.loads(pickle.dumps(batch))])
+def test_copies_are_batches(hit: arm3r.Scenario, copied: Any) -> None:
+    batch = hit.batch({"time.stop": [0.5, 1.0], "initial.q": [[0, -0.5, 1.0]]})
+    again = copied(batch)
+    assert again["q2"].tolist() == batch["q2"].tolist() and again.run(1)["q2"][-1] == batch["q2"][1]
+    for array in (again["q2"], again.axes["time.stop"], batch.axes["initial.q"]):
+        assert not array.flags.writeable
+
+
+@pytest.mark.parametrize("index", [None, True, slice(0, 1), [0], ..., 1.0, "0"])
+def test_one_run_is_told_by_whole_numbers(hit: arm3r.Scenario, index: Any) -> None:
+    batch = hit.batch({"time.stop": [0.5, 1.0]})
+    with pytest.raises(IndexError, match="whole numbers"):
+        batch.run(index)
+    assert batch.run(np.int64(-1)).t[-1] == 1.0
+
+
+def test_a_forked_child_makes_batches(hit: arm3r.Scenario) -> None:
+    values = {"wall.contact.stiffness": np.geomspace(1e2, 1e4, 100)}
+    assert hit.batch(values, threads=2).ok.all()
+    child = multiprocessing.get_context("fork").Process(target=hit.batch, args=(values,))
+    child.start()
+    child.join(20)
+    assert child.exitcode == 0
 
 
 def test_the_base_is_validated() -> None:
@@ -190,10 +254,12 @@ def test_progress_is_told_and_can_stop(hit: arm3r.Scenario) -> None:
 
 def test_what_progress_raises_comes_out(hit: arm3r.Scenario) -> None:
     def fail(done: int, runs: int) -> None:
-        raise LookupError("mine")
+        raise mine
 
-    with pytest.raises(LookupError, match="mine"):
-        hit.batch({"time.stop": np.linspace(2, 2.5, 20_000)}, progress=fail)
+    for mine in (LookupError("mine"), StopIteration("mine"), SystemExit(3), GeneratorExit("mine")):
+        with pytest.raises(type(mine)) as raised:
+            hit.batch({"time.stop": np.linspace(2, 2.5, 20_000)}, progress=fail)
+        assert raised.value is mine
 
 
 def test_interrupt_comes_back_within_100_ms(hit: arm3r.Scenario) -> None:

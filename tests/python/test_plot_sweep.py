@@ -132,6 +132,23 @@ def test_what_cannot_be_drawn_is_said(table: Any, options: dict[str, Any], words
         draw(table(STIFFNESS, {"key": "initial.q[1]", "values": [-0.5]}), **options)
 
 
+LIMIT = {"key": "arm.torque_limit[0]", "values": [1, float("inf"), 5]}
+
+
+@pytest.mark.parametrize("other", [[], [{"key": "time.stop", "values": [0.5, 1]}]])
+def test_infinite_values_are_words(table: Any, other: list[dict[str, Any]], tmp_path: Path) -> None:
+    figure = draw(table(LIMIT, *other), metric="q2")
+    figure.savefig(tmp_path / "figure.png")
+    shown = legends(figure) | {label.get_text() for label in figure.axes[0].get_xticklabels()}
+    assert any("inf" in text for text in shown)
+
+
+def test_a_sweep_that_kept_nothing_is_not_drawn(tmp_path: Path) -> None:
+    plan = {"format": 1, "scenario": {}, "axes": [{"key": "time.stop", "values": [0]}], "metrics": ["outcome"]}
+    with pytest.raises(arm3r.UsageError, match="kept no metric"):
+        draw(arm3r.sweep(plan, out=tmp_path / "out"))
+
+
 # ---- the command ----------------------------------------------------------------------------------------------------
 
 
@@ -151,3 +168,10 @@ def test_exit_codes(table: Any, tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert plot_cli.main(["sweep", folder, "-o", str(tmp_path / "a.gif")]) == 2
     assert plot_cli.main(["sweep", folder, "-o", "/proc/nowhere/a.png"]) == 6
     assert plot_cli.main(["sweep", folder, "-o", str(tmp_path / "a.png"), "--metric", "x"]) == 2
+
+
+def test_a_full_stdout_is_exit_6(table: Any, tmp_path: Path, scripts: Path) -> None:
+    with open("/dev/full", "w") as full:
+        call = [scripts / "arm3r-plot", "sweep", table(STIFFNESS).folder, "-o", tmp_path / "a.png"]
+        done = subprocess.run(call, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 6 and done.stderr.startswith("arm3r-plot: standard output cannot be written")

@@ -236,6 +236,47 @@ def test_other_inputs_are_refused_and_listed(started: Path) -> None:
     assert all(word in str(raised.value) for word in ("runs: 95 then, 96 now", "scenario:", "sweep:", "hashes:"))
 
 
+@pytest.mark.parametrize("text", [b"", b"{", b"[]", b"{}", b"\xff"])
+def test_a_damaged_plan_is_named(started: Path, text: bytes) -> None:
+    (started / "sweep.json").write_bytes(text)
+    with pytest.raises(arm3r.UsageError, match=r"sweep\.json is damaged"):
+        arm3r.sweep(arm3r.Sweep(SWEEP), out=started, resume=True)
+    with pytest.raises(arm3r.UsageError, match=r"sweep\.json is damaged"):
+        arm3r.SweepTable(started)
+
+
+TABLES = [b"", b"x", b"run,t\n1", b"\xff", b"HEADER", b"HEADER1,2\n", b"ROWS,5,6\n"]
+
+
+@pytest.mark.parametrize("text", TABLES)
+def test_a_damaged_table_is_named_and_made_again(reference: Path, started: Path, text: bytes) -> None:
+    header = bytes_of(reference).split(b"\n")[0] + b"\n"
+    text = text.replace(b"HEADER", header).replace(b"ROWS", bytes_of(reference))
+    (started / "table.csv").write_bytes(text)
+    with pytest.raises(arm3r.UsageError, match="is not the table of 95 runs"):
+        arm3r.SweepTable(started)["run"]
+    assert resumed(started) == (bytes_of(reference), [])
+
+
+def test_shards_and_ledger_of_another_sweep_are_not_believed(reference: Path, started: Path, tmp_path: Path) -> None:
+    other = arm3r.sweep(arm3r.Sweep(SWEEP.replace("stop: 1.2", "stop: 1.3")), out=tmp_path / "other").folder
+    shutil.copytree(other / "shards", started / "shards", dirs_exist_ok=True)
+    shutil.copy(other / "ledger.jsonl", started)
+    table, told = resumed(started)
+    assert table == bytes_of(reference) != bytes_of(other)
+    assert told and all("another sweep" in line for line in told)
+
+
+def test_a_line_that_stands_twice_counts_once(reference: Path, started: Path) -> None:
+    ledger = started / "ledger.jsonl"
+    ledger.write_bytes(ledger.read_bytes() * 2)
+    assert resumed(started) == (bytes_of(reference), [])
+    assert sum(arm3r.SweepTable(started).outcomes.values()) == 95
+    ledger.write_bytes(b"{")
+    with pytest.raises(arm3r.UsageError, match=r"ledger\.jsonl is damaged"):
+        _ = arm3r.SweepTable(started).outcomes
+
+
 def test_another_version_is_refused(started: Path) -> None:
     manifest = json.loads((started / "sweep.json").read_text())
     (started / "sweep.json").write_text(json.dumps({**manifest, "version": "0.0.1"}))
@@ -276,6 +317,48 @@ def test_all_ok_is_exit_0(command: Cli, file: Path, tmp_path: Path) -> None:
     assert bytes_of(tmp_path / "out") == b"run,time.stop,outcome,t_end\n0,0,ok,0\n1,0.1,ok,0.1\n"
 
 
+def test_a_full_disk_is_exit_6_and_resumes(command: Cli, scripts: Path, file: Path) -> None:
+    folder = file.parent / "out"
+    call = f"ulimit -f 8; exec {scripts}/arm3r-sweep {file} -o {folder}"
+    file.write_text(SWEEP.replace("shard: 10", "shard: 95").replace("runs: 95", "runs: 400"))
+    done = subprocess.run(["bash", "-c", call], capture_output=True, text=True)
+    assert done.returncode == 6 and ".csv: cannot be written: File too large" in done.stderr
+    assert not list(folder.rglob("*.part")) and not list((folder / "shards").iterdir())
+    assert command(file, "-o", folder, "--resume").returncode == 7
+
+
+def test_a_full_stdout_is_exit_6(scripts: Path, file: Path, tmp_path: Path) -> None:
+    with open("/dev/full", "w") as full:
+        call = [scripts / "arm3r-sweep", file, "-o", tmp_path / "out"]
+        done = subprocess.run(call, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 6
+    assert done.stderr == "arm3r-sweep: standard output cannot be written: No space left on device\n"
+
+
+def test_a_closed_pipe_ends_it_quietly(scripts: Path, file: Path, tmp_path: Path) -> None:
+    call = [scripts / "arm3r-sweep", file, "-o", tmp_path / "out"]
+    process = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process.stdout.close()
+    assert process.stderr.read() == b"" and process.wait(20) == -signal.SIGPIPE
+    assert (tmp_path / "out/table.csv").exists()
+
+
+@pytest.mark.parametrize("jobs", [1.5, "2"])
+def test_jobs_are_a_whole_number(tmp_path: Path, jobs: Any) -> None:
+    with pytest.raises(TypeError, match="integer"):
+        arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path / "out", jobs=jobs)
+
+
+def test_what_progress_raises_comes_out(tmp_path: Path) -> None:
+    def fail(done: int, runs: int) -> None:
+        raise mine
+
+    for i, mine in enumerate((LookupError("mine"), StopIteration("mine"), SystemExit(3))):
+        with pytest.raises(type(mine)) as raised:
+            arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path / str(i), progress=fail)
+        assert raised.value is mine
+
+
 def test_an_existing_folder_is_exit_6(command: Cli, file: Path, started: Path) -> None:
     done = command(file, "-o", started)
     assert done.returncode == 6 and "--resume" in done.stderr
@@ -285,6 +368,17 @@ def test_an_existing_folder_is_exit_6(command: Cli, file: Path, started: Path) -
     done = command(file, "-o", started.parent / "mine", "--resume")
     assert done.returncode == 6 and "not the folder of a sweep" in done.stderr
     assert command(file, "-o", file / "below").returncode == 6
+
+
+@pytest.mark.parametrize("resume", [[], ["--resume"]])
+def test_a_folder_of_another_kind_is_left_alone(command: Cli, file: Path, tmp_path: Path, resume: list[str]) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/lock").write_text("precious")
+    (tmp_path / "mine/letter.txt").write_text("dear")
+    assert command(file, "-o", tmp_path / "mine", *resume).returncode == 6
+    assert {path.name: path.read_text() for path in (tmp_path / "mine").iterdir()} == {
+        "lock": "precious", "letter.txt": "dear"
+    }  # fmt: skip
 
 
 def test_exit_codes_of_mistakes(command: Cli, file: Path, started: Path, tmp_path: Path) -> None:
@@ -357,15 +451,45 @@ def test_interrupt_keeps_what_is_finished(long: Any, tmp_path: Path) -> None:
     assert kept and kept.items() <= times(tmp_path / "long").items()
 
 
+def test_a_terminated_sweep_goes_on(long: Any, tmp_path: Path) -> None:
+    process = long()
+    wait_for(tmp_path / "long/ledger.jsonl")
+    process.terminate()
+    assert process.wait(5) == -signal.SIGTERM
+    kept = times(tmp_path / "long")
+    assert kept and long("--resume").wait(60) == 0
+    assert kept.items() <= times(tmp_path / "long").items()
+
+
+BIG = (
+    "format: 1\nscenario: {time: {stop: 0}}\naxes: [{key: time.log_every, linspace: [1, 2, 1000000]}]\nshard: 1000000\n"
+)
+SLOW = LONG.replace("600", "60000").replace("shard: 10\n", "shard: 2000\n")
+
+
+@pytest.mark.parametrize(("text", "seconds"), [(BIG, 2.5), (SLOW, 0.9)], ids=["while rows are written", "statistics"])
+def test_a_big_shard_does_not_hold_an_interrupt(long: Any, tmp_path: Path, text: str, seconds: float) -> None:
+    (tmp_path / "long.yaml").write_text(text)
+    process = long()
+    wait_for(tmp_path / "long/sweep.json")
+    time.sleep(seconds)
+    sent = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    process.wait(20)
+    assert time.monotonic() - sent < 0.25
+    assert process.returncode == -signal.SIGINT and not (tmp_path / "long/table.csv").exists()
+
+
 def _rounds(long: Any, tmp_path: Path, rounds: int) -> None:
     expected = bytes_of(arm3r.sweep(arm3r.Sweep(LONG), out=tmp_path / "whole").folder)
-    chance, killed = random.Random(1), 0
-    for _ in range(rounds):
-        folder = tmp_path / "long"
+    chance, killed, folder = random.Random(1), 0, tmp_path / "long"
+    while killed < rounds:
         shutil.rmtree(folder, ignore_errors=True)
         while True:
             process = long("--resume")
-            time.sleep(chance.uniform(0.25, 0.8))
+            while process.poll() is None and not _works_in(folder, process.pid):
+                time.sleep(0.002)
+            time.sleep(chance.uniform(0, 0.3))
             process.kill()
             _, error = process.communicate()
             if process.returncode == 0:
@@ -377,7 +501,10 @@ def _rounds(long: Any, tmp_path: Path, rounds: int) -> None:
             assert "again" not in error
         assert bytes_of(folder) == expected
         assert len(list((folder / "shards").iterdir())) == 60
-    assert killed >= rounds
+
+
+def _works_in(folder: Path, pid: int) -> bool:
+    return (folder / "lock").exists() and (folder / "lock").read_text().strip() == str(pid)
 
 
 def test_kill_loses_no_finished_shard(long: Any, tmp_path: Path) -> None:

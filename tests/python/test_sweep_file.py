@@ -80,6 +80,19 @@ MISTAKES = [
     (GOOD + "  - *x\n", ["anchors and aliases"]),
     (GOOD + "mode: grid\nmode: list\n", ["s.yaml:6:1: ", "mode", "on line 5"]),
     ("format: 1\nscenario: [\n", ["s.yaml:3:1: ", "not valid YAML"]),
+    (axis("{key: initial.q, values: [[0, 0, 1]]}\n  - {key: 'initial.q[1]', values: [0.3]}"),
+     ["s.yaml:5:5: ", "axes[1].key", "initial.q[1] varies twice", "take one"]),
+    (axis("{key: wall.motion.velocity, values: [[0.1, 0, 0], [0.2, 0, 0]]}"),
+     ["s.yaml:4:5: ", "wall.motion.velocity", "one number", "a list of 3", "`set` it"]),
+    (axis("{key: 'wall.point[1]', linspace: [-1e308, 1e308, 3]}"), ["s.yaml:4:28: ", "two finite numbers"]),
+    (axis("{key: wall.contact.stiffness, geomspace: [1e-300, 1e300, 3]}"), ["s.yaml:4:35: ", "out of range"]),
+    (axis("{key: 'wall.point[1]', uniform: [-1e308, 1e308]}", "mode: random\nruns: 3\n"), ["s.yaml:4:28: ", "range"]),
+    (axis("{key: 'wall.point[1]', normal: [0, 1e308]}", "mode: random\nruns: 3\n"), ["s.yaml:4:28: ", "range"]),
+    (axis("{key: time.stop, values: [1]}", "seed: 9007199254740993\n"), ["seed", "to 9007199254740991"]),
+    (GOOD.replace("{time: {stop: 0.1}}", '{"a: b": 1}'), ["s.yaml:2:12: ", "a: b: no such key"]),
+    (GOOD.replace("{time: {stop: 0.1}}", '{time: {"st,op": 1}}'), ["s.yaml:2:19: ", "time.st,op", "no such key"]),
+    (GOOD.replace("{time: {stop: 0.1}}", '{"a\\nb": 1}'), ["s.yaml:2:12: ", r"a\nb: no such key"]),
+    (axis("{key: \"time.\\nstop\", values: [1]}"), ["s.yaml:4:6: ", r"got time.\nstop", "mean time.stop?"]),
 ]  # fmt: skip
 
 
@@ -87,6 +100,11 @@ MISTAKES = [
 def test_mistakes_have_a_place_and_a_fix(text: str, words: list[str]) -> None:
     found = message(text)
     assert all(word in found for word in words), found
+
+
+@pytest.mark.parametrize("scenario", ["[1]", "", '""', "/"])
+def test_a_mistake_is_listed_once(scenario: str) -> None:
+    assert len(message(GOOD.replace("{time: {stop: 0.1}}", scenario)).splitlines()) == 1
 
 
 def test_all_mistakes_are_listed_at_once() -> None:
@@ -127,9 +145,16 @@ def test_angles_may_be_in_degrees() -> None:
     assert plan.values()["initial.q[1]"] == pytest.approx(np.deg2rad([-30, -25, -20]), rel=1e-13)
 
 
+AS_MAP = {"format": 1, "scenario": {}, "axes": [{"key": "time.stop", "values": [0, 0.1]}]}
+
+
 def test_a_map_is_as_good_as_a_file() -> None:
     plan = arm3r.Sweep({"format": 1, "scenario": {"name": "a, b"}, "axes": [{"key": "time.stop", "values": (1, 2.5)}]})
     assert plan.scenario.name == "a, b" and plan.values()["time.stop"].tolist() == [1, 2.5]
+    plan = arm3r.Sweep({**AS_MAP, "set": {"initial.q[1]": 0.5, "wall": {"point": [1.9, 0, 0]}}})
+    assert plan.scenario["initial.q[1]"] == 0.5 and plan.scenario["wall.point[0]"] == 1.9
+    with pytest.raises(arm3r.ScenarioError, match="a, b: there is no such key"):
+        arm3r.Sweep({**AS_MAP, "a, b": 1})
 
 
 def test_what_cannot_be_read() -> None:
@@ -141,6 +166,11 @@ def test_what_cannot_be_read() -> None:
         arm3r.Sweep(__file__)
     with pytest.raises(arm3r.ScenarioError, match=r"s\.yaml:1:11: .*UTF-8"):
         arm3r.Sweep(b"format: 1 \xff", file="s.yaml")
+    with pytest.raises(arm3r.UsageError, match="not a regular file"):
+        arm3r.Sweep.load("/dev/zero")
+    for strange in ({"file": "n\udcff.yaml"}, {"overrides": ["name=\udcff"]}):
+        with pytest.raises(arm3r.UsageError, match="is not UTF-8"):
+            arm3r.Sweep(GOOD, **strange)
 
 
 def test_the_page_about_sweeps_is_true(root: Path, python: Any, monkeypatch: pytest.MonkeyPatch) -> None:
