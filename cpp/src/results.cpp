@@ -189,6 +189,7 @@ std::string summary_json(const Results& results) {
     field("final_force", json_number(run.final_force));
     field("impulse", json_number(run.impulse));
     field("energy_residual_max", json_number(run.energy_residual_max));
+    field("ledger_residual", json_number(run.ledger_residual));
     field("steps", json(run.steps));
     field("elapsed_s", json_number(run.elapsed_s));
     field("version", json_string(arm3r_version()));
