@@ -6,7 +6,7 @@ import os
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from operator import index
@@ -55,7 +55,7 @@ def sweep(
         ScenarioError: the sweep is not valid; all that is wrong is listed.
         OutputError: the folder exists, is in use, or cannot be written.
         IncompatibleError: the folder was begun with something else, or a worker has another version.
-        Arm3rError: `progress` ended the sweep.
+        Arm3rError: `progress` ended the sweep, or a worker of the executor died; either can be resumed.
     """
     jobs = None if jobs is None else index(jobs)
     plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
@@ -132,6 +132,9 @@ def _run(
                 folder.store(*shard, *future.result())
             if progress and progress(folder.runs_done, plan.runs):
                 raise Arm3rError(f"{folder.path}: stopped after {folder.runs_done} of {plan.runs} runs", code="stopped")
+    except BrokenExecutor as broken:
+        message = f"a worker died; {folder.runs_done} of {plan.runs} runs are finished, and resuming goes on from there"
+        raise Arm3rError(f"{folder.path}: {message}", code="crashed") from broken
     finally:
         for future in pending:
             future.cancel()

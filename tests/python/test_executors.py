@@ -137,3 +137,25 @@ def test_a_worker_that_fails_is_heard(expected: bytes, tmp_path: Path) -> None:
         with pytest.raises(RuntimeError, match="shutdown"):
             run_on(executor, tmp_path / "out")
     assert arm3r.sweep(arm3r.Sweep(SWEEP), out=tmp_path / "out", resume=True).path.read_bytes() == expected
+
+
+class Deadly(ProcessPoolExecutor):
+    """Whose workers die of their fifth job."""
+
+    jobs = 0
+
+    def submit(self, function: Any, /, *arguments: Any, **options: Any) -> Future[Any]:
+        self.jobs += 1
+        if self.jobs == 5:
+            return super().submit(os._exit, 1)
+        return super().submit(function, *arguments, **options)
+
+
+def test_a_dead_worker_is_named_and_the_sweep_goes_on(expected: bytes, tmp_path: Path) -> None:
+    context = multiprocessing.get_context("spawn")
+    with Deadly(1, mp_context=context) as executor, pytest.raises(arm3r.Arm3rError) as caught:
+        run_on(executor, tmp_path / "out", jobs=1)
+    assert caught.value.code == "crashed"
+    assert str(caught.value).endswith("a worker died; 28 of 60 runs are finished, and resuming goes on from there")
+    with ThreadPoolExecutor(2) as executor:
+        assert run_on(executor, tmp_path / "out", resume=True) == expected
