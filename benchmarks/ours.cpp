@@ -116,18 +116,21 @@ ARM3R_FOR_EIGHT void march_by(const Plant<Pack<8>>& plant, State<Pack<8>, Size>&
 #endif
 
 template <std::size_t Size>
-PackStepper<Size>::PackStepper(const std::vector<double>& params) : setup_(make_setup(params)) {}
+PackStepper<Size>::PackStepper(const std::vector<double>& params) : setup_(make_setup(params)) {
+    const auto fill = [&](auto& plant) {
+        copy_choices(setup_.plant, plant);
+        each_number([](auto& all, const double& one) { all = one; }, plant, setup_.plant);
+    };
+    std::apply([&](auto&... plants) { (fill(plants), ...); }, plants_);
+}
 
 template <std::size_t Size>
 template <int N>
 void PackStepper<Size>::march(int steps) {
-    Plant<Pack<N>> plant;
-    copy_choices(setup_.plant, plant);
-    each_number([](Pack<N>& all, const double& one) { all = one; }, plant, setup_.plant);
     State<Pack<N>, Size> y{};
     for (int i = 0; i < 3; ++i)
         for (int lane = 0; lane < N; ++lane) y[i].set(lane, setup_.q[i] + 0.01 * lane);
-    march_by(plant, y, steps);
+    march_by(std::get<Plant<Pack<N>>>(plants_), y, steps);
     sum_ += y[1][0] + y[2][N - 1];
 }
 

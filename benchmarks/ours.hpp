@@ -2,8 +2,10 @@
 // The jobs as arm3r does them.
 
 #include <array>
+#include <tuple>
 #include <vector>
 
+#include "arm3r/eigen_traits.hpp"
 #include "setup.hpp"
 
 namespace bench {
@@ -56,6 +58,7 @@ private:
     void march(int steps);
 
     arm3r::Setup setup_;
+    std::tuple<arm3r::Plant<arm3r::Pack<2>>, arm3r::Plant<arm3r::Pack<4>>, arm3r::Plant<arm3r::Pack<8>>> plants_;
     int taken_ = 0;
     double sum_ = 0;  // so that the result is used
 };
