@@ -330,7 +330,7 @@ public:
         for (const int i : system_.states) print_row("            now", 'x', i);
         print_nodes("            ", nodes_of(roots()), true);
         print_signals("            c[k]", 'x');
-        print_advance("            ", 'x', " * one_over[k + 1]");
+        print_advance("            ", 'x', " * reciprocals[k + 1]");
         out_ << "        }\n";
         print_nodes("        ", nodes_of(system_.signals), false);
         print_signals("        c[k]", 'x');

@@ -44,7 +44,7 @@ struct Structure {
     Algorithm algorithm;
     std::array<bool, 8> flags;  // of arm and model
 
-    auto operator<=>(const Structure&) const = default;
+    bool operator==(const Structure&) const = default;
 };
 
 Structure structure_of(const Setup& setup);
@@ -94,7 +94,6 @@ public:
     double h(int lane) const { return Lanes<T>::get(h_, lane); }
     FullState y(int lane) const { return state_of(y_, lane); }
     Mode mode(int lane) const { return mode_[lane]; }
-    double start_depth(int lane) const { return Lanes<T>::get(in_.depth, lane); }
     double energy_at_start(int lane) const { return Lanes<T>::get(energy_at_start_, lane); }
     arm3r_outcome outcome(int lane) const { return outcome_[lane]; }
 

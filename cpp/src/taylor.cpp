@@ -9,12 +9,6 @@
 namespace arm3r {
 namespace {
 
-constexpr std::array<double, most_degree + 1> one_over = [] {
-    std::array<double, most_degree + 1> table{};
-    for (int k = 1; k <= most_degree; ++k) table[k] = 1.0 / k;
-    return table;
-}();
-
 #include <taylor_kernels.hpp>  // made by derive_taylor
 
 // The squared angular frequency of the wall, 1/s^2.

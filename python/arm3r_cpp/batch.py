@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._native import BatchProgress, Floats, lib
-from .errors import BudgetError, ScenarioError, UsageError
+from .errors import BudgetError, ScenarioError, UsageError, no_column
 from .params import param_index, param_key, param_name, places
 from .run import Run
 
@@ -78,8 +77,7 @@ class Batch:
         """
         if name in self._columns:
             return self._columns[name]
-        near = difflib.get_close_matches(str(name), self.names, n=1) or self.names
-        raise KeyError(f"no column {name!r}; near: {', '.join(near)}")
+        raise no_column(name, self.names)
 
     def __iter__(self) -> Iterator[str]:
         """The columns' names, in order."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from collections.abc import Callable
 from typing import NoReturn
 
 from .errors import (
@@ -32,6 +33,18 @@ _CODES: dict[type[Arm3rError], int] = {
 
 def exit_code(error: Arm3rError) -> int:
     return next((code for kind, code in _CODES.items() if isinstance(error, kind)), 1)
+
+
+def attempt(program: str, work: Callable[[], None]) -> int:
+    """Do the work of a command: its exit code, and on stderr what went wrong. Ctrl-C ends it by the signal."""
+    try:
+        work()
+    except Arm3rError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return exit_code(error)
+    except KeyboardInterrupt:
+        die_of(signal.SIGINT)
+    return 0
 
 
 def tell(line: object) -> None:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .errors import Arm3rError, OutputError, UsageError
-from .exits import die_of, exit_code, tell
+from .exits import attempt, tell
 from .plot_style import FORMATS
 
 if TYPE_CHECKING:
@@ -27,18 +26,15 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         return draw_sweep(argv[1:])
     options = parser().parse_args(argv)
-    try:
-        target = target_of(options)
-        run, failure = read(options.run)
-        save(run, options, target)
-        if failure:
-            raise failure
-    except Arm3rError as error:
-        print(f"arm3r-plot: {error}", file=sys.stderr)
-        return exit_code(error)
-    except KeyboardInterrupt:
-        die_of(signal.SIGINT)
-    return 0
+    return attempt("arm3r-plot", lambda: draw(options))
+
+
+def draw(options: argparse.Namespace) -> None:
+    target = target_of(options)
+    run, failure = read(options.run)
+    save(run, options, target)
+    if failure:
+        raise failure
 
 
 def parser() -> argparse.ArgumentParser:

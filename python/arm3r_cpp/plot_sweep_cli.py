@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import signal
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from .errors import Arm3rError, OutputError, UsageError
-from .exits import die_of, exit_code, tell
+from .errors import OutputError, UsageError
+from .exits import attempt, tell
 
 
 def main(argv: Sequence[str]) -> int:
     """argv without "arm3r-plot sweep". Returns an exit code, one of those of `arm3r`."""
     options = parser().parse_args(argv)
-    try:
-        save(options)
-    except Arm3rError as error:
-        print(f"arm3r-plot: {error}", file=sys.stderr)
-        return exit_code(error)
-    except KeyboardInterrupt:
-        die_of(signal.SIGINT)
-    return 0
+    return attempt("arm3r-plot", lambda: save(options))
 
 
 def parser() -> argparse.ArgumentParser:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import os
 from collections.abc import Iterator
@@ -13,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import UsageError
+from .errors import UsageError, no_column
 from .sweep_axes import SweepAxis
 from .sweep_encode import decode
 from .sweep_folder import LEDGER, count_outcomes, read_manifest
@@ -69,8 +68,7 @@ class SweepTable:
         """
         if name in self.units:
             return self._columns[name]
-        near = difflib.get_close_matches(str(name), self.units, n=1) or self.names
-        raise KeyError(f"no column {name!r}; near: {', '.join(near)}")
+        raise no_column(name, self.names)
 
     def __iter__(self) -> Iterator[str]:
         """The columns' names, in order."""
