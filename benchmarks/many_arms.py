@@ -23,6 +23,9 @@ LONGEST = 25.0  # s: who would take longer for one turn sits out
 SECONDS = 1.0  # a race
 
 FALLING = f"format: 1\ntime: {{stop: {STEP * STEPS}, log_every: {STEP * STEPS}}}\n"
+SAMPLED = f"{FALLING}wall: {{acts_on_arm: true, point: [{WALL_NEAR}, 0, 0]}}\nsampling: {{rate: {1 / STEP}}}\n"
+HYBRID = f"{SAMPLED}controller: {{type: hybrid}}"
+FORCE_FEEDBACK = f"{SAMPLED}controller: {{type: hybrid, variant: jacobian_transpose}}"
 PUSHED = f"{FALLING}wall: {{acts_on_arm: true, point: [{WALL_NEAR}, 0, 0]}}\ncontroller: {{type: gravity_compensation}}"
 
 
@@ -93,6 +96,12 @@ def main() -> None:
             *more,
         ]
         compare(table, f"RK4 step of many arms, {job}", entries, spread)
+    for job, text in (("hybrid controller at 1 kHz", HYBRID), ("force feedback at 1 kHz", FORCE_FEEDBACK)):
+        entries = [
+            Entry("arm3r batch", BUILD, partial(ours, text=text, threads=1)),
+            Entry("arm3r batch, 2 threads", BUILD, partial(ours, text=text, threads=2)),
+        ]
+        compare(table, f"RK4 step of many arms, {job}", entries, [1, 0, 0])
 
 
 main()

@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import sys
 import time
@@ -14,6 +13,7 @@ import time
 begun = time.perf_counter()
 import mujoco  # noqa: E402
 import numpy as np  # noqa: E402
+from mujoco_rows import write  # noqa: E402
 from peer_arms import MJCF  # noqa: E402
 
 VECTORS = ["q", "qd", "qdd", "tau", "tip", "tip_v", "wall", "f_on_tip", "f_on_wall"]
@@ -45,17 +45,10 @@ def simulate() -> np.ndarray:
     return rows
 
 
-def write(path: str, rows: np.ndarray) -> None:
-    with open(path, "w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEADER)
-        writer.writerows(rows.tolist())
-
-
 imported = time.perf_counter()
 rows = simulate()
 simulated = time.perf_counter()
-write(sys.argv[1], rows)
+write(sys.argv[1], HEADER, rows)
 written = time.perf_counter()
 
 assert abs(rows[-1, HEADER.index("f_on_wall_1")] - 232.0508075689) < 1e-6, rows[-1]

@@ -1,4 +1,5 @@
-"""The lecture's moving wall with 10 001 rows as whole processes, ours beside MuJoCo's Python API. CSV out.
+"""Runs with 10 001 rows as whole processes, ours beside MuJoCo's Python API: the lecture's moving wall, and a digital
+hybrid controller at 1 kHz that presses on it. CSV out.
 
 python benchmarks/whole_process.py [RUNS]
 """
@@ -18,7 +19,7 @@ import arm3r_cpp
 from table import Table
 
 HERE = Path(__file__).parent
-SCENARIO = HERE.parent / "scenarios" / "moving_wall.yaml"
+SCENARIOS = HERE.parent / "scenarios"
 EXECUTABLE = next(path for place in arm3r_cpp.__path__ if (path := Path(place, "bin", "arm3r")).is_file())
 PEER_RUNS = 5
 
@@ -37,37 +38,31 @@ def timed(*command: str | Path) -> tuple[float, str]:
         return (ended - begun) * 1e3, out.read()
 
 
-def ours(runs: int, out: Path) -> dict[str, list[float]]:
+def ours(runs: int, scenario: Path, out: Path) -> dict[str, list[float]]:
     parts: dict[str, list[float]] = {name: [] for name in ("whole", "without -o", "start", "loop")}
     for _ in range(runs):
-        _, summary = timed(EXECUTABLE, "run", SCENARIO, "--json")
-        parts["whole"].append(timed(EXECUTABLE, "run", SCENARIO, "-o", out)[0])
-        parts["without -o"].append(timed(EXECUTABLE, "run", SCENARIO)[0])
+        _, summary = timed(EXECUTABLE, "run", scenario, "--json")
+        parts["whole"].append(timed(EXECUTABLE, "run", scenario, "-o", out)[0])
+        parts["without -o"].append(timed(EXECUTABLE, "run", scenario)[0])
         parts["start"].append(timed(EXECUTABLE, "--version")[0])
         parts["loop"].append(json.loads(summary)["elapsed_s"] * 1e3)
     return parts | {"text": [statistics.median(parts["whole"]) - statistics.median(parts["without -o"])]}
 
 
-def mujocos(out: Path) -> dict[str, list[float]]:
+def mujocos(program: str, out: Path) -> dict[str, list[float]]:
     parts: dict[str, list[float]] = {name: [] for name in ("whole", "import", "loop", "text")}
     for _ in range(PEER_RUNS):
-        whole, printed = timed(sys.executable, HERE / "mujoco_moving_wall.py", out)
+        whole, printed = timed(sys.executable, HERE / program, out)
         parts["whole"].append(whole)
         for name, seconds in json.loads(printed).items():
             parts[name].append(seconds * 1e3)
     return parts
 
 
-def main() -> None:
-    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 100
-    table = Table()
-    job, build = (
-        "moving wall, 10 001 rows, whole process",
-        timed(EXECUTABLE, "--version")[1].replace("\n", ", ").rstrip(", "),
-    )
+def compare(table: Table, job: str, build: str, scenario: Path, program: str, runs: int) -> None:
     with tempfile.TemporaryDirectory() as place:
         out = Path(place, "out.csv")
-        mine = ours(runs, out)
+        mine = ours(runs, scenario, out)
         table.row(job, "arm3r", build, "ms", mine["whole"])
         try:
             peer = "MuJoCo " + version("mujoco") + ", Python API"
@@ -75,7 +70,7 @@ def main() -> None:
             table.row(job, "MuJoCo", "not installed", "ms", [])
             theirs = {}
         else:
-            theirs = mujocos(out)
+            theirs = mujocos(program, out)
             table.row(job, "MuJoCo", peer, "ms", theirs["whole"])
     for name, (our_part, their_part) in {
         "start": ("start", "import"),
@@ -86,6 +81,17 @@ def main() -> None:
         table.row(f"{job}: {name}", "arm3r", build, "ms", mine[our_part])
         if their_part in theirs:
             table.row(f"{job}: {name}", "MuJoCo", peer, "ms", theirs[their_part])
+
+
+def main() -> None:
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    table = Table()
+    build = timed(EXECUTABLE, "--version")[1].replace("\n", ", ").rstrip(", ")
+    for job, scenario, program in (
+        ("moving wall", SCENARIOS / "moving_wall.yaml", "mujoco_moving_wall.py"),
+        ("hybrid controller at 1 kHz on it", HERE / "hybrid_wall.yaml", "mujoco_hybrid_wall.py"),
+    ):
+        compare(table, f"{job}, 10 001 rows, whole process", build, scenario, program, runs)
 
 
 main()

@@ -1,15 +1,20 @@
-// Runs by Dormand and Prince (5.2), one at a time.
+// Runs by adaptive steps (5.2), one at a time.
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "control_loop.hpp"
 #include "events.hpp"
 #include "ledger.hpp"
 #include "numbers.hpp"
 #include "recorder.hpp"
 #include "runs.hpp"
+#include "score.hpp"
+#include "step_limits.hpp"
+#include "stepper.hpp"
+#include "stepwise.hpp"
 
 namespace arm3r {
 namespace {
@@ -17,10 +22,11 @@ namespace {
 using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr int looks_per_step = 9;
+constexpr int looks_per_step = 9, sights_per_step = 4;
 
-bool is_finite(const FullState& y) {
-    return std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
+// The last instant before t > 0.
+double just_before(double t) {
+    return with_bits(t, [](auto& i) { i -= 1; });
 }
 
 // The state at t = 0.
@@ -33,99 +39,245 @@ FullState start_of(const Setup& setup) {
     return y;
 }
 
-class AdaptiveRun : Recorder {
+// A step that was taken, as far as the next one depends on it.
+struct Taken {
+    double h, error;
+    bool crosses, was_last;
+    bool goes_on;  // but for a new torque
+};
+
+// N: state_size, or full_size where a continuous controller remembers something.
+template <std::size_t N>
+class AdaptiveRun : public Stepwise, Recorder {
+    using Y = State<double, N>;
+
 public:
     AdaptiveRun(std::span<const double> params, const RunOptions& options)
         : Recorder(params, options),
-          rhs_(setup_.plant),
+          stepper_(setup_),
           watch_(setup_.plant, looks_per_step),
-          y_(start_of(setup_)),
-          ledger_(setup_, y_, mode_ = watch_.mode_at_start(y_)) {}
-
-    Run run() {
+          now_{start_of(setup_)},
+          ledger_(setup_, now_.y, mode_ = watch_.mode_at_start(now_.y)) {
+        loop_.put(0, setup_.digital, setup_.estimation);
+        loop_.user = options.user_law;
         start();
+    }
+
+    AdaptiveRun(const AdaptiveRun& other)
+        : Recorder(other),
+          stepper_(setup_, other.stepper_),
+          watch_(setup_.plant, looks_per_step),
+          loop_(other.loop_),
+          score_(other.score_),
+          now_(other.now_),
+          ledger_(setup_, other.ledger_) {}
+
+    bool is_over() const override { return !now_.waits; }
+    void use(const UserLaw& law) override { loop_.user = law; }
+
+    void go_on() override {
+        now_.waits = false;
+        if (now_.has_set_off) settle();
+        else set_off();
         while (is_going_on() && run_.t_end < setup_.stop) {
             if (double(run_.steps.accepted + run_.steps.rejected) >= setup_.solver.max_steps)
                 end(ARM3R_RUN_BUDGET, steps_used_up(run_.t_end));
-            else if (poll()) step();
+            else if (poll() && step()) {
+                if (stand_at_sample()) return;
+                settle();
+            }
         }
+    }
+
+    void show(const UserLaw& law) const override {
+        ControlLoop<double> rehearsal = loop_;
+        rehearsal.user = law;
+        Vec3<double> held;
+        rehearsal.attend(true, 0.0, setup_.plant.arm, instant(), held);
+    }
+
+    std::unique_ptr<Stepwise> copy() const override { return std::make_unique<AdaptiveRun>(*this); }
+
+    Run so_far() const override { return AdaptiveRun(*this).conclude(); }
+
+    Run conclude() override {
+        if (!is_over()) end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(run_.t_end));
         note_end();
-        return finish(y_, theta_, ledger_.flows());
+        return finish(now_.y, now_.theta, ledger_.flows());
     }
 
 private:
-    // ---- contact
+    // All that changes in the course of the run and is no part's own.
+    struct Present {
+        FullState y;
+        double h = 0;
+        double theta = 0;  // where the present instant lies in the last step
+        bool just_rejected = false;
+        bool trial_was_finite = true;  // the last one that was rejected
+        double touching_since = 0, events = 0;
+        bool waits = true, has_set_off = false;  // at a sample not yet attended; the first one is behind
+        Taken taken{};
+    };
 
-    double depth() const {
-        const WallState<double> wall = wall_at(setup_.plant.wall, run_.t_end);
-        return tip_indentation(setup_.plant, wall, pose(angles(y_)), rates(y_)).depth;
+    // The components that there are.
+    Y moving() const {
+        Y y;
+        std::copy_n(now_.y.begin(), N, y.begin());
+        return y;
     }
 
-    void note_depth(double depth) {
-        run_.peak_force = std::max(run_.peak_force, setup_.plant.contact.stiffness[0] * depth);
+    // ---- contact
+
+    WallState<double> wall_now() const { return wall_at(setup_.plant.wall, run_.t_end); }
+
+    Indentation<double> indentation_now() const {
+        return tip_indentation(setup_.plant, wall_now(), pose(angles(now_.y)), rates(now_.y));
+    }
+
+    double force_now() const {
+        return mode_ == Mode::contact ? normal_force(setup_.plant.contact, indentation_now()) : 0;
     }
 
     // The solution up to place b within the step has been gone through in the present mode.
     void note_passage(double b) {
-        if (mode_ == Mode::contact)
-            run_.impulse += setup_.plant.contact.stiffness[0] * watch_.depth_integral(inside_, 0, b);
+        if (mode_ == Mode::contact) run_.impulse += watch_.impulse(inside_, 0, b);
     }
 
-    // What is still stored in the contact is lost (4.9): something where the tip leaves over an edge, else nothing.
     void change_mode(const Change& change) {
-        y_[8] += change.lost;
-        if (change.to == Mode::contact) note_event(Event::make, change.t);
-        if (change.from == Mode::contact) note_event(Event::brk, change.t);
-        note_change(change, y_);
+        now_.y[7] += change.gained;
+        now_.y[8] += change.lost;
+        if (change.makes()) note_event(Event::make, change.t);
+        if (change.breaks()) note_event(Event::brk, change.t);
+        note_change(change, now_.y);
+        if (has_memory(setup_.plant)) tell_controller();
+    }
+
+    // A continuous controller sees contact as it is; its integral starts anew with each (7.4).
+    void tell_controller() {
+        const Controller<double>& controller = setup_.plant.controller;
+        contact_ = is_touching(mode_) ? 1 : 0;
+        if (controller.switching == Switching::always) force_phase_ = 1;
+        else if (controller.switching == Switching::in_contact) force_phase_ = contact_;
+        else force_phase_ = std::max(force_phase_, contact_);
+        if (contact_ == 0 && integrates_force(controller.type)) now_.y[law_at] = 0;
     }
 
     void note_event(Event::Type type, double t) {
         if (type == Event::make) {
             run_.contacts += 1;
             if (run_.contacts == 1) run_.first_contact = t;
-            touching_since_ = t;
+            now_.touching_since = t;
         } else {
             if (std::isnan(run_.first_release)) run_.first_release = t;
-            run_.contact_time += t - touching_since_;
+            run_.contact_time += t - now_.touching_since;
         }
-        if (++events_ > most_events) end(ARM3R_RUN_EVENT_STORM, event_storm(t));
+        if (++now_.events > most_events) end(ARM3R_RUN_EVENT_STORM, event_storm(t));
+    }
+
+    // ---- start
+
+    void start() {
+        if (is_touching(mode_)) note_event(Event::make, 0.0);
+        run_.peak_force = force_now();
+        start_memory();
+    }
+
+    void set_off() {
+        now_.has_set_off = true;
+        attend();
+        derive();
+        now_.h = first_step();
+        FullState f{};
+        std::copy_n(stepper_.f0().begin(), N, f.begin());
+        begin(now_.y, f, mode_, ledger_.energy_at_start());
+        if (is_scored_) score_.begin(sight(run_.t_end, now_.y));
+    }
+
+    void start_memory() {
+        if constexpr (N == full_size) {
+            tell_controller();
+            const Plant<double>& plant = setup_.plant;
+            const Instant<double> now = instant();
+            for (int i = 0; i < 3; ++i) now_.y[filter_at + i] = now.f_on_tip[i];
+            stepper_.set(touch(), contact_, force_phase_, infinite);
+            const Sensed<double> sensed =
+                stepper_.right_hand_side().sense(now.t, wall_now(), now.p, now.q, now.qd, now.f_on_tip, moving());
+            if (has_law(plant.controller.type)) {
+                const auto memory = memory_at_start(plant.controller, sensed);
+                std::copy(memory.begin(), memory.end(), now_.y.begin() + law_at);
+            }
+            const Vec3<double> p = momentum(plant.controller.model, now.p, now.qd);
+            for (int i = 0; i < 3; ++i) now_.y[observer_at + i] = p[i];
+        }
+    }
+
+    // The truth, for a digital controller.
+    Instant<double> instant() const {
+        const Plant<double>& plant = setup_.plant;
+        const Pose<double> p = pose(angles(now_.y));
+        const Vec3<double> zero(0, 0, 0);
+        Instant<double> now{run_.t_end, p, angles(now_.y), rates(now_.y), tip_position(plant.arm, p), zero, zero,
+                            zero,       0};
+        if (plant.has_wall) {
+            const WallState<double> wall = wall_now();
+            if (mode_ == Mode::contact) {
+                const Indentation<double> in = tip_indentation(plant, wall, p, rates(now_.y));
+                now.f_on_tip =
+                    only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Grip::clipped)).on_tip;
+            }
+            now.n = normal(plant.wall, wall);
+            now.face = dot(now.n, wall.position) + plant.wall.face_offset;
+        }
+        if (plant.load.on) now.f_on_tip = plus(now.f_on_tip, load_at(plant.load, now.t));
+        if constexpr (N == full_size)
+            now.f_filtered = {now_.y[filter_at], now_.y[filter_at + 1], now_.y[filter_at + 2]};
+        return now;
+    }
+
+    // Whatever a digital controller has to do now; whether its torque may have changed.
+    bool attend() {
+        if (loop_.next() > run_.t_end || !is_going_on()) return false;
+        log_until(run_.t_end);
+        loop_.attend(true, 0.0, setup_.plant.arm, instant(), setup_.plant.controller.torque);
+        known_ = loop_.known();
+        if (asks_estimator(setup_.plant.controller) && known_.identifiable > 0)
+            setup_.plant.controller.gains.assumed_stiffness = known_.stiffness;
+        if (loop_.has_failed()) end(ARM3R_RUN_CONTROLLER, loop_.complaint());
+        if (loop_.user.function && options_.time_limit > 0) read_clock();
+        return true;
+    }
+
+    // Whether the controller has to be asked before the run goes on.
+    bool stand_at_sample() { return now_.waits = is_going_on() && loop_.next_sample() <= run_.t_end; }
+
+    Touch touch() const {
+        return mode_ == Mode::contact ? Touch::pressed : mode_ == Mode::separated ? Touch::released : Touch::none;
+    }
+
+    // The derivative at the present instant, from where the next step goes.
+    void derive() {
+        stepper_.set(touch(), contact_, force_phase_, infinite);
+        stepper_.begin(run_.t_end, moving());
     }
 
     // ---- steps
 
-    void start() {
-        if (mode_ == Mode::contact) {
-            note_event(Event::make, 0.0);
-            note_depth(depth());
-        }
-        derive();
-        h_ = first_step();
-        begin(y_, f_, mode_, ledger_.energy_at_start());
-    }
-
-    // The derivative at the present instant, with the sines and cosines that the next stages turn from.
-    void derive() {
-        rhs_.touch = mode_ == Mode::contact ? Touch::pressed : Touch::none;
-        rhs_.begin_step(y_);
-        rhs_(run_.t_end, y_, f_);
-        run_.steps.evaluations += 1;
-    }
-
-    double weighted_norm(const FullState& v) const {
+    double weighted_norm(const Y& v) const {
         double largest = 0;
-        for (std::size_t i = 0; i < motion_size; ++i)
-            largest = std::max(largest, std::abs(v[i]) / (setup_.solver.atol + setup_.solver.rtol * std::abs(y_[i])));
+        for (std::size_t i = 0; i < N; i = i + 1 == motion_size ? state_size : i + 1)
+            largest =
+                std::max(largest, std::abs(v[i]) / (setup_.solver.atol + setup_.solver.rtol * std::abs(now_.y[i])));
         return largest;
     }
 
     double first_step() {  // (5.2)
-        const double size = weighted_norm(y_), slope = weighted_norm(f_);
+        const Y y = moving(), &f = stepper_.f0();
+        const double size = weighted_norm(y), slope = weighted_norm(f);
         const double trial = size < 1e-5 || slope < 1e-5 ? 1e-6 : 0.01 * size / slope;
-        FullState euler, f1;
-        for (std::size_t i = 0; i < state_size; ++i) euler[i] = y_[i] + trial * f_[i];
-        rhs_(trial, euler, f1);
-        run_.steps.evaluations += 1;
-        for (std::size_t i = 0; i < state_size; ++i) f1[i] -= f_[i];
+        Y euler, f1;
+        for (std::size_t i = 0; i < N; ++i) euler[i] = y[i] + trial * f[i];
+        stepper_.evaluate(trial, euler, f1);
+        for (std::size_t i = 0; i < N; ++i) f1[i] -= f[i];
         const double bend = weighted_norm(f1) / trial;
         const double steepest = std::max(slope, bend);
         const double by_slope = steepest <= 1e-15 ? std::max(1e-6, 1e-3 * trial) : fifth_root(0.01 / steepest);
@@ -137,76 +289,76 @@ private:
     // and the work of a turning torque is badly summed.
     double turning_time() const {
         const double turn = std::min(0.25 * pi, fifth_root(1e5 * setup_.solver.rtol));
-        const auto fastest = [](const FullState& v) {
+        const auto fastest = [](const auto& v) {
             return std::max({std::abs(v[3]), std::abs(v[4]), std::abs(v[4] + v[5])});
         };
-        return std::min(turn / fastest(y_), std::sqrt(2 * turn / fastest(f_)));
+        return std::min(turn / fastest(now_.y), std::sqrt(2 * turn / fastest(stepper_.f0())));
     }
 
     double largest_step() const {  // (5.2)
         const Plant<double>& plant = setup_.plant;
         double h = std::min(setup_.solver.max_step, turning_time());
-        if (plant.has_wall && plant.wall.motion == Motion::sinusoid) h = std::min(h, 1 / (16 * plant.wall.frequency));
-        if (plant.acts_on_arm && mode_ == Mode::contact && plant.contact.stiffness[0] > 0)
-            h = std::min(h, 0.25 * pi *
-                                std::sqrt(effective_mass(plant.arm, pose(angles(y_)), plant.wall.n) /
-                                          plant.contact.stiffness[0]));
+        if (plant.has_wall) h = std::min(h, longest_look(plant.wall));
+        if (!stepper_.is_stiff() && plant.acts_on_arm && is_touching(mode_))
+            h = std::min(h, contact_time(plant, wall_now(), pose(angles(now_.y)), indentation_now()));
         return h;
     }
 
-    void step() {
-        const double rest = setup_.stop - run_.t_end;
-        const double wanted = std::min(h_, largest_step());
+    // Whether a step was taken; the rest of it is settle().
+    bool step() {
+        const double knot = next_knot(setup_, run_.t_end), until = std::min({knot, loop_.next(), setup_.stop});
+        const double rest = until - run_.t_end, wanted = std::min(now_.h, largest_step());
         const bool last = wanted >= rest;
         const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // no sliver of a step at the end
         if (h < 16 * epsilon * std::max(run_.t_end, 1e-3) && !last) {
             collapse(h);
-            return;
+            return false;
         }
-        stepper_.step(rhs_, run_.t_end, y_, f_, h);
-        run_.steps.evaluations += 6;
-        const double error = is_finite(stepper_.y1) && is_finite(stepper_.f1)
-                                 ? stepper_.error(y_, h, setup_.solver.rtol, setup_.solver.atol)
-                                 : infinite;
+        stepper_.set(touch(), contact_, force_phase_, last && until == knot ? just_before(knot) : infinite);
+        const Y y = moving();
+        const double error = stepper_.attempt(run_.t_end, y, h);
         if (!(error < 1)) {
             reject(h, error);
-            return;
+            return false;
         }
-        inside_ = stepper_.interpolant(run_.t_end, y_, h);
-        double deepest = 0;
-        const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, deepest);
+        stepper_.interpolate(run_.t_end, y, h, inside_);
+        const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, run_.peak_force);
         const double theta = crossing ? crossing->theta : 1;
-        const double t1 = crossing ? run_.t_end + theta * h : last ? setup_.stop : run_.t_end + h;
+        const double t1 = crossing ? run_.t_end + theta * h : last ? until : run_.t_end + h;
         log_until(t1);
-        if (!is_going_on()) return;
-        note_depth(deepest);
+        if (!is_going_on()) return false;
         note_passage(theta);
-        theta_ = theta;
-        y_ = crossing ? inside_(theta) : stepper_.y1;
+        if (is_scored_) score_passage(theta, t1);
+        now_.theta = theta;
+        if (crossing) now_.y = inside_(theta);
+        else std::copy_n(stepper_.end().begin(), N, now_.y.begin());
         const bool came_to_rest = accept(t1);
-        if (crossing) change_mode({theta, t1, energies(setup_.plant, t1, y_, mode_).contact, mode_, crossing->next});
-        if (crossing || came_to_rest) derive();
-        else carry_over();
-        ledger_.close(run_.t_end, y_, mode_);
-        const double factor = step_factor(error);
-        h_ = h * (just_rejected_ ? std::min(factor, 1.0) : factor);
-        just_rejected_ = false;
+        if (crossing) change_mode(change_at(setup_.plant, indentation_now(), theta, t1, mode_, crossing->next));
+        now_.taken = {h, error, crossing.has_value(), last, !(crossing || came_to_rest || t1 == knot)};
+        return true;
     }
 
-    void carry_over() {  // the last stage is the first of the next step
-        f_ = stepper_.f1;
-        rhs_.begin_step(y_);
+    void settle() {
+        const bool new_torque = attend();
+        if (is_scored_ && (now_.taken.crosses || new_torque)) score_.look_again(sight(run_.t_end, now_.y));
+        stepper_.set(touch(), contact_, force_phase_, infinite);
+        stepper_.accept(run_.t_end, moving(), now_.taken.h, now_.taken.goes_on && !new_torque);
+        ledger_.close(run_.t_end, now_.y, mode_);
+        const double factor = stepper_.factor(now_.taken.error);
+        now_.h = std::max(now_.taken.h, now_.taken.was_last ? now_.h : 0.0) *
+                 (now_.just_rejected ? std::min(factor, 1.0) : factor);
+        now_.just_rejected = false;
     }
 
     void reject(double h, double error) {
         run_.steps.rejected += 1;
-        just_rejected_ = true;
-        trial_was_finite_ = std::isfinite(error);
-        h_ = trial_was_finite_ ? h * std::min(1.0, step_factor(error)) : 0.1 * h;
+        now_.just_rejected = true;
+        now_.trial_was_finite = std::isfinite(error);
+        now_.h = now_.trial_was_finite ? h * std::min(1.0, stepper_.factor(error)) : 0.1 * h;
     }
 
     void collapse(double h) {
-        if (trial_was_finite_)
+        if (now_.trial_was_finite)
             end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(run_.t_end) +
                                              " s: the motion changes faster than the clock resolves");
         else end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(run_.t_end) + " s");
@@ -216,14 +368,14 @@ private:
     bool accept(double t1) {
         bool came_to_rest = false;
         for (std::size_t i = 3; i < motion_size; ++i) {
-            if (y_[i] == 0 || std::abs(y_[i]) >= smallest_rate) continue;
-            y_[i] = 0;
+            if (now_.y[i] == 0 || std::abs(now_.y[i]) >= smallest_rate) continue;
+            now_.y[i] = 0;
             came_to_rest = true;
         }
         run_.t_end = t1;
         run_.steps.accepted += 1;
         for (int i = 0; i < 3; ++i)
-            if (std::abs(y_[i]) > sincos_limit)
+            if (std::abs(now_.y[i]) > sincos_limit)
                 end(ARM3R_RUN_DIVERGED,
                     "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(run_.t_end) + " s");
         if (!well_conditioned())
@@ -233,36 +385,90 @@ private:
     }
 
     bool well_conditioned() const {
-        const Mat3<double> M = mass_matrix(setup_.plant.arm, pose(angles(y_)));
+        const Mat3<double> M = mass_matrix(setup_.plant.arm, pose(angles(now_.y)));
         return M(0, 0) > 0 && M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2) > 8 * epsilon * M(1, 1) * M(2, 2);
     }
 
-    void note_end() {
-        run_.q = joints_out(angles(y_));
-        run_.qd = joints_out(rates(y_));
-        run_.tip = plain(tip_position(setup_.plant.arm, pose(angles(y_))));
-        for (std::size_t i = motion_size; i < state_size; ++i) run_.books[i - motion_size] = y_[i];
-        if (mode_ != Mode::contact) return;
-        run_.contact_time += run_.t_end - touching_since_;
-        run_.final_force = setup_.plant.contact.stiffness[0] * std::max(0.0, depth());
+    // ---- score
+
+    Sight<double> sight(double t, const FullState& y) const {
+        const Plant<double>& plant = setup_.plant;
+        const Controller<double>& controller = setup_.law();
+        const Vec3<double> q = angles(y), qd = rates(y);
+        const Pose<double> p = pose(q);
+        Sight<double> sight{t, 0, 0, is_touching(mode_) ? 1.0 : 0.0, 0, 0, q, {0, 0, 0}, y[6]};
+        WallState<double> wall = no_wall<double>();
+        Vec3<double> f_on_tip(0, 0, 0);
+        if (plant.has_wall) {
+            wall = wall_at(plant.wall, t);
+            if (mode_ == Mode::contact) {
+                const Indentation<double> in = tip_indentation(plant, wall, p, qd);
+                const ContactForce<double> force =
+                    only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Grip::clipped));
+                sight.force = force.normal;
+                f_on_tip = force.on_tip;
+            }
+        }
+        if (wants_force(controller.type)) sight.force_wanted = force_wanted_at(controller.setpoint, t);
+        const double phase = setup_.digital.sampling.on ? loop_.known().force_phase : force_phase_;
+        if (wants_path(controller.type))
+            sight.path_error_2 =
+                path_error_2(controller, t, tip_position(plant.arm, p), normal(plant.wall, wall), phase);
+        Y part;
+        std::copy_n(y.begin(), N, part.begin());
+        if (plant.load.on) f_on_tip = plus(f_on_tip, load_at(plant.load, t));
+        sight.tau = stepper_.torque(t, wall, p, f_on_tip, part);
+        const Vec3<double>& most = plant.arm.torque_limit;
+        for (int i = 0; i < 3; ++i)
+            if (std::abs(sight.tau[i]) >= most[i]) sight.saturated = 1;
+        return sight;
     }
 
-    RightHandSide<double, double> rhs_;
+    void score_passage(double theta, double t1) {
+        for (int i = 1; i < sights_per_step; ++i) {
+            const double place = theta * i / sights_per_step;
+            score_.advance(true, sight(inside_.t0 + place * inside_.h, inside_(place)));
+        }
+        score_.advance(true, sight(t1, inside_(theta)));
+    }
+
+    void note_end() {
+        run_.steps.evaluations = stepper_.evaluations();
+        run_.q = joints_out(angles(now_.y));
+        run_.qd = joints_out(rates(now_.y));
+        run_.tip = plain(tip_position(setup_.plant.arm, pose(angles(now_.y))));
+        for (std::size_t i = motion_size; i < state_size; ++i) run_.books[i - motion_size] = now_.y[i];
+        if (is_touching(mode_)) run_.contact_time += run_.t_end - now_.touching_since;
+        run_.final_force = force_now();
+        if (is_scored_) score_.tell(0, setup_.law(), run_);
+        run_.stiff_steps = double(stepper_.stiff_steps());
+        run_.choices = stepper_.choices();
+        if (known_.identifiable > 0) {
+            run_.stiffness_estimate = known_.stiffness;
+            run_.wall_speed_estimate = known_.wall_speed;
+        }
+    }
+
+    Stepper<N> stepper_;
     ContactWatch watch_;
-    Dopri5<double, state_size, motion_size> stepper_;
-    double h_ = 0;
-    FullState y_, f_{};
+    ControlLoop<double> loop_;
+    Score<double> score_{setup_.digital.sampling.on};
+    const bool is_scored_ = setup_.is_scored();
+    Present now_;
     Ledger ledger_;
-    double theta_ = 0;  // where the present instant lies in the last step
-    bool just_rejected_ = false;
-    bool trial_was_finite_ = true;  // the last one that was rejected
-    double touching_since_ = 0, events_ = 0;
 };
 
 }  // namespace
 
+std::unique_ptr<Stepwise> begin_stepwise(std::span<const double> params, const RunOptions& options) {
+    if (has_memory(make_setup(params).plant)) return std::make_unique<AdaptiveRun<full_size>>(params, options);
+    return std::make_unique<AdaptiveRun<state_size>>(params, options);
+}
+
 Run run_adaptively(std::span<const double> params, const RunOptions& options) {
-    return AdaptiveRun(params, options).run();
+    const std::unique_ptr<Stepwise> run = begin_stepwise(params, options);
+    while (!run->is_over()) run->go_on();
+    return run->conclude();
 }
 
 }  // namespace arm3r

@@ -73,6 +73,17 @@ Struct struct_in(const Struct* given, const char* name) {
 // Null gives the defaults.
 RunOptions options_in(const arm3r_run_options* options);
 
+// Problems that only the numbers show, with their place in the text.
+template <class Body>
+auto with_places(const Scenario& scenario, Body body) {
+    try {
+        return body();
+    } catch (const Error& error) {
+        if (error.problems().empty()) throw;
+        throw Error(error.status(), located(error.problems(), scenario));
+    }
+}
+
 // Texts that a handle has given out: each is made once and stays where it is.
 class Texts {
 public:

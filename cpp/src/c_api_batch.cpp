@@ -4,6 +4,7 @@
 
 #include "batch.hpp"
 #include "c_api.hpp"
+#include "runs.hpp"
 #include "schema.hpp"
 #include "summary.hpp"
 
@@ -52,7 +53,9 @@ int32_t arm3r_batch_run(const double* params, size_t count, const size_t* varied
         for (const std::size_t width : {varied_count, summary_table().size()})
             if (runs > 0 && width > most / runs)
                 throw Error(ARM3R_E_SIZE, "runs is " + std::to_string(runs) + ": no array is as long");
-        run_batch({params_in(params, count), {varied, varied_count}, {values, varied_count * runs}, runs},
-                  batch_options_in(options), results);
+        const std::span<const double> all = params_in(params, count);
+        if (choice_of(all, "controller.type") == "user") refuse_missing_law();
+        run_batch({all, {varied, varied_count}, {values, varied_count * runs}, runs}, batch_options_in(options),
+                  results);
     });
 }

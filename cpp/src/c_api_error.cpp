@@ -31,6 +31,7 @@ const char* class_of(arm3r_status status) {
         case ARM3R_E_OVERLAP: return "argument.overlap";
         case ARM3R_E_BUSY: return "argument.busy";
         case ARM3R_E_FILE: return "file";
+        case ARM3R_E_OVER: return "argument.over";
         case ARM3R_E_SCENARIO: return "scenario";
         case ARM3R_E_SIZE_CAP: return "run.size";
         case ARM3R_E_MEMORY: return "memory";

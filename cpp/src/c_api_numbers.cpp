@@ -194,8 +194,9 @@ const char* arm3r_version(void) { return ARM3R_VERSION; }
 const char* arm3r_build_info(void) { return ARM3R_BUILD_INFO; }
 
 const char* arm3r_outcome_name(int32_t outcome) {
-    static const char* const names[] = {
-        "ok", "stopped", "diverged", "step_collapse", "event_storm", "ill_conditioned", "energy", "budget", "invalid"};
+    static const char* const names[] = {"ok",          "stopped",         "diverged", "step_collapse",
+                                        "event_storm", "ill_conditioned", "energy",   "budget",
+                                        "invalid",     "controller"};
     return outcome >= 0 && outcome < int32_t(std::size(names)) ? names[outcome] : "";
 }
 

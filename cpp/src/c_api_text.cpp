@@ -30,17 +30,6 @@ arm3r_scenario* new_scenario(Scenario scenario) {
     return handle.release();
 }
 
-// Problems that only the numbers show, with their place in the text.
-template <class Body>
-auto with_places(const Scenario& scenario, Body body) {
-    try {
-        return body();
-    } catch (const Error& error) {
-        if (error.problems().empty()) throw;
-        throw Error(error.status(), located(error.problems(), scenario));
-    }
-}
-
 void save(const arm3r_run& run, const std::string& path) {
     OutputFile csv(path), summary(summary_path(path));
     write_csv(run.run, [&](std::string_view piece) { return csv.write(piece), true; });

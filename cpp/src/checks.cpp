@@ -37,7 +37,7 @@ bool is_in(const Words& words, std::string_view word) {
 Words columns_of(std::span<const double> params) {
     Words names;
     for (const Column& column : column_table())
-        if (!column.only_with_wall || param(params, "wall") != 0) names.emplace_back(column.name);
+        if (column.need != Need::wall || param(params, "wall") != 0) names.emplace_back(column.name);
     return names;
 }
 

@@ -39,6 +39,7 @@ int exit_code(int32_t status) {
 
 int exit_code_of_outcome(int32_t outcome) {
     if (outcome == ARM3R_RUN_OK) return exit_ok;
+    if (outcome == ARM3R_RUN_CONTROLLER) return exit_callback;
     return outcome == ARM3R_RUN_BUDGET || outcome == ARM3R_RUN_STOPPED ? exit_budget : exit_numeric;
 }
 

@@ -32,10 +32,10 @@ const std::vector<Column>& column_table() {
         {"tip_dvx", "m/s", "tip velocity along base x, position differentiated numerically along the trajectory"},
         {"tip_dvy", "m/s", "tip velocity along base y, position differentiated numerically along the trajectory"},
         {"tip_dvz", "m/s", "tip velocity along base z, position differentiated numerically along the trajectory"},
-        {"wall_x", "m", "origin of the plate's frame along base x", true},
-        {"wall_y", "m", "origin of the plate's frame along base y", true},
-        {"wall_z", "m", "origin of the plate's frame along base z", true},
-        {"depth", "m", "how far the tip is behind the contact face; > 0 inside", true},
+        {"wall_x", "m", "origin of the plate's frame along base x", Need::wall},
+        {"wall_y", "m", "origin of the plate's frame along base y", Need::wall},
+        {"wall_z", "m", "origin of the plate's frame along base z", Need::wall},
+        {"depth", "m", "how far the tip is behind the contact face; > 0 inside", Need::wall},
         {"contact", "1", "1 in contact, 0 not"},
         {"f_on_tip_x", "N", "contact force on the tip along base x"},
         {"f_on_tip_y", "N", "contact force on the tip along base y"},
@@ -50,8 +50,49 @@ const std::vector<Column>& column_table() {
         {"work_wall", "J", "work of the wall's drive on the arm since t = 0; 0 when the wall does not act on the arm"},
         {"energy_dissipated", "J", "energy lost to friction, damping and contact since t = 0"},
         {"energy_residual", "J", "what the balance of the six before leaves over: the error of the run"},
+        {"force", "N", "normal contact force, > 0 when pressing", Need::force},
+        {"force_measured", "N", "the same as the controller reads it", Need::force},
+        {"force_ref", "N", "the pressing force that is wanted", Need::force_reference},
+        {"force_phase", "1", "1 while force is controlled along the normal, 0 while position is",
+         Need::force_reference},
+        {"tip_ref_x", "m", "wanted tip position along base x", Need::path},
+        {"tip_ref_y", "m", "wanted tip position along base y", Need::path},
+        {"tip_ref_z", "m", "wanted tip position along base z", Need::path},
+        {"q_ref1", "rad", "wanted joint angle 1", Need::joint_path},
+        {"q_ref2", "rad", "wanted joint angle 2", Need::joint_path},
+        {"q_ref3", "rad", "wanted joint angle 3", Need::joint_path},
+        {"residual1", "N m", "external torque 1 as the momentum observer has it", Need::observer},
+        {"residual2", "N m", "external torque 2 as the momentum observer has it", Need::observer},
+        {"residual3", "N m", "external torque 3 as the momentum observer has it", Need::observer},
+        {"f_estimate_x", "N", "force at the tip along base x that explains the residual; 0 near a singular pose",
+         Need::observer},
+        {"f_estimate_y", "N", "force at the tip along base y that explains the residual", Need::observer},
+        {"f_estimate_z", "N", "force at the tip along base z that explains the residual", Need::observer},
+        {"collision", "1", "1 while a collision is taken for going on; a sampled observer only", Need::observer},
+        {"stiffness_estimate", "N/m", "the wall's stiffness by least squares; 0 where it is not identifiable",
+         Need::estimator},
+        {"wall_speed_estimate", "m/s", "the wall's speed towards the arm by least squares; 0 likewise",
+         Need::estimator},
+        {"identifiable", "1", "1 where the data tell stiffness and speed apart", Need::estimator},
+        {"tank_energy", "J", "what is in the energy tank", Need::tank},
+        {"saturated", "1", "1 where a torque is at its limit", Need::limits},
     };
     return table;
+}
+
+std::string_view need_text(Need need) {
+    switch (need) {
+        case Need::nothing: return "";
+        case Need::wall: return "only with a wall";
+        case Need::force: return "only with a control law beside a wall";
+        case Need::force_reference: return "only with a law that wants a force";
+        case Need::path: return "only with a law that wants tip positions";
+        case Need::joint_path: return "only with a law that wants joint angles";
+        case Need::observer: return "only with an observer";
+        case Need::estimator: return "only with an estimator";
+        case Need::tank: return "only with an energy tank";
+        default: return "only with torque limits and a control law";
+    }
 }
 
 }  // namespace arm3r

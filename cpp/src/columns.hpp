@@ -6,10 +6,26 @@
 
 namespace arm3r {
 
+// What a run must have for a column to be there.
+enum class Need {
+    nothing,
+    wall,
+    force,            // a law beside a wall
+    force_reference,  // a law that wants a force
+    path,             // a law that wants positions of the tip
+    joint_path,       // or joint angles
+    observer,
+    estimator,
+    tank,
+    limits,  // torque limits
+};
+
 struct Column {
     std::string_view name, unit, doc;
-    bool only_with_wall = false;
+    Need need = Need::nothing;
 };
+
+std::string_view need_text(Need need);  // "only with a wall"; "" for nothing
 
 const std::vector<Column>& column_table();
 

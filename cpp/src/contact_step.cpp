@@ -40,6 +40,16 @@ private:
 
 }  // namespace
 
+Change change_at(const Plant<double>& plant, const Indentation<double>& in, double theta, double t, Mode from,
+                 Mode to) {
+    Change change{theta, t, 0, 0, from, to};
+    if (!plant.acts_on_arm) return change;
+    const double sideways = stored_sideways(plant.contact, in);
+    if (change.breaks()) change.lost = sideways + (in.depth > 0 ? push(plant.contact, in).stored : 0);
+    if (change.makes()) change.gained = sideways;
+    return change;
+}
+
 std::optional<Crossing> next_crossing(const Wall<double>& wall, const ContactSignals<double>& signals, double from,
                                       Mode mode, double resolution) {
     Earliest earliest(from, resolution);

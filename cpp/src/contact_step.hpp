@@ -16,11 +16,18 @@ struct Crossing {
     Mode next;
 };
 
-// A crossing that has been made: where in the step, in seconds too, and what it cost.
+// A crossing that has been made: where in the step, in seconds too, and what it cost or brought.
 struct Change {
-    double theta, t, lost;  // s, J
+    double theta, t;      // t: s
+    double lost, gained;  // J: held by the springs that let go; by those along the plate that are taut at once
     Mode from, to;
+
+    bool makes() const { return !is_touching(from) && is_touching(to); }
+    bool breaks() const { return is_touching(from) && !is_touching(to); }
 };
+
+// The same for a tip that stands at `in` then.
+Change change_at(const Plant<double>& plant, const Indentation<double>& in, double theta, double t, Mode from, Mode to);
 
 template <class T>
 struct ContactSignals {

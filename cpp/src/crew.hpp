@@ -45,4 +45,10 @@ private:
     std::vector<std::size_t> again_, aside_;
 };
 
+// The run and those of its structure that follow, in lanes (lineup.hpp): by RK4, by RK4 with a continuous controller's
+// memory in the state, by power series.
+void march_by_rk4(int lanes, Crew& crew, const Setup& first, std::size_t run);
+void march_with_memory(int lanes, Crew& crew, const Setup& first, std::size_t run);
+void march_by_taylor(int lanes, Crew& crew, const Setup& first, std::size_t run);
+
 }  // namespace arm3r

@@ -41,7 +41,7 @@ struct Recording {
         RightHandSide<Expr, Expr> rhs(plant);
         rhs.touch = recipe.force ? Touch::pressed : Touch::none;
         const Pose<Expr> p = rhs.pose_near(y);
-        rhs.derivative(wall, p, y, dy);
+        rhs.derivative(Expr(0.0), wall, p, y, dy);
 
         for (const Expr& x : wall.velocity) tape.output(x);
         for (const Expr& x : wall.acceleration) tape.output(x);

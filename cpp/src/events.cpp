@@ -4,16 +4,26 @@
 #include <cmath>
 #include <limits>
 
+#include "arm3r/dual.hpp"
+
 namespace arm3r {
 namespace {
 
-constexpr int depth_signal = 0, edges = 4;  // the distances inside the outline are signals 1 to 4
+enum Signal { depth_signal, first_edge, last_edge = 4, release_signal, force_signal };
 
 // A bracket of two instants that the clock can hardly tell apart.
 bool is_narrow(const Inside& inside, double a, double b) {
     const double t = std::abs(inside.t0 + inside.h * b);
     return (b - a) * inside.h <= std::max(finest_event, 4 * std::numeric_limits<double>::epsilon() * t) ||
            0.5 * (a + b) == a || 0.5 * (a + b) == b;
+}
+
+template <class T>
+Indentation<T> indentation_at(const Plant<double>& plant, const Inside& inside, const T& theta) {
+    const auto y = [&](std::size_t i) { return inside.component(i, theta); };
+    const Pose<T> p = pose(Vec3<T>(y(0), y(1), y(2)));
+    const WallState<T> wall = wall_at(plant.wall, T(inside.t0 + theta * inside.h));
+    return tip_indentation(plant, wall, p, Vec3<T>(y(3), y(4), y(5)));
 }
 
 }  // namespace
@@ -23,17 +33,27 @@ Mode ContactWatch::mode_at_start(const FullState& y) const {
     const Pose<double> p = pose(angles(y));
     const Indentation<double> in = tip_indentation(plant_, wall_at(plant_.wall, 0.0), p, rates(y));
     if (!(in.depth > 0)) return Mode::free;
-    return inside_outline(plant_.wall, in) >= 0 ? Mode::contact : Mode::embedded;
+    if (!(inside_outline(plant_.wall, in) >= 0)) return Mode::embedded;
+    return is_damped(plant_.contact.law) && push(plant_.contact, in).release < 0 ? Mode::separated : Mode::contact;
 }
 
 ContactWatch::Look ContactWatch::look(const Inside& inside, double theta) const {
-    const FullState y = inside(theta);
-    const Pose<double> p = pose(angles(y));
-    const WallState<double> wall = wall_at(plant_.wall, inside.t0 + theta * inside.h);
-    const Indentation<double> in = tip_indentation(plant_, wall, p, rates(y));
-    const double half1 = plant_.wall.half1, half2 = plant_.wall.half2;
-    return {{in.depth, half1 - in.across1, half1 + in.across1, half2 - in.across2, half2 + in.across2},
-            {in.rate, -in.slip1, in.slip1, -in.slip2, in.slip2}};
+    const Indentation<double> in = indentation_at(plant_, inside, theta);
+    const double half1 = plant_.wall.half1, half2 = plant_.wall.half2, stiffness = plant_.contact.stiffness[0];
+    Look look{{in.depth, half1 - in.across1, half1 + in.across1, half2 - in.across2, half2 + in.across2},
+              {in.rate, -in.slip1, in.slip1, -in.slip2, in.slip2}};
+    if (!is_damped(plant_.contact.law)) {
+        look.value[force_signal] = stiffness * in.depth;
+        look.rate[force_signal] = stiffness * in.rate;
+        return look;
+    }
+    const Push<Dual<1>> along =
+        push(plant_.contact, indentation_at(plant_, inside, Dual<1>::variable(theta, 0)));  // slopes by theta
+    look.value[release_signal] = along.release.number;
+    look.rate[release_signal] = along.release.slope[0];
+    look.value[force_signal] = along.total.number;
+    look.rate[force_signal] = along.total.slope[0];
+    return look;
 }
 
 // Letting go includes depth 0: a tip that only touches feels nothing.
@@ -44,7 +64,8 @@ bool ContactWatch::has_fallen(const Falling& falling, const Look& here) {
 }
 
 bool ContactWatch::within_outline(const Look& here) {
-    return std::all_of(here.value.begin() + 1, here.value.end(), [](double distance) { return distance >= 0; });
+    return std::all_of(here.value.begin() + first_edge, here.value.begin() + last_edge + 1,
+                       [](double distance) { return distance >= 0; });
 }
 
 double ContactWatch::root(const Inside& inside, const Falling& falling, double a, double b) const {
@@ -75,23 +96,25 @@ std::optional<double> ContactWatch::first_fall(const Inside& inside, const Falli
     return std::nullopt;
 }
 
-double ContactWatch::deepest_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const {
-    const double at_end = at_b.value[depth_signal];
-    if (!(at_a.rate[depth_signal] > 0 && at_b.rate[depth_signal] < 0)) return at_end;
-    const Falling rising{depth_signal, -1, Mode::contact};
-    return std::max(at_end, look(inside, turning_point(inside, rising, a, b)).value[depth_signal]);
+double ContactWatch::peak_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const {
+    const double at_ends = std::max(at_a.value[force_signal], at_b.value[force_signal]);
+    if (!(at_a.rate[force_signal] > 0 && at_b.rate[force_signal] < 0)) return at_ends;
+    const Falling rising{force_signal, -1, Mode::contact};
+    return std::max(at_ends, look(inside, turning_point(inside, rising, a, b)).value[force_signal]);
 }
 
-double ContactWatch::depth_integral(const Inside& inside, double a, double b) const {
+double ContactWatch::impulse(const Inside& inside, double a, double b) const {
     constexpr double place[] = {0, 0.53846931010568309, 0.90617984593866399};  // Gauss and Legendre, five points
     constexpr double weight[] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
-    const auto depth = [&](double x) { return look(inside, 0.5 * ((a + b) + (b - a) * x)).value[depth_signal]; };
-    double sum = weight[0] * depth(0);
-    for (int i = 1; i < 3; ++i) sum += weight[i] * (depth(-place[i]) + depth(place[i]));
+    const auto force = [&](double x) {
+        return normal_force(plant_.contact, indentation_at(plant_, inside, 0.5 * ((a + b) + (b - a) * x)));
+    };
+    double sum = weight[0] * force(0);
+    for (int i = 1; i < 3; ++i) sum += weight[i] * (force(-place[i]) + force(place[i]));
     return 0.5 * (b - a) * inside.h * sum;
 }
 
-std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mode mode, double& deepest) const {
+std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mode mode, double& peak) const {
     if (!plant_.has_wall) return std::nullopt;
     double a = from;
     Look at_a = look(inside, a);
@@ -107,14 +130,15 @@ std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mo
             consider({depth_signal, -1, Mode::contact});
             if (first && !within_outline(look(inside, first->theta))) first->next = Mode::embedded;
         } else {
+            if (is_touching(mode) && plant_.wall.has_outline)
+                for (int edge = first_edge; edge <= last_edge; ++edge) consider({edge, +1, Mode::embedded});
             consider({depth_signal, +1, Mode::free});
-            if (mode == Mode::contact) {
-                for (int edge = 1; edge <= edges; ++edge) consider({edge, +1, Mode::embedded});
-                deepest =
-                    std::max(deepest, first ? deepest_of(inside, a, at_a, first->theta, look(inside, first->theta))
-                                            : deepest_of(inside, a, at_a, b, at_b));
-            }
+            if (mode == Mode::contact && is_damped(plant_.contact.law)) consider({release_signal, +1, Mode::separated});
+            if (mode == Mode::separated) consider({release_signal, -1, Mode::contact});
         }
+        if (mode == Mode::contact)
+            peak = std::max(peak, first ? peak_of(inside, a, at_a, first->theta, look(inside, first->theta))
+                                        : peak_of(inside, a, at_a, b, at_b));
         if (first) return first;
         a = b;
         at_a = at_b;

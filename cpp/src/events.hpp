@@ -15,17 +15,18 @@ public:
 
     Mode mode_at_start(const FullState& y) const;
 
-    // The first change of mode after `from`, or nothing. `deepest` grows to the largest depth, m, that contact reaches
-    // between the two.
-    std::optional<Crossing> next(const Inside& inside, double from, Mode mode, double& deepest) const;
+    // The first change of mode after `from`, or nothing. `peak` grows to the largest normal force, N, that contact
+    // reaches between the two.
+    std::optional<Crossing> next(const Inside& inside, double from, Mode mode, double& peak) const;
 
-    // Integral of the depth, m s, along the solution from place a to place b within the step.
-    double depth_integral(const Inside& inside, double a, double b) const;
+    // Integral of the normal force of contact, N s, along the solution from place a to place b within the step.
+    double impulse(const Inside& inside, double a, double b) const;
 
 private:
-    // Depth and the four distances inside the outline, m, with their rates, m/s.
+    // Depth and the four distances inside the outline, m; then what tells when a damped law would pull (Push::release),
+    // and the normal force, N. The rates have the right sign.
     struct Look {
-        std::array<double, 5> value, rate;
+        std::array<double, 7> value, rate;
     };
     struct Falling {
         int signal;
@@ -39,8 +40,8 @@ private:
     std::optional<double> first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b,
                                      const Look& at_b) const;
     double turning_point(const Inside& inside, const Falling& falling, double a, double b) const;
-    // The largest depth from a to b in contact, where that at a is known already.
-    double deepest_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const;
+    // The largest normal force from a to b in contact.
+    double peak_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const;
     double root(const Inside& inside, const Falling& falling, double a, double b) const;
 
     const Plant<double>& plant_;

@@ -6,19 +6,21 @@
 
 namespace arm3r {
 
-template <class T>
-class FixedMarch : public March<T> {
-    using Base = March<T>;
+template <class T, std::size_t N = state_size>
+class FixedMarch : public March<T, N> {
+    using Base = March<T, N>;
     using Mask = typename Base::Mask;
+    using Y = typename Base::Y;
 
 public:
     explicit FixedMarch(const Setup& any_lane) : Base(any_lane) {
-        if (this->plant_.acts_on_arm) this->rhs_.touch = Touch::each_stage;
+        if (this->plant_.acts_on_arm || senses_wall(this->plant_)) this->rhs_.touch = Touch::each_stage;
     }
 
     void put(int lane, const Setup& setup) {
         Base::put(lane, setup);
         Lanes<T>::set(step_, lane, setup.solver.step);
+        Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
     }
 
     // changed(lane, change) is told of each change of contact, before it is made.
@@ -31,7 +33,7 @@ public:
         const T aim = min(this->stop_, T((this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
-        const State<T, state_size> y1 = rk4_step(this->rhs_, t0_, y0_, f0_, this->h_);
+        const Y y1 = rk4_step(this->rhs_, t0_, y0_, f0_, this->h_);
         const Mask finite = Base::is_finite(y1), moved = finite && this->alive_;
         this->accept(moved, select(is_last, this->stop_, aim), y1);
         this->evaluations_ = this->evaluations_ + 4.0;
@@ -39,6 +41,7 @@ public:
         this->observe();
         if (this->plant_.has_wall) watch(moved, changed);
         this->close_books();
+        if (this->is_scored_) this->score(moved);
         this->judge_lanes();
     }
 
@@ -71,14 +74,38 @@ private:
         const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
         Mask special = Base::select_mask(this->touching_ || this->embedded_, depth.low() <= o, depth.high() > o);
         if (this->any_touching_) {
-            special = special || (this->touching_ && depth.high() > max(this->deepest_, depth.fourth));
+            if (this->is_elastic_)
+                special = special || (this->touching_ && depth.high() > max(this->deepest_, depth.fourth));
             if (this->plant_.wall.has_outline) special = special || (this->touching_ && comes_near_edge());
             const Mask plainly = this->touching_ && !special && moved;
-            this->deepest_ = select(plainly, max(this->deepest_, depth.fourth), this->deepest_);
-            this->depth_time_ = this->depth_time_ + select(plainly, T(h * depth.mean()), o);
+            if (this->is_elastic_) {
+                this->deepest_ = select(plainly, max(this->deepest_, depth.fourth), this->deepest_);
+                this->depth_time_ = this->depth_time_ + select(plainly, T(h * depth.mean()), o);
+            } else {
+                measure_damped(plainly);
+            }
         }
         special = special && moved;
         if (any(special)) settle(special, changed);
+    }
+
+    // The force of a damped contact over the step; where it may turn within, one lane at a time.
+    ARM3R_INLINE void measure_damped(const Mask& plainly) {
+        const T &h = this->h_, o(0.0);
+        const Polynomial<T> depth =
+            hermite_cubic(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
+        const std::array<T, 5> force = Base::forces(this->plant_.contact, depth, h, o, T(1.0));
+        const Mask turns = plainly && range_of(through_five(force)).high > max(this->peak_, force[4]);
+        const Mask rises = plainly && !turns;
+        this->peak_ = select(rises, max(this->peak_, force[4]), this->peak_);
+        this->impulse_ = this->impulse_ + select(rises, T(h * mean_of_five(force)), o);
+        if (!any(turns)) return;
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            if (!Lanes<T>::is(turns, lane)) continue;
+            std::array<double, 5> alone;
+            for (int i = 0; i < 5; ++i) alone[i] = Lanes<T>::get(force[i], lane);
+            this->pass_damped(lane, alone, this->h(lane));
+        }
     }
 
     ARM3R_INLINE Mask comes_near_edge() const {
@@ -124,8 +151,7 @@ private:
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
             this->pass(lane, signals.depth, from, crossing->theta);
             from = crossing->theta;
-            const double depth = value(signals.depth, from);
-            const Change change{from, t0 + from * h, this->stored_at(lane, depth), this->mode(lane), crossing->next};
+            const Change change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
             changed(lane, change);
             this->change_mode(lane, change);
             anew = true;
@@ -136,7 +162,7 @@ private:
     }
 
     T step_{1.0}, t0_{0.0};
-    State<T, state_size> y0_{}, f0_{};
+    Y y0_{}, f0_{};
     Indentation<T> before_{};
 };
 

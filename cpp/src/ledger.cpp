@@ -17,17 +17,17 @@ double stock(const Energies& energies) {
 // The accuracy that the solver was asked for; a fixed step promises none.
 double tolerance(const Solver& solver) {
     switch (solver.method) {
-        case Solver::dopri5: return solver.rtol;
+        case Solver::rk4: return loosest_strict_tolerance;
         case Solver::taylor: return solver.tol;
-        default: return loosest_strict_tolerance;
+        default: return solver.rtol;
     }
 }
 
 const char* advice(const Solver& solver) {
     switch (solver.method) {
-        case Solver::dopri5: return "tighten solver.rtol";
+        case Solver::rk4: return "take a smaller solver.step";
         case Solver::taylor: return "tighten solver.tol";
-        default: return "take a smaller solver.step";
+        default: return "tighten solver.rtol";
     }
 }
 

@@ -28,6 +28,8 @@ std::optional<std::string> balance_complaint(const Solver& solver, const Flows& 
 class Ledger {
 public:
     Ledger(const Setup& setup, const FullState& y, Mode mode);
+    // As far as another one of the same setup.
+    Ledger(const Setup& setup, const Ledger& other) : setup_(setup), start_(other.start_), flows_(other.flows_) {}
 
     double energy_at_start() const { return start_.sum(); }  // J
 

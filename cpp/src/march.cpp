@@ -1,5 +1,8 @@
 #include "march.hpp"
 
+#include "apart.hpp"
+#include "compiled_laws.hpp"
+
 #include <algorithm>
 
 #include "recorder.hpp"
@@ -36,49 +39,73 @@ Structure structure_of(const Setup& setup) {
             plant.wall.has_outline,
             may_be_ill_conditioned(arm),
             plant.wall.motion,
+            plant.wall.table ? plant.wall.table->knots : 0,
+            plant.wall.rotation,
             plant.contact.law,
-            plant.controller.type,
-            plant.controller.algorithm,
+            plant.contact.has_friction,
+            setup.law(),
+            setup.law().setpoint,
+            setup.digital.sampling,
+            setup.digital.sensors,
+            setup.digital.observer,
+            setup.estimation,
+            plant.load.on,
             {arm.gravity_is_vertical, arm.has_damping, arm.has_dry_friction, arm.has_torque_limit,
              model.gravity_is_vertical, model.has_damping, model.has_dry_friction, model.has_torque_limit}};
 }
 
-template <class T>
-March<T>::March(const Setup& any_lane)
+template <class T, std::size_t N>
+March<T, N>::March(const Setup& any_lane)
     : rhs_((copy_choices(any_lane.plant, plant_), plant_)),
-      may_be_ill_conditioned_(structure_of(any_lane).may_be_ill_conditioned) {
+      may_be_ill_conditioned_(structure_of(any_lane).may_be_ill_conditioned),
+      is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
+      is_scored_(any_lane.is_scored()),
+      score_(any_lane.digital.sampling.on,
+             {wants_force(any_lane.law().type), wants_path(any_lane.law().type), any_lane.plant.arm.has_torque_limit}),
+      is_elastic_(!is_damped(any_lane.plant.contact.law)) {
+    rhs_.law_function = compiled_law<T, T>();
     for (int lane = 0; lane < lanes; ++lane) {
         setups_[lane] = any_lane;
         retire(lane);
     }
 }
 
-template <class T>
-void March<T>::put(int lane, const Setup& setup) {
+template <class T, std::size_t N>
+void March<T, N>::put(int lane, const Setup& setup) {
     const auto set = [&](T& x, double value) { Lanes<T>::set(x, lane, value); };
     setups_[lane] = setup;
-    each_number([&](T& to, const double& from) { set(to, from); }, plant_, setup.plant);
+    each_number(set, plant_, setup.plant);
+    if (plant_.wall.motion == Motion::table) each_table_number(set, *plant_.wall.table, *setup.plant.wall.table);
     for (int i = 0; i < 3; ++i) {
         set(y_[i], setup.q[i]);
         set(y_[3 + i], setup.qd[i]);
     }
-    for (std::size_t i = motion_size; i < state_size; ++i) set(y_[i], 0.0);
-    for (T* zero :
-         {&t_, &residual_, &exchanged_, &held_, &deepest_, &depth_time_, &accepted_, &rejected_, &evaluations_})
+    for (std::size_t i = motion_size; i < N; ++i) set(y_[i], 0.0);
+    for (T* zero : {&t_, &residual_, &exchanged_, &held_, &deepest_, &depth_time_, &peak_, &impulse_, &accepted_,
+                    &rejected_, &evaluations_})
         set(*zero, 0.0);
+    if (has_law(plant_.controller.type)) each_law_number(set, plant_.controller, setup.plant.controller);
+    if (has_memory(plant_)) {
+        each_sensor_number(set, plant_.sensors, setup.plant.sensors);
+        each_observer_number(set, plant_.observer, setup.plant.observer);
+    }
+    if (plant_.load.on) each_load_number(set, plant_.load, setup.plant.load);
+    if (is_controlled_) loop_.put(lane, setup.digital, setup.estimation);
+    if (is_scored_) score_.put(lane);
+    set(rhs_.contact, 0.0), set(rhs_.force_phase, 0.0);
     set(stop_, setup.stop);
     set(max_steps_, setup.solver.max_steps);
     set(stiffness_, setup.plant.contact.stiffness[0]);
     contacts_[lane] = {0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0, 0};
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
+    set_running(lane, false);  // of a run before this one
     set_running(lane, true);
     set_mode(lane, Mode::free);
 }
 
-template <class T>
-void March<T>::begin_lane(int lane) {
-    is_new_[lane] = false;
+template <class T, std::size_t N>
+void March<T, N>::begin_lane(int lane) {
     const Wall<double>& wall = setups_[lane].plant.wall;
     const double depth = plant_.has_wall ? Lanes<T>::get(in_.depth, lane) : 0;
     if (depth > 0) {
@@ -90,6 +117,7 @@ void March<T>::begin_lane(int lane) {
         contacts_[lane].count = contacts_[lane].events = 1;
         contacts_[lane].first_contact = 0;
         Lanes<T>::set(deepest_, lane, depth);
+        Lanes<T>::set(peak_, lane, force_of(lane));
     }
     const double kinetic = Lanes<T>::get(kinetic_, lane), potential = Lanes<T>::get(potential_, lane);
     const double contact = Lanes<T>::get(stored(), lane);
@@ -99,9 +127,79 @@ void March<T>::begin_lane(int lane) {
     Lanes<T>::set(evaluations_, lane, needs_derivative_ ? 1.0 : 0.0);
 }
 
+template <class T, std::size_t N>
+void March<T, N>::look() {
+    Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { observe(); });
+}
+
+// What a change of contact has changed is felt from here on.
+template <class T, std::size_t N>
+void March<T, N>::evaluate_anew() {
+    if (!needs_derivative_) return;
+    Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_); });
+}
+
+template <class T, std::size_t N>
+void March<T, N>::control() {
+    Apart<T>::run([this]() ARM3R_INLINE_LAMBDA {
+        loop_.attend(is_due(), slack_, plant_.arm, instant(), plant_.controller.torque);
+        if (!asks_estimator(plant_.controller)) return;
+        T& assumed = plant_.controller.gains.assumed_stiffness;
+        assumed = select(loop_.known().identifiable > T(0.0), loop_.known().stiffness, assumed);
+    });
+    if (loop_.has_failed()) stop_lane(0, ARM3R_RUN_CONTROLLER);
+}
+
+template <class T, std::size_t N>
+void March<T, N>::start_score() {
+    Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { score_.begin(sight()); });
+}
+
+template <class T, std::size_t N>
+void March<T, N>::score(const Mask& moved) {
+    Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { score_.advance(moved, sight()); });
+}
+
+// A law's memory at t = 0 needs the contact that begin_lane() has found.
+template <class T, std::size_t N>
+void March<T, N>::start_memory() {
+    if constexpr (N == full_size) {
+        const Instant<T> now = instant();
+        const Vec3<T> p = momentum(plant_.controller.model, p_, now.qd);
+        const auto start = [&](std::size_t i, const T& value) {
+            for (int lane = 0; lane < lanes; ++lane)
+                if (is_new_[lane]) Lanes<T>::set(y_[i], lane, Lanes<T>::get(value, lane));
+        };
+        for (int i = 0; i < 3; ++i) start(filter_at + i, now.f_on_tip[i]);
+        for (int lane = 0; lane < lanes; ++lane)
+            if (is_new_[lane]) tell_controller(lane);
+        if (has_law(plant_.controller.type)) {
+            const Sensed<T> sensed = rhs_.sense(t_, wall_, p_, now.q, now.qd, now.f_on_tip, y_);
+            const std::array<T, law_memory> memory = memory_at_start(plant_.controller, sensed);
+            for (std::size_t i = 0; i < law_memory; ++i) start(law_at + i, memory[i]);
+        }
+        for (int i = 0; i < 3; ++i) start(observer_at + i, p[i]);
+    }
+}
+
+// A continuous controller sees contact as it is; its integral starts anew with each (7.4).
+template <class T, std::size_t N>
+void March<T, N>::tell_controller(int lane) {
+    if constexpr (N == full_size) {
+        const Controller<double>& controller = setups_[lane].plant.controller;
+        const double contact = mode_[lane] == Mode::contact ? 1 : 0, before = force_phase(lane);
+        const double phase = controller.switching == Switching::always       ? 1
+                             : controller.switching == Switching::in_contact ? contact
+                                                                             : std::max(before, contact);
+        Lanes<T>::set(rhs_.contact, lane, contact);
+        Lanes<T>::set(rhs_.force_phase, lane, phase);
+        if (contact == 0 && integrates_force(controller.type)) Lanes<T>::set(y_[law_at], lane, 0.0);
+    }
+}
+
 // An empty lane stands still at the end of a run of no length.
-template <class T>
-void March<T>::retire(int lane) {
+template <class T, std::size_t N>
+void March<T, N>::retire(int lane) {
     Setup rest = setups_[lane];
     rest.stop = 0;
     rest.qd = {0, 0, 0};
@@ -110,34 +208,53 @@ void March<T>::retire(int lane) {
     set_running(lane, false);
 }
 
-template <class T>
-void March<T>::set_running(int lane, bool running) {
+template <class T, std::size_t N>
+void March<T, N>::set_running(int lane, bool running) {
     running_[lane] = running;
     alive_ = mask_where<T>(running_, true);
+    begun_ = begun_ && alive_;
 }
 
-template <class T>
-void March<T>::set_mode(int lane, Mode mode) {
+template <class T, std::size_t N>
+void March<T, N>::set_mode(int lane, Mode mode) {
     mode_[lane] = mode;
     touching_ = mask_where<T>(mode_, Mode::contact);
     embedded_ = mask_where<T>(mode_, Mode::embedded);
     any_touching_ = any(touching_);
     any_embedded_ = any(embedded_);
     const bool feels = only_contact_is_felt_ ? mode == Mode::contact && plant_.acts_on_arm : mode != Mode::embedded;
-    Lanes<T>::set(plant_.contact.stiffness[0], lane, feels ? setups_[lane].plant.contact.stiffness[0] : 0.0);
+    const Contact<double>& own = setups_[lane].plant.contact;
+    const auto set = [&](T& strength, double value) { Lanes<T>::set(strength, lane, feels ? value : 0.0); };
+    for (int i = 0; i < 3; ++i) set(plant_.contact.stiffness[i], own.stiffness[i]);
+    set(plant_.contact.damping, own.damping);
 }
 
-template <class T>
-void March<T>::pass(int lane, const Polynomial<double>& depth, double a, double b) {
+template <class T, std::size_t N>
+double March<T, N>::force_of(int lane) const {
+    const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+    return normal_force(setups_[lane].plant.contact, Indentation<double>{get(in_.depth), get(in_.rate), 0, 0, 0, 0});
+}
+
+template <class T, std::size_t N>
+void March<T, N>::pass(int lane, const Polynomial<double>& depth, double a, double b) {
     if (mode_[lane] != Mode::contact) return;
     const double deepest = Lanes<T>::get(deepest_, lane), h = Lanes<T>::get(h_, lane);
+    if (!is_elastic_) return pass_damped(lane, forces(setups_[lane].plant.contact, depth, h, a, b), h * (b - a));
     if (range_of(depth).high > deepest) Lanes<T>::set(deepest_, lane, std::max(deepest, largest(depth, a, b)));
     Lanes<T>::set(depth_time_, lane, Lanes<T>::get(depth_time_, lane) + h * integral(depth, a, b));
 }
 
-// What is still stored in the contact is lost (4.9): something where the tip leaves over an edge, else nothing.
-template <class T>
-void March<T>::change_mode(int lane, const Change& change) {
+template <class T, std::size_t N>
+void March<T, N>::pass_damped(int lane, const std::array<double, 5>& force, double duration) {
+    const Polynomial<double> over_time = through_five(force);
+    const double peak = Lanes<T>::get(peak_, lane);
+    if (range_of(over_time).high > peak) Lanes<T>::set(peak_, lane, std::max(peak, largest(over_time, 0, 1)));
+    Lanes<T>::set(impulse_, lane, Lanes<T>::get(impulse_, lane) + duration * mean_of_five(force));
+}
+
+template <class T, std::size_t N>
+void March<T, N>::change_mode(int lane, const Change& change) {
+    Lanes<T>::set(y_[7], lane, Lanes<T>::get(y_[7], lane) + change.gained);
     Lanes<T>::set(y_[8], lane, Lanes<T>::get(y_[8], lane) + change.lost);
     Contacts& contacts = contacts_[lane];
     if (change.to == Mode::contact) {
@@ -151,10 +268,11 @@ void March<T>::change_mode(int lane, const Change& change) {
     if (change.to == Mode::contact || change.from == Mode::contact) contacts.events += 1;
     if (contacts.events > most_events) stop_lane(lane, ARM3R_RUN_EVENT_STORM);
     set_mode(lane, change.to);
+    if (N == full_size) tell_controller(lane);
 }
 
-template <class T>
-void March<T>::fail_lanes(const Mask& bad) {
+template <class T, std::size_t N>
+void March<T, N>::fail_lanes(const Mask& bad) {
     for (int lane = 0; lane < lanes; ++lane) {
         if (!running_[lane] || !Lanes<T>::is(bad, lane)) continue;
         const FullState y = state_of(y_, lane);
@@ -167,8 +285,8 @@ void March<T>::fail_lanes(const Mask& bad) {
     }
 }
 
-template <class T>
-Metrics March<T>::metrics(int lane) const {
+template <class T, std::size_t N>
+Metrics March<T, N>::metrics(int lane) const {
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
     const Setup& setup = setups_[lane];
     const FullState y = state_of(y_, lane);
@@ -180,10 +298,10 @@ Metrics March<T>::metrics(int lane) const {
     Metrics m;
     m.outcome = outcome_[lane];
     m.t_end = get(t_);
-    m.peak_force = stiffness * get(deepest_);
-    m.impulse = stiffness * get(depth_time_);
+    m.peak_force = is_elastic_ ? stiffness * get(deepest_) : get(peak_);
+    m.impulse = is_elastic_ ? stiffness * get(depth_time_) : get(impulse_);
     m.contact_time = contacts.time + (touches ? m.t_end - contacts.since : 0);
-    m.final_force = touches ? stiffness * std::max(0.0, get(in_.depth)) : 0;
+    m.final_force = touches ? force_of(lane) : 0;
     m.ledger_residual = get(residual_);
     m.q = joints_out(angles(y));
     m.qd = joints_out(rates(y));
@@ -193,21 +311,30 @@ Metrics March<T>::metrics(int lane) const {
     m.first_contact = contacts.first_contact;
     m.first_release = contacts.first_release;
     m.steps = steps(lane);
+    if (is_scored_) score_.tell(lane, setup.law(), m);
+    if (is_controlled_ && get(loop_.known().identifiable) > 0) {
+        m.stiffness_estimate = get(loop_.known().stiffness);
+        m.wall_speed_estimate = get(loop_.known().wall_speed);
+    }
     const bool balances = m.ledger_residual <= balance_limit(setup.solver, flows(lane));
     if (m.outcome == ARM3R_RUN_OK && is_strict(setup.solver) && !balances) m.outcome = ARM3R_RUN_ENERGY;
     return m;
 }
 
-template <class T>
-Flows March<T>::flows(int lane) const {
+template <class T, std::size_t N>
+Flows March<T, N>::flows(int lane) const {
     return {Lanes<T>::get(exchanged_, lane), Lanes<T>::get(held_, lane), Lanes<T>::get(residual_, lane)};
 }
 
 template class March<double>;
+template class March<double, full_size>;
 template class March<Pack<2>>;
+template class March<Pack<2>, full_size>;
 #if ARM3R_WIDE_PACKS
 template class March<Pack<4>>;
+template class March<Pack<4>, full_size>;
 template class March<Pack<8>>;
+template class March<Pack<8>, full_size>;
 #endif
 
 }  // namespace arm3r

@@ -9,29 +9,12 @@
 #include <limits>
 
 #include "arm3r/eigen_traits.hpp"
-#include "arm3r/lanes.hpp"
 #include "contact_step.hpp"
+#include "control_loop.hpp"
 #include "ledger.hpp"
+#include "score.hpp"
 
 namespace arm3r {
-
-template <class T>
-struct Lanes {
-    static constexpr int count = 1;
-    using Mask = bool;
-    static double get(const T& x, int) { return x; }
-    static void set(T& x, int, double value) { x = value; }
-    static bool is(bool mask, int) { return mask; }
-};
-
-template <int N>
-struct Lanes<Pack<N>> {
-    static constexpr int count = N;
-    using Mask = PackMask<N>;
-    static double get(const Pack<N>& x, int lane) { return x[lane]; }
-    static void set(Pack<N>& x, int lane, double value) { x.set(lane, value); }
-    static bool is(const Mask& mask, int lane) { return mask[lane]; }
-};
 
 // What is the same in all lanes, so that nothing that no lane needs is computed, and every lane rounds alike.
 struct Structure {
@@ -39,9 +22,17 @@ struct Structure {
     int order;  // of taylor
     bool has_wall, acts_on_arm, has_outline, may_be_ill_conditioned;
     Motion motion;
+    int knots;  // of a table
+    Rotation rotation;
     Law law;
-    Controls controls;
-    Algorithm algorithm;
+    bool has_friction;  // of the wall
+    ControllerChoices controller;
+    SetpointChoices setpoint;
+    SamplingChoices sampling;
+    SensorChoices sensors;
+    ObserverChoices observer;
+    EstimationChoices estimation;
+    bool has_load;
     std::array<bool, 8> flags;  // of arm and model
 
     bool operator==(const Structure&) const = default;
@@ -54,10 +45,12 @@ inline double event_resolution(double t, double h) {
     return std::max(finest_event, 4 * std::numeric_limits<double>::epsilon() * std::abs(t)) / h;
 }
 
-template <class T>
+// N: state_size, or full_size where a continuous controller remembers something.
+template <class T, std::size_t N = state_size>
 class March {
 public:
     using Mask = typename Lanes<T>::Mask;
+    using Y = State<T, N>;
     static constexpr int lanes = Lanes<T>::count;
 
     explicit March(const Setup& any_lane);
@@ -65,10 +58,25 @@ public:
     // Put a run into a lane. The lanes put in since then begin with the next call of begin().
     void put(int lane, const Setup& setup);
     ARM3R_INLINE void begin() {
-        observe();
+        look();
         for (int lane = 0; lane < lanes; ++lane)
             if (is_new_[lane]) begin_lane(lane);
-        if (any_embedded_) rhs_.derivative(wall_, p_, y_, f_);
+        if (N == full_size) start_memory();
+        begun_ = alive_;
+        if (is_controlled_ || N == full_size || any_embedded_) look();
+        if (is_scored_) start_score();
+        for (bool& is_new : is_new_) is_new = false;
+    }
+
+    // A law of the user's own, for the only lane.
+    void use(const UserLaw& law) { loop_.user = law; }
+    std::string complaint() const { return loop_.complaint(); }
+    const Known<T>& known() const { return loop_.known(); }
+    double contact(int lane) const { return Lanes<T>::get(rhs_.contact, lane); }
+    double force_phase(int lane) const { return Lanes<T>::get(rhs_.force_phase, lane); }
+    Vec3<double> torque(int lane) const {
+        const Vec3<T>& tau = plant_.controller.torque;
+        return {Lanes<T>::get(tau[0], lane), Lanes<T>::get(tau[1], lane), Lanes<T>::get(tau[2], lane)};
     }
 
     void retire(int lane);
@@ -98,9 +106,9 @@ public:
     arm3r_outcome outcome(int lane) const { return outcome_[lane]; }
 
 protected:
-    static FullState state_of(const State<T, state_size>& y, int lane) {
-        FullState one;
-        for (std::size_t i = 0; i < state_size; ++i) one[i] = Lanes<T>::get(y[i], lane);
+    static FullState state_of(const Y& y, int lane) {
+        FullState one{};
+        for (std::size_t i = 0; i < N; ++i) one[i] = Lanes<T>::get(y[i], lane);
         return one;
     }
     ARM3R_INLINE static Mask select_mask(const Mask& which, const Mask& a, const Mask& b) {
@@ -122,31 +130,100 @@ protected:
             wall_ = wall_at(plant_.wall, t_);
             in_ = tip_indentation(plant_, wall_, p_, qd);
         }
-        if (needs_derivative_) rhs_.derivative(wall_, p_, y_, f_);
         kinetic_ = kinetic_energy(plant_.arm, p_, qd);
         potential_ = potential_energy(plant_.arm, p_);
+        if (is_controlled_ && any(is_due())) control();
+        if (needs_derivative_) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
+        else if (is_scored_)
+            tau_ = limited(plant_.arm, arm3r::control(plant_.controller, Vec3<T>(y_[0], y_[1], y_[2]), p_),
+                           plant_.controller.saturation);
     }
+    void look();
+
+    // ---- digital controllers
+
+    // A step ends where one of them has something to do: at the earliest of this and the end of the run.
+    ARM3R_INLINE T next_instant() const { return is_controlled_ ? min(stop_, loop_.next()) : stop_; }
+
+    ARM3R_INLINE Mask is_due() const { return begun_ && loop_.next() <= t_ + slack_; }
+    void control();
+
+    // The truth, as far as they look at it.
+    ARM3R_INLINE Instant<T> instant() const {
+        const Vec3<T> zero = none<T>();
+        Instant<T> now{t_,
+                       p_,
+                       Vec3<T>(y_[0], y_[1], y_[2]),
+                       Vec3<T>(y_[3], y_[4], y_[5]),
+                       tip_position(plant_.arm, p_),
+                       zero,
+                       zero,
+                       zero,
+                       T(0.0)};
+        if (plant_.has_wall) {
+            now.f_on_tip = force_on_tip();
+            now.n = normal(plant_.wall, wall_);
+            now.face = dot(now.n, wall_.position) + plant_.wall.face_offset;
+        }
+        if (plant_.load.on) now.f_on_tip = plus(now.f_on_tip, load_at(plant_.load, t_));
+        if constexpr (N == full_size) now.f_filtered = {y_[filter_at], y_[filter_at + 1], y_[filter_at + 2]};
+        return now;
+    }
+
+    // Contact as it is at this instant, known to the modes or not yet.
+    ARM3R_INLINE Vec3<T> force_on_tip() const {
+        Mask pressed = in_.depth > T(0.0) && !embedded_;
+        if (plant_.wall.has_outline) pressed = pressed && inside_outline(plant_.wall, in_) >= T(0.0);
+        if (!any(pressed)) return none<T>();
+        return only_where(pressed, contact_force(plant_.wall, wall_, plant_.contact, in_, Grip::clipped)).on_tip;
+    }
+
+    // ---- the score
+
+    ARM3R_INLINE Sight<T> sight() const {
+        const T o(0.0), l(1.0);
+        const Controller<T>& law = loop_.is_on() ? loop_.controller() : plant_.controller;
+        Sight<T> sight{t_, o, o, o, o, o, Vec3<T>(y_[0], y_[1], y_[2]), tau_, y_[6]};
+        if (wants_force(law.type)) {
+            const Mask pressed = touching_ && in_.depth > o;
+            sight.force = select(pressed, dot(normal(plant_.wall, wall_), force_on_tip()), o);
+            sight.touches = select(pressed, l, o);
+            sight.force_wanted = force_wanted_at(law.setpoint, t_);
+        }
+        if (wants_path(law.type)) {
+            const T phase = loop_.is_on() ? loop_.known().force_phase : rhs_.force_phase;
+            sight.path_error_2 = path_error_2(law, t_, tip_position(plant_.arm, p_), normal(plant_.wall, wall_), phase);
+        }
+        if (plant_.arm.has_torque_limit)
+            for (int i = 0; i < 3; ++i)
+                sight.saturated = select(abs(sight.tau[i]) >= plant_.arm.torque_limit[i], l, sight.saturated);
+        return sight;
+    }
+    void score(const Mask& moved);
 
     ARM3R_INLINE T stored() const {
         if (!plant_.acts_on_arm) return T(0.0);
-        return select(touching_ && in_.depth > T(0.0), T(0.5 * stiffness_ * in_.depth * in_.depth), T(0.0));
+        const auto pressed = touching_ && in_.depth > T(0.0);
+        if (plant_.contact.law == Law::spring)
+            return select(pressed, T(0.5 * stiffness_ * in_.depth * in_.depth), T(0.0));
+        return select(pressed, T(push(plant_.contact, in_).stored + stored_sideways(plant_.contact, in_)), T(0.0));
     }
 
     // ---- after a step
 
     // To `t1`, `y1` where `moved`; rates that are next to nothing become nothing.
-    ARM3R_INLINE void accept(const Mask& moved, const T& t1, const State<T, state_size>& y1) {
+    ARM3R_INLINE void accept(const Mask& moved, const T& t1, const Y& y1) {
         if (all(moved)) y_ = y1;
         else
-            for (std::size_t i = 0; i < state_size; ++i) y_[i] = select(moved, y1[i], y_[i]);
+            for (std::size_t i = 0; i < N; ++i) y_[i] = select(moved, y1[i], y_[i]);
         for (std::size_t i = 3; i < motion_size; ++i) y_[i] = select(abs(y_[i]) < T(smallest_rate), T(0.0), y_[i]);
         t_ = select(moved, t1, t_);
         accepted_ = accepted_ + select(moved, T(1.0), T(0.0));
     }
 
-    ARM3R_INLINE static Mask is_finite(const State<T, state_size>& y) {
+    ARM3R_INLINE static Mask is_finite(const Y& y) {
         T sum = y[0];
-        for (std::size_t i = 1; i < state_size; ++i) sum = sum + y[i];
+        for (std::size_t i = 1; i < N; ++i) sum = sum + y[i];
         return sum * 0.0 == T(0.0);
     }
 
@@ -179,46 +256,70 @@ protected:
     // The depth from a to b within the step has been gone through.
     void pass(int lane, const Polynomial<double>& depth, double a, double b);
     void change_mode(int lane, const Change& change);
+    void pass_damped(int lane, const std::array<double, 5>& force, double duration);
 
     const Setup& setup(int lane) const { return setups_[lane]; }
 
     // What change_mode() has changed is felt from here on.
-    [[gnu::noinline]] void evaluate_anew() {
-        if (needs_derivative_) rhs_.derivative(wall_, p_, y_, f_);
-    }
+    void evaluate_anew();
 
-    // What the spring holds at a depth.
-    double stored_at(int lane, double depth) const {
-        const bool holds = plant_.acts_on_arm && mode_[lane] == Mode::contact && depth > 0;
-        return holds ? 0.5 * Lanes<T>::get(stiffness_, lane) * depth * depth : 0;
+    // The change to `next` at place theta within the step, t seconds, where the signals stand.
+    Change change_of(int lane, const ContactSignals<double>& signals, double theta, double t, Mode next) const {
+        const Indentation<double> in{value(signals.depth, theta),   0, value(signals.across1, theta),
+                                     value(signals.across2, theta), 0, 0};
+        return change_at(setups_[lane].plant, in, theta, t, mode_[lane], next);
     }
 
     void fail_lanes(const Mask& bad);
 
-    Plant<T> plant_;  // its stiffness is 0 in lanes that are embedded, or free where so decided
+    // N, along a depth over the step h: at five places, from one end to the other.
+    template <class P, class S>
+    ARM3R_INLINE static std::array<S, 5> forces(const Contact<P>& contact, const Polynomial<S>& depth, const S& h,
+                                                const S& a, const S& b) {
+        std::array<S, 5> force;
+        const S o(0.0);
+        for (int i = 0; i < 5; ++i) {
+            const S theta = a + (b - a) * (0.25 * i);
+            force[i] = normal_force(contact, Indentation<S>{value(depth, theta), slope(depth, theta) / h, o, o, o, o});
+        }
+        return force;
+    }
+
+    Plant<T> plant_;  // its contact pushes nothing in lanes that are embedded, or free where so decided
     RightHandSide<T, T> rhs_;
     bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
 
-    T t_{0.0}, h_{0.0}, stop_{0.0};
-    State<T, state_size> y_{}, f_{};
+    bool is_controlled_, is_scored_;
+    ControlLoop<T> loop_;
+    Score<T> score_;
+
+    T t_{0.0}, h_{0.0}, stop_{0.0}, slack_{0.0};  // slack: how early an instant counts as reached, s
+    Y y_{}, f_{};
     Pose<T> p_;
-    WallState<T> wall_;
-    Indentation<T> in_;
+    WallState<T> wall_ = no_wall<T>();
+    Indentation<T> in_{};
+    Vec3<T> tau_ = none<T>();  // N m, applied
     T kinetic_, potential_;
 
     T stiffness_{0.0};
-    Mask alive_ = false, touching_ = false, embedded_ = false;
+    Mask alive_ = false, begun_ = false, touching_ = false, embedded_ = false;
     std::array<Mode, lanes> mode_{};
     bool any_embedded_ = false, any_touching_ = false;
 
     T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, exchanged_{0.0}, held_{0.0};
-    T deepest_{0.0}, depth_time_{0.0};
+    bool is_elastic_;                   // the force is the stiffness times the depth:
+    T deepest_{0.0}, depth_time_{0.0};  // m, m s
+    T peak_{0.0}, impulse_{0.0};        // N, N s: else
     T accepted_{0.0}, rejected_{0.0}, evaluations_{0.0}, max_steps_{0.0};
 
 private:
     bool at_stop(int lane) const { return !(Lanes<T>::get(t_, lane) < Lanes<T>::get(stop_, lane)); }
     void begin_lane(int lane);
+    void start_memory();
+    void start_score();
+    void tell_controller(int lane);
     void set_mode(int lane, Mode mode);
+    double force_of(int lane) const;  // N, normal
     void set_running(int lane, bool running);
 
     std::array<Setup, lanes> setups_;

@@ -10,13 +10,17 @@
 namespace arm3r {
 namespace {
 
-Inside solution(const FixedMarch<double>& march) {
-    return hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f(0));
+template <std::size_t N>
+void solve_within(const FixedMarch<double, N>& march, Inside& inside) {
+    inside.take(hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f(0)));
 }
 
-Inside solution(const TaylorMarch<double>& march) { return march.solution(); }
+void solve_within(const TaylorMarch<double>& march, Inside& inside) { inside = march.solution(); }
 
-double place(const FixedMarch<double>&) { return 1; }
+template <std::size_t N>
+double place(const FixedMarch<double, N>&) {
+    return 1;
+}
 double place(const TaylorMarch<double>& march) { return march.theta(0); }
 
 FullState straight_on(const FullState& y) { return {y[3], y[4], y[5]}; }
@@ -28,8 +32,10 @@ public:
         : Recorder(params, options), march_(setup_) {}
 
     Run run() {
+        march_.use(options_.user_law);
         march_.put(0, setup_);
         march_.begin();
+        tell_rows();
         begin(march_.y(0), straight_on(march_.y(0)), march_.mode(0), march_.energy_at_start(0));
         while (is_going_on() && !march_.has_ended(0))
             if (poll()) step();
@@ -47,14 +53,24 @@ private:
         theta_ = place(march_);
         run_.t_end = march_.t(0);
         run_.steps = march_.steps(0);
-        if (!is_row_due(run_.t_end)) return;
-        know_solution();
-        log_until(run_.t_end);
+        if (is_row_due(run_.t_end)) {
+            know_solution();
+            log_until(run_.t_end);
+        }
+        tell_rows();
+    }
+
+    // What holds from the end of the step on: a new torque, a new phase.
+    void tell_rows() {
+        known_ = march_.known();
+        contact_ = march_.contact(0);
+        force_phase_ = march_.force_phase(0);
+        if (setup_.digital.sampling.on) setup_.plant.controller.torque = march_.torque(0);
     }
 
     // The solution within the last step; it is asked for only where rows or events lie in the step.
     void know_solution() {
-        if (!is_known_) inside_ = solution(march_);
+        if (!is_known_) solve_within(march_, inside_);
         is_known_ = true;
     }
 
@@ -72,6 +88,7 @@ private:
         switch (outcome) {
             case ARM3R_RUN_BUDGET: return steps_used_up(t);
             case ARM3R_RUN_EVENT_STORM: return event_storm(t);
+            case ARM3R_RUN_CONTROLLER: return march_.complaint();
             case ARM3R_RUN_ILL_CONDITIONED:
                 return "the mass matrix is no longer positive definite to rounding" + at_time(t);
             case ARM3R_RUN_STEP_COLLAPSE:
@@ -98,6 +115,7 @@ private:
 
 Run run_marching(std::span<const double> params, const RunOptions& options) {
     if (is<"solver.method", "taylor">(params)) return MarchingRun<TaylorMarch<double>>(params, options).run();
+    if (has_memory(make_setup(params).plant)) return MarchingRun<FixedMarch<double, full_size>>(params, options).run();
     return MarchingRun<FixedMarch<double>>(params, options).run();
 }
 

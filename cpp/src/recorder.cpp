@@ -22,27 +22,61 @@ Setup small_enough(Setup setup, bool rows) {
 
 Recorder::Recorder(std::span<const double> params, const RunOptions& options)
     : setup_(small_enough(make_setup(params), options.rows)), options_(options), rows_(setup_, run_, options.rows) {
+    run_.has_user_law = setup_.law().type == Controls::user;
     if (!options.rows) return;
+    run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
+    run_.torque_limit = plain(setup_.plant.arm.torque_limit);
     run_.events.reserve(static_cast<std::size_t>(most_events));
     run_.warnings = likely_slips(params);
+}
+
+Recorder::Recorder(const Recorder& other)
+    : setup_(other.setup_),
+      options_(other.options_),
+      mode_(other.mode_),
+      inside_(other.inside_),
+      known_(other.known_),
+      contact_(other.contact_),
+      force_phase_(other.force_phase_),
+      rows_(setup_, run_, other.options_.rows),
+      energy_at_start_(other.energy_at_start_) {
+    static_cast<Metrics&>(run_) = other.run_;
+    run_.message = other.run_.message;
+    run_.warnings = other.run_.warnings;
+    run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
+    run_.torque_limit = other.run_.torque_limit;
+    run_.energy_residual_max = other.run_.energy_residual_max;
+    run_.has_user_law = other.run_.has_user_law;
+    rows_.go_on_from(other.rows_);
+    if (!options_.rows) return;
+    run_.events.reserve(static_cast<std::size_t>(most_events));
+    run_.events.assign(other.run_.events.begin(), other.run_.events.end());
+    copy_rows(other.run_);
+}
+
+void Recorder::copy_rows(const Run& from) {
+    run_.rows = from.rows;
+    for (std::size_t i = 0; i < from.columns.size(); ++i)
+        std::copy_n(from.data.get() + i * from.capacity, from.rows, run_.data.get() + i * run_.capacity);
 }
 
 void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start) {
     mode_ = mode;
     energy_at_start_ = energy_at_start;
-    if (mode == Mode::contact) record(Event::make, 0.0, y);
+    if (is_touching(mode)) record(Event::make, 0.0, y);
     constexpr double a_moment = 1e-3;  // s
     FullState ahead;
-    for (std::size_t i = 0; i < state_size; ++i) ahead[i] = y[i] + a_moment * f[i];
-    inside_ = hermite(0.0, a_moment, y, f, ahead, f);
+    for (std::size_t i = 0; i < full_size; ++i) ahead[i] = y[i] + a_moment * f[i];
+    inside_.take(hermite(0.0, a_moment, y, f, ahead, f));
     if (options_.rows && setup_.stop > 0) rows_.log(scene(), 0.0, y, 0.0);  // whatever becomes of the first step
 }
 
 void Recorder::note_change(const Change& change, const FullState& y) {
     log_until(change.t);
-    inside_.c[0][8] += change.lost;  // for the rows of this step that are still to come
-    if (change.to == Mode::contact) record(Event::make, change.t, y);
-    if (change.from == Mode::contact) record(Event::brk, change.t, y);
+    inside_.c[0][7] += change.gained;  // for the rows of this step that are still to come
+    inside_.c[0][8] += change.lost;
+    if (change.makes()) record(Event::make, change.t, y);
+    if (change.breaks()) record(Event::brk, change.t, y);
     mode_ = change.to;
 }
 

@@ -13,7 +13,7 @@ inline constexpr double most_events = 4096;
 class Recorder {
 public:
     Recorder(std::span<const double> params, const RunOptions& options);
-    Recorder(const Recorder&) = delete;
+    Recorder(const Recorder& other);
     Recorder& operator=(const Recorder&) = delete;
 
 protected:
@@ -36,6 +36,7 @@ protected:
     bool is_going_on() const { return run_.outcome == ARM3R_RUN_OK; }
     // Whether to go on; the clock is read now and then only.
     bool poll();
+    void read_clock();
 
     // The last row, the verdict of the books, and what is left to say.
     Run finish(const FullState& y, double theta, const Flows& flows);
@@ -44,17 +45,22 @@ protected:
     std::string at_time(double t) const;  // " at t = 1.5 s"
 
     const Clock::time_point begun_ = Clock::now();
-    const Setup setup_;
+    Setup setup_;  // of its plant, a digital controller changes the torque
     const RunOptions options_;
     Run run_;  // its t_end is the present time
     Mode mode_ = Mode::free;
-    Inside inside_;  // the solution within the last step
+    Inside inside_;                         // the solution within the last step
+    Known<double> known_;                   // to a digital controller
+    double contact_ = 0, force_phase_ = 0;  // to a continuous one
 
 private:
-    Scene scene() const { return {setup_.plant, setup_.simscape, energy_at_start_, mode_, inside_}; }
+    Scene scene() const {
+        return {setup_.plant, setup_.simscape, energy_at_start_,           mode_,
+                inside_,      setup_.law(),    setup_.digital.sampling.on, known_,
+                contact_,     force_phase_};
+    }
+    void copy_rows(const Run& from);
     void record(Event::Type type, double t, const FullState& y);
-    void read_clock();
-
     RowLog rows_;
     double energy_at_start_ = 0;
     unsigned polls_ = 0;

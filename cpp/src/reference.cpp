@@ -15,7 +15,10 @@ namespace arm3r {
 namespace {
 
 std::string when_text(const Key& key) {
-    return key.when_key.empty() ? "" : "only where " + key.when_key + " is " + listed(key.when, " or ");
+    if (key.when_key.empty()) return "";
+    const std::vector<std::string> without = words_without(key);
+    return without.size() < key.when.size() ? "not where " + key.when_key + " is " + listed(without, " or ")
+                                            : "only where " + key.when_key + " is " + listed(key.when, " or ");
 }
 
 std::string unit_text(const Key& key) {
@@ -46,13 +49,15 @@ std::string value_schema(const Key& key) {
         for (const std::string& word : key.choices) words.push_back(json_string(word));
         return "{\"enum\": [" + listed(words, ", ") + "]}";
     }
-    const std::string size = std::to_string(key.size), number = number_schema(key);
+    const std::string number = number_schema(key), most = std::to_string(key.size);
+    const std::string fewest = key.form == Form::list ? std::to_string(key.fewest) : most;
     const std::string list =
-        "{\"type\": \"array\", \"items\": " + number + ", \"minItems\": " + size + ", \"maxItems\": " + size + "}";
+        "{\"type\": \"array\", \"items\": " + number + ", \"minItems\": " + fewest + ", \"maxItems\": " + most + "}";
     switch (key.form) {
         case Form::vector_or_word: return "{\"anyOf\": [" + list + ", {\"const\": " + json_string(key.word) + "}]}";
         case Form::number_or_vector:
         case Form::by_choice: return "{\"anyOf\": [" + number + ", " + list + "]}";
+        case Form::list: return list;
         default: return key.size == 1 ? number : list;
     }
 }
@@ -123,28 +128,47 @@ std::string range_text(const Key& key) {
     return out;
 }
 
+std::string numbers_as_text(const std::vector<double>& values) {
+    std::vector<std::string> given;
+    for (const double value : values)
+        if (!std::isnan(value)) given.push_back(shortest(value));
+    return given.size() == 1 ? given[0] : "[" + listed(given, ", ") + "]";
+}
+
+// The words of its choice for which a key has a default.
+std::vector<std::string> words_with_default(const Key& key) {
+    std::vector<std::string> words;
+    std::vector<double> params = param_defaults();
+    for (const std::string& word : key.when) {
+        params[key.decided_by->offset] = choice_index(*key.decided_by, word);
+        if (!std::isnan(default_of(key, params).front())) words.push_back(word);
+    }
+    return words;
+}
+
 std::string default_text(const Key& key) {
     if (key.kind == Kind::section) return "absent";
     const double first = key.fallback.front();
     if (std::isnan(first)) return key.required ? "required" : key.unset;
-    if (key.kind == Kind::choice) return key.choices[static_cast<std::size_t>(first)];
-    if (key.kind == Kind::flag) return first != 0 ? "true" : "false";
-    std::string out;
-    for (const double value : key.fallback)
-        if (!std::isnan(value)) out += (out.empty() ? "" : ", ") + shortest(value);
-    if (key.size > 1 && !std::isnan(key.fallback[1])) return "[" + out + "]";
-    if (key.form == Form::by_choice && key.required) return out + " for " + key.when.front() + ", else required";
+    const auto text = [&](const std::vector<double>& values) {
+        if (key.kind == Kind::choice) return key.choices[static_cast<std::size_t>(values[0])];
+        if (key.kind == Kind::flag) return std::string(values[0] != 0 ? "true" : "false");
+        return numbers_as_text(values);
+    };
+    std::string out = text(key.fallback);
+    if (key.form == Form::by_choice && key.required)
+        return out + " for " + listed(words_with_default(key), " and ") + ", else required";
+    for (const auto& [word, values] : key.fallback_for) out += "; " + text(values) + " for " + word;
     return key.unset.empty() ? out : out + " for explicit, else " + key.unset;
 }
 
 std::string numbers_text(const Key& key) {
     switch (key.form) {
         case Form::number_or_vector: return "1 or " + std::to_string(key.size);
-        case Form::by_choice: return "1 for " + key.when.front() + ", else " + std::to_string(key.size);
+        case Form::by_choice: return "1, or " + std::to_string(key.size) + " for " + key.word;
         default:
-            return key.kind == Kind::choice || key.kind == Kind::section || key.kind == Kind::flag
-                       ? ""
-                       : std::to_string(key.size);
+            return key.kind == Kind::choice || key.kind == Kind::section || key.kind == Kind::flag ? ""
+                                                                                                   : list_sizes(key);
     }
 }
 
@@ -176,7 +200,11 @@ const char* const markdown_tail = R"(
 A shape gives a link its mass, centre of mass and inertia. A slender link has no density, so `mass` must be given. The
 defaults of `arm.link1`'s `mass`, `com` and `inertia_axial` hold for shape explicit only; any other shape gives its own.
 
-`wall.contact.stiffness` has a default for law spring only; diagonal needs `stiffness: [kn, k1, k2]`.
+`wall.contact.stiffness` has a default for laws spring and kelvin_voigt only: that of `wall.contact.preset` where one is
+named. Law diagonal needs `stiffness: [kn, k1, k2]`, and hunt_crossley a number in N/m^p. Law kelvin_voigt takes either
+`damping` or `restitution`, hunt_crossley either `dissipation` or `restitution` with `impact_speed`.
+
+The four lists of a wall's table are equally long.
 
 At t = 0 the tip may stand in the wall, which is a make at t = 0, but not deeper than 0.1 m.
 
@@ -255,7 +283,8 @@ std::string columns_text() {
         line.resize(std::max<std::size_t>(line.size() + 1, 18), ' ');
         line += column.unit.empty() ? "-" : column.unit;
         line.resize(std::max<std::size_t>(line.size() + 1, 28), ' ');
-        out += line + std::string(column.doc) + (column.only_with_wall ? " (only with a wall)" : "") + "\n";
+        const std::string need(need_text(column.need));
+        out += line + std::string(column.doc) + (need.empty() ? "" : " (" + need + ")") + "\n";
     }
     return out;
 }
@@ -266,7 +295,8 @@ std::string columns_markdown() {
         table_head({"Column", "Unit", "Meaning"});
     for (const Column& column : column_table())
         out += row({"`" + std::string(column.name) + "`", std::string(column.unit),
-                    std::string(column.doc) + (column.only_with_wall ? ". Only with a wall." : "")});
+                    std::string(column.doc) +
+                        (column.need == Need::nothing ? "" : "; *" + std::string(need_text(column.need)) + "*")});
     return out;
 }
 

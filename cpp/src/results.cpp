@@ -68,6 +68,17 @@ auto each(const Range& range, Function function) {
     return out;
 }
 
+// All summary numbers under their names, as a batch's table has them; null where a run has no such number.
+std::string metrics_json(const Run& run) {
+    return "{" +
+           listed(each(summary_table(),
+                       [&](const SummaryNumber& number) {
+                           return json_string(std::string(number.name)) + ": " + json_number(number.of(run));
+                       }),
+                  ", ") +
+           "}";
+}
+
 // ---- for people
 
 std::string rounded(double value, int digits) {
@@ -97,7 +108,7 @@ double last(const Run& run, std::string_view name) {
 
 bool has_wall(const Run& run) {
     return std::any_of(run.columns.begin(), run.columns.end(),
-                       [](std::size_t i) { return column_table()[i].only_with_wall; });
+                       [](std::size_t i) { return column_table()[i].need == Need::wall; });
 }
 
 std::string event_lines(const Run& run) {
@@ -120,6 +131,28 @@ std::string force_line(const Run& run) {
     const std::array<double, 3> force = {last(run, "f_on_wall_x"), last(run, "f_on_wall_y"), last(run, "f_on_wall_z")};
     return line("force on wall", vector_text(force) + " N at " + rounded(run.t_end, 9) + " s, peak " +
                                      rounded(run.peak_force, 10) + " N");
+}
+
+// How a controller did, where there was one.
+std::string score_lines(const Run& run) {
+    std::string out;
+    if (!std::isnan(run.force_error_rms)) {
+        out += line("force error", rounded(run.force_error_rms, 4) + " N rms in contact, " +
+                                       (std::isnan(run.force_error_peak)
+                                            ? "its reference never reached"
+                                            : rounded(run.force_error_peak, 4) + " N at most once it was reached"));
+        out += line("settling", std::isnan(run.settling_time)
+                                    ? "not within 5 % at the end"
+                                    : "within 5 % from " + rounded(run.settling_time, 4) + " s after first contact on");
+    }
+    if (!std::isnan(run.path_error_rms))
+        out += line("path error",
+                    rounded(run.path_error_rms, 4) + " m rms, " + rounded(run.path_error_max, 4) + " m at most");
+    if (run.saturation_share > 0) out += line("saturation", rounded(100 * run.saturation_share, 3) + " % of the time");
+    if (!std::isnan(run.stiffness_estimate))
+        out += line("wall estimate", rounded(run.stiffness_estimate, 7) + " N/m, moving in with " +
+                                         rounded(run.wall_speed_estimate, 5) + " m/s");
+    return out;
 }
 
 // Lines of cells, each column as wide as its widest cell.
@@ -185,12 +218,17 @@ std::string summary_json(const Results& results) {
     field("checks", list(each(results.checks, [](const CheckResult& check) { return json(check); }), ",\n    "));
     field("contacts", json_number(run.contacts));
     field("contact_time", json_number(run.contact_time));
+    field("metrics", metrics_json(run));
+    field("torque_limit", json(run.torque_limit));
     field("peak_force", json_number(run.peak_force));
     field("final_force", json_number(run.final_force));
     field("impulse", json_number(run.impulse));
     field("energy_residual_max", json_number(run.energy_residual_max));
     field("ledger_residual", json_number(run.ledger_residual));
     field("steps", json(run.steps));
+    field("solver", "{\"method\": " + json_string(run.method) + ", \"stiff_steps\": " + json_number(run.stiff_steps) +
+                        ", \"choices\": " + json_string(run.choices) + "}");
+    if (run.has_user_law) field("deterministic", "false");
     field("elapsed_s", json_number(run.elapsed_s));
     field("version", json_string(arm3r_version()));
     field("hash", json_string(hash_text(run)));
@@ -208,9 +246,11 @@ std::string report(const Results& results) {
     out += line("simulated", rounded(run.t_end, 9) + " s in " + std::to_string(run.rows) + " rows");
     out += event_lines(run);
     out += force_line(run);
+    out += score_lines(run);
     out += line("energy residual", rounded(run.energy_residual_max, 3) + " J at most");
     out += line("steps", std::to_string(run.steps.accepted) + " accepted, " + std::to_string(run.steps.rejected) +
                              " rejected, " + std::to_string(run.steps.evaluations) + " evaluations");
+    if (!run.choices.empty()) out += line("method", run.choices);
     out += line("wall clock", elapsed_text(run.elapsed_s));
     for (const std::string& warning : run.warnings) out += line("warning", visible(warning, 400));
     return out + aligned(each(results.checks, check_cells));

@@ -23,7 +23,7 @@ void RowLog::log(const Scene& scene, double t, const FullState& y, double theta)
         cell += run_.capacity;
     }
     run_.rows += 1;
-    note_residual(run_.energy_residual_max, row.value.back());
+    note_residual(run_.energy_residual_max, row.value[residual_column]);
     if (row.link_behind_wall) note_link_behind_wall(t);
 }
 
@@ -38,7 +38,7 @@ void RowLog::log_together(const Scene& scene) {
         cells += run_.capacity;
     }
     run_.rows += together;
-    for (const double residual : rows.value[column_count - 1]) note_residual(run_.energy_residual_max, residual);
+    for (const double residual : rows.value[residual_column]) note_residual(run_.energy_residual_max, residual);
     if (rows.first_link_behind_wall < together) note_link_behind_wall(t[rows.first_link_behind_wall]);
 }
 

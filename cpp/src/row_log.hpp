@@ -27,6 +27,9 @@ public:
     // Of the last row, s; 0 where there is none.
     double last_time() const { return run_.rows ? run_.data[run_.rows - 1] : 0; }
 
+    // As far as another one of the same setup; the rows themselves are the run's.
+    void go_on_from(const RowLog& other) { link_behind_wall_since_ = other.link_behind_wall_since_; }
+
     // When a link other than at its tip was first behind the wall, s; < 0: never.
     double link_behind_wall_since() const { return link_behind_wall_since_; }
 

@@ -8,6 +8,7 @@ namespace arm3r {
 Run run_adaptively(std::span<const double> params, const RunOptions& options);
 Run run_marching(std::span<const double> params, const RunOptions& options);
 
+[[noreturn]] void refuse_missing_law();
 std::string steps_used_up(double t);
 std::string event_storm(double t);
 

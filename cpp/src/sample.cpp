@@ -2,6 +2,7 @@
 
 #include "arm3r/eigen_traits.hpp"
 #include "arm3r/pack.hpp"
+#include "compiled_laws.hpp"
 
 namespace arm3r {
 namespace {
@@ -43,9 +44,11 @@ ARM3R_INLINE Vec3<T> differentiated_tip(const Arm<double>& arm, const Inside& in
 }
 
 template <class T>
-ARM3R_INLINE ContactForce<T> force_of(const Plant<double>& plant, const Indentation<T>& in, Mode mode) {
-    if (mode != Mode::contact) return no_contact<T>();
-    return only_where(in.depth > T(0.0), contact_force(plant.wall, plant.contact, in));
+ARM3R_INLINE ContactForce<T> force_of(const Plant<double>& plant, const WallState<T>& wall, const Indentation<T>& in,
+                                      Mode mode) {
+    if (!is_touching(mode)) return no_contact<T>();
+    const Grip grip = mode == Mode::separated ? Grip::released : Grip::clipped;
+    return only_where(in.depth > T(0.0), contact_force(plant.wall, wall, plant.contact, in, grip));
 }
 
 // 1 where the straight piece from a to b passes through the plate, else 0.
@@ -70,14 +73,67 @@ ARM3R_INLINE T link_behind(const Plant<double>& plant, const WallState<T>& wall,
     return max(passes_through(plant.wall, wall, shoulder, elbow), T(link3 - touches));
 }
 
+// ---- what a controller knows and wants
+
+template <class T>
+ARM3R_INLINE Vec3<T> torque_with_memory(const Scene& scene, RightHandSide<double, T>& rhs, const T& t,
+                                        const WallState<T>& wall, const Pose<T>& p, const State<T, full_size>& y,
+                                        const Vec3<T>& f_on_tip) {
+    rhs.law_function = compiled_law<double, T>();
+    rhs.contact = T(scene.contact);
+    rhs.force_phase = T(scene.force_phase);
+    State<T, full_size> rates;
+    return rhs.torque(t, wall, p, Vec3<T>(y[0], y[1], y[2]), Vec3<T>(y[3], y[4], y[5]), f_on_tip, y, rates);
+}
+
+template <class T>
+ARM3R_INLINE Sensed<T> sensed_by(const Scene& scene, const RightHandSide<double, T>& rhs, const T& t,
+                                 const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& q, const Vec3<T>& qd,
+                                 const Vec3<T>& f_on_tip, const State<T, full_size>& y) {
+    Sensed<T> sensed = rhs.sense(t, wall, p, q, qd, f_on_tip, y);
+    if (!scene.is_sampled) return sensed;
+    sensed.f_on_tip = lifted<T>(scene.known.f_on_tip);
+    sensed.force_phase = T(scene.known.force_phase);
+    return sensed;
+}
+
+template <class T, class Put, class PutVector, class PutJoints>
+ARM3R_INLINE void put_law(const Scene& scene, const Sensed<T>& sensed, const ContactForce<T>& force,
+                          const State<T, full_size>& y, const Put& put, const PutVector& put_vector,
+                          const PutJoints& put_joints) {
+    static_cast<void>(y);
+    const Controller<double>& law = scene.law;
+    put(force.normal);
+    put(dot(sensed.n, sensed.f_on_tip));
+    put(wants_force(law.type) ? force_wanted_at(law.setpoint, sensed.t) : T(0.0));
+    put(sensed.force_phase);
+    const Vec3<T> wanted = wants_path(law.type) ? wanted_at(law.setpoint, sensed.t).position : none<T>();
+    put_vector(law.setpoint.in_joints ? none<T>() : wanted);
+    put_joints(law.setpoint.in_joints ? wanted : none<T>());
+}
+
+template <class T, class Put, class PutVector, class PutJoints>
+ARM3R_INLINE void put_observer(const Scene& scene, const RightHandSide<double, T>& rhs, const Pose<T>& p,
+                               const Vec3<T>& qd, const State<T, full_size>& y, const Put& put,
+                               const PutVector& put_vector, const PutJoints& put_joints) {
+    const bool continuous = !scene.is_sampled && scene.plant.observer.on;
+    const Vec3<T> r = continuous ? rhs.residual_at(p, qd, y) : lifted<T>(scene.known.residual);
+    put_joints(r);
+    const Arm<double>& model = scene.law.model;
+    const auto regular = distance_to_singular(model, p) > T(1e-3);
+    const Vec3<T> f = force_from(model, p, r);
+    put_vector({select(regular, f[0], T(0.0)), select(regular, f[1], T(0.0)), select(regular, f[2], T(0.0))});
+    put(T(scene.known.collision));
+}
+
 template <class T>
 struct Sampled {
-    std::array<T, column_count> value;
+    std::array<T, column_count> value{};
     T link_behind_wall;
 };
 
 template <class T>
-ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, state_size>& y, const T& theta,
+ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, full_size>& y, const T& theta,
                               Sampled<T>& row) {
     const Plant<double>& plant = scene.plant;
     const Arm<double>& arm = plant.arm;
@@ -93,12 +149,19 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, sta
     if (plant.has_wall) {
         wall = wall_at(plant.wall, t);
         in = tip_indentation(plant, wall, p, qd);
-        force = force_of(plant, in, scene.mode);
-        if (scene.mode == Mode::contact) touches = select(in.depth > o, T(1.0), o);
+        force = force_of(plant, wall, in, scene.mode);
+        if (is_touching(scene.mode)) touches = select(in.depth > o, T(1.0), o);
         row.link_behind_wall = link_behind(plant, wall, p, touches);
     }
-    const Vec3<T> felt = plant.acts_on_arm ? force.on_tip : Vec3<T>(o, o, o);
-    const Vec3<T> tau = limited(arm, control(plant.controller, q, p));
+    Vec3<T> felt = plant.acts_on_arm ? force.on_tip : Vec3<T>(o, o, o), at_tip = force.on_tip;
+    if (plant.load.on) {
+        const Vec3<T> load = load_at(plant.load, t);
+        felt = plus(felt, load);
+        at_tip = plus(at_tip, load);
+    }
+    RightHandSide<double, T> rhs(plant);
+    const Vec3<T> tau = has_memory(plant) ? torque_with_memory(scene, rhs, t, wall, p, y, at_tip)
+                                          : limited(arm, control(plant.controller, q, p), plant.controller.saturation);
     const TipSensor<T> sensor = tip_sensor(arm, q, qd);
     const T kinetic = kinetic_energy(arm, p, qd), potential = potential_energy(arm, p);
     const T stored = plant.acts_on_arm ? force.stored : o;
@@ -130,6 +193,18 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, sta
     put(stored);
     for (std::size_t i = motion_size; i < state_size; ++i) put(y[i]);
     put(energy_residual(y, T(kinetic + potential + stored), scene.energy_at_start));
+    if (scene.law.type == Controls::none && !plant.observer.on) return;
+    const Sensed<T> sensed = sensed_by(scene, rhs, t, wall, p, q, qd, at_tip, y);
+    put_law(scene, sensed, force, y, put, put_vector, put_joints);
+    put_observer(scene, rhs, p, qd, y, put, put_vector, put_joints);
+    const auto put_constant = [&](double value) ARM3R_INLINE_LAMBDA { put(T(value)); };
+    put_constant(scene.known.stiffness);
+    put_constant(scene.known.wall_speed);
+    put_constant(scene.known.identifiable);
+    put(scene.is_sampled ? T(scene.known.memory[0]) : y[law_at]);
+    T saturated = o;
+    for (int i = 0; i < 3; ++i) saturated = select(abs(tau[i]) >= T(arm.torque_limit[i]), T(1.0), saturated);
+    put(saturated);
 }
 
 }  // namespace
@@ -137,8 +212,10 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, sta
 Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode mode) {
     const Pose<double> p = pose(angles(y));
     double stored = 0;
-    if (plant.acts_on_arm && mode == Mode::contact)
-        stored = force_of(plant, tip_indentation(plant, wall_at(plant.wall, t), p, rates(y)), mode).stored;
+    if (plant.acts_on_arm && is_touching(mode)) {
+        const WallState<double> wall = wall_at(plant.wall, t);
+        stored = force_of(plant, wall, tip_indentation(plant, wall, p, rates(y)), mode).stored;
+    }
     return {kinetic_energy(plant.arm, p, rates(y)), potential_energy(plant.arm, p), stored};
 }
 
@@ -152,8 +229,8 @@ ARM3R_WIDEST void sample_together(const Scene& scene, const double* t, Rows& row
     using Eight = Pack<together>;
     const Eight at = Eight::load(t);
     const Eight theta = (at - scene.inside.t0) / scene.inside.h;
-    State<Eight, state_size> y;
-    for (std::size_t i = 0; i < state_size; ++i) y[i] = scene.inside.component(i, theta);
+    State<Eight, full_size> y{};
+    for (std::size_t i = 0; i < scene.inside.size; ++i) y[i] = scene.inside.component(i, theta);
     Sampled<Eight> sampled;
     sample_into(scene, at, y, theta, sampled);
     for (std::size_t i = 0; i < column_count; ++i) sampled.value[i].store(rows.value[i]);

@@ -6,25 +6,39 @@
 
 #include "arm3r/plant.hpp"
 #include "arm3r/polynomial.hpp"
+#include "control_loop.hpp"
 
 namespace arm3r {
 
-enum class Mode { free, contact, embedded };  // embedded: behind the plate without having come through its face (4.8)
+enum class Mode {  // (4.8)
+    free,
+    contact,
+    separated,  // inside a wall that would have to pull to follow the tip
+    embedded,   // behind the plate without having come through its face
+};
+
+// What the column `contact` tells, and what begins and ends with events.
+inline bool is_touching(Mode mode) { return mode == Mode::contact || mode == Mode::separated; }
 
 inline constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 
-using FullState = State<double, state_size>;
+// With room for a controller's memory, whether there is one or not.
+using FullState = State<double, full_size>;
 
 // The solution within a step, for any method: an interpolant, or a power series in the seconds since its begin.
 struct Inside {
     double t0 = 0, h = 0;
-    int order = -1;  // of the series; < 0: an interpolant
+    int order = -1;                 // of the series; < 0: an interpolant
+    std::size_t size = state_size;  // components that there are
     std::array<FullState, most_degree + 1> c;
 
-    Inside() = default;
-    Inside(double t0, double h, int order) : t0(t0), h(h), order(order) {}
-    Inside(const Interpolant<double, state_size>& from) : t0(from.t0), h(from.h) {
-        std::copy(from.c.begin(), from.c.end(), c.begin());
+    template <std::size_t N>
+    void take(const Interpolant<double, N>& from) {
+        t0 = from.t0;
+        h = from.h;
+        order = -1;
+        size = N;
+        for (std::size_t i = 0; i < from.c.size(); ++i) std::copy(from.c[i].begin(), from.c[i].end(), c[i].begin());
     }
 
     // One component at theta, the share of the step: at one instant or at several side by side.
@@ -34,8 +48,8 @@ struct Inside {
     }
 
     FullState operator()(double theta) const {
-        FullState y;
-        for (std::size_t i = 0; i < state_size; ++i) y[i] = component(i, theta);
+        FullState y{};
+        for (std::size_t i = 0; i < size; ++i) y[i] = component(i, theta);
         return y;
     }
 
@@ -63,12 +77,12 @@ Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode
 
 // What the balance leaves over (4.9).
 template <class T>
-ARM3R_INLINE T energy_residual(const State<T, state_size>& y, const T& energy, double energy_at_start) {
+ARM3R_INLINE T energy_residual(const State<T, full_size>& y, const T& energy, double energy_at_start) {
     return (energy - energy_at_start) - (y[6] + y[7] - y[8]);
 }
 
 // The columns of columns.cpp in their order, wall columns included; joint vectors in the convention of the faces.
-constexpr std::size_t column_count = 46;
+constexpr std::size_t column_count = 68, residual_column = 45;
 
 struct Row {
     std::array<double, column_count> value;
@@ -82,6 +96,10 @@ struct Scene {
     double energy_at_start;
     Mode mode;
     const Inside& inside;  // the tip position is differentiated along it (5.4)
+    const Controller<double>& law;
+    bool is_sampled;              // the law is a digital controller's
+    const Known<double>& known;   // to it
+    double contact, force_phase;  // to a continuous one
 };
 
 // `theta` is where t lies within the step.

@@ -26,7 +26,7 @@ std::string with_unit(std::string value, const Key& key) { return key.unit.empty
 // How a key is written, for messages: "a number (m)", "a list of 3 numbers (N m)".
 std::string expected(const Key& key, std::span<const double> params) {
     const std::string unit = key.unit.empty() ? "" : " (" + key.unit + ")";
-    const std::string list = "a list of " + std::to_string(key.size) + " numbers" + unit;
+    const std::string list = "a list of " + list_sizes(key) + " numbers" + unit;
     switch (key.kind) {
         case Kind::flag: return "true or false";
         case Kind::choice: return "one of " + listed(key.choices);
@@ -37,7 +37,7 @@ std::string expected(const Key& key, std::span<const double> params) {
     switch (key.form) {
         case Form::number_or_vector: return "a number" + unit + " or " + list;
         case Form::vector_or_word: return list + " or " + key.word;
-        case Form::by_choice: return choice_of(params, key.when_key) == key.when.front() ? "a number" + unit : list;
+        case Form::by_choice: return takes_list(key, params) ? list : "a number" + unit;
         default: return key.size == 1 ? "a number" + unit : list;
     }
 }
@@ -205,6 +205,7 @@ private:
             const std::string path = join(section, node.key);
             const Key* key = find_key(path);
             if (key && key->kind != Kind::section) read_value(*key, node);
+            else if (key && !key_exists(*key, result_.params)) not_here(*key, node);
             else if (node.key.find_first_of(".[") == std::string::npos && is_section(path)) read_subsection(node, path);
             else if (path != "format" && path != "name" && path != "checks") unknown_key(map, node, section);
         }
@@ -246,7 +247,9 @@ private:
             std::fill_n(at(key), key.size, std::numeric_limits<double>::infinity());
             return set_origin(key, node);
         }
-        if (is_list_here(key) && node.type == Node::list && node.children.size() == key.size)
+        const std::size_t fewest = key.form == Form::list ? key.fewest : key.size;
+        if (is_list_here(key) && node.type == Node::list && node.children.size() >= fewest &&
+            node.children.size() <= key.size)
             return read_list(key, node);
         wrong_shape(key, node);
     }
@@ -258,12 +261,17 @@ private:
                missing->when.end())
             missing = find_key(missing->when_key);
         if (unknown_choices_.contains(missing->when_key)) return;
-        const std::string choice = last_name(missing->when_key);
+        const std::string choice = last_name(missing->when_key), name = "`" + last_name(key.path) + "`";
+        const std::string& here = choice_of(result_.params, missing->when_key);
+        const std::string words = listed(missing->when, " or ");
+        const bool is_of_most = words_without(*missing).size() < missing->when.size();
         problem(node.key_mark,
                 {"scenario.other_choice", key.path,
-                 "`" + last_name(key.path) + "` belongs to " + choice + " " + listed(missing->when, " or ") +
-                     "; here the " + choice + " is " + choice_of(result_.params, missing->when_key),
-                 "", "", "take it out, or set " + missing->when_key + " to " + listed(missing->when, " or ")});
+                 is_of_most ? name + " does not go with " + choice + " " + here
+                            : name + " belongs to " + choice + " " + words + "; here the " + choice + " is " + here,
+                 "", "",
+                 is_of_most ? "take it out, or choose another " + missing->when_key
+                            : "take it out, or set " + missing->when_key + " to " + words});
     }
 
     void wrong_shape(const Key& key, const Node& node) {
@@ -281,13 +289,13 @@ private:
 
     bool is_number_here(const Key& key, const Node& node) const {
         if (node.type != Node::scalar) return false;
-        if (key.form == Form::by_choice) return choice_of(result_.params, key.when_key) == key.when.front();
-        return key.form == Form::number_or_vector || key.size == 1;
+        if (key.form == Form::by_choice) return !takes_list(key, result_.params);
+        return key.form == Form::number_or_vector || (key.size == 1 && key.form != Form::list);
     }
 
     bool is_list_here(const Key& key) const {
-        if (key.form == Form::by_choice) return choice_of(result_.params, key.when_key) != key.when.front();
-        return key.size > 1;
+        if (key.form == Form::by_choice) return takes_list(key, result_.params);
+        return key.size > 1 || key.form == Form::list;
     }
 
     static bool is_infinity(const Node& node) {
@@ -318,7 +326,8 @@ private:
     }
 
     void read_list(const Key& key, const Node& node) {
-        for (std::size_t i = 0; i < key.size; ++i)
+        if (key.form == Form::list) std::fill_n(at(key), key.size, unset);
+        for (std::size_t i = 0; i < node.children.size(); ++i)
             if (node.children[i].type != Node::hole)
                 read_number_into(key, node.children[i], item(key.path, i), at(key)[static_cast<long>(i)]);
         set_origin(key, node);
@@ -432,9 +441,10 @@ private:
             node.note = key.unset;
         } else if (key.form == Form::vector_or_word && std::isinf(*at(key))) {
             node.text = key.word;
-        } else if (key.size > 1 && !std::isnan(at(key)[1])) {
+        } else if (key.form == Form::list || (key.size > 1 && !std::isnan(at(key)[1]))) {
             node.type = Node::list;
-            for (std::size_t i = 0; i < key.size; ++i) node.children.push_back(number(i));
+            for (std::size_t i = 0; i < key.size && !std::isnan(at(key)[static_cast<long>(i)]); ++i)
+                node.children.push_back(number(i));
         }
         return node;
     }

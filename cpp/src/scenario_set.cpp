@@ -57,6 +57,9 @@ bool takes_out(const Document& document, const std::string& value, std::string_v
 // A list of which only single items are set: the others keep their defaults.
 std::vector<Node> open_items(const std::string& path, std::size_t index) {
     const Key* key = find_key(path);
+    if (key && key->form == Form::list)
+        refuse(item(path, index), "path.list", "no list stands at `" + path + "`",
+               "give the whole list: " + path + " = [...]");
     if (key && (key->form == Form::number_or_vector || key->form == Form::by_choice))
         refuse(item(path, index), "path.list", "`" + path + "` can be a single number, and no list stands there",
                "give the whole list: " + path + " = [x, y, z]");
@@ -129,7 +132,7 @@ void remove_known(Node& root, std::string_view path, const std::vector<Step>& st
 bool fits(const Key& key, const std::string& word, const Node& root) {
     if (std::find(key.when.begin(), key.when.end(), word) == key.when.end()) return false;
     const Node* node = find(root, parse_path(key.path));
-    return key.form != Form::by_choice || !node || (node->type != Node::list) == (word == key.when.front());
+    return key.form != Form::by_choice || !node || (node->type != Node::list) == (word != key.word);
 }
 
 // Takes away what does not exist under a choice's new word; "" is none of its words.

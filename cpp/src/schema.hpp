@@ -3,6 +3,7 @@
 // indices, JSON Schema and the reference page are all read from it. It knows neither YAML nor files.
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,8 +31,9 @@ enum class Form {
     fixed,             // size 1: a number; size > 1: a list of exactly `size`
     number_or_vector,  // one number, stored as (x, NaN, NaN), or a list of 3
     vector_or_word,    // a list of `size`, or `word`, which stores +inf in every place
-    by_choice,         // stored like number_or_vector; the choice at when_key decides: its first word in `when` takes
-                       // one number, any other a list of 3
+    by_choice,         // stored like number_or_vector; the choice at when_key decides: `word` takes a list of 3, any
+                       // other one number
+    list,              // a list of `fewest` to `size`, with NaN after its end
 };
 
 struct Bounds {
@@ -51,7 +53,9 @@ struct Key {
     std::string unit;  // "m", "N m s/rad"; "" for none
     std::string doc;   // one sentence
     std::vector<std::string> choices = {};
-    std::string word = {};               // for vector_or_word: "infinite"
+    std::map<std::string, std::vector<double>> fallback_for = {};  // by the choice at when_key, where it differs
+    std::string word = {};               // for vector_or_word: "infinite"; for by_choice: that which takes a list
+    std::size_t fewest = 0;              // for list
     std::string when_key = {};           // the key exists only where the choice at this path ...
     std::vector<std::string> when = {};  // ... is one of these words
     bool required = false;               // must be given (where it exists at all)
@@ -72,7 +76,8 @@ std::size_t param_index(std::string_view name);  // throws Error ARM3R_E_INDEX, 
 std::vector<double> param_defaults();
 
 // The default of one key, given the choices that stand in `params` (keys are in such an order that a choice precedes
-// what depends on it). Two defaults depend on a choice: initial.q on arm.convention, link1 on its shape.
+// what depends on it). Beside fallback_for three defaults depend on choices: initial.q on arm.convention, link1 on its
+// shape, the wall's stiffness on its law and preset.
 std::vector<double> default_of(const Key& key, std::span<const double> params);
 
 double param(std::span<const double> params, std::string_view path, std::size_t item = 0);
@@ -83,6 +88,14 @@ const std::string& choice_of(std::span<const double> params, const Key& key);
 const std::string& choice_of(std::span<const double> params, std::string_view path);
 double choice_index(const Key& key, std::string_view word);
 bool key_exists(const Key& key, std::span<const double> params);
+
+// How many numbers its list may have: "3", or "2 to 16" for a list of any length; and whether the choices made in
+// `params` let a by_choice key take a list.
+std::string list_sizes(const Key& key);
+bool takes_list(const Key& key, std::span<const double> params);
+
+// The words of the choice that decides on a key for which there is no such key.
+std::vector<std::string> words_without(const Key& key);
 
 // Every rule that one key alone can break (range, shape, word), and those between keys. Empty when all is well.
 std::vector<Problem> validate(std::span<const double> params);

@@ -5,7 +5,10 @@
 #include <limits>
 #include <numbers>
 
+#include "arm3r/restitution.hpp"
 #include "at.hpp"
+#include "setup_controller.hpp"
+#include "step_limits.hpp"
 
 namespace arm3r {
 namespace {
@@ -75,46 +78,76 @@ void finish(Arm<double>& arm) {
         std::isfinite(arm.torque_limit[0]) || std::isfinite(arm.torque_limit[1]) || std::isfinite(arm.torque_limit[2]);
 }
 
-bool is_simscape(std::span<const double> params) { return is<"arm.convention", "simscape">(params); }
-
-Vec3<double> to_slide(std::span<const double> params, const Vec3<double>& joint_vector) {
-    return is_simscape(params) ? flipped(joint_vector) : joint_vector;
-}
-
-Controls controls_of(std::span<const double> params) {
-    if (is<"controller.type", "constant">(params)) return Controls::constant;
-    if (is<"controller.type", "gravity_compensation">(params)) return Controls::gravity_compensation;
-    return Controls::none;
-}
-
-Controller<double> make_controller(std::span<const double> params, const Arm<double>& plant_arm) {
-    Controller<double> controller{};
-    controller.type = controls_of(params);
-    controller.algorithm =
-        is<"controller.algorithm", "closed_form">(params) ? Algorithm::closed_form : Algorithm::recursion;
-    controller.model = model_differs(params) ? make_arm(with_model(params)) : plant_arm;
-    controller.torque = {0, 0, 0};
-    if (controller.type == Controls::constant)
-        controller.torque = to_slide(params, vector_at<"controller.torque">(params));
-    if (controller.type == Controls::gravity_compensation) {
-        controller.model.gravity = vector_along<"controller.gravity">(params, {0, 0, -1});
-        finish(controller.model);
-    }
-    return controller;
+// The controller's copy, with the gravity that it compensates.
+void set_model(std::span<const double> params, const Arm<double>& plant_arm, Arm<double>& model) {
+    model = model_differs(params) ? make_arm(with_model(params)) : plant_arm;
+    if (!has_model(controls_of(params))) return;
+    model.gravity = vector_along<"controller.gravity">(params, {0, 0, -1});
+    finish(model);
 }
 
 Motion motion_of(std::span<const double> params) {
     if (is<"wall.motion.type", "constant">(params)) return Motion::constant;
     if (is<"wall.motion.type", "sinusoid">(params)) return Motion::sinusoid;
+    if (is<"wall.motion.type", "ramp">(params)) return Motion::ramp;
+    if (is<"wall.motion.type", "table">(params)) return Motion::table;
     return Motion::fixed;
+}
+
+Rotation rotation_of(std::span<const double> params) {
+    if (is<"wall.rotation.type", "constant">(params)) return Rotation::constant;
+    if (is<"wall.rotation.type", "sinusoid">(params)) return Rotation::sinusoid;
+    return Rotation::none;
+}
+
+Vec3<double> normalised(const Vec3<double>& v) {
+    const double length = std::sqrt(dot(v, v));
+    return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+template <Name section>
+Swing<double> swing_of(std::span<const double> params) {
+    return {at<section + ".amplitude">(params), at<section + ".frequency">(params), at<section + ".phase">(params)};
+}
+
+Table<double> table_of(std::span<const double> params) {
+    Table<double> table;
+    for (int i = 0; i < most_knots; ++i) {
+        const auto item = static_cast<std::size_t>(i);
+        table.t[i] = at<"wall.motion.t">(params, item);
+        table.s[i] = at<"wall.motion.s">(params, item);
+        table.v[i] = at<"wall.motion.v">(params, item);
+        table.a[i] = at<"wall.motion.a">(params, item);
+        if (!std::isnan(table.t[i])) table.knots = i + 1;
+    }
+    return table;
+}
+
+void set_motion(Wall<double>& wall, std::span<const double> params) {
+    wall.motion = motion_of(params);
+    wall.velocity = {0, 0, 0};
+    if (wall.motion == Motion::constant) wall.velocity = vector_along<"wall.motion.velocity">(params, wall.n);
+    const Vec3<double> direction = vector_at<"wall.motion.direction">(params);
+    wall.direction = std::isnan(direction[0]) ? wall.n : normalised(direction);
+    if (wall.motion == Motion::sinusoid) wall.swing = swing_of<"wall.motion">(params);
+    if (wall.motion == Motion::ramp)
+        wall.ramp = {at<"wall.motion.distance">(params), at<"wall.motion.start">(params),
+                     at<"wall.motion.duration">(params)};
+    if (wall.motion == Motion::table) wall.table = std::make_shared<Table<double>>(table_of(params));
+}
+
+void set_rotation(Wall<double>& wall, std::span<const double> params) {
+    wall.rotation = rotation_of(params);
+    wall.axis = {0, 0, 0};
+    if (wall.rotation != Rotation::none) wall.axis = normalised(vector_at<"wall.rotation.axis">(params));
+    if (wall.rotation == Rotation::constant) wall.turn_rate = at<"wall.rotation.rate">(params);
+    if (wall.rotation == Rotation::sinusoid) wall.turn_swing = swing_of<"wall.rotation">(params);
 }
 
 Wall<double> make_wall(std::span<const double> params) {
     Wall<double> wall{};
     wall.point = vector_at<"wall.point">(params);
-    const Vec3<double> normal = vector_at<"wall.normal">(params);
-    const double length = std::sqrt(dot(normal, normal));
-    wall.n = {normal[0] / length, normal[1] / length, normal[2] / length};
+    wall.n = normalised(vector_at<"wall.normal">(params));
     const Vec3<double> sideways = cross(wall.n, Vec3<double>(0, 0, 1));
     const double level = std::sqrt(dot(sideways, sideways));
     if (level < 1e-12) wall.e1 = {0, 1, 0};  // (4.1)
@@ -124,26 +157,54 @@ Wall<double> make_wall(std::span<const double> params) {
     wall.half2 = at<"wall.size">(params, 1) / 2;
     wall.has_outline = std::isfinite(wall.half1) || std::isfinite(wall.half2);
     wall.face_offset = at<"wall.face_offset">(params);
-    wall.motion = motion_of(params);
-    wall.velocity = {0, 0, 0};
-    if (wall.motion == Motion::constant) wall.velocity = vector_along<"wall.motion.velocity">(params, wall.n);
-    if (wall.motion == Motion::sinusoid) {
-        wall.amplitude = at<"wall.motion.amplitude">(params);
-        wall.frequency = at<"wall.motion.frequency">(params);
-        wall.phase = at<"wall.motion.phase">(params);
-    }
+    set_motion(wall, params);
+    set_rotation(wall, params);
     return wall;
 }
 
-Contact<double> make_contact(std::span<const double> params) {
+Law law_of(std::span<const double> params) {
+    if (is<"wall.contact.law", "diagonal">(params)) return Law::diagonal;
+    if (is<"wall.contact.law", "kelvin_voigt">(params)) return Law::kelvin_voigt;
+    if (is<"wall.contact.law", "hunt_crossley">(params)) return Law::hunt_crossley;
+    return Law::spring;
+}
+
+// The mass that the tip shows to the wall at t = 0, kg.
+double mass_at_start(const Setup& setup) { return effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n); }
+
+double damping_of(std::span<const double> params, double stiffness, double mass) {
+    const double restitution = at<"wall.contact.restitution">(params);
+    if (std::isnan(restitution)) return at<"wall.contact.damping">(params);
+    return 2 * damping_ratio_for(restitution) * std::sqrt(stiffness * mass);
+}
+
+double dissipation_of(std::span<const double> params) {
+    const double restitution = at<"wall.contact.restitution">(params);
+    if (std::isnan(restitution)) return at<"wall.contact.dissipation">(params);
+    return hunt_crossley_number_for(restitution) / at<"wall.contact.impact_speed">(params);
+}
+
+Contact<double> make_contact(std::span<const double> params, double mass) {
     const Vec3<double> k = vector_at<"wall.contact.stiffness">(params);
-    if (is<"wall.contact.law", "diagonal">(params)) return {Law::diagonal, k};
-    return {Law::spring, {k[0], 0, 0}};
+    Contact<double> contact{};
+    contact.law = law_of(params);
+    contact.stiffness = contact.law == Law::diagonal ? k : Vec3<double>(k[0], 0, 0);
+    if (contact.law == Law::kelvin_voigt) contact.damping = damping_of(params, k[0], mass);
+    if (contact.law == Law::hunt_crossley) {
+        contact.exponent = at<"wall.contact.exponent">(params);
+        contact.dissipation = dissipation_of(params);
+    }
+    contact.friction = at<"wall.contact.friction.coefficient">(params);
+    contact.slip_velocity = at<"wall.contact.friction.slip_velocity">(params);
+    contact.has_friction = contact.friction > 0;
+    return contact;
 }
 
 Solver::Method method_of(std::span<const double> params) {
     if (is<"solver.method", "rk4">(params)) return Solver::rk4;
     if (is<"solver.method", "taylor">(params)) return Solver::taylor;
+    if (is<"solver.method", "rodas4">(params)) return Solver::rodas4;
+    if (is<"solver.method", "auto">(params)) return Solver::automatic;
     return Solver::dopri5;
 }
 
@@ -197,20 +258,64 @@ Arm<double> make_arm(std::span<const double> params) {
     return arm;
 }
 
+// What stands between controller and arm. Of a digital controller the plant sees but a torque that changes now and then.
+static void put_between(std::span<const double> params, Setup& setup) {
+    Plant<double>& plant = setup.plant;
+    Digital<double>& digital = setup.digital;
+    if (at<"sensors">(params) != 0) plant.sensors = digital.sensors = make_sensors(params);
+    if (at<"observer">(params) != 0) digital.observer = make_observer(params);
+    if (at<"sampling">(params) != 0 || plant.controller.type == Controls::user) {  // which computes sample by sample
+        digital.sampling = make_sampling(params);
+        digital.controller = plant.controller;
+        plant.controller = Controller<double>{};
+        plant.controller.type = Controls::constant;
+        plant.controller.torque = {0, 0, 0};
+        plant.controller.model = plant.arm;
+    } else {
+        plant.observer = digital.observer;
+    }
+    plant.needs_azimuth = setup.law().type > Controls::gravity_compensation || setup.digital.sampling.on ||
+                          setup.observes() || setup.estimation.on || plant.load.on;
+}
+
+double next_knot(const Setup& setup, double t) {
+    const Plant<double>& plant = setup.plant;
+    double next = plant.has_wall ? next_knot(plant.wall, t) : infinite;
+    const auto consider = [&](double knot) {
+        if (knot > t) next = std::min(next, knot);
+    };
+    if (plant.load.on) {
+        const TipLoad<double>& load = plant.load;
+        for (const double knot : {load.start, load.start + load.rise, load.start + load.duration}) consider(knot);
+    }
+    if (!has_law(plant.controller.type)) return next;
+    const Setpoint<double>& setpoint = plant.controller.setpoint;
+    if (setpoint.path > Path::point) consider(setpoint.start), consider(setpoint.start + setpoint.duration);
+    for (int i = 0; i < setpoint.knots; ++i) consider((*setpoint.table)[0].t[std::size_t(i)]);
+    if (setpoint.pressing == Pressing::step || setpoint.pressing == Pressing::ramp)
+        consider(setpoint.force_start), consider(setpoint.force_start + setpoint.force_duration);
+    return next;
+}
+
 Setup make_setup(std::span<const double> params) {
     Setup setup;
     setup.simscape = is_simscape(params);
     setup.plant.arm = make_arm(params);
-    setup.plant.controller = make_controller(params, setup.plant.arm);
+    set_controller(params, setup.plant.controller);
+    set_model(params, setup.plant.arm, setup.plant.controller.model);
     setup.plant.has_wall = at<"wall">(params) != 0;
     setup.plant.wall = make_wall(params);
-    setup.plant.contact = make_contact(params);
-    setup.plant.acts_on_arm = setup.plant.has_wall && at<"wall.acts_on_arm">(params) != 0;
     setup.q = to_slide(params, vector_at<"initial.q">(params));
+    setup.plant.contact = make_contact(params, mass_at_start(setup));
+    setup.plant.acts_on_arm = setup.plant.has_wall && at<"wall.acts_on_arm">(params) != 0;
     setup.qd = to_slide(params, vector_at<"initial.qd">(params));
+    if (has_law(setup.plant.controller.type)) set_setpoint(params, setup, setup.plant.controller.setpoint);
     setup.solver = make_solver(params);
     setup.stop = at<"time.stop">(params);
     setup.log_every = at<"time.log_every">(params);
+    if (at<"push">(params) != 0) setup.plant.load = make_load(params);
+    if (at<"estimator">(params) != 0) setup.estimation = make_estimation(params);
+    put_between(params, setup);
     return setup;
 }
 

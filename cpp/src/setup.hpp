@@ -11,20 +11,31 @@
 namespace arm3r {
 
 struct Solver {
-    enum Method { dopri5, rk4, taylor } method;
-    double rtol, atol;      // of dopri5
+    enum Method { dopri5, rk4, taylor, rodas4, automatic } method;
+    double rtol, atol;      // of the adaptive methods but taylor
     double tol;             // of taylor
     double max_step, step;  // s; max_step may be inf
     double max_steps;
+
+    bool marches() const { return method == rk4 || method == taylor; }  // in lanes too (march.hpp)
 };
 
 struct Setup {
     bool simscape;  // how q, qd and torques are written at the faces
     Plant<double> plant;
+    Digital<double> digital;  // on: the plant's own controller is the torque that this one holds
+    Estimation<double> estimation;
     Vec3<double> q, qd;  // at t = 0
     Solver solver;
     double stop, log_every;  // s
+
+    const Controller<double>& law() const { return digital.sampling.on ? digital.controller : plant.controller; }
+    bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }
+    bool is_scored() const { return law().type != Controls::none; }
 };
+
+// The next instant after t, s, at which a formula of time alone changes: of the wall's course, the setpoint, a load.
+double next_knot(const Setup& setup, double t);
 
 // The choices in `params` must be in order; what their numbers must keep to is said by validate() (schema.hpp), of
 // which `check_setup` is the last part.

@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "at.hpp"
 #include "numbers.hpp"
 #include "setup.hpp"
+#include "setup_rules.hpp"
 
 namespace arm3r {
 namespace {
@@ -62,35 +64,44 @@ void check_start(const Setup& setup, Findings& findings) {
         });
 }
 
-void check_normal(std::span<const double> params, Findings& findings) {
-    const Vec3<double> normal = vector_at<"wall.normal">(params);
-    if (sqrt(dot(normal, normal)) < 1e-9)
-        findings.add([] {
-            return Problem{.code = "scenario.range",
-                           .path = "wall.normal",
-                           .message = "a direction needs a length",
-                           .got = "[0, 0, 0]",
-                           .allowed = "any vector that is not zero",
-                           .hint = ""};
+// A damped law takes one number that says how much it damps, or a restitution to find it from.
+void check_damping(const std::string& name, double given, bool has_restitution, Findings& findings) {
+    if (std::isnan(given) != has_restitution)
+        findings.add([&] {
+            return Problem{.code = has_restitution ? "scenario.conflict" : "scenario.missing_key",
+                           .path = "wall.contact." + name,
+                           .message = has_restitution ? "restitution says already how much the contact damps"
+                                                      : "this law damps, but nothing says how much",
+                           .got = has_restitution ? shortest(given) : "",
+                           .allowed = "either " + name + " or restitution",
+                           .hint = has_restitution ? "take one of the two out" : "give one of the two"};
         });
 }
 
 void check_law(std::span<const double> params, Findings& findings) {
-    if (is<"wall.contact.law", "diagonal">(params) && at<"wall.acts_on_arm">(params) != 0)
-        findings.add([] {
-            return Problem{.code = "scenario.one_way_only",
-                           .path = "wall.acts_on_arm",
-                           .message = "a diagonal K_E can only be measured, not act on the arm",
-                           .got = "true",
-                           .allowed = "false with law: diagonal",
-                           .hint = "use law: spring"};
+    const bool has_restitution = !std::isnan(at<"wall.contact.restitution">(params));
+    if (is<"wall.contact.law", "kelvin_voigt">(params))
+        check_damping("damping", at<"wall.contact.damping">(params), has_restitution, findings);
+    if (!is<"wall.contact.law", "hunt_crossley">(params)) return;
+    check_damping("dissipation", at<"wall.contact.dissipation">(params), has_restitution, findings);
+    const bool has_speed = !std::isnan(at<"wall.contact.impact_speed">(params));
+    if (has_speed != has_restitution)
+        findings.add([&] {
+            return Problem{.code = has_speed ? "scenario.conflict" : "scenario.missing_key",
+                           .path = "wall.contact.impact_speed",
+                           .message = has_speed ? "this is the speed of a restitution, and none is given"
+                                                : "the restitution of hunt_crossley depends on the speed of the impact",
+                           .got = "",
+                           .allowed = "restitution and impact_speed together",
+                           .hint = has_speed ? "give wall.contact.restitution, or take impact_speed out"
+                                             : "give the speed at which the restitution is to hold"};
         });
 }
 
 // A power series cannot pass the corner at which a changing torque meets its limit.
 void check_corners(const Setup& setup, Findings& findings) {
-    if (setup.solver.method == Solver::taylor && setup.plant.arm.has_torque_limit &&
-        setup.plant.controller.type == Controls::gravity_compensation)
+    if (setup.solver.method == Solver::taylor && setup.plant.arm.has_torque_limit && !setup.digital.sampling.on &&
+        setup.law().type == Controls::gravity_compensation)
         findings.add([] {
             return Problem{.code = "scenario.corner",
                            .path = "solver.method",
@@ -105,9 +116,9 @@ void check_corners(const Setup& setup, Findings& findings) {
 
 // Its recurrences are those of the closed form.
 void check_algorithm(const Setup& setup, Findings& findings) {
-    const Controller<double>& controller = setup.plant.controller;
+    const Controller<double>& controller = setup.law();
     if (setup.solver.method == Solver::taylor && controller.type == Controls::gravity_compensation &&
-        controller.algorithm == Algorithm::recursion)
+        controller.algorithm == Algorithm::recursion && !setup.digital.sampling.on)
         findings.add([] {
             return Problem{.code = "scenario.no_series",
                            .path = "controller.algorithm",
@@ -115,6 +126,40 @@ void check_algorithm(const Setup& setup, Findings& findings) {
                            .got = "recursion",
                            .allowed = "closed_form with solver.method: taylor",
                            .hint = "use algorithm: closed_form, or method: dopri5"};
+        });
+}
+
+// Why the recurrences of the wall do not hold: they are those of a wall that slides evenly or swings, and of a spring.
+struct NoSeries {
+    const char *path, *of, *allowed;
+};
+
+std::optional<NoSeries> without_series(const Plant<double>& plant) {
+    const Wall<double>& wall = plant.wall;
+    if (wall.motion == Motion::ramp || wall.motion == Motion::table)
+        return NoSeries{"wall.motion.type", "this motion", "fixed, constant or sinusoid with solver.method: taylor"};
+    if (wall.rotation != Rotation::none)
+        return NoSeries{"wall.rotation.type", "a wall that turns", "none with solver.method: taylor"};
+    if (is_damped(plant.contact.law))
+        return NoSeries{"wall.contact.law", "a damped contact", "spring or diagonal with solver.method: taylor"};
+    if (plant.acts_on_arm && plant.contact.law == Law::diagonal)
+        return NoSeries{"wall.contact.law", "springs along the plate", "spring where the wall acts on the arm"};
+    if (plant.acts_on_arm && plant.contact.has_friction)
+        return NoSeries{"wall.contact.friction.coefficient", "friction on the wall",
+                        "0 where the wall acts on the arm"};
+    return std::nullopt;
+}
+
+void check_series(const Setup& setup, Findings& findings) {
+    if (setup.solver.method != Solver::taylor || !setup.plant.has_wall) return;
+    if (const std::optional<NoSeries> reason = without_series(setup.plant))
+        findings.add([&] {
+            return Problem{.code = "scenario.no_series",
+                           .path = reason->path,
+                           .message = std::string("taylor has no series of ") + reason->of,
+                           .got = "",
+                           .allowed = reason->allowed,
+                           .hint = "use method: dopri5"};
         });
 }
 
@@ -138,12 +183,22 @@ WorstPose smallest_lower_determinant(const Lumped<double>& l) {  // (3.10)
 }
 
 void check_setup(std::span<const double> params, Findings& findings) {
-    check_normal(params, findings);
+    check_direction<"wall.normal">(params, findings);
+    check_direction<"wall.motion.direction">(params, findings);
+    check_direction<"wall.rotation.axis">(params, findings);
+    if (is<"wall.motion.type", "table">(params))
+        check_table<"wall.motion.t", "wall.motion.s", "wall.motion.v", "wall.motion.a">(
+            params, "give position, velocity and acceleration at every instant", findings);
+    check_controller_keys(params, findings);
+    check_sampling_keys(params, findings);
     if (at<"wall">(params) != 0) check_law(params, findings);
     if (!findings.none()) return;
     const Setup setup = make_setup(params);
     check_corners(setup, findings);
     check_algorithm(setup, findings);
+    check_series(setup, findings);
+    check_controller(params, setup, findings);
+    check_sampling(params, setup, findings);
     check_mass_matrix(setup.plant.arm, findings);
     if (findings.none() && setup.plant.has_wall) check_start(setup, findings);
 }

@@ -8,6 +8,8 @@
 #include "at.hpp"
 #include "numbers.hpp"
 #include "setup.hpp"
+#include "setup_controller.hpp"
+#include "setup_slips.hpp"
 
 namespace arm3r {
 namespace {
@@ -17,8 +19,11 @@ using std::numbers::pi;
 double norm(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
-    if (setup.plant.controller.type != Controls::gravity_compensation) return;
-    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.plant.controller.model.gravity;
+    const Controller<double>& controller = setup.law();
+    const bool uses_gravity =
+        has_model(controller.type) && (controller.type != Controls::joint_pd || controller.compensates_gravity);
+    if (!uses_gravity) return;
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = controller.model.gravity;
     const double apart = norm(minus(feels, compensates));
     if (apart > 0 && apart < 0.01 * norm(feels))
         slips.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
@@ -78,20 +83,28 @@ double past_shoulder(const Setup& setup) {
     return deepest;
 }
 
+// A fixed step against the frequency and the decay of the contact.
+void slip_of_contact_step(const Setup& setup, std::vector<std::string>& slips) {
+    const Contact<double>& contact = setup.plant.contact;
+    const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
+    const auto check = [&](const char* name, double product, double half, const char* limit) {
+        if (product > half)
+            slips.push_back(std::string(name) + " is " + shortest(product) + ", more than half of what rk4 bears (" +
+                            limit + "): the contact will not be resolved; take a smaller solver.step");
+    };
+    if (contact.law != Law::hunt_crossley)
+        check("step*sqrt(K_E/m_n)", setup.solver.step * std::sqrt(contact.stiffness[0] / m_n), 1.414, "2.828");
+    if (contact.law == Law::kelvin_voigt)
+        check("step*damping/m_n", setup.solver.step * contact.damping / m_n, 1.3925, "2.785");
+}
+
 void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
     if (!setup.plant.has_wall) return;
     const double past = past_shoulder(setup);
     if (past > 0)
         slips.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
                         " m at the most; the arm's base is then behind it");
-    if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) {
-        const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
-        const double angle = setup.solver.step * std::sqrt(setup.plant.contact.stiffness[0] / m_n);
-        if (angle > 1.414)
-            slips.push_back(
-                "step*sqrt(K_E/m_n) is " + shortest(angle) +
-                ", more than half of what rk4 bears (2.828): the contact will not be resolved; take a smaller solver.step");
-    }
+    if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) slip_of_contact_step(setup, slips);
 }
 
 }  // namespace
@@ -104,6 +117,7 @@ std::vector<std::string> likely_slips(std::span<const double> params) {
     slip_of_links(setup.plant.arm, slips);
     slip_of_units(setup.plant.arm, slips);
     slip_of_wall(setup, slips);
+    add_controller_slips(setup, slips);
     return slips;
 }
 

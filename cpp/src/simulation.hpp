@@ -11,6 +11,7 @@
 
 #include "arm3r/arm3r.h"
 #include "row_memory.hpp"
+#include "user_law.hpp"
 
 namespace arm3r {
 
@@ -26,19 +27,29 @@ struct Steps {
 
 // The numbers of a run (summary.hpp). Joint vectors in the arm's convention.
 struct Metrics {
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
     arm3r_outcome outcome = ARM3R_RUN_OK;
-    double t_end = 0;                                                 // s, the time reached
-    double contacts = 0;                                              // makes so far
-    double first_contact = std::numeric_limits<double>::quiet_NaN();  // s
-    double first_release = std::numeric_limits<double>::quiet_NaN();  // s
-    double contact_time = 0;                                          // s
-    double peak_force = 0;       // N, largest normal contact force, on the dense trajectory
-    double final_force = 0;      // N, normal
-    double impulse = 0;          // N s, of the normal force
-    double ledger_residual = 0;  // J, largest at the end of a step
+    double t_end = 0;                // s, the time reached
+    double contacts = 0;             // makes so far
+    double first_contact = unknown;  // s
+    double first_release = unknown;  // s
+    double contact_time = 0;         // s
+    double peak_force = 0;           // N, largest normal contact force, on the dense trajectory
+    double final_force = 0;          // N, normal
+    double impulse = 0;              // N s, of the normal force
+    double ledger_residual = 0;      // J, largest at the end of a step
     std::array<double, 3> q{}, qd{}, tip{};
     std::array<double, 3> books{};  // J: work of the actuators, work of the wall, dissipated energy
     Steps steps;
+    // What a controller is judged by (score.hpp); NaN where it does not apply.
+    double force_error_rms = unknown, force_error_peak = unknown, overshoot = unknown;  // N
+    double settling_time = unknown;                                                     // s
+    double path_error_rms = unknown, path_error_max = unknown;                          // m
+    double saturation_share = 0;
+    std::array<double, 3> work{};                                        // J, of each torque
+    double stiffness_estimate = unknown, wall_speed_estimate = unknown;  // N/m, m/s
+    double stiff_steps = 0;                                              // accepted by the stiff method
 };
 
 // Columns lie one after the other in one block: column i is data[i*capacity .. i*capacity + rows).
@@ -49,8 +60,12 @@ struct Run : Metrics {
     RowMemory data;
     std::vector<Event> events;
     std::vector<std::string> warnings;
-    double energy_residual_max = 0;  // J, over steps and rows
-    double elapsed_s = 0;            // wall clock
+    std::string method;                    // that of the scenario
+    std::string choices;                   // of method auto: what it took when, and why
+    std::array<double, 3> torque_limit{};  // N m; may be inf
+    double energy_residual_max = 0;        // J, over steps and rows
+    double elapsed_s = 0;                  // wall clock
+    bool has_user_law = false;             // what it does is not known from the scenario
 
     std::span<const double> column(std::size_t i) const { return {data.get() + i * capacity, rows}; }
 };
@@ -61,7 +76,8 @@ struct RunOptions {
     void* user = nullptr;
     double time_limit = 0;                           // s; 0: none
     const std::atomic<bool>* should_stop = nullptr;  // as stop, for threads of our own
-    bool rows = true;                                // false: no rows, no warnings, the metrics alone
+    UserLaw user_law = {};
+    bool rows = true;  // false: no rows, no warnings, the metrics alone
 };
 
 // params: a valid flat parameter array (schema.hpp). Throws Error when it is not, or when the run is too large.

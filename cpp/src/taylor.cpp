@@ -14,8 +14,7 @@ namespace {
 // The squared angular frequency of the wall, 1/s^2.
 template <class T>
 ARM3R_INLINE T frequency_2(const Wall<T>& wall) {
-    constexpr double two_pi = 6.283185307179586;
-    const T omega = two_pi * wall.frequency;
+    const T omega = two_pi * wall.swing.frequency;
     return wall.motion == Motion::sinusoid ? T(omega * omega) : T(0.0);
 }
 

@@ -35,7 +35,7 @@ public:
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
         if (this->plant_.arm.has_dry_friction) slow_before_friction(wanted);
-        const T rest = this->stop_ - t0_;
+        const T until = this->next_instant(), rest = until - t0_;
         const Mask is_last = wanted >= rest;
         this->h_ = select(is_last, rest, wanted);
         const Mask finite = is_finite(), stands = !is_last && this->h_ < smallest_step(t0_);
@@ -45,7 +45,7 @@ public:
         crosses_ = false;
         theta_ = T(1.0);
         if (this->plant_.has_wall) watch(moved);
-        T h = this->h_, t1 = select(is_last, this->stop_, T(t0_ + h));
+        T h = this->h_, t1 = select(is_last, until, T(t0_ + h));
         if (crosses_) {
             h = select(theta_ < T(1.0), T(theta_ * h), h);
             t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
@@ -57,6 +57,7 @@ public:
         this->observe();
         if (crosses_) cross(changed);
         this->close_books();
+        if (this->is_scored_) this->score(moved);
         this->judge_lanes();
     }
 
@@ -64,7 +65,10 @@ public:
     Inside solution() const
         requires std::same_as<T, double>
     {
-        Inside inside(t0_, this->h_, order_);
+        Inside inside;
+        inside.t0 = t0_;
+        inside.h = this->h_;
+        inside.order = order_;
         for (int i = 0; i <= order_; ++i)
             for (std::size_t j = 0; j < state_size; ++j) inside.c[i][j] = series_.c[i][j];
         return inside;
@@ -181,7 +185,7 @@ private:
         if (!crossing) return;
         crosses_ = true;
         Lanes<T>::set(theta_, lane, crossing->theta);
-        crossings_[lane] = {true, crossing->next, this->stored_at(lane, value(signals.depth, crossing->theta))};
+        crossings_[lane] = {true, this->change_of(lane, signals, crossing->theta, t, crossing->next)};
     }
 
     Polynomial<double> polynomial(int lane, Signal signal) const {
@@ -195,10 +199,10 @@ private:
     template <class Changed>
     [[gnu::noinline]] void cross(Changed& changed) {
         for (int lane = 0; lane < Base::lanes; ++lane) {
-            auto& [is_due, next, lost] = crossings_[lane];
+            auto& [is_due, change] = crossings_[lane];
             if (!is_due) continue;
             is_due = false;
-            const Change change{theta(lane), this->t(lane), lost, this->mode(lane), next};
+            change.t = this->t(lane);
             changed(lane, change);
             this->change_mode(lane, change);
         }
@@ -206,8 +210,7 @@ private:
 
     struct Due {
         bool is_due = false;
-        Mode next = Mode::free;
-        double lost = 0;
+        Change change{};
     };
 
     const int order_;

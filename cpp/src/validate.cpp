@@ -8,6 +8,7 @@
 #include "at.hpp"
 #include "numbers.hpp"
 #include "setup.hpp"
+#include "setup_controller.hpp"
 
 namespace arm3r {
 namespace {
@@ -28,11 +29,19 @@ bool within(const Key& key, double value) {
     return (b.open_low ? value > b.low : value >= b.low) && (b.open_high ? value < b.high : value <= b.high);
 }
 
+// Up to its last number.
+std::size_t given_count(const Key& key, std::span<const double> params) {
+    std::size_t count = key.size;
+    while (count > 0 && std::isnan(params[key.offset + count - 1])) --count;
+    return count;
+}
+
 // How many of a key's places must hold a number, given its form and the first of them.
 std::size_t expected_count(const Key& key, std::span<const double> params) {
     if (key.form == Form::number_or_vector && std::isnan(params[key.offset + 1]) && std::isnan(params[key.offset + 2]))
         return 1;
-    if (key.form == Form::by_choice) return choice_of(params, *key.decided_by) == key.when.front() ? 1 : key.size;
+    if (key.form == Form::by_choice) return takes_list(key, params) ? key.size : 1;
+    if (key.form == Form::list) return std::max(key.fewest, given_count(key, params));
     return key.size;
 }
 
@@ -41,7 +50,7 @@ Problem missing(const Key& key, std::size_t count) {
             .path = key.path,
             .message = "this must be given",
             .got = "",
-            .allowed = (count == 1 ? "a number" : "a list of " + std::to_string(count) + " numbers") +
+            .allowed = (count == 1 ? "a number" : "a list of " + list_sizes(key) + " numbers") +
                        (key.unit.empty() ? "" : ", " + key.unit),
             .hint = ""};
 }
@@ -149,7 +158,7 @@ void check_model(std::span<const double> params, const std::vector<const Key*>& 
 void check_all(std::span<const double> params, const NumberKeys& keys, Findings& findings) {
     check_arm(params, keys.arm, findings);
     for (const Key* key : keys.others) check_numbers(*key, params, findings);
-    if (findings.none() && is<"controller.type", "gravity_compensation">(params) && model_differs(params))
+    if (findings.none() && has_model(controls_of(params)) && model_differs(params))
         check_model(params, keys.model, findings);
     if (findings.none()) check_setup(params, findings);
 }

@@ -18,9 +18,12 @@ from .errors import (
     ScenarioError,
     UsageError,
 )
+from .law import NativeLaw, law_state_index
+from .law_state import LawState
 from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
 from .run import Event, Run
 from .scenario import Scenario
+from .simulation import Simulation, Snapshot
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -48,16 +51,21 @@ __all__ = [
     "Event",
     "IncompatibleError",
     "InternalError",
+    "LawState",
+    "NativeLaw",
     "NumericalError",
     "OutputError",
     "ParamKey",
     "Run",
     "Scenario",
     "ScenarioError",
+    "Simulation",
+    "Snapshot",
     "Sweep",
     "SweepTable",
     "UsageError",
     "__version__",
+    "law_state_index",
     "param_count",
     "param_defaults",
     "param_index",

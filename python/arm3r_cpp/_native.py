@@ -207,8 +207,9 @@ BatchProgress = Callable[[int, int], Any]
 class _InProgress:
     """While the library calls `progress`, of one run or one batch. What that raises comes out again."""
 
-    def __init__(self, progress: Callable[..., Any] | None) -> None:
+    def __init__(self, progress: Callable[..., Any] | None, law: Callable[[Any, Any], int] | None = None) -> None:
         self.progress = progress
+        self.law = law
         self.raised: BaseException | None = None
 
     def __enter__(self) -> None:
@@ -236,12 +237,16 @@ def arm3r_python_progress(user: Any, t: float, stop: float, steps: int) -> int:
 
 def start(function: Callable[..., int], *arguments: Any, progress: Progress | None, time_limit: float | None) -> Any:
     """A run by a function whose last arguments are options and the new run. What `progress` raises comes out again."""
+    with _InProgress(progress):
+        return create("run", function, *arguments, _run_options(time_limit))
+
+
+def _run_options(time_limit: float | None) -> Any:
     options = ffi.new("arm3r_run_options *")
     options.struct_size = ffi.sizeof("arm3r_run_options")
     options.progress = lib.arm3r_python_progress
     options.time_limit = 0.0 if time_limit is None else time_limit
-    with _InProgress(progress):
-        return create("run", function, *arguments, options)
+    return options
 
 
 def outcome(run: Any) -> str:
@@ -286,6 +291,92 @@ def summary_columns() -> dict[str, str]:
         call(lib.arm3r_summary_column, index, name, unit, meaning)
         units[string(name[0])] = string(unit[0])
     return units
+
+
+# ---- control laws of the user's own ---------------------------------------------------------------------------------
+
+
+_ndarray = np.ndarray  # found faster
+
+
+class NoTorque(Exception):
+    """Raised where what a law returned is not three numbers."""
+
+
+def put_torque(torque: Any, out: Any) -> None:
+    """Write three numbers where the library reads a torque. NoTorque: they are not. It looks itself at their values."""
+    if isinstance(torque, _ndarray):
+        if torque.shape != (3,) or torque.dtype.kind not in "fiu":
+            raise NoTorque
+        torque = torque.tolist()
+    elif not isinstance(torque, (list, tuple)):
+        raise NoTorque
+    try:
+        out[0:3] = torque
+    except (TypeError, ValueError, OverflowError):
+        raise NoTorque from None
+
+
+def torque_memory() -> Any:
+    return ffi.new("double[3]")
+
+
+_STATE_ARRAYS = {
+    name: (field.offset, field.type.length)
+    for name, field in ffi.typeof("arm3r_law_state").fields
+    if field.type.kind == "array"
+}
+
+
+class StateMemory:
+    """An arm3r_law_state: `struct` for its single numbers; the others as arrays, views of it, by name."""
+
+    def __init__(self, struct: Any) -> None:
+        self.struct = struct
+
+    def __getattr__(self, name: str) -> Floats:
+        if name not in _STATE_ARRAYS:
+            raise AttributeError(f"arm3r_law_state has no array {name!r}")
+        offset, size = _STATE_ARRAYS[name]
+        view = np.frombuffer(ffi.buffer(self.struct), np.float64, size, offset)
+        view = self.__dict__[name] = view.reshape(3, 3) if size == 9 else view
+        return view
+
+
+def state_index() -> dict[str, int]:
+    """The place of each number, or of its first one, in an arm3r_law_state taken as doubles."""
+    fields = ffi.typeof("arm3r_law_state").fields
+    return {name: field.offset // 8 for name, field in fields if name != "struct_size"}
+
+
+@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+def arm3r_python_law(user: Any, state: Any, tau: Any) -> int:
+    return _here.call.law(state, tau)
+
+
+def control(
+    scenario: Any, law: Any, *, progress: Progress | None, time_limit: float | None
+) -> tuple[Any, BaseException | None]:
+    """A run with a law, called as law(state, tau) or, with an `address`, in machine code; and what it raised."""
+    native = hasattr(law, "address")
+    given = ffi.cast("arm3r_law", law.address) if native else lib.arm3r_python_law
+    user = ffi.cast("void *", law.user) if native else ffi.NULL
+    here = _InProgress(progress, law)
+    with here:
+        run = create("run", lib.arm3r_scenario_control, scenario, given, user, _run_options(time_limit))
+    return run, here.raised
+
+
+def seen(simulation: Any) -> StateMemory:
+    state = ffi.new("arm3r_law_state *")
+    call(lib.arm3r_simulation_state, simulation, state)
+    return StateMemory(state)
+
+
+def is_over(simulation: Any) -> bool:
+    out = ffi.new("int32_t *")
+    call(lib.arm3r_simulation_is_over, simulation, out)
+    return bool(out[0])
 
 
 def columns(run: Any) -> tuple[dict[str, Floats], dict[str, str]]:

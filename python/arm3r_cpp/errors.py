@@ -58,7 +58,21 @@ class OutputError(Arm3rError, OSError):
 
 
 class ControllerError(Arm3rError, RuntimeError):
-    """A function called during the run failed."""
+    """A function called during the run failed: what it raised is `__cause__`. Or it gave no torque that can be applied.
+
+    Attributes:
+        tick: of the controller, where it was one: samples before this one; else None.
+        t: s, when that was; else None.
+        received: what it returned.
+    """
+
+    def __init__(
+        self, message: str, *, tick: int | None = None, t: float | None = None, received: Any = None, **rest: Any
+    ) -> None:
+        super().__init__(message, **rest)
+        self.tick = tick
+        self.t = t
+        self.received = received
 
 
 class IncompatibleError(Arm3rError, RuntimeError):
@@ -87,7 +101,7 @@ def class_of(status: int) -> type[Arm3rError]:
 
 def class_of_outcome(outcome: str) -> type[Arm3rError]:
     """The class for a run that did not reach its end."""
-    return {"stopped": Arm3rError, "budget": BudgetError}.get(outcome, NumericalError)
+    return {"stopped": Arm3rError, "budget": BudgetError, "controller": ControllerError}.get(outcome, NumericalError)
 
 
 def no_column(name: Any, names: Sequence[str]) -> KeyError:

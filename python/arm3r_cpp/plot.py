@@ -1,18 +1,20 @@
-"""Figures of a run. matplotlib is imported when something is drawn, not before."""
+"""Figures and films of runs. matplotlib is imported when something is drawn, not before."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from .animate import animate
 from .plot_lecture import draw_energies, figures, has_wall
-from .plot_style import JOINTS, XYZ, draw, event_legend, finish, panels, style
+from .plot_style import JOINTS, WIDTH, XYZ, draw, event_legend, finish, panels, style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .run import Run
 
-__all__ = ["lecture", "overview"]
+__all__ = ["animate", "compare", "force", "lecture", "overview"]
 
 
 def overview(run: Run) -> Figure:
@@ -46,3 +48,37 @@ def lecture(run: Run) -> dict[str, Figure]:
     """
     with style():
         return {name: figure(run) for name, figure in figures(run).items()}
+
+
+def force(run: Run, *, width: float = WIDTH) -> Figure:
+    """Force against reference with peak and settling, tracking, torques, observer; the first contact, and the path on
+    the wall's face.
+
+    run: a finished or partial run with a wall; panels whose columns it lacks are left out. width: inches; below 5 the
+    panels stand one under the other. Returns a matplotlib Figure that is not shown. SI units.
+
+    Raises:
+        UsageError: the run has no wall.
+    """
+    from .force_run import ForceRun
+    from .plot_force import force_figure
+
+    with style():
+        return force_figure(ForceRun(run), width=width)
+
+
+def compare(runs: Sequence[Run] | Mapping[str, Run], *, width: float = WIDTH) -> Figure:
+    """Runs over each other: force, errors, torques, contact; the first contact, the path on the wall's face; a table.
+
+    runs: two to six with the same wall, by the names they get; in a sequence they are called as their scenarios are.
+    width: inches. Returns a matplotlib Figure that is not shown. SI units.
+
+    Raises:
+        UsageError: a run has no wall, or another one; or they are too many.
+    """
+    from .force_run import ForceRun
+    from .plot_compare import compare_figure
+
+    pairs = list(runs.items()) if isinstance(runs, Mapping) else [(None, run) for run in runs]
+    with style():
+        return compare_figure([ForceRun(run, name=name) for name, run in pairs], width=width)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .plot_style import AMBER, BLACK, BLUE, GREEN, RED
+from .wall_frame import half_sides, wall_frame
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -109,9 +110,8 @@ def draw_walls(ax: Any, run: Run, scenario: Any, reach: float) -> None:
 
     origin = run["wall"]
     times = sorted({run.t[0], *[e.t for e in run.events if e.type == "make"][:1], run.t[-1]})
-    outline = wall_outline(scenario, reach)
     for k, t in enumerate(times):
-        corners = outline + [np.interp(t, run.t, origin[:, c]) for c in range(3)]
+        corners = wall_outline(scenario, reach, t) + [np.interp(t, run.t, origin[:, c]) for c in range(3)]
         alpha = 0.12 + 0.2 * (k + 1) / len(times)
         ax.add_collection3d(Poly3DCollection([corners], fc=AMBER, ec=BLACK, alpha=alpha, lw=0.8, zorder=1))
         ax.auto_scale_xyz(*corners.T, had_data=True)
@@ -119,16 +119,11 @@ def draw_walls(ax: Any, run: Run, scenario: Any, reach: float) -> None:
     ax.plot([], [], color=AMBER, alpha=0.4, lw=7, label=f"wall at {moments} s, darker is later")
 
 
-def wall_outline(scenario: Any, reach: float) -> NDArray[np.float64]:
-    """The four corners about the wall's origin, docs/model.md (4.1); an infinite wall is drawn one reach wide."""
-    normal = np.array(scenario["wall.normal"], float)
-    normal /= np.linalg.norm(normal)
-    e1 = np.cross(normal, [0, 0, 1])
-    e1 = e1 / np.linalg.norm(e1) if np.any(e1) else np.array([0, 1, 0])
-    e2 = np.cross(e1, normal)
-    size = scenario["wall.size"]
-    half = [reach / 2, reach / 2] if isinstance(size, str) else [s / 2 for s in size]
-    return np.array([a * half[0] * e1 + b * half[1] * e2 for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+def wall_outline(scenario: Any, reach: float, t: float) -> NDArray[np.float64]:
+    """The four corners about the wall's origin at time t, s; an infinite wall is drawn one reach wide."""
+    _, (e1,), (e2,) = wall_frame(scenario, t)
+    half1, half2 = half_sides(scenario) or (reach / 2, reach / 2)
+    return np.array([a * half1 * e1 + b * half2 * e2 for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 
 
 def arrow(

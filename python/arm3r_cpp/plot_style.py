@@ -14,11 +14,18 @@ if TYPE_CHECKING:
     from .run import Run
 
 BLACK, BLUE, RED, GREEN, AMBER, SKY, PINK = "#222222", "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7"
-TRIPLE = ({"color": BLUE, "ls": "-"}, {"color": RED, "ls": "--"}, {"color": GREEN, "ls": "-."})
+TRIPLE: tuple[dict[str, Any], ...] = (
+    {"color": BLUE, "ls": "-"},
+    {"color": RED, "ls": "--"},
+    {"color": GREEN, "ls": "-."},
+)
+LOOKS = tuple(zip((BLUE, RED, GREEN, AMBER, SKY, PINK, BLACK), ("-", "--", "-.", ":", "-", "--", "-."), strict=True))
 XYZ, JOINTS = "xyz", "123"
 DASHES = {"make": ":", "break": (0, (4, 2))}
 LABELLED_EVENTS = 4
 FORMATS = ("png", "pdf", "svg")
+WIDTH = 6.3  # inches: that of a text; columns of a journal have some 3.4
+MARGIN = 0.6  # inches of a figure's width: labels beside its axes
 
 RC: Any = {
     "font.size": 9,
@@ -55,7 +62,7 @@ def panels(run: Run, heights: Sequence[float]) -> tuple[Figure, list[Axes]]:
     import matplotlib.pyplot as plt
 
     figure, grid = plt.subplots(
-        len(heights), sharex=True, squeeze=False, figsize=(6.3, sum(heights) + 0.35 * len(heights) + 0.3),
+        len(heights), sharex=True, squeeze=False, figsize=(WIDTH, sum(heights) + 0.35 * len(heights) + 0.3),
         height_ratios=heights, layout="constrained",
     )  # fmt: skip
     axes = list(grid[:, 0])
@@ -107,3 +114,21 @@ def event_legend(figure: Figure, run: Run) -> None:
     if run.events:
         marks = [*figure.axes[0].patches[:1], *figure.axes[0].lines[-len(run.events) :][:LABELLED_EVENTS]]
         figure.legend(handles=marks, loc="outside upper left", ncols=len(marks))
+
+
+def shade_contact(ax: Axes, run: Run, *, label: str | None = None) -> None:
+    """As one artist, however often contact is made."""
+    if spans := contact_spans(run):
+        bars = [(start, end - start) for start, end in spans]
+        look: Any = {"color": AMBER, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label}
+        ax.broken_barh(bars, (0, 1), transform=ax.get_xaxis_transform(), **look)
+
+
+def legend_above(ax: Axes, *, room: float, **look: Any) -> None:
+    """All labelled artists above the axes, in as many rows as a width of `room` inches needs."""
+    handles, labels = ax.get_legend_handles_labels()
+    look = {"loc": "lower left", "bbox_to_anchor": (0, 1), "borderaxespad": 0.1, **look}
+    for columns in range(len(handles), 0, -1):
+        legend = ax.legend(handles, labels, ncols=columns, **look)
+        if legend.get_window_extent().width <= room * ax.figure.dpi:
+            return

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import UsageError
-from .plot_style import AMBER, BLACK, BLUE, GREEN, PINK, RED, SKY, style
+from .plot_style import BLACK, LOOKS, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from .sweep_axes import SweepAxis
     from .sweep_table import SweepTable
 
-LOOKS = tuple(zip((BLUE, RED, GREEN, AMBER, SKY, PINK, BLACK), ("-", "--", "-.", ":", "-", "--", "-."), strict=True))
 OUTCOME_MARKERS = "xv^sD*P"
 WIDE = 100  # listed values that span this factor, by ratios, are drawn on a logarithmic axis
 

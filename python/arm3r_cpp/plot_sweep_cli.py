@@ -6,7 +6,6 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from .errors import OutputError, UsageError
 from .exits import attempt, tell
 
 
@@ -32,18 +31,10 @@ def save(options: argparse.Namespace) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from .plot_style import FORMATS, style
+    from .plot_files import check_format, write
     from .plot_sweep import sweep
     from .sweep_table import SweepTable
 
-    out: Path = options.out
-    if out.suffix[1:] not in FORMATS:
-        raise UsageError(f"-o {out}: cannot write {out.suffix or 'that'}; use one of {', '.join(FORMATS)}")
-    figure = sweep(SweepTable(options.folder), metric=options.metric, log=options.log)
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with style():
-            figure.savefig(out)
-    except OSError as error:
-        raise OutputError(f"cannot write figures: {error}") from error
-    tell(out)
+    check_format(options.out)
+    write({options.out: sweep(SweepTable(options.folder), metric=options.metric, log=options.log)})
+    tell(options.out)

@@ -16,6 +16,7 @@ from ._native import BatchProgress, Floats, Progress, lib
 from .arm import Arm
 from .batch import Batch, run_batch
 from .errors import UsageError, class_of_outcome
+from .law import Law, NativeLaw, check_rate, run_with_law
 from .params import param_count
 from .run import Run
 
@@ -140,28 +141,58 @@ class Scenario:
         """The whole scenario with all defaults, itself a scenario; `annotate`: each value's origin in a comment."""
         return _native.text(lib.arm3r_scenario_yaml, self._handle, bool(annotate))
 
-    def run(self, *, progress: Progress | None = None, time_limit: float | None = None) -> Run:
+    def run(
+        self,
+        *,
+        controller: Law | NativeLaw | None = None,
+        rate: float | None = None,
+        progress: Progress | None = None,
+        time_limit: float | None = None,
+    ) -> Run:
         """Simulate. Ctrl-C ends the run at once with KeyboardInterrupt.
 
+        >>> run = scenario.run(controller=lambda t, state: state.tau_g - 5 * state.qd)
+
         Args:
+            controller: a law of your own instead of the scenario's, controller(t, state) -> three torques, N m. It is
+                called once at each sample, in increasing time, and its torque held until the next.
+            rate: of its samples, Hz; None: the scenario's sampling.rate, by default 1000.
             progress: called as progress(t, stop, steps) at most every 20 ms; a true result stops the run, and what it
                 raises comes out unchanged.
             time_limit: s of wall clock.
 
         Raises:
             ScenarioError: the scenario is not valid.
+            ControllerError: the controller raised, which is then its `__cause__`, or returned no torque; `error.tick`,
+                `error.t`, `error.received` and `error.run` say more.
             NumericalError, BudgetError: the run did not reach its end; `error.run` holds it as far as it came.
             Arm3rError: `progress` stopped the run; `error.run` likewise.
         """
         if time_limit is not None and not 0 < time_limit < math.inf:
             raise ValueError(f"time_limit: a positive number of seconds is needed, got {time_limit}")
-        handle = _native.start(lib.arm3r_scenario_run, self._handle, progress=progress, time_limit=time_limit)
-        run = Run._of(handle)
+        if controller is not None:
+            mine = self._for_law(rate)
+            run = run_with_law(mine._handle, controller, self._file, progress=progress, time_limit=time_limit)
+        elif rate is not None:
+            raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
+        else:
+            run = Run._of(_native.start(lib.arm3r_scenario_run, self._handle, progress=progress, time_limit=time_limit))
         if run.outcome != "ok":
             raise class_of_outcome(run.outcome)(
                 f"{self._file}: {run.outcome}: {run.summary['message']}", code=f"run.{run.outcome}", run=run
             )
         return run
+
+    def _for_law(self, rate: float | None) -> Scenario:
+        """A copy whose controller is a law of the user's own."""
+        mine = self.copy()
+        if mine["controller.type"] != "user":
+            mine["controller.type"] = "user"
+            mine["reference"] = None
+        if rate is not None:
+            check_rate(rate)
+            mine["sampling.rate"] = rate
+        return mine
 
     def batch(
         self,

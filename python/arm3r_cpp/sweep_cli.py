@@ -5,22 +5,20 @@ from __future__ import annotations
 import argparse
 import signal
 import sys
-import time
 import warnings
 from collections.abc import Sequence
 from typing import Any
 
 from .errors import Arm3rError
 from .exits import FAILED_RUNS, die_of, exit_code, tell
-
-BAR = 30  # characters
+from .progress_bar import Bar
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-sweep`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
     options = parser().parse_args(argv)
     warnings.showwarning = _say  # type: ignore[assignment]
-    bar = Bar()
+    bar = Bar("sweep", "runs")
     try:
         from .sweep_file import Sweep
         from .sweep_run import sweep
@@ -57,39 +55,6 @@ def parser() -> argparse.ArgumentParser:
     add("--parquet", action="store_true", help="table.parquet instead of table.csv; needs pyarrow")
     add("--version", action="version", version=f"arm3r-sweep {version}")
     return parser
-
-
-class Bar:
-    """How far it is, on stderr where that is a terminal and the sweep is long: rate, and time left."""
-
-    def __init__(self) -> None:
-        self.start = time.monotonic()
-        self.before: int | None = None
-        self.drawn = False
-
-    def draw(self, done: int, runs: int) -> None:
-        seconds = time.monotonic() - self.start
-        self.before = done if self.before is None else self.before
-        if seconds < 1 or not sys.stderr.isatty():
-            return
-        rate = (done - self.before) / seconds
-        left = f"{_clock((runs - done) / rate)} left" if rate else "-"
-        filled = BAR * done // runs
-        bar = "#" * filled + "." * (BAR - filled)
-        line = f"sweep [{bar}] {100 * done // runs} %  {done} of {runs}  {rate:.3g} runs/s  {left}"
-        print(f"\r{line}\x1b[K", end="", file=sys.stderr, flush=True)
-        self.drawn = True
-
-    def clear(self) -> None:
-        if self.drawn:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
-        self.drawn = False
-
-
-def _clock(seconds: float) -> str:
-    minutes, seconds = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{seconds:02}" if hours else f"{minutes}:{seconds:02}"
 
 
 def _say(message: Warning | str, *_: Any) -> None:

@@ -1,90 +1,14 @@
-#include "batch.hpp"
-
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
-#include <cstring>
 
+#include "batch_runs.hpp"
 #include "crew.hpp"
 #include "error.hpp"
-#include "fixtures.hpp"
-#include "summary.hpp"
 
 namespace arm3r {
 
 // A batch is what its runs are alone, bit for bit: for every width, number of threads and order.
 BOOST_AUTO_TEST_SUITE(batch)
-
-// Runs that differ in some numbers: varied[j] is values[j][i] in run i.
-struct Runs {
-    Params base;
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> values;
-
-    std::size_t count() const { return values.front().size(); }
-
-    Params alone(std::size_t run) const {
-        Params params = base;
-        for (std::size_t j = 0; j < names.size(); ++j) params.set(names[j], values[j][run]);
-        return params;
-    }
-
-    std::vector<double> together(const BatchOptions& options) const {
-        std::vector<std::size_t> varied;
-        std::vector<double> flat;
-        for (std::size_t j = 0; j < names.size(); ++j) {
-            varied.push_back(param_index(names[j]));
-            flat.insert(flat.end(), values[j].begin(), values[j].end());
-        }
-        std::vector<double> results(summary_table().size() * count(), -1);
-        run_batch({base, varied, flat, count()}, options, results.data());
-        return results;
-    }
-
-    double number(const std::vector<double>& results, std::string_view name, std::size_t run) const {
-        for (std::size_t i = 0; i < summary_table().size(); ++i)
-            if (summary_table()[i].name == name) return results[i * count() + run];
-        throw std::invalid_argument("no such column");
-    }
-};
-
-static std::vector<int> widths() {
-    std::vector<int> all = {1};
-    for (int width = 2; width <= widest_lanes(); width *= 2) all.push_back(width);
-    return all;
-}
-
-// Both may be no number; else the bits decide.
-static bool same(double a, double b) { return same_bits(a, b) || (std::isnan(a) && std::isnan(b)); }
-
-static void check_against_single_runs(const Runs& runs, const std::vector<double>& results) {
-    for (std::size_t i = 0; i < runs.count(); ++i) {
-        const Run alone = runs.alone(i).run();
-        for (std::size_t c = 0; c < summary_table().size(); ++c) {
-            const double together = results[c * runs.count() + i], single = summary_table()[c].of(alone) + 0.0;
-            BOOST_TEST(same(together, single),
-                       "run " << i << ", " << summary_table()[c].name << ": " << together << " and " << single);
-        }
-    }
-}
-
-// Every width and number of threads gives the same table; it is returned.
-static std::vector<double> check_widths_and_threads(const Runs& runs) {
-    const std::vector<double> reference = runs.together({.threads = 1, .lanes = 1});
-    for (const int lanes : widths()) {
-        for (const int threads : {1, 3}) {
-            const std::vector<double> other = runs.together({.threads = threads, .lanes = lanes});
-            BOOST_TEST((std::memcmp(other.data(), reference.data(), reference.size() * sizeof(double)) == 0),
-                       lanes << " lanes, " << threads << " threads");
-        }
-    }
-    return reference;
-}
-
-static std::vector<double> spread(Random& random, double low, double high, int count) {
-    std::vector<double> values;
-    for (int i = 0; i < count; ++i) values.push_back(random.in(low, high));
-    return values;
-}
 
 // An arm of its own in every lane, and a wall in front of it.
 static Runs pushed_arms(Random& random, std::string_view method, int count) {
@@ -139,6 +63,74 @@ BOOST_AUTO_TEST_CASE(so_have_random_arms_that_fall_under_any_gravity_beside_an_o
         runs.names.emplace_back("wall.size[0]");
         runs.values.push_back(spread(random, 0.1, 1, 21));
         check_against_single_runs(runs, check_widths_and_threads(runs));
+    }
+}
+
+// Against walls of every law that move in every way, each of whose numbers differs from lane to lane.
+static Runs against_walls(Random& random, std::string_view law, std::string_view motion, std::string_view rotation) {
+    Runs runs = pushed_arms(random, "rk4", 19);
+    runs.base.choose("wall.contact.law", law).choose("wall.motion.type", motion).choose("wall.rotation.type", rotation);
+    const auto vary = [&](const std::string& name, double low, double high) {
+        const auto place = std::size_t(std::find(runs.names.begin(), runs.names.end(), name) - runs.names.begin());
+        if (place == runs.names.size()) runs.names.push_back(name), runs.values.emplace_back();
+        runs.values[place] = spread(random, low, high, 19);
+    };
+    if (law == "diagonal") {
+        for (const char* item : {"[1]", "[2]"}) vary(std::string("wall.contact.stiffness") + item, 5, 50);
+    } else {
+        vary("wall.contact.friction.coefficient", 0.1, 0.5), vary("wall.contact.friction.slip_velocity", 0.01, 0.02);
+    }
+    if (law == "kelvin_voigt") vary("wall.contact.damping", 1, 9);
+    if (law == "hunt_crossley") {
+        vary("wall.contact.stiffness", 3e3, 3e4);
+        vary("wall.contact.exponent", 1, 3), vary("wall.contact.dissipation", 0.1, 3);
+    }
+    if (motion == "ramp") {
+        vary("wall.motion.distance", 0.1, 0.4), vary("wall.motion.start", 0, 0.2);
+        vary("wall.motion.duration", 0.3, 0.9), vary("wall.motion.direction[1]", -0.2, 0.2);
+        runs.base.set("wall.motion.direction", {-1, 0, 0.1});
+    }
+    if (motion == "table") {
+        for (int i = 0; i < 4; ++i) {
+            const std::string item = "[" + std::to_string(i) + "]";
+            vary("wall.motion.t" + item, 0.2 * i, 0.2 * i + 0.1), vary("wall.motion.s" + item, 0.1 * i, 0.1 * i + 0.1);
+            vary("wall.motion.v" + item, -0.3, 0.5), vary("wall.motion.a" + item, -1, 1);
+        }
+    }
+    if (rotation != "none") runs.base.set("wall.rotation.axis", {0.3, -0.8, 0.5}), vary("wall.rotation.axis[0]", 0, 1);
+    if (rotation == "constant") vary("wall.rotation.rate", -0.5, 0.5);
+    if (rotation == "sinusoid") {
+        vary("wall.rotation.amplitude", -0.5, 0.5), vary("wall.rotation.frequency", 0.3, 2);
+        vary("wall.rotation.phase", -1, 1);
+    }
+    return runs;
+}
+
+BOOST_AUTO_TEST_CASE(so_have_runs_against_walls_of_every_law_that_move_in_every_way) {
+    Random random(36);
+    for (const auto& [law, motion, rotation] : {std::array{"spring", "ramp", "none"},
+                                                {"spring", "table", "constant"},
+                                                {"diagonal", "constant", "none"},
+                                                {"diagonal", "ramp", "sinusoid"},
+                                                {"kelvin_voigt", "constant", "none"},
+                                                {"kelvin_voigt", "table", "none"},
+                                                {"kelvin_voigt", "constant", "constant"},
+                                                {"hunt_crossley", "constant", "none"},
+                                                {"hunt_crossley", "ramp", "sinusoid"},
+                                                {"hunt_crossley", "table", "constant"}}) {
+        Runs runs = against_walls(random, law, motion, rotation);
+        for (const char* method : {"rk4", "dopri5"}) {
+            runs.base.choose("solver.method", method);
+            const std::vector<double> table = check_widths_and_threads(runs);
+            check_against_single_runs(runs, table);
+            double contacts = 0, ok = 0;
+            for (std::size_t i = 0; i < runs.count(); ++i) {
+                contacts += runs.number(table, "contacts", i);
+                ok += int(runs.number(table, "outcome", i)) == ARM3R_RUN_OK;
+            }
+            BOOST_TEST(contacts > 5, law << ", " << motion << ", " << rotation);
+            BOOST_TEST(ok == 19, law << ", " << motion << ", " << rotation);
+        }
     }
 }
 

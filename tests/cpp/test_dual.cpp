@@ -52,6 +52,21 @@ BOOST_AUTO_TEST_CASE(elementary_functions) {
     check([](auto x, auto y) { return atan2(-y, -x); }, 0.5, 3.0);
     check([](auto x, auto y) { return acos(x * y); }, -0.9, 0.9);
     check([](auto x, auto y) { return hypot2(x, y) + sqrt(x) + fifth_root(y); }, 0.5, 3.0);
+    check([](auto x, auto y) { return exp(x - y) * log(y); }, 0.5, 3.0);
+    check([](auto x, auto y) { return power(x, y); }, 0.5, 3.0);
+    check([](auto x, auto y) { return power(x, 1.5) - power(2.0, y); }, 0.1, 3.0);
+    check([](auto x, auto y) { return power(x, 1.0) + power(y, 1.0); }, 0.1, 3.0);
+    check([](auto x, auto y) { return power(x, 1.5) + power(x, 1.0) + y; }, -3.0, -0.1);
+}
+
+BOOST_AUTO_TEST_CASE(power_has_a_finite_slope_at_zero) {
+    for (const auto& [exponent, slope] : {std::pair{1.0, 1.0}, {1.0 + 1e-15, 0.0}, {1.5, 0.0}, {2.0, 0.0}, {3.0, 0.0}})
+        for (const double zero : {0.0, -0.0}) {
+            const Two result = power(Two::variable(zero, 0), Two::variable(exponent, 1));
+            BOOST_TEST(result.number == 0.0);
+            BOOST_TEST(result.slope[0] == slope);
+            BOOST_TEST(result.slope[1] == 0.0);
+        }
 }
 
 BOOST_AUTO_TEST_CASE(choices_follow_the_chosen_branch) {

@@ -57,6 +57,48 @@ BOOST_AUTO_TEST_CASE(ends_of_the_ranges) {
     BOOST_TEST(hypot2(3.0, -4.0) == 5.0);
     BOOST_TEST(fifth_root(1.0) == 1.0);
     BOOST_TEST(fifth_root(0.0) < 1e-60);
+    BOOST_TEST(exp(0.0) == 1.0);
+    BOOST_TEST(exp(-infinity) == 0.0);
+    BOOST_TEST(exp(-746.0) == 0.0);
+    BOOST_TEST(exp(-745.0) == 5e-324);
+    BOOST_TEST(exp(709.0) == 8.218407461554972e307);
+    BOOST_TEST(exp(709.8) == infinity);
+    BOOST_TEST(exp(infinity) == infinity);
+    BOOST_TEST(same_bits(log(1.0), 0.0));
+    BOOST_TEST(log(0.0) == -infinity);
+    BOOST_TEST(log(-0.0) == -infinity);
+    BOOST_TEST(log(infinity) == infinity);
+    BOOST_TEST(log(5e-324) == log(0x1p-1022));
+}
+
+BOOST_AUTO_TEST_CASE(power_at_the_ends_of_its_range) {
+    for (const double p : {0.5, 1.0, 1.5, 3.0}) {
+        BOOST_TEST(same_bits(power(0.0, p), 0.0));
+        BOOST_TEST(same_bits(power(-0.0, p), 0.0));
+        BOOST_TEST(same_bits(power(-2.0, p), 0.0));
+        BOOST_TEST(power(1.0, p) == 1.0);
+        BOOST_TEST(power(4.0, p) == std::pow(4.0, p));
+    }
+    BOOST_TEST(power(5e-324, 1.5) == 0.0);
+    BOOST_TEST(power(1e300, 3.0) == std::numeric_limits<double>::infinity());
+}
+
+BOOST_AUTO_TEST_CASE(first_power_is_the_number_itself) {
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 100000; ++i) {
+        const double x = std::bit_cast<double>(random() % 0x7ff0000000000000);
+        BOOST_REQUIRE(same_bits(power(x, 1.0), x));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(powers_rise_with_the_number_and_with_the_exponent) {
+    std::mt19937_64 random(4);
+    std::uniform_real_distribution<double> exponent(1.0, 3.0), decade(-12.0, 3.0);
+    for (int i = 0; i < 100000; ++i) {
+        const double x = std::pow(10.0, decade(random)), p = exponent(random);
+        BOOST_REQUIRE(power(x, p) <= power(x * (1.0 + 4e-16), p));
+        BOOST_REQUIRE((power(x, p) < power(x, p + 1e-9)) == (x > 1.0));
+    }
 }
 
 BOOST_AUTO_TEST_CASE(not_a_number_stays_one) {
@@ -68,6 +110,13 @@ BOOST_AUTO_TEST_CASE(not_a_number_stays_one) {
     BOOST_TEST(std::isnan(atan2(not_a_number, not_a_number)));
     BOOST_TEST(std::isnan(acos(1.5)));
     BOOST_TEST(std::isnan(fifth_root(not_a_number)));
+    BOOST_TEST(std::isnan(exp(not_a_number)));
+    BOOST_TEST(std::isnan(log(not_a_number)));
+    BOOST_TEST(std::isnan(log(-1.0)));
+    BOOST_TEST(std::isnan(log(-std::numeric_limits<double>::infinity())));
+    BOOST_TEST(std::isnan(power(not_a_number, 1.0)));
+    BOOST_TEST(std::isnan(power(not_a_number, 1.5)));
+    BOOST_TEST(std::isnan(power(2.0, not_a_number)));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -17,6 +17,7 @@ static Eigen::Matrix<T, 3, 1> formula(const T& x, const T& y) {
     Eigen::Matrix<T, 3, 3> m = Eigen::Matrix<T, 3, 3>::Identity() * 2.0;
     m(0, 1) = bent;
     m(2, 0) = acos(c) / (2.0 + s);
+    m(2, 1) = exp(x) - log(abs(y)) * power(abs(y), x) + power(abs(x), 1.5);
     return m * Eigen::Matrix<T, 3, 1>(clipped, hypot2(x, y), T(1.0)) + 0.5 * m.col(1);
 }
 

@@ -11,7 +11,7 @@ namespace arm3r {
 
 BOOST_AUTO_TEST_SUITE(pack)
 
-static constexpr int results_per_input = 19;
+static constexpr int results_per_input = 23;
 
 template <class T>
 ARM3R_INLINE void every_function(const T& x, const T& y, T* out) {
@@ -33,6 +33,10 @@ ARM3R_INLINE void every_function(const T& x, const T& y, T* out) {
                                           max(x, y),
                                           copysign(x, y),
                                           fifth_root(abs(y) + 1e-300),
+                                          exp(x),
+                                          log(x),
+                                          power(x, y),
+                                          power(abs(x), 1.5),
                                           x + 2.0 * y,
                                           x / (1.0 - y),
                                           -x,

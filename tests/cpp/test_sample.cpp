@@ -22,13 +22,19 @@ BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
         params.set("wall.acts_on_arm", trial % 2)
             .choose("controller.type", trial % 3 ? "gravity_compensation" : "none");
         params.choose("controller.algorithm", trial % 5 ? "closed_form" : "recursion");
+        const char* const laws[] = {"hybrid", "admittance", "computed_torque", "energy_tank", "adaptive_reference"};
+        const bool has_law = trial % 2;
+        if (has_law) params.choose("controller.type", laws[trial / 2 % 5]).set("observer", trial % 4 == 1);
         const Setup setup = make_setup(params);
 
         FullState y0, f0, y1, f1;
-        for (State<double, state_size>* state : {&y0, &f0, &y1, &f1})
+        for (FullState* state : {&y0, &f0, &y1, &f1})
             for (double& x : *state) x = random.in(-2, 2);
-        const Inside inside = hermite(3.0, 0.2, y0, f0, y1, f1);
-        const Scene scene{setup.plant, trial % 4 < 2, 0.5, static_cast<Mode>(trial % 3), inside};
+        Inside inside;
+        inside.take(hermite(3.0, 0.2, y0, f0, y1, f1));
+        const Known<double> known{};
+        const Scene scene{setup.plant, trial % 4 < 2, 0.5, static_cast<Mode>(trial % 4), inside, setup.law(),
+                          false,       known,         1,   double(trial % 7 < 4)};
         double t[together];
         for (int i = 0; i < together; ++i) t[i] = 3.0 + 0.025 * i;
         Rows rows;

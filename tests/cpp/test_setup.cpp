@@ -157,6 +157,113 @@ BOOST_AUTO_TEST_CASE(taylor_is_refused_where_the_torque_is_to_come_from_the_recu
     BOOST_TEST(validate(Params(params).choose("controller.type", "none")).empty());
 }
 
+static Params seriesed() { return unequal_params().choose("solver.method", "taylor").set("wall", 1); }
+
+static Params damped(Params params, std::string_view law) {
+    return params.choose("wall.contact.law", law).set("wall.contact.stiffness", 1e4);
+}
+
+BOOST_AUTO_TEST_CASE(taylor_is_refused_where_the_wall_has_no_series) {
+    const auto refuses = [](const Params& params, const char* path) {
+        check_refusal(params, "scenario.no_series", path);
+        BOOST_TEST(validate(Params(params).choose("solver.method", "dopri5")).empty());
+        BOOST_TEST(validate(Params(params).choose("solver.method", "rk4")).empty());
+    };
+    BOOST_TEST(validate(seriesed()).empty());
+    Params ramp = seriesed().choose("wall.motion.type", "ramp").set("wall.motion.distance", 0.1);
+    refuses(ramp.set("wall.motion.duration", 1), "wall.motion.type");
+    Params turning = seriesed().choose("wall.rotation.type", "constant").set("wall.rotation.axis", {0, 0, 1});
+    refuses(turning.set("wall.rotation.rate", 1), "wall.rotation.type");
+    refuses(damped(seriesed(), "kelvin_voigt").set("wall.contact.damping", 3), "wall.contact.law");
+    refuses(damped(seriesed(), "hunt_crossley").set("wall.contact.dissipation", 3), "wall.contact.law");
+    const Params diagonal =
+        seriesed().choose("wall.contact.law", "diagonal").set("wall.contact.stiffness", {1e3, 20, 30});
+    BOOST_TEST(validate(diagonal).empty());
+    refuses(Params(diagonal).set("wall.acts_on_arm", 1), "wall.contact.law");
+    const Params rough = seriesed().set("wall.contact.friction.coefficient", 0.2);
+    BOOST_TEST(validate(rough).empty());
+    refuses(Params(rough).set("wall.acts_on_arm", 1), "wall.contact.friction.coefficient");
+    Params aside = seriesed().choose("wall.motion.type", "sinusoid").set("wall.motion.amplitude", 0.1);
+    BOOST_TEST(validate(aside.set("wall.motion.frequency", 1).set("wall.motion.direction", {0, 1, 0})).empty());
+}
+
+// ---- the wall
+
+BOOST_AUTO_TEST_CASE(a_damped_law_is_told_once_how_much_it_damps) {
+    const Params walled = unequal_params().set("wall", 1);
+    const Params voigt = damped(walled, "kelvin_voigt"), crossley = damped(walled, "hunt_crossley");
+    check_refusal(voigt, "scenario.missing_key", "wall.contact.damping");
+    check_refusal(Params(voigt).set("wall.contact.damping", 3).set("wall.contact.restitution", 0.5),
+                  "scenario.conflict", "wall.contact.damping");
+    check_refusal(crossley, "scenario.missing_key", "wall.contact.dissipation");
+    check_refusal(Params(crossley).set("wall.contact.restitution", 0.5), "scenario.missing_key",
+                  "wall.contact.impact_speed");
+    check_refusal(Params(crossley).set("wall.contact.dissipation", 0.5).set("wall.contact.impact_speed", 0.5),
+                  "scenario.conflict", "wall.contact.impact_speed");
+    check_refusal(Params(walled)
+                      .choose("wall.contact.law", "hunt_crossley")
+                      .set("wall.contact.dissipation", 1)
+                      .set("wall.contact.stiffness", std::nan("")),
+                  "scenario.missing_key", "wall.contact.stiffness");
+    BOOST_TEST(
+        validate(Params(crossley).set("wall.contact.restitution", 0.5).set("wall.contact.impact_speed", 0.1)).empty());
+}
+
+BOOST_AUTO_TEST_CASE(damping_comes_from_the_restitution_and_the_mass_that_the_arm_shows) {
+    Params params = damped(unequal_params().set("wall", 1).set("wall.normal", {-1, 0.3, 0.2}), "kelvin_voigt");
+    const Setup setup = make_setup(params.set("wall.contact.restitution", 0.450975453));
+    const double m = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
+    BOOST_TEST(std::abs(setup.plant.contact.damping / (2 * 0.3 * std::sqrt(1e4 * m)) - 1) <= 1e-8);
+    params = damped(params, "hunt_crossley").set("wall.contact.restitution", 0.832869792);
+    const Contact<double> contact = make_setup(params.set("wall.contact.impact_speed", 0.2)).plant.contact;
+    BOOST_TEST(std::abs(contact.dissipation - 0.3 / 0.2) <= 1e-7);
+    BOOST_TEST(contact.exponent == 1.5);
+}
+
+BOOST_AUTO_TEST_CASE(a_table_says_as_much_of_each_instant_and_they_increase) {
+    Params table = unequal_params().set("wall", 1).choose("wall.motion.type", "table");
+    check_refusal(Params(table)
+                      .set("wall.motion.t", 0.0)
+                      .set("wall.motion.s", {0, 1})
+                      .set("wall.motion.v", {0, 0})
+                      .set("wall.motion.a", {0, 0}),
+                  "scenario.missing_key", "wall.motion.t");
+    table.set("wall.motion.t", {0, 1, 3}).set("wall.motion.s", {0, 0.1, 0.2});
+    table.set("wall.motion.v", {0, 0.1, 0}).set("wall.motion.a", {0, 0, 0});
+    BOOST_TEST(validate(table).empty());
+    BOOST_TEST(make_setup(table).plant.wall.table->knots == 3);
+    check_refusal(Params(table).set("wall.motion.a[3]", 0), "scenario.table", "wall.motion.a");
+    check_refusal(Params(table).set("wall.motion.s[2]", std::nan("")), "scenario.table", "wall.motion.s");
+    check_refusal(Params(table).set("wall.motion.v[1]", std::nan("")), "scenario.missing_key", "wall.motion.v");
+    check_refusal(Params(table).set("wall.motion.t[2]", 1), "scenario.table", "wall.motion.t[2]");
+    check_refusal(Params(table).set("wall.motion.t[1]", 5), "scenario.table", "wall.motion.t[2]");
+}
+
+BOOST_AUTO_TEST_CASE(directions_and_axes_have_a_length) {
+    Params params = unequal_params().set("wall", 1).choose("wall.motion.type", "ramp").set("wall.motion.distance", 1);
+    params.set("wall.motion.duration", 1);
+    check_refusal(Params(params).set("wall.motion.direction", {0, 0, 0}), "scenario.range", "wall.motion.direction");
+    params.choose("wall.rotation.type", "constant").set("wall.rotation.rate", 1);
+    check_refusal(params, "scenario.missing_key", "wall.rotation.axis");
+    check_refusal(Params(params).set("wall.rotation.axis", {0, 0, 0}), "scenario.range", "wall.rotation.axis");
+    const Wall<double> wall =
+        make_setup(params.set("wall.motion.direction", {0, 3, 4}).set("wall.rotation.axis", {0, 0, -9})).plant.wall;
+    BOOST_TEST(distance(wall.direction, Vec3<double>(0, 0.6, 0.8)) <= 1e-16);
+    BOOST_TEST(distance(wall.axis, Vec3<double>(0, 0, -1)) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_part_of_the_body_says_how_stiff_the_wall_is_unless_it_is_said_otherwise) {
+    const Key& stiffness = *find_key("wall.contact.stiffness");
+    const auto fallback = [&](const Params& params) { return default_of(stiffness, params)[0]; };
+    const Params walled = unequal_params().set("wall", 1);
+    BOOST_TEST(fallback(walled) == 1000);
+    BOOST_TEST(fallback(Params(walled).choose("wall.contact.preset", "chest")) == 25e3);
+    BOOST_TEST(fallback(Params(walled).choose("wall.contact.preset", "hands_and_fingers")) == 75e3);
+    BOOST_TEST(fallback(Params(walled).choose("wall.contact.law", "kelvin_voigt")) == 1000);
+    for (const char* law : {"diagonal", "hunt_crossley"})
+        BOOST_TEST(std::isnan(fallback(Params(walled).choose("wall.contact.law", law))));
+}
+
 // ---- the solver
 
 BOOST_AUTO_TEST_CASE(the_solver_is_as_it_was_asked_for) {
@@ -254,6 +361,9 @@ BOOST_AUTO_TEST_CASE(a_fixed_step_that_cannot_resolve_the_contact_is_named) {
     Params params = unequal_params().set("wall", 1).set("wall.acts_on_arm", 1).choose("solver.method", "rk4");
     check_slip(Params(params).set("wall.contact.stiffness", 1e8), "solver.step");
     BOOST_TEST(slips(params).empty());
+    params.choose("wall.contact.law", "kelvin_voigt");
+    BOOST_TEST(slips(Params(params).set("wall.contact.damping", 100)).empty());
+    check_slip(Params(params).set("wall.contact.damping", 2000), "solver.step");
 }
 
 BOOST_AUTO_TEST_CASE(units_off_by_powers_of_ten_are_a_slip) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 
 #include "arm3r/plant.hpp"
@@ -152,7 +153,8 @@ BOOST_AUTO_TEST_CASE(columns_of_the_wall_are_there_only_with_a_wall) {
     BOOST_CHECK_THROW(column(falling().run(), "depth"), std::invalid_argument);
     BOOST_CHECK_THROW(column(falling().run(), "wall_x"), std::invalid_argument);
     BOOST_TEST(last(falling().run(), "contact") == 0);
-    BOOST_TEST(juggled().run().columns.size() == column_table().size());
+    const auto of_any_run = [](const Column& c) { return c.need == Need::nothing || c.need == Need::wall; };
+    BOOST_TEST(juggled().run().columns.size() == std::size_t(std::ranges::count_if(column_table(), of_any_run)));
 }
 
 BOOST_AUTO_TEST_CASE(the_other_convention_negates_joints_2_and_3_and_nothing_else) {

@@ -117,16 +117,16 @@ static std::vector<Terms> played(const Tape& tape, const std::vector<Terms>& inp
 // Position and velocity of the wall's frame about `at`.
 static std::vector<Terms> wall_terms(const Wall<double>& wall) {
     std::vector<Terms> x(6, Terms(order + 1, 0.0));
-    const Real80 w = 2 * std::acos(Real80(-1)) * wall.frequency, A = wall.amplitude;
+    const Real80 w = 2 * std::acos(Real80(-1)) * wall.swing.frequency, A = wall.swing.amplitude;
     for (int i = 0; i < 3; ++i) {
         Terms& p = x[i];
         p[0] = wall.point[i];
         if (wall.motion == Motion::constant) p[0] += wall.velocity[i] * Real80(at), p[1] = wall.velocity[i];
         if (wall.motion == Motion::sinusoid) {
-            Real80 factor = A * wall.n[i];
-            p[0] -= factor * std::sin(Real80(wall.phase));
+            Real80 factor = A * wall.direction[i];
+            p[0] -= factor * std::sin(Real80(wall.swing.phase));
             for (int k = 0; k <= order; factor *= w / Real80(++k))
-                p[k] += factor * std::sin(w * Real80(at) + wall.phase + k * std::acos(Real80(0)));
+                p[k] += factor * std::sin(w * Real80(at) + wall.swing.phase + k * std::acos(Real80(0)));
         }
         for (int k = 0; k < order; ++k) x[3 + i][k] = Real80(k + 1) * p[k + 1];
         x[3 + i][order] = 0;  // enters nothing that is compared
@@ -145,7 +145,7 @@ static std::vector<Terms> series_by_definition(const Plant<double>& plant, bool 
     for (Expr& x : wall.velocity) x = tape.input();
     RightHandSide<double, Expr> rhs(plant);
     rhs.touch = pressed ? Touch::pressed : Touch::none;
-    rhs.derivative(wall, rhs.pose_near(y), y, dy);
+    rhs.derivative(Expr(0.0), wall, rhs.pose_near(y), y, dy);
     for (const Expr& x : dy) tape.output(x);
     const auto [q1, q2, q3] = std::array{y[0], y[1], Expr(y[1] + y[2])};
     const SinCos<Expr> s1 = sincos(q1), s2 = sincos(q2), s3 = sincos(q3);

@@ -14,11 +14,14 @@ int main(int, char** arguments) {
         {"cos", [](double x, double) { return sincos(x).cos; }},
         {"rotated_sin", [](double x, double delta) { return sincos_rotated(sincos(x), delta).sin; }},
         {"rotated_cos", [](double x, double delta) { return sincos_rotated(sincos(x), delta).cos; }},
-        {"tanh", [](double x, double) { return tanh(x); }},
-        {"atan2", [](double y, double x) { return atan2(y, x); }},
-        {"acos", [](double x, double) { return acos(x); }},
+        {"tanh", [](double x, double) { return arm3r::tanh(x); }},
+        {"atan2", [](double y, double x) { return arm3r::atan2(y, x); }},
+        {"acos", [](double x, double) { return arm3r::acos(x); }},
         {"hypot2", [](double x, double y) { return hypot2(x, y); }},
         {"fifth_root", [](double x, double) { return fifth_root(x); }},
+        {"exp", [](double x, double) { return arm3r::exp(x); }},
+        {"log", [](double x, double) { return arm3r::log(x); }},
+        {"power", [](double x, double p) { return power(x, p); }},
     };
     const auto& f = functions.at(arguments[1]);
     double pair[2];

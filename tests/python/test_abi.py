@@ -17,6 +17,8 @@ from arm3r_cpp._arm3r import ffi, lib
 
 HEADER = Path(arm3r.__file__).parent / "include" / "arm3r" / "arm3r.h"
 SCENARIO = b"format: 1\ntime: {stop: 0.05}\nwall: {point: [1.7, 0, 0]}\n"  # in contact from the start: it has an event
+CONTROLLED = SCENARIO + b"controller: {type: user}\n"
+USER = arm3r.Scenario(CONTROLLED.decode()).params[arm3r.param_index("controller.type")]
 SIZE_MAX = 2 ** (8 * ffi.sizeof("size_t")) - 1
 
 
@@ -31,7 +33,7 @@ class Argument:
 
     @property
     def is_pointer(self) -> bool:
-        return "*" in self.type or self.type in ("arm3r_progress", "arm3r_batch_progress", "arm3r_sink")
+        return "*" in self.type or self.type in ("arm3r_progress", "arm3r_batch_progress", "arm3r_sink", "arm3r_law")
 
 
 @dataclass(frozen=True)
@@ -90,15 +92,18 @@ class Caller:
         if kind == "const char *":
             return self.keep(ffi.new("char[]", self.text(function, name)))
         if name == "params":
-            return self.params()
+            return self.params("user" if function.name == "arm3r_params_control" else "none")
         if kind == "const double *":
             return self.keep(ffi.new("double[]", [1.2, -0.5, 0.9]))
         if kind == "double *":
             return self.keep(ffi.new("double[64]"))
         if kind.endswith("**"):
             return self.keep(ffi.new(kind))
-        if handle := re.fullmatch(r"(?:const )?arm3r_(arm|scenario|run) \*", kind):
-            return getattr(self, handle[1])()
+        if handle := re.fullmatch(r"(?:const )?arm3r_(arm|scenario|run|simulation) \*", kind):
+            controlled = function.name in ("arm3r_scenario_control", "arm3r_simulation_create")
+            return self.scenario(CONTROLLED) if controlled else getattr(self, handle[1])()
+        if kind == "arm3r_law":
+            return self.keep(ffi.callback("int32_t(void *, const arm3r_law_state *, double *)", _hold))
         if kind == "arm3r_sink":
             return self.keep(ffi.callback("int32_t(void *, const char *, size_t)", lambda user, data, size: 0))
         if options := re.fullmatch(r"const (arm3r_\w+_options) \*", kind):
@@ -118,9 +123,11 @@ class Caller:
             }.get(function.name, b"time.stop")
         return {"text": SCENARIO, "file": b"abi.yaml", "name": b"initial.q[0]", "value": b"0.1"}[name]
 
-    def params(self) -> Any:
+    def params(self, controller: str) -> Any:
         values = self.keep(ffi.new("double[]", self.count))
         assert lib.arm3r_param_defaults(values, self.count) == 0
+        if controller == "user":
+            values[arm3r.param_index("controller.type")] = USER
         return values
 
     def options(self, kind: str = "arm3r_run_options") -> Any:
@@ -130,18 +137,28 @@ class Caller:
 
     def arm(self) -> Any:
         out = ffi.new("arm3r_arm **")
-        assert lib.arm3r_arm_create(self.params(), self.count, out) == 0, message()
+        assert lib.arm3r_arm_create(self.params("none"), self.count, out) == 0, message()
         return self.keep(ffi.gc(out[0], lib.arm3r_arm_free))
 
-    def scenario(self) -> Any:
+    def scenario(self, text: bytes = SCENARIO) -> Any:
         out = ffi.new("arm3r_scenario **")
-        assert lib.arm3r_scenario_create(SCENARIO, len(SCENARIO), b"abi.yaml", 8, out) == 0, message()
+        assert lib.arm3r_scenario_create(text, len(text), b"abi.yaml", 8, out) == 0, message()
         return self.keep(ffi.gc(out[0], lib.arm3r_scenario_free))
+
+    def simulation(self) -> Any:
+        out = ffi.new("arm3r_simulation **")
+        assert lib.arm3r_simulation_create(self.scenario(CONTROLLED), out) == 0, message()
+        return self.keep(ffi.gc(out[0], lib.arm3r_simulation_free))
 
     def run(self) -> Any:
         out = ffi.new("arm3r_run **")
         assert lib.arm3r_scenario_run(self.scenario(), ffi.NULL, out) == 0, message()
         return self.keep(ffi.gc(out[0], lib.arm3r_run_free))
+
+
+def _hold(user: Any, state: Any, tau: Any) -> int:
+    tau[0:3] = list(state.tau_g)
+    return 0
 
 
 @pytest.fixture
@@ -312,7 +329,7 @@ def test_stop_flag_ends_the_run(call: Caller) -> None:
     lib.arm3r_scenario_free(scenario[0])
 
 
-@pytest.mark.parametrize("outcome", [-1, 9, 2**31 - 1])
+@pytest.mark.parametrize("outcome", [-1, 10, 2**31 - 1])
 def test_unknown_outcomes_have_no_name(outcome: int) -> None:
     assert ffi.string(lib.arm3r_outcome_name(outcome)) == b""
 

@@ -33,7 +33,7 @@ def expected(run: arm3r.Run) -> dict[str, float]:
     """The columns of a batch, from a run with all its rows."""
     summary, end = run.summary, {name: float(run[name][-1]) for name in run.columns}
     times = {kind: [event.t for event in run.events if event.type == kind] for kind in ("make", "break")}
-    return {
+    known = {
         "outcome": 0.0,
         "t_end": summary["t_end"],
         **{name: summary[name] for name in ("contacts", "contact_time", "peak_force", "final_force", "impulse")},
@@ -44,6 +44,11 @@ def expected(run: arm3r.Run) -> dict[str, float]:
         **{name: end[name] for name in ("work_actuators", "work_wall", "energy_dissipated")},
         **{f"steps.{name}": float(number) for name, number in summary["steps"].items()},
     }
+    told = {name: np.nan if value is None else value for name, value in summary["metrics"].items()}
+    assert {name: told[name] for name in known if name != "outcome"} == pytest.approx(
+        {name: value for name, value in known.items() if name != "outcome"}, abs=0, rel=0, nan_ok=True
+    )
+    return told | known
 
 
 def assert_row_is_the_run(batch: arm3r.Batch, index: tuple[int, ...]) -> None:

@@ -119,6 +119,40 @@ def test_fifth_root_is_within_1_2_ulp_of_every_normal_positive(ours):
     assert largest_error(ours("fifth_root", x), (mpmath.root(v, 5) for v in x)) < 1.2
 
 
+def test_exp_is_within_0_6_ulp_where_its_result_is_normal(ours):
+    rng, n = random()
+    x = np.concatenate([rng.uniform(-1, 1, n), rng.uniform(-708, 709, n), spread(1e-300, 700)])
+    assert largest_error(ours("exp", x), map(mpmath.exp, x)) < 0.6
+
+
+def test_exp_is_within_1_ulp_where_its_result_is_subnormal(ours):
+    x = np.linspace(-745.1, -708.4, 5000)
+    assert largest_error(ours("exp", x), map(mpmath.exp, x)) <= 1.0
+
+
+def test_log_is_within_0_55_ulp_of_every_normal_positive(ours):
+    rng, n = random()
+    ends = [np.finfo(float).tiny, np.finfo(float).max, math.sqrt(0.5), math.sqrt(2), math.nextafter(1, 0)]
+    x = np.concatenate([rng.uniform(0, 2, n), 1 + spread(2e-16, 0.5), abs(spread(2.3e-308, 1.7e308)), ends])
+    assert largest_error(ours("log", x), map(mpmath.log, x)) < 0.55
+
+
+@pytest.mark.parametrize("p", [1.0, 1.0 + 2**-52, 1.5, 2.0, 3.0, "any"])
+def test_power_is_within_0_6_ulp_up_to_the_third(ours, p):
+    rng, n = random()
+    x = np.concatenate([abs(spread(1e-12, 1e3, n)), rng.uniform(0.5, 2, n)])
+    exponents = rng.uniform(1, 3, 2 * n) if p == "any" else np.full(2 * n, p)
+    true = (mpmath.power(*pair) for pair in zip(x, exponents, strict=True))
+    assert largest_error(ours("power", x, exponents), true) < (0.6 if p != 1.0 else 1e-30)
+
+
+def test_power_is_within_1_ulp_from_the_tenth_to_the_tenth_root(ours):
+    rng, n = random()
+    x, exponents = abs(spread(1e-12, 1e3, n)), np.exp(rng.uniform(-1, 1, n) * math.log(10))
+    true = (mpmath.power(*pair) for pair in zip(x, exponents, strict=True))
+    assert largest_error(ours("power", x, exponents), true) < 1.0
+
+
 AXIS = [-3.0, -1.0, -1e-300, -5e-324, -0.0, 0.0, 5e-324, 1e-300, 1.0, 3.0]
 
 

@@ -5,32 +5,42 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+SETUP = (
+    "setup setup_controller setup_rules setup_rules_controller setup_rules_sampling setup_sampling setup_setpoint "
+    "setup_slips setup_slips_controller"
+)
+
 # From the bottom up. The parts of one line do not know each other; the files of one part do.
 LAYERS = [
-    ["arm3r", "primitives", "row_memory"],
+    ["arm3r", "primitives", "row_memory", "presets"],
     ["elementary", "numbers text"],
-    ["real", "error", "rough_root"],
+    ["real", "error", "rough_root", "random"],
     ["dual", "expr", "pack", "schema suggest", "columns", "findings"],
-    ["eigen_traits"],
-    ["vectors", "integrators", "polynomial"],
-    ["arm", "wall", "at"],
-    ["kinematics", "recursion", "contact"],
+    ["eigen_traits", "lane_access", "apart"],
+    ["course", "vectors", "integrators", "polynomial", "restitution", "small_lu", "spline"],
+    ["arm", "wall", "at", "linearization", "estimator"],
+    ["kinematics", "recursion", "contact", "rodas"],
     ["dynamics"],
+    ["setpoint", "loop_limits"],
     ["controllers"],
-    ["plant"],
-    ["lanes", "taylor_recipes"],
-    ["setup setup_rules setup_slips", "sample", "model_batch", "derive_taylor", "taylor"],
-    ["validate", "contact_step", "size_cap"],
+    ["task_space", "digital", "observer", "user_law", "loop_limits"],
+    ["motion_laws impedance_laws force_loop force_laws adaptive_reference admittance energy_tank virtual_wall"],
+    ["laws"],
+    ["plant", "compiled_laws"],
+    ["lanes", "taylor_recipes", "step_limits"],
+    ["control_loop", SETUP, "model_batch", "derive_taylor", "taylor"],
+    ["sample", "law_state"],
+    ["validate", "contact_step", "size_cap", "stepper"],
     ["events"],
-    ["simulation ledger row_log recorder runs adaptive_run marching_run march fixed_march taylor_march"],
+    ["simulation ledger row_log recorder runs adaptive_run stepwise marching_run march fixed_march taylor_march score"],
     ["summary"],
-    ["batch crew"],
+    ["batch crew lineup lineup_memory lineup_rk4 lineup_taylor"],
     ["yaml_events", "input", "output"],
     ["paths", "yaml_json"],
     ["checks results csv"],
     ["scenario scenario_set scenario_text"],
     ["reference"],
-    ["c_api c_api_batch c_api_error c_api_numbers c_api_text"],
+    ["c_api c_api_batch c_api_error c_api_law c_api_numbers c_api_text"],
     ["cli"],
 ]
 HEIGHT = {stem: height for height, layer in enumerate(LAYERS) for part in layer for stem in part.split()}

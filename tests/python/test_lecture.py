@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 NAMES = sorted(str(path.relative_to(SCENARIOS)) for path in scenario_files())
 LECTURE = [name for name in NAMES if name.startswith("lecture/")]
+BESIDE_THE_PLATE = {"force_control/b5d_plate_edge.yaml"}  # the tip is deeper than the face, and nothing touches it
 D = np.array([1, -1, -1])
 Array = NDArray[np.float64]
 G, G_MOON = 9.80665, 1.62
@@ -65,7 +66,7 @@ def test_contact_flag_force_and_depth_tell_the_same_story(name: str) -> None:
     run = run_of(name)
     touching = run["contact"] == 1
     assert np.array_equal(touching, np.any(run["f_on_wall"], axis=1))
-    if "depth" in run.units:
+    if "depth" in run.units and name not in BESIDE_THE_PLATE:
         assert np.array_equal(touching, run["depth"] > 0)
 
 
@@ -74,8 +75,9 @@ def test_the_other_convention_tells_the_same_story(name: str) -> None:
     here = arm3r.Scenario.load(SCENARIOS / name)
     there = here.copy()
     there["arm.convention"] = {"simscape": "slide", "slide": "simscape"}[here["arm.convention"]]
-    for key in ("initial.q", "initial.qd"):
-        there[key] = D * here[key]
+    for key in ("initial.q", "initial.qd", "reference.q", "reference.q_amplitude"):
+        if key in here:
+            there[key] = D * here[key]
     there["checks"] = []
     one, other = run_of(name), there.run()
     for column in ("tip", "tip_v", "f_on_wall"):

@@ -331,7 +331,11 @@ def test_unknown_parameters_are_refused() -> None:
         ("wall.size", "infinite", "infinite"),
         ("name", "a: [strange] # name", "a: [strange] # name"),
         ("name", "ünïcode", "ünïcode"),
-        ("controller", {"type": "constant", "torque": [1, 2, 3]}, {"type": "constant", "torque": [1, 2, 3]}),
+        (
+            "controller",
+            {"type": "constant", "torque": [1, 2, 3]},
+            {"type": "constant", "torque": [1, 2, 3], "saturation": "clamp"},
+        ),
     ],
 )
 def test_values_by_path(lecture: arm3r.Scenario, path: str, value: Any, read: Any) -> None:

@@ -48,6 +48,7 @@ typedef enum arm3r_status {
     ARM3R_E_OVERLAP = -107,    /* input and output arrays overlap */
     ARM3R_E_BUSY = -108,       /* the handle is in use by another call */
     ARM3R_E_FILE = -109,       /* a file cannot be read */
+    ARM3R_E_OVER = -110,       /* the simulation is over */
     ARM3R_E_SCENARIO = -201,   /* the scenario is not valid */
     ARM3R_E_SIZE_CAP = -401,   /* the run would need more rows, steps or memory than allowed */
     ARM3R_E_MEMORY = -402,     /* out of memory */
@@ -74,7 +75,8 @@ typedef enum arm3r_outcome {
     ARM3R_RUN_ILL_CONDITIONED = 5, /* the mass matrix lost its positive definiteness */
     ARM3R_RUN_ENERGY = 6,          /* the energy balance does not close */
     ARM3R_RUN_BUDGET = 7,          /* max_steps or the time limit is used up */
-    ARM3R_RUN_INVALID = 8          /* of one run among many: its parameters are not valid, it was not begun */
+    ARM3R_RUN_INVALID = 8,         /* of one run among many: its parameters are not valid, it was not begun */
+    ARM3R_RUN_CONTROLLER = 9       /* the user's controller gave no torque that can be applied */
 } arm3r_outcome;
 
 ARM3R_API const char *arm3r_outcome_name(int32_t outcome); /* "ok", "stopped", ...; "" for an unknown value */
@@ -165,6 +167,41 @@ ARM3R_API int32_t arm3r_run_column(const arm3r_run *run, size_t index, const cha
 ARM3R_API int32_t arm3r_run_event_count(const arm3r_run *run, size_t *count);
 ARM3R_API int32_t arm3r_run_event(const arm3r_run *run, size_t index, arm3r_event *event);
 
+/* ---- numbers: a control law of your own ------------------------------------------------------------------------------
+ * For scenarios with controller.type: user. It is called at t = tick/sampling.rate only, in increasing time, and never twice
+ * for one; its torque is held until the next, within arm.torque_limit.
+ */
+
+/* What the law sees: what the scenario's sensors read (the truth where there are none), and what follows from it. */
+typedef struct arm3r_law_state {
+    size_t struct_size;             /* of the library's own version of this struct */
+    double tick;                    /* samples before this one */
+    double t, period;               /* s */
+    double q[3], qd[3];             /* rad, rad/s */
+    double tip[3], tip_velocity[3]; /* m, m/s: at this q, qd */
+    double jacobian[9];             /* m, row-major: tip_velocity = jacobian qd */
+    double tau_g[3];                /* N m: what holds the arm at this q */
+    double f_on_tip[3];             /* N */
+    double contact;                 /* 1 from where this force presses with more than 1 N until it does with less than 0.5 N; else 0 */
+    double wall_normal[3];          /* unit, from the wall towards the arm; this and the next two 0 without a wall */
+    double wall_point[3];           /* m, of the face */
+    double wall_velocity[3];        /* m/s, of the frame's origin */
+    double residual[3];             /* N m: the observer's external torque; this and the next 0 without one */
+    double collision;               /* 1 while it takes a collision for going on */
+    double stiffness_estimate;      /* N/m, of the wall; this and the next two 0 without an estimator */
+    double wall_speed_estimate;     /* m/s */
+    double identifiable;            /* 1 where the data tell the two apart */
+    double q_true[3], qd_true[3], f_on_tip_true[3]; /* what is, which no controller knows */
+} arm3r_law_state;
+
+/* Writes three torques, N m. Not 0, or a torque that is not finite or beyond 1e12: the run ends as `controller`. The state is
+ * valid during the call. The handle of a simulation in progress may not be used from within. */
+typedef int32_t (*arm3r_law)(void *user, const arm3r_law_state *state, double *tau);
+
+/* As arm3r_params_run, with the law; `user` is handed to it. */
+ARM3R_API int32_t arm3r_params_control(const double *params, size_t count, arm3r_law law, void *user /* Nullable */,
+                                       const arm3r_run_options *options /* Nullable */, arm3r_run **run);
+
 /* ---- numbers: many runs -------------------------------------------------------------------------------------------- */
 
 /* Called at most every 20 ms, from the calling thread. Answers as arm3r_progress. */
@@ -214,6 +251,32 @@ ARM3R_API int32_t arm3r_scenario_yaml(const arm3r_scenario *scenario, int32_t an
 ARM3R_API int32_t arm3r_scenario_warnings(const arm3r_scenario *scenario, const char **text);
 ARM3R_API int32_t arm3r_scenario_params(const arm3r_scenario *scenario, double *params, size_t count);
 ARM3R_API int32_t arm3r_scenario_run(const arm3r_scenario *scenario, const arm3r_run_options *options /* Nullable */, arm3r_run **run);
+
+/* With a law of your own, as arm3r_params_control. */
+ARM3R_API int32_t arm3r_scenario_control(const arm3r_scenario *scenario, arm3r_law law, void *user /* Nullable */,
+                                         const arm3r_run_options *options /* Nullable */, arm3r_run **run);
+
+/* ---- text: a run in your own hands ----------------------------------------------------------------------------------
+ * A simulation of a scenario with controller.type: user stands at a sample, until it is over: at time.stop, whose sample is
+ * the last one, or where the run ended before. Given the same torques, it is bit for bit the run of arm3r_scenario_control.
+ * The methods are those with steps of their own choice: dopri5, rodas4 and auto.
+ */
+
+typedef struct arm3r_simulation arm3r_simulation;
+
+ARM3R_API int32_t arm3r_simulation_create(const arm3r_scenario *scenario, arm3r_simulation **simulation);
+ARM3R_API void arm3r_simulation_free(arm3r_simulation *simulation); /* Nullable */
+ARM3R_API int32_t arm3r_simulation_is_over(const arm3r_simulation *simulation, int32_t *is_over);
+/* What the law would see at this sample; once it is over, what it saw last. */
+ARM3R_API int32_t arm3r_simulation_state(const arm3r_simulation *simulation, arm3r_law_state *state);
+/* Apply three torques, N m, from this sample to the next. ARM3R_E_VALUE: not finite, beyond 1e12; nothing has happened.
+ * ARM3R_E_OVER: there is no sample left. */
+ARM3R_API int32_t arm3r_simulation_step(arm3r_simulation *simulation, const double *tau);
+/* All of it, as it is now, in a simulation of its own; and back, from one of the same scenario: the same bits follow. */
+ARM3R_API int32_t arm3r_simulation_copy(const arm3r_simulation *simulation, arm3r_simulation **copy);
+ARM3R_API int32_t arm3r_simulation_restore(arm3r_simulation *simulation, const arm3r_simulation *from);
+/* The rows so far, as a run; its outcome is `stopped` where it is not over. */
+ARM3R_API int32_t arm3r_simulation_run(const arm3r_simulation *simulation, arm3r_run **run);
 
 /* YAML, read as strictly as a scenario, as JSON: what else is written in files stands on this reader. A node is an object with
  * line, column and one of: `map` (nodes, with key, key_line, key_column), `list` (nodes), `text` (with `quoted`, and `number` where

@@ -78,6 +78,18 @@ struct Dual {
         const double root = fifth_root(x.number);
         return chain(root, x, root / (5.0 * x.number));
     }
+    friend Dual exp(const Dual& x) {
+        const double result = exp(x.number);
+        return chain(result, x, result);
+    }
+    friend Dual log(const Dual& x) { return chain(log(x.number), x, 1.0 / x.number); }
+    // For p >= 1 the slopes are finite down to x = 0, where they are those of x > 0.
+    friend Dual power(const Dual& x, const Dual& p) {
+        const double result = power(x.number, p.number);
+        const double of_less = p.number == 1.0 ? 1.0 : power(x.number, p.number - 1.0);
+        const double by_x = x.number < 0.0 ? 0.0 : p.number * of_less;
+        return chain(result, x, by_x, p, result > 0.0 ? result * log(x.number) : 0.0);
+    }
 
 private:
     static Dual chain(double result, const Dual& a, double by_a) {

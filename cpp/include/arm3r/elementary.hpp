@@ -2,6 +2,9 @@
 // optimisation level. One source for double and Pack; no fma, no libm, no branch on a value.
 #pragma once
 
+#include <limits>
+#include <type_traits>
+
 #include "arm3r/primitives.hpp"
 
 namespace arm3r {
@@ -147,6 +150,101 @@ ARM3R_INLINE T fifth_root(const T& x) {
         y = y * (3.0 * ratio + 2.0) / (2.0 * ratio + 3.0);
     }
     return y + y * ((x / ((y * y) * (y * y) * y) - 1.0) * 0.2);
+}
+
+// e^(high + low) for |low| <= 1e-6 (1 + |high|): the sum is n ln 2 + r + rest. ln 2 stands in two parts of 42 and 53
+// bits, so that n times the first is exact. The scale 2^n comes in two factors, for results at the ends of the range.
+template <Lanewise T>
+ARM3R_INLINE T exp_of_sum(const T& high, const T& low) {
+    const T x = min(max(high, T(-746.0)), T(710.0));
+    const T rounded = x * 0x1.71547652b82fep+0 + round_magic;
+    const T n = rounded - round_magic;
+    const T coarse = x - n * 0x1.62e42fefa3800p-1;
+    const T fine = low - n * 0x1.ef35793c76730p-45;
+    const T r = coarse + fine;
+    const T rest = fine - (r - coarse);
+
+    const T z = r * r;
+    const T z2 = z * z;
+    const T tail =
+        ((0x1.555555555555ap-3 + r * 0x1.5555555555530p-5) + z * (0x1.111111110efbcp-7 + r * 0x1.6c16c16c27019p-10)) +
+        z2 * (((0x1.a01a01b26bcc5p-13 + r * 0x1.a01a0152714f5p-16) +
+               z * (0x1.71ddf26930834p-19 + r * 0x1.27e58cfe16d7dp-22)) +
+              z2 * (0x1.af686d6c0edfep-26 + r * 0x1.1e6710052bdd7p-29));
+    const T sum = 1.0 + r;
+    const T rounding = r - (sum - 1.0);
+    const T result = sum + (rounding + (0.5 * z + ((r * z) * tail + (rest + rest * r))));
+
+    const T half = n * 0.5 + round_magic;
+    const auto power_of_two = [](auto& i) ARM3R_INLINE_LAMBDA { i = (i + 1023) << 52; };
+    return (result * with_bits(half, power_of_two)) * with_bits(rounded - (half - round_magic), power_of_two);
+}
+
+// e^x of every number: 0 below -745.2, infinite above 709.8.
+template <Lanewise T>
+ARM3R_INLINE T exp(const T& x) {
+    return exp_of_sum(x, T(0.0));
+}
+
+// An unevaluated sum, its second part a correction of the first.
+template <class T>
+struct TwoPart {
+    T high, low;
+};
+
+// x without its lowest 27 bits: the product of two such numbers is exact.
+template <Lanewise T>
+ARM3R_INLINE T leading_bits(const T& x) {
+    return with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA { i = i & -(std::int64_t{1} << 27); });
+}
+
+// ln x of a normal positive x, its error below 2^-57. x = 2^n m, sqrt(1/2) <= m < sqrt(2); ln m = 2 artanh(s) with
+// s = (m - 1)/(m + 1): its leading bits, and by division the rest, for what the leading bits leave of m - 1 is exact.
+template <Lanewise T>
+ARM3R_INLINE TwoPart<T> log_in_two(const T& x) {
+    const T n =
+        with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA { i = ((i + 0x00095f619980c433) >> 52) | 0x4330000000000000; }) -
+        (0x1p52 + 1023);  // the sum carries into the exponent from sqrt(1/2) = 0x3fe6a09e667f3bcd on
+    const T m = with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA {
+        i = ((i + 0x00095f619980c433) & 0x000fffffffffffff) + 0x3fe6a09e667f3bcd;
+    });
+    const T f = m - 1.0;
+    const T inverse = 1.0 / (2.0 + f);
+    const T s = f * inverse;
+    const T s_leading = leading_bits(s), f_leading = leading_bits(f);
+    const T left = ((f - 2.0 * s_leading) - s_leading * f_leading) - s_leading * (f - f_leading);
+
+    const T z = s * s;
+    const T z2 = z * z;
+    const T tail =
+        ((0x1.5555555555555p-1 + z * 0x1.9999999999dffp-2) + z2 * (0x1.249249242b407p-2 + z * 0x1.c71c7258fe812p-3)) +
+        (z2 * z2) * ((0x1.745cde356497cp-3 + z * 0x1.3b20ab9872949p-3) +
+                     z2 * (0x1.0f5cc84fc80b8p-3 + z * 0x1.0f6317ca7aeefp-3));
+    const T twice = 2.0 * s_leading;
+    const T turns = n * 0x1.62e42fefa3800p-1;
+    const T high = turns + twice;
+    return {high, (twice - (high - turns)) + (n * 0x1.ef35793c76730p-45 + (2.0 * (left * inverse) + (s * z) * tail))};
+}
+
+// ln x of every positive number, those below 2^-1022 counting as 2^-1022; of 0 it is -infinity, below there is none.
+template <Lanewise T>
+ARM3R_INLINE T log(const T& x) {
+    constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+    const TwoPart<T> sum = log_in_two(max(x, T(0x1p-1022)));
+    const T positive = select(x < T(infinity), sum.high + sum.low, x);
+    return select(x > T(0.0), positive, select(x == T(0.0), T(-infinity), T(nan)));
+}
+
+// x^p for 0 < x < infinity and any p; 0 for x <= 0, where p > 0 is meant. x^1 is x; otherwise an x below 2^-1022 counts
+// as 2^-1022. The leading bits of p and ln x multiply exactly: up to the cube nearly all error is the exponential's.
+template <Lanewise T>
+ARM3R_INLINE T power(const T& x, const std::type_identity_t<T>& p) {
+    const TwoPart<T> sum = log_in_two(max(x, T(0x1p-1022)));
+    const T log = sum.high + sum.low;
+    const T log_leading = leading_bits(log), p_leading = leading_bits(p);
+    const T log_rest = (log - log_leading) + (sum.low - (log - sum.high));
+    const T result = exp_of_sum(p_leading * log_leading, p * log_rest + (p - p_leading) * log_leading);
+    return select(x > T(0.0), select(p == T(1.0), x, result), 0.0 * abs(x));
 }
 
 }  // namespace arm3r

@@ -32,6 +32,9 @@ enum class Op {
     cosine,
     tanh,
     atan2,
+    exp,
+    log,
+    power,
     less,
     less_equal,
     equal,
@@ -153,6 +156,9 @@ T arithmetic(Op op, const T& a, const T& b) {
         case Op::cosine: return sincos(a).cos;
         case Op::tanh: return tanh(a);
         case Op::atan2: return atan2(a, b);
+        case Op::exp: return exp(a);
+        case Op::log: return log(a);
+        case Op::power: return power(a, b);
         default: throw std::logic_error("not an arithmetic operation");
     }
 }
@@ -252,6 +258,9 @@ inline Expr max(const Expr& a, const Expr& b) { return recording::arithmetic(Op:
 inline Expr copysign(const Expr& a, const Expr& b) { return recording::arithmetic(Op::copysign, a, b); }
 inline Expr tanh(const Expr& x) { return recording::arithmetic(Op::tanh, x); }
 inline Expr atan2(const Expr& y, const Expr& x) { return recording::arithmetic(Op::atan2, y, x); }
+inline Expr exp(const Expr& x) { return recording::arithmetic(Op::exp, x); }
+inline Expr log(const Expr& x) { return recording::arithmetic(Op::log, x); }
+inline Expr power(const Expr& x, const Expr& p) { return recording::arithmetic(Op::power, x, p); }
 inline SinCos<Expr> sincos(const Expr& x) {
     return {recording::arithmetic(Op::sine, x), recording::arithmetic(Op::cosine, x)};
 }

@@ -72,8 +72,9 @@ ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, 
     return y1;
 }
 
-// Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step.
-template <class T, std::size_t N, std::size_t Norm>
+// Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step. The `Books` components behind the
+// first `Norm` ride along; what comes after them counts in the error norm again.
+template <class T, std::size_t N, std::size_t Norm, std::size_t Books = N - Norm>
 struct Dopri5 {
     State<T, N> y1, f1;            // the end of the step
     std::array<State<T, N>, 6> k;  // k[0] = f0 .. k[5]
@@ -103,16 +104,30 @@ struct Dopri5 {
         f(t + h, y1, f1);
     }
 
-    // The largest error estimate over the motion, in units of its tolerance. A step is good below 1.
+    // The largest error estimate, in units of its tolerance, of all but the books, or of these too. A step is good below 1.
     // The largest, not a mean: a joint that stands still must not loosen the tolerance of one that moves.
-    T error(const State<T, N>& y, const T& h, double rtol, double atol) const {
+    T error(const State<T, N>& y, const T& h, double rtol, double atol, bool with_books = false) const {
         T largest(0.0);
-        for (std::size_t i = 0; i < Norm; ++i) {
+        for (std::size_t i = 0; i < N; i = i + 1 == Norm && !with_books ? i + 1 + Books : i + 1) {
             const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] -
                              17253.0 / 339200 * k[4][i] + 22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
             largest = max(largest, T(abs(e) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
         }
         return largest;
+    }
+
+    // h times the size of the eigenvalue that rules the difference between the last two stages, both at the end of the step:
+    // beyond 3.25 the stability of the method holds the step down, not its accuracy (5.7).
+    T stiffness(const T& h) const {
+        T rate(0.0), way(0.0);
+        for (std::size_t i = 0; i < N; i = i + 1 == Norm ? i + 1 + Books : i + 1) {
+            const T d = (35.0 / 384 - 9017.0 / 3168) * k[0][i] + 355.0 / 33 * k[1][i] +
+                        (500.0 / 1113 - 46732.0 / 5247) * k[2][i] + (125.0 / 192 - 49.0 / 176) * k[3][i] +
+                        (5103.0 / 18656 - 2187.0 / 6784) * k[4][i] + 11.0 / 84 * k[5][i];
+            rate = rate + (f1[i] - k[5][i]) * (f1[i] - k[5][i]);
+            way = way + d * d;
+        }
+        return way > T(0.0) ? sqrt(T(rate / way)) : T(0.0);
     }
 
     Interpolant<T, N> interpolant(const T& t, const State<T, N>& y, const T& h) const {

@@ -26,19 +26,82 @@ ARM3R_INLINE void each_arm_number(F f, Arms&... a) {
     lumped(a.lumped...);
 }
 
-// The same of plants.
+template <class F, class... Tables>
+void each_table_number(F f, Tables&... tables) {
+    for (int i = 0; i < most_knots; ++i) f(tables.t[i]...), f(tables.s[i]...), f(tables.v[i]...), f(tables.a[i]...);
+}
+
+// The same of the gains and the setpoint of controllers.
+template <class F, class... Controllers>
+ARM3R_INLINE void each_law_number(F f, Controllers&... c) {
+    const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
+    const auto gains = [&](auto&... g) ARM3R_INLINE_LAMBDA {
+        vector(g.joint_stiffness...), vector(g.joint_damping...), vector(g.position...), vector(g.velocity...);
+        vector(g.mass...), vector(g.stiffness...), vector(g.damping...);
+        f(g.force_mass...), f(g.force_damping...), f(g.force...), f(g.force_integral...);
+        f(g.integral_limit...), f(g.tracking_time...), f(g.contact_on...), f(g.contact_off...);
+        f(g.inner_bandwidth...), f(g.inner_damping_ratio...), f(g.reference...), f(g.assumed_stiffness...);
+        f(g.stiffness_amplitude...), f(g.stiffness_frequency...);
+        f(g.tank_energy...), f(g.tank_low...), f(g.tank_high...), f(g.tank_capacity...);
+        vector(g.plane_point...), vector(g.plane_normal...);
+    };
+    const auto setpoint = [&](auto&... s) ARM3R_INLINE_LAMBDA {
+        vector(s.from...), vector(s.to...);
+        f(s.start...), f(s.duration...);
+        vector(s.across1...), vector(s.across2...);
+        f(s.turns...);
+        vector(s.amplitude...);
+        f(s.frequency...), f(s.force...), f(s.force_before...), f(s.force_start...), f(s.force_duration...);
+        f(s.force_amplitude...), f(s.force_frequency...);
+        if ((... && (s.path == Path::table)))
+            for (std::size_t i = 0; i < 3; ++i) each_table_number(f, (*s.table)[i]...);
+    };
+    gains(c.gains...);
+    setpoint(c.setpoint...);
+}
+
+// The same of sensors and observer.
+template <class F, class... Sets>
+ARM3R_INLINE void each_sensor_number(F f, Sets&... s) {
+    f(s.encoder_step...), f(s.velocity_share...), f(s.noise...), f(s.resolution...);
+    f(s.bias[0]...), f(s.bias[1]...), f(s.bias[2]...);
+    f(s.analog_rate...), f(s.force_share...), f(s.force_delay...), f(s.tool_mass...);
+}
+
+template <class F, class... Observers>
+ARM3R_INLINE void each_observer_number(F f, Observers&... o) {
+    const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
+    vector(o.gain...), vector(o.threshold...);
+    f(o.hold...), f(o.reflex_gain...), f(o.retreat_gain...);
+    vector(o.joint_stiffness...), vector(o.joint_damping...);
+}
+
+template <class F, class... Loads>
+ARM3R_INLINE void each_load_number(F f, Loads&... l) {
+    f(l.force[0]...), f(l.force[1]...), f(l.force[2]...), f(l.start...), f(l.rise...), f(l.duration...);
+}
+
+// The same of plants, but for the tables of walls and what only a law uses.
 template <class F, class... Plants>
 ARM3R_INLINE void each_number(F f, Plants&... plants) {
     const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
+    const auto swing = [&](auto&... s) ARM3R_INLINE_LAMBDA { f(s.amplitude...), f(s.frequency...), f(s.phase...); };
     const auto wall = [&](auto&... w) ARM3R_INLINE_LAMBDA {
         vector(w.point...), vector(w.n...), vector(w.e1...), vector(w.e2...);
         f(w.half1...), f(w.half2...), f(w.face_offset...);
-        vector(w.velocity...);
-        f(w.amplitude...), f(w.frequency...), f(w.phase...);
+        vector(w.velocity...), vector(w.direction...);
+        swing(w.swing...);
+        f(w.ramp.distance...), f(w.ramp.start...), f(w.ramp.duration...);
+        vector(w.axis...), f(w.turn_rate...);
+        swing(w.turn_swing...);
+    };
+    const auto contact = [&](auto&... c) ARM3R_INLINE_LAMBDA {
+        vector(c.stiffness...);
+        f(c.damping...), f(c.exponent...), f(c.dissipation...), f(c.friction...), f(c.slip_velocity...);
     };
     each_arm_number(f, plants.arm...);
     wall(plants.wall...);
-    vector(plants.contact.stiffness...);
+    contact(plants.contact...);
     vector(plants.controller.torque...);
     each_arm_number(f, plants.controller.model...);
 }
@@ -52,14 +115,33 @@ ARM3R_INLINE void copy_arm_choices(const Arm<A>& from, Arm<B>& to) {
 }
 
 template <class A, class B>
+void copy_controller_choices(const Controller<A>& from, Controller<B>& to) {
+    copy_arm_choices(from.model, to.model);
+    static_cast<ControllerChoices&>(to) = from;
+    static_cast<SetpointChoices&>(to.setpoint) = from.setpoint;
+    if (!from.setpoint.table) return;
+    if (!to.setpoint.table)
+        to.setpoint.table = std::make_shared<std::array<Table<B>, 3>>();  // else other lanes are in it
+    for (Table<B>& along : *to.setpoint.table) along.knots = from.setpoint.knots;
+}
+
+template <class A, class B>
 void copy_choices(const Plant<A>& from, Plant<B>& to) {
     copy_arm_choices(from.arm, to.arm);
-    copy_arm_choices(from.controller.model, to.controller.model);
     to.wall.motion = from.wall.motion;
+    to.wall.rotation = from.wall.rotation;
+    if (from.wall.table) {
+        to.wall.table = std::make_shared<Table<B>>();
+        to.wall.table->knots = from.wall.table->knots;
+    }
     to.wall.has_outline = from.wall.has_outline;
     to.contact.law = from.contact.law;
-    to.controller.type = from.controller.type;
-    to.controller.algorithm = from.controller.algorithm;
+    to.contact.has_friction = from.contact.has_friction;
+    copy_controller_choices(from.controller, to.controller);
+    static_cast<SensorChoices&>(to.sensors) = from.sensors;
+    static_cast<ObserverChoices&>(to.observer) = from.observer;
+    to.load.on = from.load.on;
+    to.needs_azimuth = from.needs_azimuth;
     to.has_wall = from.has_wall;
     to.acts_on_arm = from.acts_on_arm;
 }

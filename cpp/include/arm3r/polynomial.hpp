@@ -70,6 +70,21 @@ ARM3R_INLINE Polynomial<T> hermite_cubic(const T& y0, const T& d0, const T& y1, 
     return {3, {y0, d0, 3.0 * difference - 2.0 * d0 - d1, (d0 + d1) - 2.0 * difference}};
 }
 
+// Through five values at equal distances, from one end to the other; and its mean.
+template <class T>
+ARM3R_INLINE Polynomial<T> through_five(const std::array<T, 5>& y) {
+    const T d1 = y[1] - y[0], d2 = (y[2] - 2.0 * y[1]) + y[0];
+    const T d3 = (y[3] - y[0]) - 3.0 * (y[2] - y[1]), d4 = ((y[0] + y[4]) - 4.0 * (y[1] + y[3])) + 6.0 * y[2];
+    return {4,
+            {y[0], 4.0 * d1 - 2.0 * d2 + (4.0 / 3) * d3 - d4, 8.0 * d2 - 8.0 * d3 + (22.0 / 3) * d4,
+             (32.0 / 3) * d3 - 16.0 * d4, (32.0 / 3) * d4}};
+}
+
+template <class T>
+ARM3R_INLINE T mean_of_five(const std::array<T, 5>& y) {  // Boole
+    return (7.0 * (y[0] + y[4]) + 32.0 * (y[1] + y[3]) + 12.0 * y[2]) / 90.0;
+}
+
 inline constexpr auto inverse_binomials = [] {  // [n][i]: 1/C(n, i)
     std::array<Coefficients<double>, most_degree + 1> table{};
     for (int n = 0; n <= most_degree; ++n) {

@@ -19,6 +19,7 @@ concept Real = requires(const T a, const T b, const SinCos<T> s) {
     SinCos<T>(sincos_near(a, s, b));
     T(tanh(atan2(a, acos(b))));
     T(hypot2(a, b));
+    T(exp(log(power(a, b))));
 };
 
 static_assert(Real<double>);

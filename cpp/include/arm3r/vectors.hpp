@@ -25,6 +25,16 @@ ARM3R_INLINE Vec3<T> minus(const Vec3<T>& a, const Vec3<T>& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
+// A gain of each axis, or one for all.
+template <class P, class T>
+ARM3R_INLINE Vec3<T> each_times(const Vec3<P>& gain, const Vec3<T>& v) {
+    return {gain[0] * v[0], gain[1] * v[1], gain[2] * v[2]};
+}
+template <class T>
+ARM3R_INLINE Vec3<T> scaled(const T& factor, const Vec3<T>& v) {
+    return {factor * v[0], factor * v[1], factor * v[2]};
+}
+
 template <class T>
 ARM3R_INLINE Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};

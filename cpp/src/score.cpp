@@ -1,0 +1,42 @@
+#include "score.hpp"
+
+#include <cmath>
+
+#include "lane_access.hpp"
+
+namespace arm3r {
+
+template <class T>
+void Score<T>::put(int lane) {
+    for (T* zero : {&touching_time_, &miss_2_, &reached_, &largest_miss_, &overshoot_, &unsettled_until_, &path_2_,
+                    &largest_path_2_, &saturated_time_, &work_[0], &work_[1], &work_[2]})
+        Lanes<T>::set(*zero, lane, 0.0);
+}
+
+template <class T>
+void Score<T>::tell(int lane, const Controller<double>& controller, Metrics& m) const {
+    const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+    const double t = m.t_end, touching = get(touching_time_);
+    if (wants_force(controller.type) && m.contacts > 0) {
+        m.force_error_rms = touching > 0 ? std::sqrt(get(miss_2_) / touching) : m.force_error_rms;
+        if (get(reached_) > 0) m.force_error_peak = get(largest_miss_);
+        m.overshoot = get(overshoot_);
+        const double unsettled_until = get(unsettled_until_);
+        if (unsettled_until < t) m.settling_time = std::max(0.0, unsettled_until - m.first_contact);
+    }
+    if (wants_path(controller.type) && t > 0) {
+        m.path_error_rms = std::sqrt(get(path_2_) / t);
+        m.path_error_max = std::sqrt(get(largest_path_2_));
+    }
+    m.saturation_share = t > 0 ? get(saturated_time_) / t : 0;
+    for (int i = 0; i < 3; ++i) m.work[std::size_t(i)] = get(work_[i]);
+}
+
+template class Score<double>;
+template class Score<Pack<2>>;
+#if ARM3R_WIDE_PACKS
+template class Score<Pack<4>>;
+template class Score<Pack<8>>;
+#endif
+
+}  // namespace arm3r

@@ -1,0 +1,13 @@
+#pragma once
+// The smoothest curve through points: of all that begin and end at rest, the one with the least integral of squared jerk.
+
+#include <span>
+
+namespace arm3r {
+
+// Its velocities v and accelerations a at the points s, given at instants t that increase, 2 to 16 of each. Between the
+// points it is a quintic; its first four derivatives are continuous; through two points it is the minimum-jerk motion.
+void minimum_jerk_through(std::span<const double> t, std::span<const double> s, std::span<double> v,
+                          std::span<double> a);
+
+}  // namespace arm3r

@@ -1,0 +1,19 @@
+#pragma once
+// How long a step may be for the sake of the wall, which no error estimate sees; docs/model.md (5.2). All in s.
+
+#include "arm3r/plant.hpp"
+
+namespace arm3r {
+
+// A sixteenth of the period with which the wall swings or turns.
+double longest_look(const Wall<double>& wall);
+
+// The next instant after t at which the wall's course changes its formula; infinite for none.
+double next_knot(const Wall<double>& wall, double t);
+
+// A quarter of the shortest half period of the present contact, so that it cannot come and go within a step;
+// infinite for one so damped that it does not swing.
+double contact_time(const Plant<double>& plant, const WallState<double>& wall, const Pose<double>& p,
+                    const Indentation<double>& in);
+
+}  // namespace arm3r

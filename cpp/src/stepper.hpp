@@ -1,0 +1,81 @@
+#pragma once
+// Adaptive steps by an explicit method, by one for stiff equations, or by whichever of the two is the right one at the
+// time; docs/model.md (5.2), (5.6), (5.7).
+
+#include <string>
+
+#include "arm3r/rodas.hpp"
+#include "compiled_laws.hpp"
+#include "sample.hpp"
+#include "setup.hpp"
+
+namespace arm3r {
+
+// N is state_size, or full_size where a controller remembers something.
+template <std::size_t N>
+class Stepper {
+public:
+    using Y = State<double, N>;
+
+    Stepper(const Setup& setup);
+    // As far as another one of the same setup; set() and begin() come next.
+    Stepper(const Setup& setup, const Stepper& other);
+
+    // The mode of contact and what a continuous controller takes for granted, for both methods.
+    void set(Touch touch, double contact, double force_phase, double latest);
+
+    // f at (t, y), from where the next step goes.
+    void begin(double t, const Y& y);
+    const Y& f0() const { return f0_; }
+    void evaluate(double t, const Y& y, Y& dy) {
+        evaluations_ += 1;
+        rhs_(t, y, dy);
+    }
+
+    // Tries a step; the error in units of its tolerance, infinite where it has no end.
+    double attempt(double t, const Y& y, double h);
+    const Y& end() const { return is_stiff_ ? stiff_.y1 : explicit_.y1; }
+    void interpolate(double t, const Y& y, double h, Inside& inside) const;
+    double factor(double error) const { return is_stiff_ ? Stiff::step_factor(error) : step_factor(error); }
+
+    // The step was taken. Whether `end` is where the next one goes on from, and the method may be changed there.
+    void accept(double t, const Y& y, double h, bool goes_on);
+
+    bool is_stiff() const { return is_stiff_; }
+    std::int64_t evaluations() const { return evaluations_; }
+    std::int64_t stiff_steps() const { return stiff_steps_; }
+    std::string choices() const;  // of auto: which method it took when, and why
+    const RightHandSide<double, double>& right_hand_side() const { return rhs_; }
+    // The torque that is applied, and what a continuous controller is told.
+    Vec3<double> torque(double t, const WallState<double>& wall, const Pose<double>& p, const Vec3<double>& f_on_tip,
+                        const Y& y) const;
+
+private:
+    using Explicit = Dopri5<double, N, motion_size, ledger_size>;
+    using Stiff = Rodas4<N, motion_size, ledger_size>;
+    using D = Dual<slopes_at_once>;
+
+    bool counts_heat() const;
+    void judge_stiffness(double t, double h);
+
+    const Setup& setup_;
+    RightHandSide<double, double> rhs_;
+    RightHandSide<double, D> rhs_of_duals_;
+    Explicit explicit_;
+    Stiff stiff_;
+    Linearization<N> slopes_;
+    bool has_slopes_ = false;
+    Y f0_{};
+    bool is_stiff_;
+    int signs_ = 0, doubts_ = 0;  // that the other method is the right one, and that it is not
+    struct Choice {
+        double t, measure;  // s, h lambda
+        bool is_stiff;
+    };
+    static constexpr std::size_t most_told = 8;
+    std::array<Choice, most_told> choices_{};
+    std::size_t choice_count_ = 0;
+    std::int64_t evaluations_ = 0, stiff_steps_ = 0;
+};
+
+}  // namespace arm3r

@@ -1,0 +1,44 @@
+"""How far a long command is."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+BAR = 30  # characters
+
+
+class Bar:
+    """On stderr where that is a terminal and the work is long: rate, and time left."""
+
+    def __init__(self, work: str, things: str) -> None:
+        """work: what is done, in a word. things: what is counted."""
+        self.work, self.things = work, things
+        self.start = time.monotonic()
+        self.before: int | None = None
+        self.drawn = False
+
+    def draw(self, done: int, all_of_them: int) -> None:
+        seconds = time.monotonic() - self.start
+        self.before = done if self.before is None else self.before
+        if seconds < 1 or not sys.stderr.isatty():
+            return
+        rate = (done - self.before) / seconds
+        left = f"{_clock((all_of_them - done) / rate)} left" if rate else "-"
+        filled = BAR * done // all_of_them
+        bar = "#" * filled + "." * (BAR - filled)
+        share = f"{100 * done // all_of_them} %  {done} of {all_of_them}"
+        line = f"{self.work} [{bar}] {share}  {rate:.3g} {self.things}/s  {left}"
+        print(f"\r{line}\x1b[K", end="", file=sys.stderr, flush=True)
+        self.drawn = True
+
+    def clear(self) -> None:
+        if self.drawn:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+        self.drawn = False
+
+
+def _clock(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{seconds:02}" if hours else f"{minutes}:{seconds:02}"

@@ -1,0 +1,131 @@
+"""A run in your own hands: from sample to sample, with snapshots."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import _native
+from ._native import lib
+from .errors import ControllerError, class_of_outcome
+from .law import TORQUE
+from .law_state import LawState, state_of
+from .run import Run
+from .scenario import Scenario
+
+
+class Snapshot:
+    """All of a simulation at an instant. It does not change."""
+
+    def __init__(self, handle: Any, t: float) -> None:
+        self._handle = handle
+        self._t = t
+
+    def __repr__(self) -> str:
+        return f"<Snapshot at t = {self._t:g} s>"
+
+
+class Simulation:
+    """A simulation that stands at each sample of its controller until `step` gives it a torque.
+
+    >>> simulation = Simulation(scenario)
+    >>> while not simulation.is_over:
+    ...     simulation.step(law(simulation.t, simulation.state))
+    >>> run = simulation.run
+
+    That is bit for bit the run of `scenario.run(controller=law)`. The last sample is at time.stop: it ends the run.
+    """
+
+    def __init__(self, scenario: Scenario, *, rate: float | None = None) -> None:
+        """Of a copy of the scenario, whose own controller is set aside.
+
+        Args:
+            rate: of the samples, Hz; None: the scenario's sampling.rate, by default 1000.
+
+        Raises:
+            ScenarioError: the scenario is not valid, or its solver.method is rk4 or taylor.
+        """
+        mine = scenario._for_law(rate)
+        self._file = mine._file
+        self._begin(_native.create("simulation", lib.arm3r_simulation_create, mine._handle))
+
+    def _begin(self, handle: Any) -> None:
+        self._handle = handle
+        self._tau = _native.torque_memory()
+        self._look()
+
+    def _look(self) -> None:
+        self._state = state_of(_native.seen(self._handle))
+        self._is_over = _native.is_over(self._handle)
+
+    def __repr__(self) -> str:
+        return f"<Simulation {self._file}: t = {self.t:g} s{', over' if self._is_over else ''}>"
+
+    @property
+    def t(self) -> float:
+        """Of the present sample, s."""
+        return self._state.t
+
+    @property
+    def state(self) -> LawState:
+        """What the controller sees at the present sample; it stays as it is when the simulation goes on."""
+        return self._state
+
+    @property
+    def is_over(self) -> bool:
+        """Whether there is no sample left."""
+        return self._is_over
+
+    def step(self, tau: Any) -> None:
+        """Apply three torques, N m, from this sample to the next, within arm.torque_limit.
+
+        Raises:
+            ControllerError: these are no torques; nothing has happened.
+            NumericalError, BudgetError: the run could not go on; `error.run` holds it as far as it came.
+            UsageError: the simulation is over, or in use by another thread.
+        """
+        try:
+            _native.put_torque(tau, self._tau)
+        except _native.NoTorque:
+            raise self._refusal(tau) from None
+        status = lib.arm3r_simulation_step(self._handle, self._tau)
+        if status == lib.ARM3R_E_VALUE:
+            raise self._refusal(tau)
+        if status:
+            raise _native.error(status)
+        self._look()
+        if self._is_over and (run := self.run).outcome != "ok":
+            message = f"{self._file}: {run.outcome}: {run.summary['message']}"
+            raise class_of_outcome(run.outcome)(message, code=f"run.{run.outcome}", run=run)
+
+    def _refusal(self, tau: Any) -> ControllerError:
+        tick, t = self._state.tick, self.t
+        message = f"{self._file}: controller: at tick {tick}, t = {t:.12g} s: got {tau!r}; {TORQUE}"
+        return ControllerError(message, code="run.controller", tick=tick, t=t, received=tau)
+
+    @property
+    def run(self) -> Run:
+        """The rows so far: a run whose outcome is `stopped` where it is not over."""
+        return Run._of(_native.create("run", lib.arm3r_simulation_run, self._handle))
+
+    def snapshot(self) -> Snapshot:
+        """All of it as it is now, rows included: the cost grows with them."""
+        return Snapshot(_native.create("simulation", lib.arm3r_simulation_copy, self._handle), self.t)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot, of this or of another simulation of the same scenario: the same bits follow.
+
+        Raises:
+            UsageError: it is of another scenario.
+        """
+        _native.call(lib.arm3r_simulation_restore, self._handle, snapshot._handle)
+        self._look()
+
+    def copy(self) -> Simulation:
+        """An independent simulation that stands where this one does."""
+        copy = Simulation.__new__(Simulation)
+        copy._file = self._file
+        copy._begin(_native.create("simulation", lib.arm3r_simulation_copy, self._handle))
+        return copy
+
+    def __copy__(self) -> Simulation:
+        return self.copy()
