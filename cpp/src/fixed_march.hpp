@@ -27,13 +27,15 @@ public:
     template <class Changed>
     ARM3R_INLINE void step(Changed changed) {
         t0_ = this->t_;
-        y0_ = this->y_;
-        f0_ = this->f_;
+        if constexpr (Base::lanes == 1) {
+            y0_ = this->y_;
+            f0_ = this->f_;
+        }
         before_ = this->in_;
         const T aim = min(this->stop_, T((this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
-        const Y y1 = rk4_step(this->rhs_, t0_, y0_, f0_, this->h_);
+        const Y y1 = rk4_step(this->rhs_, t0_, this->y_, this->f_, this->h_);
         const Mask finite = Base::is_finite(y1), moved = finite && this->alive_;
         this->accept(moved, select(is_last, this->stop_, aim), y1);
         this->evaluations_ = this->evaluations_ + 4.0;
@@ -45,7 +47,7 @@ public:
         this->judge_lanes();
     }
 
-    // The last step's begin, and derivatives at both ends: what an interpolant needs.
+    // The last step's begin, and derivatives at both ends: what an interpolant of a single run needs.
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
     FullState y0(int lane) const { return Base::state_of(y0_, lane); }
     FullState f0(int lane) const { return Base::state_of(f0_, lane); }
@@ -79,7 +81,7 @@ private:
             if (this->plant_.wall.has_outline) special = special || (this->touching_ && comes_near_edge());
             const Mask plainly = this->touching_ && !special && moved;
             if (this->is_elastic_) {
-                this->deepest_ = select(plainly, max(this->deepest_, depth.fourth), this->deepest_);
+                this->deepest_ = max_where(plainly, this->deepest_, depth.fourth);
                 this->depth_time_ = this->depth_time_ + select(plainly, T(h * depth.mean()), o);
             } else {
                 measure_damped(plainly);
@@ -97,7 +99,7 @@ private:
         const std::array<T, 5> force = Base::forces(this->plant_.contact, depth, h, o, T(1.0));
         const Mask turns = plainly && range_of(through_five(force)).high > max(this->peak_, force[4]);
         const Mask rises = plainly && !turns;
-        this->peak_ = select(rises, max(this->peak_, force[4]), this->peak_);
+        this->peak_ = max_where(rises, this->peak_, force[4]);
         this->impulse_ = this->impulse_ + select(rises, T(h * mean_of_five(force)), o);
         if (!any(turns)) return;
         for (int lane = 0; lane < Base::lanes; ++lane) {

@@ -54,7 +54,7 @@ public:
         if (looks_.force) judge_force(moved, half, now);
         if (looks_.path) {
             path_2_ = path_2_ + half * (before_.path_error_2 + now.path_error_2);
-            largest_path_2_ = select(moved, max(largest_path_2_, now.path_error_2), largest_path_2_);
+            largest_path_2_ = max_where(moved, largest_path_2_, now.path_error_2);
         }
         if (looks_.limits) saturated_time_ = saturated_time_ + dt * before_.saturated;
         share_out_work(moved, now);
@@ -78,8 +78,8 @@ private:
         miss_2_ = miss_2_ + half * (miss_before * miss_before * before_.touches + miss * miss * now.touches);
         const auto in_touch = moved && now.touches > o;
         reached_ = select(in_touch && miss <= o, T(1.0), reached_);
-        largest_miss_ = select(in_touch && reached_ > o, max(largest_miss_, T(abs(miss))), largest_miss_);
-        overshoot_ = select(in_touch, max(overshoot_, T(-miss)), overshoot_);
+        largest_miss_ = max_where(in_touch && reached_ > o, largest_miss_, T(abs(miss)));
+        overshoot_ = max_where(in_touch, overshoot_, T(-miss));
         const auto unsettled = moved && abs(miss) > settled_share * abs(now.force_wanted);
         unsettled_until_ = select(unsettled, now.t, unsettled_until_);
     }

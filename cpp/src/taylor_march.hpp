@@ -133,7 +133,7 @@ private:
         if (this->any_touching_) {
             if (this->plant_.wall.has_outline) special = special || (moved && this->touching_ && comes_near_edge());
             const Mask plainly = this->touching_ && !special && moved;
-            this->deepest_ = select(plainly, max(this->deepest_, end), this->deepest_);
+            this->deepest_ = max_where(plainly, this->deepest_, end);
             this->depth_time_ = this->depth_time_ + select(plainly, T(this->h_ * mean), T(0.0));
         }
         if (any(special)) settle(special);

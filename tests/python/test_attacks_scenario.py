@@ -16,6 +16,7 @@ from pathlib import Path
 import arm3r_cpp as arm3r
 import pytest
 from conftest import scenario_files
+from timing import once_within
 
 SCENARIO_EXIT, USAGE_EXIT, FORMAT_EXIT = 3, 2, 9
 HEAD = "format: 1\n"
@@ -119,10 +120,14 @@ def test_a4_a_file_of_1_gib_is_refused_at_the_cap_at_once(cli, tmp_path):
     huge = tmp_path / "huge.yaml"
     with huge.open("wb") as file:
         file.truncate(1 << 30)
-    before = cpu_seconds_of_children()
-    result = cli("check", huge)
-    assert cpu_seconds_of_children() - before < 0.1
-    assert result.returncode == SCENARIO_EXIT and "1048576 bytes" in result.stderr
+
+    def refused():
+        before = cpu_seconds_of_children()
+        result = cli("check", huge)
+        assert result.returncode == SCENARIO_EXIT and "1048576 bytes" in result.stderr
+        return cpu_seconds_of_children() - before
+
+    assert once_within(0.1, refused)
 
 
 def test_a5_the_number_of_values_is_capped(refused):
@@ -316,10 +321,14 @@ def test_m4_the_worst_file_within_the_caps_is_judged_in_little_time_and_memory(e
     path = tmp_path / "worst.yaml"
     path.write_text(text[: 1 << 20])
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (512 << 20, 512 << 20))  # noqa: E731  address space, not only what is used
-    before = cpu_seconds_of_children()
-    result = subprocess.run([executable, "check", path], capture_output=True, preexec_fn=limit, timeout=60)
-    assert result.returncode == SCENARIO_EXIT
-    assert cpu_seconds_of_children() - before < 0.3  # 0.1 s where nothing else shares the core
+
+    def judged():
+        before = cpu_seconds_of_children()
+        result = subprocess.run([executable, "check", path], capture_output=True, preexec_fn=limit, timeout=60)
+        assert result.returncode == SCENARIO_EXIT
+        return cpu_seconds_of_children() - before
+
+    assert once_within(0.3, judged)  # 0.1 s where nothing else shares the core
 
 
 def test_a19_control_codes_never_reach_the_terminal(refused):
@@ -760,7 +769,7 @@ def test_a_signal_ends_a_run_within_100_ms_by_the_signal_itself(executable, tmp_
         assert list(tmp_path.iterdir()) == []
         return time.monotonic() - begin
 
-    assert any(delay() < 0.1 for _ in range(5))  # the machine may be busy with something else now and then
+    assert once_within(0.1, delay)
 
 
 def test_a_time_limit_exits_5_and_keeps_the_rows(cli, tmp_path, moving_wall):

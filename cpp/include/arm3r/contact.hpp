@@ -45,7 +45,7 @@ ARM3R_INLINE Push<T> push(const Contact<P>& contact, const Indentation<T>& in) {
 // N, of the same while the tip is inside: never pulling.
 template <class P, class T>
 ARM3R_INLINE T normal_force(const Contact<P>& contact, const Indentation<T>& in) {
-    return select(in.depth > T(0.0), max(push(contact, in).total, T(0.0)), T(0.0));
+    return max_where(in.depth > T(0.0), T(0.0), push(contact, in).total);
 }
 
 // J, of the springs along the plate, which hold the tip to its centre (4.7).

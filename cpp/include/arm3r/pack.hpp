@@ -60,7 +60,10 @@ struct Pack {
 
     Pack() = default;
     ARM3R_INLINE explicit Pack(const Vector& lanes) : v(lanes) {}
-    ARM3R_INLINE Pack(double all_lanes) : v(all_lanes - Vector{}) {}
+    // g++ 12 makes one instruction of this, sixteen of `all_lanes - Vector{}`.
+    ARM3R_INLINE Pack(double all_lanes) {
+        for (int lane = 0; lane < N; ++lane) v[lane] = all_lanes;
+    }
     ARM3R_INLINE Pack(const Pack& other) : v(other.v) {}
     ARM3R_INLINE Pack& operator=(const Pack& other) {
         v = other.v;

@@ -24,4 +24,10 @@ concept Real = requires(const T a, const T b, const SinCos<T> s) {
 
 static_assert(Real<double>);
 
+// The greater of both where `mask`, else x. Written as select(mask, max(x, y), x), g++ 12 takes packs of 8 apart.
+template <class M, class T>
+ARM3R_INLINE T max_where(const M& mask, const T& x, const T& y) {
+    return max(x, T(select(mask, y, x)));
+}
+
 }  // namespace arm3r

@@ -11,7 +11,7 @@ template <class P, class T>
 ARM3R_INLINE T virtual_wall_force(const Gains<P>& gains, const Vec3<T>& x, const Vec3<T>& xd) {
     const Vec3<T> normal = lifted<T>(gains.plane_normal);
     const T depth = dot(normal, minus(lifted<T>(gains.plane_point), x)), rate = -dot(normal, xd), o(0.0);
-    return select(depth > o, T(max(o, T(gains.stiffness[0] * depth + gains.damping[0] * rate))), o);
+    return max_where(depth > o, o, T(gains.stiffness[0] * depth + gains.damping[0] * rate));
 }
 
 template <class P, class T>
