@@ -102,7 +102,7 @@ private:
             for (int i = 0; i < 3; ++i) sensed.q[i] = on_grid(now.q[i], sensors.encoder_step);
             sensed.pose = pose(sensed.q);
         }
-        if (sensors.velocity != VelocityEstimate::exact) sensed.qd = estimated_rate(due, sensed.q, now.qd);
+        if (sensors.velocity != VelocityEstimate::exact) sensed.qd = estimated_rate(sensed.q, now.qd);
         sensed.f_on_tip = measured_force(due, arm, now);
         if (!digital_.controller.ideal_cancellation) sensed.f_cancelled = sensed.f_on_tip;
         for (int i = 0; i < 3; ++i) {
@@ -118,7 +118,7 @@ private:
     }
 
     // Where there is no sample before, the rate is taken for known.
-    ARM3R_INLINE Vec3<T> estimated_rate(const Mask& due, const Vec3<T>& q, const Vec3<T>& qd) {
+    ARM3R_INLINE Vec3<T> estimated_rate(const Vec3<T>& q, const Vec3<T>& qd) {
         const Mask first = count_ == T(0.0);
         Vec3<T> rate;
         for (int i = 0; i < 3; ++i) {
@@ -127,7 +127,6 @@ private:
                 difference = known_.qd[i] + digital_.sensors.velocity_share * (difference - known_.qd[i]);
             rate[i] = select(first, qd[i], difference);
         }
-        static_cast<void>(due);
         return rate;
     }
 
@@ -249,7 +248,7 @@ private:
     [[gnu::noinline]] void keep_passive(const Mask& due, const Sensed<T>& sensed, Command<T>& command);
 
     ARM3R_INLINE void remember(const Mask& due, const Command<T>& command) {
-        for (std::size_t i = 0; i < law_memory; ++i)
+        for (std::size_t i = 0; i < memory_size(digital_.controller.type); ++i)
             known_.memory[i] = known_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0));
     }
 

@@ -120,7 +120,7 @@ void Stepper<N>::accept(double t, const Y& y, double h, bool goes_on) {
 // Towards the stiff method where stability holds the step down many times, back where the explicit one would go as far.
 template <std::size_t N>
 void Stepper<N>::judge_stiffness(double t, double h) {
-    const double measure = is_stiff_ ? h * fastest_answer(slopes_) : explicit_.stiffness(h);
+    const double measure = is_stiff_ ? h * fastest_answer(slopes_) : explicit_.stiffness();
     if (is_stiff_ ? measure < accuracy_limit : measure > accuracy_limit) {
         doubts_ = 0;
         if (++signs_ < enough_signs) return;

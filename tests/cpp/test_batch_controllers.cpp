@@ -277,7 +277,9 @@ const std::vector<Effect>& effects() {
         {"observer that retreats", reaction("retreat")},
         {"estimator",
          [](Controlled& runs) {
-             runs.set("estimator", 1).vary("estimator.forgetting", 0.98, 1).vary("estimator.start", 0, 0.05);
+             std::vector<double> starts;  // at samples: elsewhere a step of taylor would be cut in two
+             for (int i = 0; i < run_count; ++i) starts.push_back(0.006 * i);
+             runs.set("estimator", 1).vary("estimator.forgetting", 0.98, 1).vary("estimator.start", starts);
          },
          true, false},
         {"estimator of a wall that stands",
@@ -355,7 +357,7 @@ BOOST_AUTO_TEST_CASE(an_estimate_that_a_law_goes_by) {
             BOOST_TEST(differs(runs, table, assumed));
             int told = 0;
             for (std::size_t i = 0; i < runs.count(); ++i) told += runs.number(table, "stiffness_estimate", i) > 0;
-            BOOST_TEST(told > 5);
+            BOOST_TEST(told > 0.4 * run_count);
         }
     }
 }

@@ -47,6 +47,13 @@ constexpr bool integrates_force(Controls type) {
     return type == Controls::operational_space || type == Controls::hybrid || type == Controls::parallel;
 }
 
+// How many numbers a law remembers; what each of them is, its formula says.
+enum : std::size_t { law_memory = 6 };  // at most
+constexpr std::size_t memory_size(Controls type) {
+    if (type == Controls::admittance) return law_memory;
+    return integrates_force(type) || type == Controls::adaptive_reference || type == Controls::energy_tank ? 1 : 0;
+}
+
 // What a law wants at all.
 constexpr bool wants_force(Controls type) { return integrates_force(type) || type == Controls::adaptive_reference; }
 constexpr bool wants_path(Controls type) { return has_law(type) && type != Controls::virtual_wall; }
@@ -99,8 +106,6 @@ struct Controller : ControllerChoices {
 };
 
 // ---- what a law is given and gives back
-
-enum : std::size_t { law_memory = 6 };  // numbers that a law remembers; what each of them is, its formula says
 
 // What a controller may know at an instant. With perfect sensors it is what is.
 template <class T>

@@ -116,9 +116,9 @@ struct Dopri5 {
         return largest;
     }
 
-    // h times the size of the eigenvalue that rules the difference between the last two stages, both at the end of the step:
-    // beyond 3.25 the stability of the method holds the step down, not its accuracy (5.7).
-    T stiffness(const T& h) const {
+    // h times the size of the eigenvalue that rules the difference between the last two stages, both at the end of the step
+    // of h: beyond 3.25 the stability of the method holds the step down, not its accuracy (5.7).
+    T stiffness() const {
         T rate(0.0), way(0.0);
         for (std::size_t i = 0; i < N; i = i + 1 == Norm ? i + 1 + Books : i + 1) {
             const T d = (35.0 / 384 - 9017.0 / 3168) * k[0][i] + 355.0 / 33 * k[1][i] +
