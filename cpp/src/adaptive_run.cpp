@@ -93,7 +93,8 @@ public:
         ControlLoop<double> rehearsal = loop_;
         rehearsal.user = law;
         Vec3<double> held;
-        rehearsal.attend(true, 0.0, setup_.plant.arm, instant(), held);
+        Instant<double> now = instant();
+        rehearsal.attend(true, 0.0, setup_.plant.arm, now, held);
     }
 
     std::unique_ptr<Stepwise> copy() const override { return std::make_unique<AdaptiveRun>(*this); }
@@ -190,45 +191,44 @@ private:
         FullState f{};
         std::copy_n(stepper_.f0().begin(), N, f.begin());
         begin(now_.y, f, mode_, ledger_.energy_at_start());
-        if (is_scored_) score_.begin(sight(run_.t_end, now_.y));
+        if (is_scored_) look_again();
     }
 
     void start_memory() {
         if constexpr (N == full_size) {
             tell_controller();
             const Plant<double>& plant = setup_.plant;
-            const Instant<double> now = instant();
-            for (int i = 0; i < 3; ++i) now_.y[filter_at + i] = now.f_on_tip[i];
+            const Sensed<double> truth = instant().seen;
+            for (int i = 0; i < 3; ++i) now_.y[filter_at + i] = truth.f_on_tip[i];
             stepper_.set(touch(), contact_, force_phase_, infinite);
-            const Sensed<double> sensed =
-                stepper_.right_hand_side().sense(now.t, wall_now(), now.p, now.q, now.qd, now.f_on_tip, moving());
+            const Sensed<double> sensed = stepper_.right_hand_side().sense(
+                truth.t, wall_now(), truth.pose, truth.q, truth.qd, truth.f_on_tip, moving());
             if (has_law(plant.controller.type)) {
                 const auto memory = memory_at_start(plant.controller, sensed);
                 std::copy(memory.begin(), memory.end(), now_.y.begin() + law_at);
             }
-            const Vec3<double> p = momentum(plant.controller.model, now.p, now.qd);
+            const Vec3<double> p = momentum(plant.controller.model, truth.pose, truth.qd);
             for (int i = 0; i < 3; ++i) now_.y[observer_at + i] = p[i];
         }
     }
 
-    // The truth, for a digital controller.
+    // What a digital controller looks at.
     Instant<double> instant() const {
         const Plant<double>& plant = setup_.plant;
         const Pose<double> p = pose(angles(now_.y));
-        const Vec3<double> zero(0, 0, 0);
-        Instant<double> now{run_.t_end, p, angles(now_.y), rates(now_.y), tip_position(plant.arm, p), zero, zero,
-                            zero,       0};
+        Vec3<double> f(0, 0, 0), n(0, 0, 0);
+        double face = 0;
         if (plant.has_wall) {
             const WallState<double> wall = wall_now();
             if (mode_ == Mode::contact) {
                 const Indentation<double> in = tip_indentation(plant, wall, p, rates(now_.y));
-                now.f_on_tip =
-                    only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Grip::clipped)).on_tip;
+                f = only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Grip::clipped)).on_tip;
             }
-            now.n = normal(plant.wall, wall);
-            now.face = dot(now.n, wall.position) + plant.wall.face_offset;
+            n = normal(plant.wall, wall);
+            face = dot(n, wall.position) + plant.wall.face_offset;
         }
-        if (plant.load.on) now.f_on_tip = plus(now.f_on_tip, load_at(plant.load, now.t));
+        if (plant.load.on) f = plus(f, load_at(plant.load, run_.t_end));
+        Instant<double> now{{run_.t_end, angles(now_.y), rates(now_.y), p, f, f, n, face, 0, 0}, {}};
         if constexpr (N == full_size)
             now.f_filtered = {now_.y[filter_at], now_.y[filter_at + 1], now_.y[filter_at + 2]};
         return now;
@@ -238,7 +238,8 @@ private:
     bool attend() {
         if (loop_.next() > run_.t_end || !is_going_on()) return false;
         log_until(run_.t_end);
-        loop_.attend(true, 0.0, setup_.plant.arm, instant(), setup_.plant.controller.torque);
+        Instant<double> now = instant();
+        loop_.attend(true, 0.0, setup_.plant.arm, now, setup_.plant.controller.torque);
         known_ = loop_.known();
         if (asks_estimator(setup_.plant.controller) && known_.identifiable > 0)
             setup_.plant.controller.gains.assumed_stiffness = known_.stiffness;
@@ -340,7 +341,7 @@ private:
 
     void settle() {
         const bool new_torque = attend();
-        if (is_scored_ && (now_.taken.crosses || new_torque)) score_.look_again(sight(run_.t_end, now_.y));
+        if (is_scored_ && (now_.taken.crosses || new_torque)) look_again();
         stepper_.set(touch(), contact_, force_phase_, infinite);
         stepper_.accept(run_.t_end, moving(), now_.taken.h, now_.taken.goes_on && !new_torque);
         ledger_.close(run_.t_end, now_.y, mode_);
@@ -424,12 +425,19 @@ private:
         return sight;
     }
 
+    void look_again() {
+        score_.next() = sight(run_.t_end, now_.y);
+        score_.begin();
+    }
+
     void score_passage(double theta, double t1) {
         for (int i = 1; i < sights_per_step; ++i) {
             const double place = theta * i / sights_per_step;
-            score_.advance(true, sight(inside_.t0 + place * inside_.h, inside_(place)));
+            score_.next() = sight(inside_.t0 + place * inside_.h, inside_(place));
+            score_.advance(true);
         }
-        score_.advance(true, sight(t1, inside_(theta)));
+        score_.next() = sight(t1, inside_(theta));
+        score_.advance(true);
     }
 
     void note_end() {

@@ -26,10 +26,10 @@ struct Law {
         state.struct_size = sizeof state;
     }
 
-    static int ask(void* self, double tick, const Instant<double>& now, const Sensed<double>& sensed,
+    static int ask(void* self, double tick, const Sensed<double>& truth, const Sensed<double>& sensed,
                    const Known<double>& known, Vec3<double>& tau) {
         Law& law = *static_cast<Law*>(self);
-        law.view.look(tick, now, sensed, known, law.state);
+        law.view.look(tick, truth, sensed, known, law.state);
         double answer[3] = {NAN, NAN, NAN};
         const int32_t status = law.function(law.user, &law.state, answer);
         tau = law.view.torque(answer);
@@ -119,10 +119,10 @@ struct Answer {
     arm3r_law_state& state;
     Vec3<double> tau{0, 0, 0};
 
-    static int give(void* self, double tick, const Instant<double>& now, const Sensed<double>& sensed,
+    static int give(void* self, double tick, const Sensed<double>& truth, const Sensed<double>& sensed,
                     const Known<double>& known, Vec3<double>& tau) {
         Answer& answer = *static_cast<Answer*>(self);
-        answer.view.look(tick, now, sensed, known, answer.state);
+        answer.view.look(tick, truth, sensed, known, answer.state);
         tau = answer.tau;
         return 0;
     }

@@ -120,11 +120,11 @@ double ControlLoop<T>::due_time(int lane, double sample) const {
 }
 
 template <class T>
-void ControlLoop<T>::ask_user(const Instant<T>& now, const Sensed<T>& sensed, Vec3<T>& tau) {
+void ControlLoop<T>::ask_user(const Sensed<T>& sensed, Vec3<T>& tau) {
     tau = {T(0.0), T(0.0), T(0.0)};
     if constexpr (Lanes<T>::count == 1) {
         if (has_failed_) return;
-        user_status_ = user.function(user.user, count_, now, sensed, known_, user_torque_);
+        user_status_ = user.function(user.user, count_, truth_, sensed, known_, user_torque_);
         has_failed_ = user_status_ != 0;
         for (int i = 0; i < 3; ++i) has_failed_ = has_failed_ || !(std::abs(user_torque_[i]) <= largest_torque);
         if (!has_failed_) tau = user_torque_;
@@ -172,15 +172,14 @@ void ControlLoop<T>::keep_passive(const Mask& due, const Sensed<T>& sensed, Comm
 
 // A sample counts in contact only. The answer is the assumed stiffness of a law that asks for it.
 template <class T>
-void ControlLoop<T>::estimate(const Mask& due, const Instant<T>& now) {
+void ControlLoop<T>::estimate(const Mask& due, const Sensed<T>& sensed) {
     const T o(0.0), l(1.0);
-    const T f = dot(now.n, digital_.sampling.on ? known_.f_on_tip : now.f_on_tip);
-    const Mask counts = due && dot(now.n, now.f_on_tip) > o;
+    const T f = digital_.sampling.on ? dot(sensed.n, known_.f_on_tip) : pressing_.force;
+    const Mask counts = due && pressing_.force > o;
     const Mask first = counts && samples_in_ == o;
-    const T place = -dot(now.n, now.tip);
-    first_place_ = select(first, place, first_place_);
-    first_time_ = select(first, now.t, first_time_);
-    estimator_.add_where(counts, T(place - first_place_), T(now.t - first_time_), f, estimation_.forgetting);
+    first_place_ = select(first, pressing_.place, first_place_);
+    first_time_ = select(first, sensed.t, first_time_);
+    estimator_.add_where(counts, T(pressing_.place - first_place_), T(sensed.t - first_time_), f, estimation_.forgetting);
     samples_in_ = samples_in_ + select(counts, l, o);
     const WallEstimate<T> answer = estimator_.answer();
     const Mask told = samples_in_ >= T(8.0) && answer.condition < estimation_.largest_condition;

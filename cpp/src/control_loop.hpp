@@ -14,17 +14,11 @@
 
 namespace arm3r {
 
-// The truth at an instant.
+// What there is to sense at an instant.
 template <class T>
 struct Instant {
-    T t;  // s
-    Pose<T> p;
-    Vec3<T> q, qd;       // rad, rad/s
-    Vec3<T> tip;         // m
-    Vec3<T> f_on_tip;    // N
+    Sensed<T> seen;      // the truth, until a sample puts what the sensors read in its place
     Vec3<T> f_filtered;  // N, behind the analog filter, if there is one
-    Vec3<T> n;           // the wall's normal
-    T face;              // m, as Sensed
 };
 
 // What a digital controller knew at its last sample, and the estimator at its own.
@@ -52,8 +46,9 @@ public:
     ARM3R_INLINE T next() const { return min(min(next_sample_, next_output_), next_estimate_); }
 
     // Those lanes for which it is time. `held` is changed where the torque does.
-    ARM3R_INLINE void attend(const Mask& due, const T& slack, const Arm<T>& arm, const Instant<T>& now, Vec3<T>& held) {
-        const T until = now.t + slack;
+    ARM3R_INLINE void attend(const Mask& due, const T& slack, const Arm<T>& arm, Instant<T>& now, Vec3<T>& held) {
+        const T until = now.seen.t + slack;
+        if (estimation_.on) pressing_ = pressing_of(arm, now.seen);
         const Mask samples = due && next_sample_ <= until;
         if (any(samples)) sample(samples, arm, now, held);
         if (has_output_delay_) {
@@ -62,7 +57,7 @@ public:
         }
         if (estimation_.on) {
             const Mask estimates = due && next_estimate_ <= until;
-            if (any(estimates)) estimate(estimates, now);
+            if (any(estimates)) estimate(estimates, now.seen);
         }
     }
 
@@ -75,14 +70,16 @@ public:
     std::string complaint() const;  // about the user's law, once it has failed
 
 private:
-    ARM3R_INLINE void sample(const Mask& due, const Arm<T>& arm, const Instant<T>& now, Vec3<T>& held) {
+    ARM3R_INLINE void sample(const Mask& due, const Arm<T>& arm, Instant<T>& now, Vec3<T>& held) {
         const Controller<T>& controller = digital_.controller;
-        Sensed<T> sensed = sense(due, arm, now);
+        Sensed<T>& sensed = now.seen;
+        if (controller.type == Controls::user) truth_ = sensed;
+        sense(due, arm, now.f_filtered, sensed);
         judge_contact(due, sensed);
         if (digital_.observer.on) observe(due, sensed);
         start_memory(due, sensed);
         Command<T> command;
-        compute(controller, now, sensed, command);
+        compute(controller, sensed, command);
         if (digital_.observer.reaction != Reaction::ignore) react(due, sensed, command);
         if (controller.controls_passivity) keep_passive(due, sensed, command);
         const Vec3<T> tau = actuated(arm, controller, command);
@@ -95,22 +92,23 @@ private:
 
     // ---- sensors (8.1)
 
-    ARM3R_INLINE Sensed<T> sense(const Mask& due, const Arm<T>& arm, const Instant<T>& now) {
+    ARM3R_INLINE void sense(const Mask& due, const Arm<T>& arm, const Vec3<T>& f_filtered, Sensed<T>& sensed) {
         const Sensors<T>& sensors = digital_.sensors;
-        Sensed<T> sensed{now.t, now.q, now.qd, now.p, now.f_on_tip, now.f_on_tip, now.n, now.face, T(0.0), T(0.0)};
         if (sensors.has_encoder) {
-            for (int i = 0; i < 3; ++i) sensed.q[i] = on_grid(now.q[i], sensors.encoder_step);
+            for (int i = 0; i < 3; ++i) sensed.q[i] = on_grid(sensed.q[i], sensors.encoder_step);
             sensed.pose = pose(sensed.q);
         }
-        if (sensors.velocity != VelocityEstimate::exact) sensed.qd = estimated_rate(sensed.q, now.qd);
-        sensed.f_on_tip = measured_force(due, arm, now);
+        const bool estimates_rate = sensors.velocity != VelocityEstimate::exact;
+        if (estimates_rate) sensed.qd = estimated_rate(sensed.q, sensed.qd);
+        if (sensors.has_analog_filter) sensed.f_on_tip = f_filtered;
+        measure_force(due, arm, sensed.f_on_tip);
         if (!digital_.controller.ideal_cancellation) sensed.f_cancelled = sensed.f_on_tip;
-        for (int i = 0; i < 3; ++i) {
-            known_.q[i] = select(due, sensed.q[i], known_.q[i]);
-            known_.qd[i] = select(due, sensed.qd[i], known_.qd[i]);
-            known_.f_on_tip[i] = select(due, sensed.f_on_tip[i], known_.f_on_tip[i]);
-        }
-        return sensed;
+        if (Lanes<T>::count == 1 || estimates_rate) keep(due, sensed.q, known_.q), keep(due, sensed.qd, known_.qd);
+        if (Lanes<T>::count == 1 || estimation_.on) keep(due, sensed.f_on_tip, known_.f_on_tip);
+    }
+
+    ARM3R_INLINE static void keep(const Mask& due, const Vec3<T>& now, Vec3<T>& kept) {
+        for (int i = 0; i < 3; ++i) kept[i] = select(due, now[i], kept[i]);
     }
 
     ARM3R_INLINE static T on_grid(const T& x, const T& step) {
@@ -130,9 +128,8 @@ private:
         return rate;
     }
 
-    ARM3R_INLINE Vec3<T> measured_force(const Mask& due, const Arm<T>& arm, const Instant<T>& now) {
+    ARM3R_INLINE void measure_force(const Mask& due, const Arm<T>& arm, Vec3<T>& f) {
         const Sensors<T>& sensors = digital_.sensors;
-        Vec3<T> f = sensors.has_analog_filter ? now.f_filtered : now.f_on_tip;
         if (sensors.has_tool)
             for (int i = 0; i < 3; ++i) f[i] = f[i] + sensors.tool_mass * arm.gravity[i];
         if (sensors.has_resolution)
@@ -148,7 +145,6 @@ private:
             f = filtered_;
         }
         if (sensors.has_delay) f = delayed_force(due, f);
-        return f;
     }
 
     [[gnu::noinline]] void add_noise(const Mask& due, Vec3<T>& f) const;
@@ -160,8 +156,8 @@ private:
     ARM3R_INLINE void judge_contact(const Mask& due, Sensed<T>& sensed) {
         const Controller<T>& controller = digital_.controller;
         const T f = dot(sensed.n, sensed.f_on_tip), o(0.0), l(1.0);
-        const T touching = select(known_.contact > o, select(f > controller.gains.contact_off, l, o),
-                                  select(f > controller.gains.contact_on, l, o));
+        const T least = select(known_.contact > o, controller.gains.contact_off, controller.gains.contact_on);
+        const T touching = select(f > least, l, o);
         known_.contact = select(due, touching, known_.contact);
         T phase = l;
         if (controller.switching == Switching::in_contact) phase = known_.contact;
@@ -181,19 +177,18 @@ private:
         for (std::size_t i = 0; i < law_memory; ++i) known_.memory[i] = select(first, start[i], known_.memory[i]);
     }
 
-    ARM3R_INLINE void compute(const Controller<T>& controller, const Instant<T>& now, const Sensed<T>& sensed,
-                              Command<T>& command) {
+    ARM3R_INLINE void compute(const Controller<T>& controller, const Sensed<T>& sensed, Command<T>& command) {
         if (has_law(controller.type)) {
             law_function(controller, sensed, known_.memory, command);
             return;
         }
         command.rates.fill(T(0.0));
         command.per_integral = {T(0.0), T(0.0), T(0.0)};
-        if (controller.type == Controls::user) ask_user(now, sensed, command.tau);
+        if (controller.type == Controls::user) ask_user(sensed, command.tau);
         else command.tau = control(controller, sensed.q, sensed.pose);
     }
 
-    [[gnu::noinline]] void ask_user(const Instant<T>& now, const Sensed<T>& sensed, Vec3<T>& tau);
+    [[gnu::noinline]] void ask_user(const Sensed<T>& sensed, Vec3<T>& tau);
 
     ARM3R_INLINE void observe(const Mask& due, const Sensed<T>& sensed) {  // (8.4)
         const Vec3<T> p = momentum(digital_.controller.model, sensed.pose, sensed.qd);
@@ -254,13 +249,21 @@ private:
 
     // ---- the wall's stiffness, told from force and position in contact (8.7)
 
-    [[gnu::noinline]] void estimate(const Mask& due, const Instant<T>& now);
+    struct Pressing {
+        T place, force;  // m, N: of the tip and on it, along the normal
+    };
+
+    ARM3R_INLINE static Pressing pressing_of(const Arm<T>& arm, const Sensed<T>& truth) {
+        return {-dot(truth.n, tip_position(arm, truth.pose)), dot(truth.n, truth.f_on_tip)};
+    }
+
+    [[gnu::noinline]] void estimate(const Mask& due, const Sensed<T>& sensed);
 
     // ---- delay and hold (8.3)
 
     ARM3R_INLINE void deliver(const Mask& due, const Vec3<T>& tau, Vec3<T>& held) {
         if (has_output_delay_) return queue(due, tau, held);
-        for (int i = 0; i < 3; ++i) held[i] = select(due, tau[i], held[i]);
+        keep(due, tau, held);
     }
 
     // Before the first torque has come through, it is the one that acts: the loop stood at rest before t = 0.
@@ -275,6 +278,8 @@ private:
     T count_{0.0}, outputs_done_{0.0};  // samples taken, torques put out
     T next_sample_{never}, next_output_{never}, next_estimate_{never};
     Known<T> known_;
+    Sensed<T> truth_;  // for a law of the user's own
+    Pressing pressing_;
     Estimation<T> estimation_;
     Estimator<T> estimator_;
     T estimates_{0.0}, first_place_{0.0}, first_time_{0.0}, samples_in_{0.0};

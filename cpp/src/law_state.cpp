@@ -11,7 +11,7 @@ void put(const Vec3<double>& v, double* out) {
 
 void LawView::put_joints(const Vec3<double>& v, double* out) const { put(simscape_ ? flipped(v) : v, out); }
 
-void LawView::look(double tick, const Instant<double>& now, const Sensed<double>& sensed, const Known<double>& known,
+void LawView::look(double tick, const Sensed<double>& truth, const Sensed<double>& sensed, const Known<double>& known,
                    arm3r_law_state& state) const {
     state.tick = tick;
     state.t = sensed.t;
@@ -36,9 +36,9 @@ void LawView::look(double tick, const Instant<double>& now, const Sensed<double>
     state.stiffness_estimate = known.stiffness;
     state.wall_speed_estimate = known.wall_speed;
     state.identifiable = known.identifiable;
-    put_joints(now.q, state.q_true);
-    put_joints(now.qd, state.qd_true);
-    put(now.f_on_tip, state.f_on_tip_true);
+    put_joints(truth.q, state.q_true);
+    put_joints(truth.qd, state.qd_true);
+    put(truth.f_on_tip, state.f_on_tip_true);
 }
 
 Vec3<double> LawView::torque(const double* tau) const {

@@ -16,7 +16,7 @@ public:
           simscape_(setup.simscape),
           period_(setup.digital.sampling.period) {}
 
-    void look(double tick, const Instant<double>& now, const Sensed<double>& sensed, const Known<double>& known,
+    void look(double tick, const Sensed<double>& truth, const Sensed<double>& sensed, const Known<double>& known,
               arm3r_law_state& state) const;
 
     Vec3<double> torque(const double* tau) const;  // slide

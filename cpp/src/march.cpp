@@ -142,7 +142,8 @@ void March<T, N>::evaluate_anew() {
 template <class T, std::size_t N>
 void March<T, N>::control() {
     Apart<T>::run([this]() ARM3R_INLINE_LAMBDA {
-        loop_.attend(is_due(), slack_, plant_.arm, instant(), plant_.controller.torque);
+        Instant<T> now = instant();
+        loop_.attend(is_due(), slack_, plant_.arm, now, plant_.controller.torque);
         if (!asks_estimator(plant_.controller)) return;
         T& assumed = plant_.controller.gains.assumed_stiffness;
         assumed = select(loop_.known().identifiable > T(0.0), loop_.known().stiffness, assumed);
@@ -152,12 +153,12 @@ void March<T, N>::control() {
 
 template <class T, std::size_t N>
 void March<T, N>::start_score() {
-    Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { score_.begin(sight()); });
+    Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { look_at(score_.next()), score_.begin(); });
 }
 
 template <class T, std::size_t N>
 void March<T, N>::score(const Mask& moved) {
-    Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { score_.advance(moved, sight()); });
+    Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { look_at(score_.next()), score_.advance(moved); });
 }
 
 // A law's memory at t = 0 needs the contact that begin_lane() has found.
@@ -165,16 +166,17 @@ template <class T, std::size_t N>
 void March<T, N>::start_memory() {
     if constexpr (N == full_size) {
         const Instant<T> now = instant();
-        const Vec3<T> p = momentum(plant_.controller.model, p_, now.qd);
+        const Sensed<T>& truth = now.seen;
+        const Vec3<T> p = momentum(plant_.controller.model, p_, truth.qd);
         const auto start = [&](std::size_t i, const T& value) {
             for (int lane = 0; lane < lanes; ++lane)
                 if (is_new_[lane]) Lanes<T>::set(y_[i], lane, Lanes<T>::get(value, lane));
         };
-        for (int i = 0; i < 3; ++i) start(filter_at + i, now.f_on_tip[i]);
+        for (int i = 0; i < 3; ++i) start(filter_at + i, truth.f_on_tip[i]);
         for (int lane = 0; lane < lanes; ++lane)
             if (is_new_[lane]) tell_controller(lane);
         if (has_law(plant_.controller.type)) {
-            const Sensed<T> sensed = rhs_.sense(t_, wall_, p_, now.q, now.qd, now.f_on_tip, y_);
+            const Sensed<T> sensed = rhs_.sense(t_, wall_, p_, truth.q, truth.qd, truth.f_on_tip, y_);
             const std::array<T, law_memory> memory = memory_at_start(plant_.controller, sensed);
             for (std::size_t i = 0; i < law_memory; ++i) start(law_at + i, memory[i]);
         }

@@ -148,24 +148,19 @@ protected:
     ARM3R_INLINE Mask is_due() const { return begun_ && loop_.next() <= t_ + slack_; }
     void control();
 
-    // The truth, as far as they look at it.
+    // What they look at.
     ARM3R_INLINE Instant<T> instant() const {
-        const Vec3<T> zero = none<T>();
-        Instant<T> now{t_,
-                       p_,
-                       Vec3<T>(y_[0], y_[1], y_[2]),
-                       Vec3<T>(y_[3], y_[4], y_[5]),
-                       tip_position(plant_.arm, p_),
-                       zero,
-                       zero,
-                       zero,
-                       T(0.0)};
+        const T o(0.0);
+        Vec3<T> f = none<T>(), n = none<T>();
+        T face = o;
         if (plant_.has_wall) {
-            now.f_on_tip = force_on_tip();
-            now.n = normal(plant_.wall, wall_);
-            now.face = dot(now.n, wall_.position) + plant_.wall.face_offset;
+            f = force_on_tip();
+            n = normal(plant_.wall, wall_);
+            face = dot(n, wall_.position) + plant_.wall.face_offset;
         }
-        if (plant_.load.on) now.f_on_tip = plus(now.f_on_tip, load_at(plant_.load, t_));
+        if (plant_.load.on) f = plus(f, load_at(plant_.load, t_));
+        const Vec3<T> q(y_[0], y_[1], y_[2]), qd(y_[3], y_[4], y_[5]);
+        Instant<T> now{{t_, q, qd, p_, f, f, n, face, o, o}, {}};
         if constexpr (N == full_size) now.f_filtered = {y_[filter_at], y_[filter_at + 1], y_[filter_at + 2]};
         return now;
     }
@@ -180,10 +175,13 @@ protected:
 
     // ---- the score
 
-    ARM3R_INLINE Sight<T> sight() const {
+    ARM3R_INLINE void look_at(Sight<T>& sight) const {
         const T o(0.0), l(1.0);
         const Controller<T>& law = loop_.is_on() ? loop_.controller() : plant_.controller;
-        Sight<T> sight{t_, o, o, o, o, o, Vec3<T>(y_[0], y_[1], y_[2]), tau_, y_[6]};
+        sight.t = t_;
+        sight.q = {y_[0], y_[1], y_[2]};
+        sight.tau = tau_;
+        sight.work = y_[6];
         if (wants_force(law.type)) {
             const Mask pressed = touching_ && in_.depth > o;
             sight.force = select(pressed, dot(normal(plant_.wall, wall_), force_on_tip()), o);
@@ -194,10 +192,10 @@ protected:
             const T phase = loop_.is_on() ? loop_.known().force_phase : rhs_.force_phase;
             sight.path_error_2 = path_error_2(law, t_, tip_position(plant_.arm, p_), normal(plant_.wall, wall_), phase);
         }
-        if (plant_.arm.has_torque_limit)
-            for (int i = 0; i < 3; ++i)
-                sight.saturated = select(abs(sight.tau[i]) >= plant_.arm.torque_limit[i], l, sight.saturated);
-        return sight;
+        if (!plant_.arm.has_torque_limit) return;
+        sight.saturated = o;
+        for (int i = 0; i < 3; ++i)
+            sight.saturated = select(abs(tau_[i]) >= plant_.arm.torque_limit[i], l, sight.saturated);
     }
     void score(const Mask& moved);
 

@@ -45,24 +45,26 @@ public:
 
     void put(int lane);
 
-    ARM3R_INLINE void begin(const Sight<T>& sight) { before_ = sight; }
+    // Where the next sight goes: what there is to look for of it.
+    ARM3R_INLINE Sight<T>& next() { return sights_[1 - last_]; }
 
-    // From the last sight to this one, where `moved`.
+    // From the next sight on; also where something other than the motion has changed, like a new sample's torque.
+    ARM3R_INLINE void begin() { last_ = 1 - last_; }
+
+    // From the last sight to the next one, where `moved`.
     template <class M>
-    ARM3R_INLINE void advance(const M& moved, const Sight<T>& now) {
-        const T dt = select(moved, T(now.t - before_.t), T(0.0)), half = 0.5 * dt;
-        if (looks_.force) judge_force(moved, half, now);
+    ARM3R_INLINE void advance(const M& moved) {
+        const Sight<T>&before = sights_[last_], &now = next();
+        const T dt = select(moved, T(now.t - before.t), T(0.0)), half = 0.5 * dt;
+        if (looks_.force) judge_force(moved, half, before, now);
         if (looks_.path) {
-            path_2_ = path_2_ + half * (before_.path_error_2 + now.path_error_2);
+            path_2_ = path_2_ + half * (before.path_error_2 + now.path_error_2);
             largest_path_2_ = max_where(moved, largest_path_2_, now.path_error_2);
         }
-        if (looks_.limits) saturated_time_ = saturated_time_ + dt * before_.saturated;
-        share_out_work(moved, now);
-        before_ = now;
+        if (looks_.limits) saturated_time_ = saturated_time_ + dt * before.saturated;
+        share_out_work(moved, before, now);
+        begin();
     }
-
-    // What is the same for both ends of a step that has changed nothing else, like a new sample's torque.
-    ARM3R_INLINE void look_again(const Sight<T>& now) { before_ = now; }
 
     // Into the metrics of a lane.
     void tell(int lane, const Controller<double>& controller, Metrics& metrics) const;
@@ -71,11 +73,11 @@ private:
     static constexpr double settled_share = 0.05;
 
     template <class M>
-    ARM3R_INLINE void judge_force(const M& moved, const T& half, const Sight<T>& now) {
+    ARM3R_INLINE void judge_force(const M& moved, const T& half, const Sight<T>& before, const Sight<T>& now) {
         const T o(0.0);
-        const T miss = now.force_wanted - now.force, miss_before = before_.force_wanted - before_.force;
-        touching_time_ = touching_time_ + half * (before_.touches + now.touches);
-        miss_2_ = miss_2_ + half * (miss_before * miss_before * before_.touches + miss * miss * now.touches);
+        const T miss = now.force_wanted - now.force, miss_before = before.force_wanted - before.force;
+        touching_time_ = touching_time_ + half * (before.touches + now.touches);
+        miss_2_ = miss_2_ + half * (miss_before * miss_before * before.touches + miss * miss * now.touches);
         const auto in_touch = moved && now.touches > o;
         reached_ = select(in_touch && miss <= o, T(1.0), reached_);
         largest_miss_ = max_where(in_touch && reached_ > o, largest_miss_, T(abs(miss)));
@@ -86,19 +88,20 @@ private:
 
     // Exact where the torque is constant; else what the trapezoidal rule misses of the total is shared equally.
     template <class M>
-    ARM3R_INLINE void share_out_work(const M& moved, const Sight<T>& now) {
+    ARM3R_INLINE void share_out_work(const M& moved, const Sight<T>& before, const Sight<T>& now) {
         Vec3<T> part;
         for (int i = 0; i < 3; ++i) {
-            const T tau = torque_is_held_ ? before_.tau[i] : T(0.5 * (before_.tau[i] + now.tau[i]));
-            part[i] = tau * (now.q[i] - before_.q[i]);
+            const T tau = torque_is_held_ ? before.tau[i] : T(0.5 * (before.tau[i] + now.tau[i]));
+            part[i] = tau * (now.q[i] - before.q[i]);
         }
-        const T missing = ((now.work - before_.work) - (part[0] + part[1] + part[2])) * (1.0 / 3);
+        const T missing = ((now.work - before.work) - (part[0] + part[1] + part[2])) * (1.0 / 3);
         for (int i = 0; i < 3; ++i) work_[i] = work_[i] + select(moved, T(part[i] + missing), T(0.0));
     }
 
     const bool torque_is_held_;
     const Looks looks_;
-    Sight<T> before_;
+    Sight<T> sights_[2];
+    int last_ = 0;
     T touching_time_{0.0}, miss_2_{0.0}, reached_{0.0}, largest_miss_{0.0}, overshoot_{0.0}, unsettled_until_{0.0};
     T path_2_{0.0}, largest_path_2_{0.0}, saturated_time_{0.0};
     Vec3<T> work_{T(0.0), T(0.0), T(0.0)};

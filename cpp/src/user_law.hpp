@@ -6,8 +6,6 @@
 namespace arm3r {
 
 template <class T>
-struct Instant;
-template <class T>
 struct Known;
 
 inline constexpr double largest_torque = 1e12;  // N m, that a law may ask for
@@ -15,7 +13,7 @@ inline constexpr double largest_torque = 1e12;  // N m, that a law may ask for
 // Called at samples only, in increasing time. What is, what the controller senses, and what it has made of it so far; tick:
 // samples before this one. Not 0: the run ends there. tau: N m. Slide convention.
 struct UserLaw {
-    int (*function)(void* user, double tick, const Instant<double>& now, const Sensed<double>& sensed,
+    int (*function)(void* user, double tick, const Sensed<double>& truth, const Sensed<double>& sensed,
                     const Known<double>& known, Vec3<double>& tau) = nullptr;
     void* user = nullptr;
 };

@@ -88,9 +88,9 @@ public:
 
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
-        WallState<T> wall = no_wall<T>();
-        if (senses_wall(plant_) || (plant_.acts_on_arm && touch != Touch::none))
-            wall = wall_at(plant_.wall, plant_.wall.motion == Motion::table ? min(t, latest) : t);
+        const bool looks = senses_wall(plant_) || (plant_.acts_on_arm && touch != Touch::none);
+        const WallState<T> wall =
+            looks ? wall_at(plant_.wall, plant_.wall.motion == Motion::table ? min(t, latest) : t) : no_wall<T>();
         derivative(t, wall, pose_near(y), y, dy);
     }
 
