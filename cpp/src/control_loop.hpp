@@ -243,8 +243,13 @@ private:
     [[gnu::noinline]] void keep_passive(const Mask& due, const Sensed<T>& sensed, Command<T>& command);
 
     ARM3R_INLINE void remember(const Mask& due, const Command<T>& command) {
-        for (std::size_t i = 0; i < memory_size(digital_.controller.type); ++i)
+        const std::size_t size = memory_size(digital_.controller.type);
+        const auto add = [&](std::size_t i) ARM3R_INLINE_LAMBDA {
             known_.memory[i] = known_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0));
+        };
+        if (size > 0) add(0);
+        if (size > 1)
+            for (std::size_t i = 1; i < law_memory; ++i) add(i);
     }
 
     // ---- the wall's stiffness, told from force and position in contact (8.7)

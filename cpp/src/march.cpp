@@ -1,6 +1,5 @@
 #include "march.hpp"
 
-#include "apart.hpp"
 #include "compiled_laws.hpp"
 
 #include <algorithm>

@@ -92,7 +92,7 @@ struct TipLoad {
 template <class P, class T>
 ARM3R_INLINE Vec3<T> load_at(const TipLoad<P>& load, const T& t) {  // (8.9)
     const T since = t - load.start, o(0.0);
-    const T growing = select(load.rise > P(0.0), T(min(T(1.0), T(since / load.rise))), T(1.0));
+    const T growing = min(T(1.0), T(select(load.rise > P(0.0), T(since / load.rise), T(1.0))));
     const T share = select(since >= o, select(since < load.duration, growing, o), o);
     return {share * load.force[0], share * load.force[1], share * load.force[2]};
 }

@@ -13,14 +13,17 @@ struct Register {
     typedef Element type __attribute__((vector_size(sizeof(Element) * N)));
 };
 
-// One truth value per lane: all bits set, or none.
+// One truth value per lane: all bits set, or none. g++ 12 breaks off with an internal error where one of 8 lanes goes into
+// a loop of unknown length from outside: such loops are to be written out.
 template <int N>
 struct PackMask {
     using Vector = typename Register<std::int64_t, N>::type;
     Vector v;
 
     ARM3R_INLINE explicit PackMask(const Vector& lanes) : v(lanes) {}
-    ARM3R_INLINE PackMask(bool all_lanes) : v(Vector{} - std::int64_t{all_lanes}) {}
+    ARM3R_INLINE PackMask(bool all_lanes) {
+        for (int lane = 0; lane < N; ++lane) v[lane] = -std::int64_t{all_lanes};
+    }
     ARM3R_INLINE PackMask(const PackMask& other) : v(other.v) {}
     ARM3R_INLINE PackMask& operator=(const PackMask& other) {
         v = other.v;

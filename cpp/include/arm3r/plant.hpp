@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "arm3r/apart.hpp"
 #include "arm3r/contact.hpp"
 #include "arm3r/digital.hpp"
 #include "arm3r/integrators.hpp"
@@ -112,7 +113,8 @@ public:
         const Arm<P>& arm = plant_.arm;
         Feeling feeling;
         if (feels()) feel(wall, p, in, feeling);
-        const Vec3<T> load = plant_.load.on ? load_at(plant_.load, t) : none<T>();
+        Vec3<T> load = none<T>();
+        if (plant_.load.on) Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { load = load_at(plant_.load, t); });
         tau = torque(t, wall, p, q, qd, plant_.load.on ? plus(feeling.on_tip, load) : feeling.on_tip, y, dy);
         const Vec3<T> tau_f = friction_torque(arm, qd);
         Vec3<T> drive = minus(tau, tau_f);
@@ -222,7 +224,11 @@ private:
             if (!any(feeling.where)) return;
             feeling.where = feeling.where && within(in);
         }
-        const ContactForce<T> force = contact_force(plant_.wall, wall, plant_.contact, in, grip());
+        ContactForce<T> force;
+        const auto push = [&]()
+                              ARM3R_INLINE_LAMBDA { force = contact_force(plant_.wall, wall, plant_.contact, in, grip()); };
+        if (is_plain(plant_.wall, plant_.contact)) push();
+        else Apart<T>::run(push);
         feeling.anything = true;
         feeling.on_tip = force.on_tip;
         feeling.wall_power = dot(force.on_tip, velocity_at(plant_.wall, wall, tip_position(plant_.arm, p)));
