@@ -1,5 +1,6 @@
 #include "march.hpp"
 
+#include "apart.hpp"
 #include "compiled_laws.hpp"
 
 #include <algorithm>

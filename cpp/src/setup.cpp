@@ -267,8 +267,7 @@ static void put_between(std::span<const double> params, Setup& setup) {
     if (at<"sampling">(params) != 0 || plant.controller.type == Controls::user) {  // which computes sample by sample
         digital.sampling = make_sampling(params);
         digital.controller = plant.controller;
-        plant.controller = Controller<double>{};
-        plant.controller.type = Controls::constant;
+        static_cast<ControllerChoices&>(plant.controller) = {.type = Controls::constant};
         plant.controller.torque = {0, 0, 0};
         plant.controller.model = plant.arm;
     } else {

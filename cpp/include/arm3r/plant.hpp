@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "arm3r/apart.hpp"
 #include "arm3r/contact.hpp"
 #include "arm3r/digital.hpp"
 #include "arm3r/integrators.hpp"
@@ -113,8 +112,7 @@ public:
         const Arm<P>& arm = plant_.arm;
         Feeling feeling;
         if (feels()) feel(wall, p, in, feeling);
-        Vec3<T> load = none<T>();
-        if (plant_.load.on) Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { load = load_at(plant_.load, t); });
+        const Vec3<T> load = plant_.load.on ? load_at(plant_.load, t) : none<T>();
         tau = torque(t, wall, p, q, qd, plant_.load.on ? plus(feeling.on_tip, load) : feeling.on_tip, y, dy);
         const Vec3<T> tau_f = friction_torque(arm, qd);
         Vec3<T> drive = minus(tau, tau_f);
@@ -224,11 +222,7 @@ private:
             if (!any(feeling.where)) return;
             feeling.where = feeling.where && within(in);
         }
-        ContactForce<T> force;
-        const auto push = [&]()
-                              ARM3R_INLINE_LAMBDA { force = contact_force(plant_.wall, wall, plant_.contact, in, grip()); };
-        if (is_plain(plant_.wall, plant_.contact)) push();
-        else Apart<T>::run(push);
+        const ContactForce<T> force = contact_force(plant_.wall, wall, plant_.contact, in, grip());
         feeling.anything = true;
         feeling.on_tip = force.on_tip;
         feeling.wall_power = dot(force.on_tip, velocity_at(plant_.wall, wall, tip_position(plant_.arm, p)));
