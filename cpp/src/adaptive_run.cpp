@@ -395,24 +395,24 @@ private:
     Sight<double> sight(double t, const FullState& y) const {
         const Plant<double>& plant = setup_.plant;
         const Controller<double>& controller = setup_.law();
-        const Vec3<double> q = angles(y), qd = rates(y);
+        const Vec3<double> q = angles(y);
         const Pose<double> p = pose(q);
         Sight<double> sight{t, 0, 0, is_touching(mode_) ? 1.0 : 0.0, 0, 0, q, {0, 0, 0}, y[6]};
         WallState<double> wall = no_wall<double>();
         Vec3<double> f_on_tip(0, 0, 0);
-        if (plant.has_wall) {
+        if (score_sees_wall_) {
             wall = wall_at(plant.wall, t);
             if (mode_ == Mode::contact) {
-                const Indentation<double> in = tip_indentation(plant, wall, p, qd);
+                const Indentation<double> in = tip_indentation(plant, wall, p, rates(y));
                 const ContactForce<double> force =
                     only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Grip::clipped));
                 sight.force = force.normal;
                 f_on_tip = force.on_tip;
             }
         }
-        if (wants_force(controller.type)) sight.force_wanted = force_wanted_at(controller.setpoint, t);
+        if (score_.looks().force) sight.force_wanted = force_wanted_at(controller.setpoint, t);
         const double phase = setup_.digital.sampling.on ? loop_.known().force_phase : force_phase_;
-        if (wants_path(controller.type))
+        if (score_.looks().path)
             sight.path_error_2 =
                 path_error_2(controller, t, tip_position(plant.arm, p), normal(plant.wall, wall), phase);
         Y part;
@@ -431,8 +431,9 @@ private:
     }
 
     void score_passage(double theta, double t1) {
-        for (int i = 1; i < sights_per_step; ++i) {
-            const double place = theta * i / sights_per_step;
+        const int sights = score_.needs_ends_only() ? 1 : sights_per_step;
+        for (int i = 1; i < sights; ++i) {
+            const double place = theta * i / sights;
             score_.next() = sight(inside_.t0 + place * inside_.h, inside_(place));
             score_.advance(true);
         }
@@ -460,8 +461,10 @@ private:
     Stepper<N> stepper_;
     ContactWatch watch_;
     ControlLoop<double> loop_;
-    Score<double> score_{setup_.digital.sampling.on};
+    Score<double> score_{setup_};
     const bool is_scored_ = setup_.is_scored();
+    const bool score_sees_wall_ = setup_.plant.has_wall && (score_.looks().force || score_.looks().path ||
+                                                            has_law(setup_.plant.controller.type));
     Present now_;
     Ledger ledger_;
 };

@@ -26,7 +26,7 @@ struct Law {
         state.struct_size = sizeof state;
     }
 
-    static int ask(void* self, double tick, const Sensed<double>& truth, const Sensed<double>& sensed,
+    static int ask(void* self, double tick, const Truth& truth, const Sensed<double>& sensed,
                    const Known<double>& known, Vec3<double>& tau) {
         Law& law = *static_cast<Law*>(self);
         law.view.look(tick, truth, sensed, known, law.state);
@@ -119,7 +119,7 @@ struct Answer {
     arm3r_law_state& state;
     Vec3<double> tau{0, 0, 0};
 
-    static int give(void* self, double tick, const Sensed<double>& truth, const Sensed<double>& sensed,
+    static int give(void* self, double tick, const Truth& truth, const Sensed<double>& sensed,
                     const Known<double>& known, Vec3<double>& tau) {
         Answer& answer = *static_cast<Answer*>(self);
         answer.view.look(tick, truth, sensed, known, answer.state);

@@ -73,7 +73,8 @@ private:
     ARM3R_INLINE void sample(const Mask& due, const Arm<T>& arm, Instant<T>& now, Vec3<T>& held) {
         const Controller<T>& controller = digital_.controller;
         Sensed<T>& sensed = now.seen;
-        if (controller.type == Controls::user) truth_ = sensed;
+        if constexpr (Lanes<T>::count == 1)
+            if (controller.type == Controls::user) truth_ = {sensed.q, sensed.qd, sensed.f_on_tip};
         sense(due, arm, now.f_filtered, sensed);
         judge_contact(due, sensed);
         if (digital_.observer.on) observe(due, sensed);
@@ -283,7 +284,7 @@ private:
     T count_{0.0}, outputs_done_{0.0};  // samples taken, torques put out
     T next_sample_{never}, next_output_{never}, next_estimate_{never};
     Known<T> known_;
-    Sensed<T> truth_;  // for a law of the user's own
+    Truth truth_;  // for a law of the user's own
     Pressing pressing_;
     Estimation<T> estimation_;
     Estimator<T> estimator_;

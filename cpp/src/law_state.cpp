@@ -11,7 +11,7 @@ void put(const Vec3<double>& v, double* out) {
 
 void LawView::put_joints(const Vec3<double>& v, double* out) const { put(simscape_ ? flipped(v) : v, out); }
 
-void LawView::look(double tick, const Sensed<double>& truth, const Sensed<double>& sensed, const Known<double>& known,
+void LawView::look(double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>& known,
                    arm3r_law_state& state) const {
     state.tick = tick;
     state.t = sensed.t;
@@ -25,17 +25,23 @@ void LawView::look(double tick, const Sensed<double>& truth, const Sensed<double
     put_joints(gravity_torque(arm_, sensed.pose), state.tau_g);
     put(sensed.f_on_tip, state.f_on_tip);
     state.contact = sensed.contact;
-    const WallState<double> wall = has_wall_ ? wall_at(wall_, sensed.t) : no_wall<double>();
-    Vec3<double> point = wall.position;
-    for (int i = 0; i < 3; ++i) point[i] = point[i] + wall_.face_offset * sensed.n[i];
-    put(sensed.n, state.wall_normal);
-    put(point, state.wall_point);
-    put(wall.velocity, state.wall_velocity);
-    put_joints(known.residual, state.residual);
-    state.collision = known.collision;
-    state.stiffness_estimate = known.stiffness;
-    state.wall_speed_estimate = known.wall_speed;
-    state.identifiable = known.identifiable;
+    if (has_wall_) {
+        const WallState<double> wall = wall_at(wall_, sensed.t);
+        Vec3<double> point = wall.position;
+        for (int i = 0; i < 3; ++i) point[i] = point[i] + wall_.face_offset * sensed.n[i];
+        put(sensed.n, state.wall_normal);
+        put(point, state.wall_point);
+        put(wall.velocity, state.wall_velocity);
+    }
+    if (observes_) {
+        put_joints(known.residual, state.residual);
+        state.collision = known.collision;
+    }
+    if (estimates_) {
+        state.stiffness_estimate = known.stiffness;
+        state.wall_speed_estimate = known.wall_speed;
+        state.identifiable = known.identifiable;
+    }
     put_joints(truth.q, state.q_true);
     put_joints(truth.qd, state.qd_true);
     put(truth.f_on_tip, state.f_on_tip_true);

@@ -13,10 +13,13 @@ public:
         : arm_(setup.plant.arm),
           wall_(setup.plant.wall),
           has_wall_(setup.plant.has_wall),
+          observes_(setup.observes()),
+          estimates_(setup.estimation.on),
           simscape_(setup.simscape),
           period_(setup.digital.sampling.period) {}
 
-    void look(double tick, const Sensed<double>& truth, const Sensed<double>& sensed, const Known<double>& known,
+    // Into a state of zeros, or one that was looked at before.
+    void look(double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>& known,
               arm3r_law_state& state) const;
 
     Vec3<double> torque(const double* tau) const;  // slide
@@ -26,7 +29,7 @@ private:
 
     Arm<double> arm_;
     Wall<double> wall_;
-    bool has_wall_, simscape_;
+    bool has_wall_, observes_, estimates_, simscape_;
     double period_;
 };
 

@@ -60,8 +60,7 @@ March<T, N>::March(const Setup& any_lane)
       may_be_ill_conditioned_(structure_of(any_lane).may_be_ill_conditioned),
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
       is_scored_(any_lane.is_scored()),
-      score_(any_lane.digital.sampling.on,
-             {wants_force(any_lane.law().type), wants_path(any_lane.law().type), any_lane.plant.arm.has_torque_limit}),
+      score_(any_lane),
       is_elastic_(!is_damped(any_lane.plant.contact.law)) {
     rhs_.law_function = compiled_law<T, T>();
     for (int lane = 0; lane < lanes; ++lane) {

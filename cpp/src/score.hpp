@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "arm3r/plant.hpp"
+#include "setup.hpp"
 #include "simulation.hpp"
 
 namespace arm3r {
@@ -35,13 +35,19 @@ ARM3R_INLINE T path_error_2(const Controller<P>& controller, const T& t, const V
 
 // What is worth a look: what a law wants, and limits that there are.
 struct Looks {
-    bool force = true, path = true, limits = true;
+    bool force, path, limits;
 };
 
 template <class T>
 class Score {
 public:
-    explicit Score(bool torque_is_held, Looks looks = {}) : torque_is_held_(torque_is_held), looks_(looks) {}
+    explicit Score(const Setup& setup)
+        : torque_is_held_(setup.digital.sampling.on),
+          looks_{wants_force(setup.law().type), wants_path(setup.law().type), setup.plant.arm.has_torque_limit} {}
+
+    const Looks& looks() const { return looks_; }
+    // Whether the sights of a step's two ends tell all: the work of a torque that is held.
+    bool needs_ends_only() const { return torque_is_held_ && !looks_.force && !looks_.path; }
 
     void put(int lane);
 
