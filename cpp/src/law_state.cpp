@@ -3,13 +3,19 @@
 namespace arm3r {
 namespace {
 
+// One by one: read in pairs, numbers that were just written have to be waited for. + 0.0: no negative zero.
 void put(const Vec3<double>& v, double* out) {
-    for (int i = 0; i < 3; ++i) out[i] = v[i] + 0.0;  // + 0.0: no negative zero
+    out[0] = v[0] + 0.0;
+    out[1] = v[1] + 0.0;
+    out[2] = v[2] + 0.0;
 }
 
 }  // namespace
 
-void LawView::put_joints(const Vec3<double>& v, double* out) const { put(simscape_ ? flipped(v) : v, out); }
+void LawView::put_joints(const Vec3<double>& v, double* out) const {
+    const double sign = simscape_ ? -1.0 : 1.0;
+    put({v[0], sign * v[1], sign * v[2]}, out);
+}
 
 void LawView::look(double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>& known,
                    arm3r_law_state& state) const {
