@@ -277,9 +277,8 @@ const std::vector<Effect>& effects() {
         {"observer that retreats", reaction("retreat")},
         {"estimator",
          [](Controlled& runs) {
-             std::vector<double> starts;  // at samples: elsewhere a step of taylor would be cut in two
-             for (int i = 0; i < run_count; ++i) starts.push_back(0.006 * i);
-             runs.set("estimator", 1).vary("estimator.forgetting", 0.98, 1).vary("estimator.start", starts);
+             // Its samples are the controller's: elsewhere a step of taylor would be cut in two.
+             runs.set("estimator", 1).vary("estimator.forgetting", 0.98, 1);
          },
          true, false},
         {"estimator of a wall that stands",
