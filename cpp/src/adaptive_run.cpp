@@ -201,8 +201,8 @@ private:
             const Sensed<double> truth = instant().seen;
             for (int i = 0; i < 3; ++i) now_.y[filter_at + i] = truth.f_on_tip[i];
             stepper_.set(touch(), contact_, force_phase_, infinite);
-            const Sensed<double> sensed = stepper_.right_hand_side().sense(
-                truth.t, wall_now(), truth.pose, truth.q, truth.qd, truth.f_on_tip, moving());
+            const Sensed<double> sensed = stepper_.right_hand_side().sense(truth.t, wall_now(), truth.pose, truth.q,
+                                                                           truth.qd, truth.f_on_tip, moving());
             if (has_law(plant.controller.type)) {
                 const auto memory = memory_at_start(plant.controller, sensed);
                 std::copy(memory.begin(), memory.end(), now_.y.begin() + law_at);
@@ -463,8 +463,8 @@ private:
     ControlLoop<double> loop_;
     Score<double> score_{setup_};
     const bool is_scored_ = setup_.is_scored();
-    const bool score_sees_wall_ = setup_.plant.has_wall && (score_.looks().force || score_.looks().path ||
-                                                            has_law(setup_.plant.controller.type));
+    const bool score_sees_wall_ =
+        setup_.plant.has_wall && (score_.looks().force || score_.looks().path || has_law(setup_.plant.controller.type));
     Present now_;
     Ledger ledger_;
 };

@@ -179,7 +179,8 @@ void ControlLoop<T>::estimate(const Mask& due, const Sensed<T>& sensed) {
     const Mask first = counts && samples_in_ == o;
     first_place_ = select(first, pressing_.place, first_place_);
     first_time_ = select(first, sensed.t, first_time_);
-    estimator_.add_where(counts, T(pressing_.place - first_place_), T(sensed.t - first_time_), f, estimation_.forgetting);
+    estimator_.add_where(counts, T(pressing_.place - first_place_), T(sensed.t - first_time_), f,
+                         estimation_.forgetting);
     samples_in_ = samples_in_ + select(counts, l, o);
     const WallEstimate<T> answer = estimator_.answer();
     const Mask told = samples_in_ >= T(8.0) && answer.condition < estimation_.largest_condition;

@@ -25,8 +25,8 @@ struct Pushing {
     std::vector<double> times, ticks;
     double refuse_at = -1, break_at = -1;
 
-    static int ask(void* self, double tick, const Truth& truth, const Sensed<double>& sensed,
-                   const Known<double>&, Vec3<double>& tau) {
+    static int ask(void* self, double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>&,
+                   Vec3<double>& tau) {
         Pushing& law = *static_cast<Pushing*>(self);
         BOOST_TEST(truth.qd[1] == sensed.qd[1]);
         law.times.push_back(sensed.t);
