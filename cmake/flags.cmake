@@ -20,7 +20,9 @@ set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 
 set(_numeric -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  list(APPEND _numeric -fno-tree-slp-vectorize) # pairing scalars up lengthens the chain of a step by a tenth
+  # Pairing scalars up lengthens the chain of a step by a tenth, and numbers that were written one by one have to be waited
+  # for when they are read in pairs. What is to be computed side by side is written as packs.
+  list(APPEND _numeric -fno-tree-vectorize)
 endif()
 add_library(arm3r_flags INTERFACE)
 target_compile_features(arm3r_flags INTERFACE cxx_std_20)

@@ -74,13 +74,18 @@ ARM3R_INLINE ContactForce<T> along_normal(const V& n, const T& normal, const T& 
     return {{normal * n[0], normal * n[1], normal * n[2]}, normal, stored, dissipated};
 }
 
+// A spring along a normal that stands still asks for the depth alone.
+template <class P>
+bool is_plain(const Wall<P>& wall, const Contact<P>& contact) {
+    return contact.law == Law::spring && !contact.has_friction && wall.rotation == Rotation::none;
+}
+
 // The force of the law at an indentation (4.5) to (4.7).
 template <class P, class T>
 ARM3R_INLINE ContactForce<T> contact_force(const Wall<P>& wall, const WallState<T>& state, const Contact<P>& contact,
                                            const Indentation<T>& in, Grip grip) {
     const Push<T> along = push(contact, in);
-    const bool is_plain = contact.law == Law::spring && !contact.has_friction && wall.rotation == Rotation::none;
-    if (is_plain) return along_normal(wall.n, along.total, along.stored, T(0.0));  // quickly
+    if (is_plain(wall, contact)) return along_normal(wall.n, along.total, along.stored, T(0.0));
     const Axes<T> axis = axes(wall, state);
     T normal = along.total, dissipated(0.0);
     if (is_damped(contact.law)) {

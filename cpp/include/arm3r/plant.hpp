@@ -88,9 +88,9 @@ public:
 
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
-        const bool looks = senses_wall(plant_) || (plant_.acts_on_arm && touch != Touch::none);
-        const WallState<T> wall =
-            looks ? wall_at(plant_.wall, plant_.wall.motion == Motion::table ? min(t, latest) : t) : no_wall<T>();
+        WallState<T> wall;  // where nobody looks at it, nothing
+        if (senses_wall(plant_) || (plant_.acts_on_arm && touch != Touch::none))
+            wall = wall_at(plant_.wall, plant_.wall.motion == Motion::table ? min(t, latest) : t);
         derivative(t, wall, pose_near(y), y, dy);
     }
 
@@ -98,8 +98,11 @@ public:
     template <std::size_t N>
     ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const State<T, N>& y,
                                  State<T, N>& dy) const {
-        Indentation<T> in{};
-        if (feels()) in = tip_indentation(plant_, wall, p, Vec3<T>(y[3], y[4], y[5]));
+        Indentation<T> in;
+        if (feels())
+            in = is_plain(plant_.wall, plant_.contact)
+                     ? indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p))
+                     : tip_indentation(plant_, wall, p, Vec3<T>(y[3], y[4], y[5]));
         Vec3<T> tau;
         derivative(t, wall, p, in, y, dy, tau);
     }
@@ -118,10 +121,7 @@ public:
         Vec3<T> drive = minus(tau, tau_f);
         T outer_power(0.0), contact_loss(0.0);
         if (plant_.acts_on_arm && feeling.anything) {
-            const Vec3<T> with = plus(drive, tip_force_torque(arm, p, feeling.on_tip));
-            if (touch != Touch::each_stage) drive = with;
-            else
-                for (int i = 0; i < 3; ++i) drive[i] = select(feeling.where, with[i], drive[i]);
+            drive = plus(drive, tip_force_torque(arm, p, feeling.on_tip));
             outer_power = feeling.wall_power;
             contact_loss = feeling.loss;
         }

@@ -138,6 +138,19 @@ ARM3R_INLINE Indentation<T> indentation(const Wall<P>& wall, const WallState<T>&
     return indentation_along(wall.face_offset, axes(wall, state), x, v);
 }
 
+// The same of a plate that does not turn, without the rates: quickly computed.
+template <class P, class T>
+ARM3R_INLINE Indentation<T> indentation_at_rest(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point) {
+    const Vec3<T> x = minus(point, state.position);
+    const T o(0.0);
+    Indentation<T> in{wall.face_offset - dot(lifted<T>(wall.n), x), o, o, o, o, o};
+    if (wall.has_outline) {
+        in.across1 = dot(lifted<T>(wall.e1), x);
+        in.across2 = dot(lifted<T>(wall.e2), x);
+    }
+    return in;
+}
+
 // Distance inside the outline, m: < 0 beside the plate (4.7).
 template <class P, class T>
 ARM3R_INLINE T inside_outline(const Wall<P>& wall, const Indentation<T>& in) {
