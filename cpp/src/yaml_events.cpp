@@ -16,7 +16,7 @@ namespace arm3r {
 namespace {
 
 constexpr std::size_t most_bytes = 1 << 20, most_nodes = 50'000, longest_scalar = 64 << 10, deepest = 64,
-                      most_keys = 1000;
+                      most_open_brackets = 10'000, most_keys = 1000;
 
 [[noreturn]] void refuse(Problem problem) { throw Error(ARM3R_E_SCENARIO, std::vector{std::move(problem)}); }
 
@@ -271,6 +271,28 @@ void check_characters(std::string_view text, const std::string& file) {
     }
 }
 
+// The parser reads brackets to their end before it tells of the first. Where far more of them are open than ever may be,
+// in quotes or not, it is not asked.
+void check_brackets(std::string_view text, const std::string& file) {
+    std::size_t open = 0, line_begin = 0;
+    int line = 1;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '\n') ++line, line_begin = at + 1;
+        if (c == '[' || c == '{') ++open;
+        if ((c == ']' || c == '}') && open > 0) --open;
+        if (open <= most_open_brackets) continue;
+        const std::size_t before = count_characters(text.substr(line_begin, at - line_begin));
+        refuse(located({.code = "yaml.depth",
+                        .path = "",
+                        .message = "nesting deeper than 64: here " + std::to_string(open) + " brackets are open",
+                        .got = "",
+                        .allowed = "",
+                        .hint = ""},
+                       {line, static_cast<int>(before) + 1}, file));
+    }
+}
+
 }  // namespace
 
 Problem located(Problem problem, const Mark& at, const std::string& file) {
@@ -315,6 +337,7 @@ std::string checked_text(std::string text, const std::string& file) {
 
 Document parse_yaml(const std::string& text, const std::string& file) {
     const Lines lines(text);
+    check_brackets(text, file);
     Builder builder(lines, file);
     try {
         std::istringstream stream(text);
