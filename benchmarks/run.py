@@ -37,6 +37,7 @@ def main() -> None:
         script("whole_process"),
         script("python_calls"),
         script("one_run"),
+        script("user_law"),
         script("many_arms", program),
         script("precision"),
         script("lecture_runs"),
