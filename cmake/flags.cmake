@@ -26,11 +26,17 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 add_library(arm3r_flags INTERFACE)
 target_compile_features(arm3r_flags INTERFACE cxx_std_20)
+set(_false_alarms -Wno-restrict -Wno-stringop-overflow) # of g++ 12, over std::string
 target_compile_options(arm3r_flags INTERFACE ${_numeric} -Wall -Wextra
-                       $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>) # false alarms
+                       "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:${_false_alarms}>")
 target_compile_definitions(arm3r_flags INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY ARM3R_VERSION="${PROJECT_VERSION}")
 
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 list(JOIN _numeric " " _numeric)
 string(JOIN " " ARM3R_BUILD_INFO ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}
        ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_numeric})
+
+option(ARM3R_WIDE "Build for registers of four and eight numbers too; without, in half the time: the same bits" ON)
+if(NOT ARM3R_WIDE)
+  target_compile_definitions(arm3r_flags INTERFACE ARM3R_NARROW)
+endif()

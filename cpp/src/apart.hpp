@@ -32,4 +32,18 @@ struct Apart<Pack<8>> {
 };
 #endif
 
+// A right-hand side that the stages of a step call, instead of each holding a copy of it.
+template <class T, class F>
+struct Called {
+    const F& f;
+    template <class Y>
+    ARM3R_INLINE void operator()(const T& t, const Y& y, Y& dy) const {
+        Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { f(t, y, dy); });
+    }
+};
+template <class T, class F>
+ARM3R_INLINE Called<T, F> called(const F& f) {
+    return {f};
+}
+
 }  // namespace arm3r

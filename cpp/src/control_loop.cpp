@@ -195,11 +195,24 @@ void ControlLoop<T>::estimate(const Mask& due, const Sensed<T>& sensed) {
     next_estimate_ = select(due, T(estimation_.start + estimates_ * estimation_.period), next_estimate_);
 }
 
-template class ControlLoop<double>;
-template class ControlLoop<Pack<2>>;
+// By name: `template class` would also build, for no caller, what is inlined everywhere (ARM3R_INLINE).
+#define ARM3R_CONTROL_LOOP(...)                                                                                \
+    template void ControlLoop<__VA_ARGS__>::put(int, const Digital<double>&, const Estimation<double>&);       \
+    template void ControlLoop<__VA_ARGS__>::add_noise(const Mask&, Vec3<__VA_ARGS__>&) const;                  \
+    template Vec3<__VA_ARGS__> ControlLoop<__VA_ARGS__>::delayed_force(const Mask&, const Vec3<__VA_ARGS__>&); \
+    template void ControlLoop<__VA_ARGS__>::queue(const Mask&, const Vec3<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);  \
+    template void ControlLoop<__VA_ARGS__>::put_out(const Mask&, Vec3<__VA_ARGS__>&);                          \
+    template void ControlLoop<__VA_ARGS__>::ask_user(const Sensed<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);          \
+    template std::string ControlLoop<__VA_ARGS__>::complaint() const;                                          \
+    template void ControlLoop<__VA_ARGS__>::keep_passive(const Mask&, const Sensed<__VA_ARGS__>&,              \
+                                                         Command<__VA_ARGS__>&);                               \
+    template void ControlLoop<__VA_ARGS__>::estimate(const Mask&, const Sensed<__VA_ARGS__>&);
+
+ARM3R_CONTROL_LOOP(double)
+ARM3R_CONTROL_LOOP(Pack<2>)
 #if ARM3R_WIDE_PACKS
-template class ControlLoop<Pack<4>>;
-template class ControlLoop<Pack<8>>;
+ARM3R_CONTROL_LOOP(Pack<4>)
+ARM3R_CONTROL_LOOP(Pack<8>)
 #endif
 
 }  // namespace arm3r

@@ -35,7 +35,7 @@ public:
         const T aim = min(this->stop_, T((this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
-        const Y y1 = rk4_step(this->rhs_, t0_, this->y_, this->f_, this->h_);
+        const Y y1 = stepped();
         const Mask finite = Base::is_finite(y1), moved = finite && this->alive_;
         this->accept(moved, select(is_last, this->stop_, aim), y1);
         this->evaluations_ = this->evaluations_ + 4.0;
@@ -54,6 +54,11 @@ public:
     FullState f(int lane) const { return Base::state_of(this->f_, lane); }
 
 private:
+    ARM3R_INLINE Y stepped() const {
+        if constexpr (N == state_size) return rk4_step(this->rhs_, t0_, this->y_, this->f_, this->h_);
+        else return rk4_step_in_a_loop(this->rhs_, t0_, this->y_, this->f_, this->h_);
+    }
+
     [[gnu::noinline]] void diverge(const Mask& finite) {
         for (int lane = 0; lane < Base::lanes; ++lane)
             if (this->is_running(lane) && !Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apart.hpp"
 #include "arm3r/eigen_traits.hpp"
 #include "contact_step.hpp"
 #include "control_loop.hpp"
@@ -133,12 +134,18 @@ protected:
         kinetic_ = kinetic_energy(plant_.arm, p_, qd);
         potential_ = potential_energy(plant_.arm, p_);
         if (is_controlled_ && any(is_due())) control();
-        if (needs_derivative_) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
+        if (needs_derivative_) derive();
         else if (is_scored_)
             tau_ = limited(plant_.arm, arm3r::control(plant_.controller, Vec3<T>(y_[0], y_[1], y_[2]), p_),
                            plant_.controller.saturation);
     }
     void look();
+
+    // With a controller's memory it is long: once for all who ask.
+    ARM3R_INLINE void derive() {
+        if constexpr (N == state_size) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
+        else Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_); });
+    }
 
     // ---- digital controllers
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apart.hpp"
 #include "numbers.hpp"
 
 namespace arm3r {
@@ -74,7 +75,7 @@ void Stepper<N>::begin(double t, const Y& y) {
     evaluations_ += 1;
     if (is_stiff_)
         linearize<motion_size, ledger_size, slopes_at_once>(rhs_of_duals_, t, y, stiff_.memory, f0_, slopes_);
-    else rhs_(t, y, f0_);
+    else called<double>(rhs_)(t, y, f0_);
 }
 
 // Heat of the contact goes by no state: only the books themselves tell how well they are kept.
@@ -90,11 +91,12 @@ double Stepper<N>::attempt(double t, const Y& y, double h) {
     if (is_stiff_) {
         if (!has_slopes_) begin(t, y);
         evaluations_ += rodas4::stages - 1;
-        return stiff_.step(rhs_, slopes_, t, y, f0_, h) ? stiff_.error(y, solver.rtol, solver.atol, counts_heat())
-                                                        : infinite;
+        return stiff_.step(called<double>(rhs_), slopes_, t, y, f0_, h)
+                   ? stiff_.error(y, solver.rtol, solver.atol, counts_heat())
+                   : infinite;
     }
     evaluations_ += 6;
-    explicit_.step(rhs_, t, y, f0_, h);
+    explicit_.step(called<double>(rhs_), t, y, f0_, h);
     const bool has_end = is_finite(explicit_.y1) && is_finite(explicit_.f1);
     return has_end ? explicit_.error(y, h, solver.rtol, solver.atol, counts_heat()) : infinite;
 }

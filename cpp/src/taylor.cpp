@@ -38,8 +38,8 @@ ARM3R_INLINE void expand_here(const Plant<T>& plant, const T& t, const State<T, 
 }
 
 template <std::size_t recipe>
-ARM3R_WIDEST void expand_by(const Plant<double>& plant, const double& t, const State<double, state_size>& y, int order,
-                            double (*c)[quantities]) {
+ARM3R_WIDEST_SCALARS void expand_by(const Plant<double>& plant, const double& t, const State<double, state_size>& y,
+                                    int order, double (*c)[quantities]) {
     expand_here<recipe>(plant, t, y, order, c);
 }
 

@@ -732,8 +732,9 @@ BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_each_law_alone) {
     Random random(21);
     for (const Controller<double>& form : all_laws(random)) {
         check_lanes<Pack<2>, 2>(random, form);
-        check_lanes<double, 8>(random, form);
+        check_lanes<double, 2>(random, form);
 #if ARM3R_WIDE_PACKS
+        if (widest_lanes() >= 4) check_lanes<double, 4>(random, form);
         if (widest_lanes() >= 4) check_lanes<Pack<4>, 4>(random, form);
         if (widest_lanes() >= 8) check_lanes<Pack<8>, 8>(random, form);
 #endif

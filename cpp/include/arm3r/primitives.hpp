@@ -10,13 +10,15 @@
 // All that it calls must be inlined into it. Every variant gives the same bits. The other two: a function of packs of 4 or
 // of 8, built for the registers that hold them, and to be called only where the processor has these (widest_lanes); where
 // there are no such registers to build for (ARM3R_WIDE_PACKS 0), packs of 2 are all there is.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && !defined(ARM3R_NARROW)
 #define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#define ARM3R_WIDEST_SCALARS __attribute__((target_clones("default", "arch=x86-64-v3")))
 #define ARM3R_FOR_FOUR __attribute__((target("arch=x86-64-v3")))
 #define ARM3R_FOR_EIGHT __attribute__((target("arch=x86-64-v4")))
 #define ARM3R_WIDE_PACKS 1
 #else
 #define ARM3R_WIDEST
+#define ARM3R_WIDEST_SCALARS
 #define ARM3R_WIDE_PACKS 0
 #endif
 #define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
@@ -54,6 +56,20 @@ ARM3R_INLINE double abs(double x) { return __builtin_fabs(x); }
 ARM3R_INLINE double min(double a, double b) { return b < a ? b : a; }
 ARM3R_INLINE double max(double a, double b) { return a < b ? b : a; }
 ARM3R_INLINE double copysign(double magnitude, double sign) { return __builtin_copysign(magnitude, sign); }
+
+// What is long, and asked for in many places: a function of its own, but for numbers that live in wide registers, which
+// must not cross a call, and for plain ones.
+template <class T>
+inline constexpr bool is_heavy = false;
+template <class T, class F>
+[[gnu::noinline]] auto call(const F& f) {
+    return f();
+}
+template <class T, class F>
+ARM3R_INLINE auto shared(const F& f) {
+    if constexpr (is_heavy<T>) return call<T>(f);
+    else return f();
+}
 
 // The number without its derivatives.
 ARM3R_INLINE double value(double x) { return x; }

@@ -37,15 +37,17 @@ ARM3R_INLINE Vec3<T> jacobian_dot_times(const Arm<P>& arm, const Pose<T>& p, con
 template <class P, class T>
 ARM3R_INLINE Vec3<T> torque_for_tip(const Arm<P>& model, const Sensed<T>& sensed, const Vec3<T>& a,
                                     const Vec3<T>& f_on_tip) {
-    const Vec3<T> by_rates = jacobian_dot_times(model, sensed.pose, sensed.qd, sensed.qd);
-    const Vec3<T> qdd = joint_rates(model, sensed.pose, minus(a, by_rates));
-    return inverse_dynamics(model, sensed.pose, sensed.qd, qdd, f_on_tip);
+    return shared<T>([&]() ARM3R_INLINE_LAMBDA {
+        const Vec3<T> by_rates = jacobian_dot_times(model, sensed.pose, sensed.qd, sensed.qd);
+        const Vec3<T> qdd = joint_rates(model, sensed.pose, minus(a, by_rates));
+        return inverse_dynamics(model, sensed.pose, sensed.qd, qdd, f_on_tip);
+    });
 }
 
 // J^T Lambda a = M J^-1 a: what that torque changes by with a (7.4).
 template <class P, class T>
 ARM3R_INLINE Vec3<T> inertial_torque(const Arm<P>& model, const Pose<T>& p, const Vec3<T>& a) {
-    return times(mass_matrix(model, p), joint_rates(model, p, a));
+    return shared<T>([&]() ARM3R_INLINE_LAMBDA { return times(mass_matrix(model, p), joint_rates(model, p, a)); });
 }
 
 // How far the pose is from where J has no inverse: 0 there, 1 at most (7.21).
@@ -65,10 +67,12 @@ struct TipTask {
 
 template <class P, class T>
 ARM3R_INLINE TipTask<T> tip_task(const Controller<P>& controller, const Sensed<T>& sensed) {
-    const Wanted<T> wanted = wanted_at(controller.setpoint, sensed.t);
-    const Vec3<T> velocity = tip_velocity(controller.model, sensed.pose, sensed.qd);
-    return {velocity, minus(wanted.position, tip_position(controller.model, sensed.pose)),
-            minus(wanted.velocity, velocity), wanted.velocity, wanted.acceleration};
+    return shared<T>([&]() ARM3R_INLINE_LAMBDA {
+        const Wanted<T> wanted = wanted_at(controller.setpoint, sensed.t);
+        const Vec3<T> velocity = tip_velocity(controller.model, sensed.pose, sensed.qd);
+        return TipTask<T>{velocity, minus(wanted.position, tip_position(controller.model, sensed.pose)),
+                          minus(wanted.velocity, velocity), wanted.velocity, wanted.acceleration};
+    });
 }
 
 // xdd_d + Kd (xd_d - xd) + Kp (x_d - x): m/s^2 (7.8).

@@ -1,3 +1,5 @@
+// A controller per lane.
+
 #include "compiled_laws.hpp"
 
 #include "arm3r/eigen_traits.hpp"
@@ -7,22 +9,6 @@ namespace {
 
 template <class T>
 using Memory = std::array<T, law_memory>;
-
-void of_double(const Controller<double>& controller, const Sensed<double>& sensed, const Memory<double>& memory,
-               Command<double>& command) {
-    law(controller, sensed, memory, command);
-}
-
-void of_dual(const Controller<double>& controller, const Sensed<Dual<slopes_at_once>>& sensed,
-             const Memory<Dual<slopes_at_once>>& memory, Command<Dual<slopes_at_once>>& command) {
-    law(controller, sensed, memory, command);
-}
-
-// Rows, eight at a time.
-ARM3R_WIDEST void of_rows(const Controller<double>& controller, const Sensed<Pack<8>>& sensed,
-                          const Memory<Pack<8>>& memory, Command<Pack<8>>& command) {
-    law(controller, sensed, memory, command);
-}
 
 void of_two(const Controller<Pack<2>>& controller, const Sensed<Pack<2>>& sensed, const Memory<Pack<2>>& memory,
             Command<Pack<2>>& command) {
@@ -42,21 +28,6 @@ ARM3R_FOR_EIGHT void of_eight(const Controller<Pack<8>>& controller, const Sense
 #endif
 
 }  // namespace
-
-template <>
-LawFunction<double, double> compiled_law() {
-    return of_double;
-}
-
-template <>
-LawFunction<double, Dual<slopes_at_once>> compiled_law() {
-    return of_dual;
-}
-
-template <>
-LawFunction<double, Pack<8>> compiled_law() {
-    return of_rows;
-}
 
 template <>
 LawFunction<Pack<2>, Pack<2>> compiled_law() {

@@ -1,0 +1,12 @@
+#include "march_members.hpp"
+
+namespace arm3r {
+
+ARM3R_MARCH(double, full_size)
+ARM3R_MARCH(Pack<2>, full_size)
+#if ARM3R_WIDE_PACKS
+ARM3R_MARCH(Pack<4>, full_size)
+ARM3R_MARCH(Pack<8>, full_size)
+#endif
+
+}  // namespace arm3r
