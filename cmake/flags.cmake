@@ -36,7 +36,12 @@ list(JOIN _numeric " " _numeric)
 string(JOIN " " ARM3R_BUILD_INFO ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}
        ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_numeric})
 
-option(ARM3R_WIDE "Build for registers of four and eight numbers too; without, in half the time: the same bits" ON)
-if(NOT ARM3R_WIDE)
+# Fewer lanes compile faster; results have the same bits. 1 is for development: a batch then has no packs at all.
+set(ARM3R_LANES 8 CACHE STRING "The most runs that a batch steps side by side: 8, 2 or 1")
+set_property(CACHE ARM3R_LANES PROPERTY STRINGS 8 2 1)
+if(ARM3R_LANES LESS 8)
   target_compile_definitions(arm3r_flags INTERFACE ARM3R_NARROW)
+endif()
+if(ARM3R_LANES LESS 2)
+  target_compile_definitions(arm3r_flags INTERFACE ARM3R_ONE_LANE=1)
 endif()

@@ -209,7 +209,9 @@ void ControlLoop<T>::estimate(const Mask& due, const Sensed<T>& sensed) {
     template void ControlLoop<__VA_ARGS__>::estimate(const Mask&, const Sensed<__VA_ARGS__>&);
 
 ARM3R_CONTROL_LOOP(double)
+#if !ARM3R_ONE_LANE
 ARM3R_CONTROL_LOOP(Pack<2>)
+#endif
 #if ARM3R_WIDE_PACKS
 ARM3R_CONTROL_LOOP(Pack<4>)
 ARM3R_CONTROL_LOOP(Pack<8>)

@@ -60,7 +60,9 @@ private:
 template <template <class> class Marching>
 struct Lineups {
     static void one(Crew& crew, const Setup& first, std::size_t run) { march<double>(crew, first, run); }
+#if !ARM3R_ONE_LANE
     static void two(Crew& crew, const Setup& first, std::size_t run) { march<Pack<2>>(crew, first, run); }
+#endif
 #if ARM3R_WIDE_PACKS
     ARM3R_FOR_FOUR static void four(Crew& crew, const Setup& first, std::size_t run) {
         march<Pack<4>>(crew, first, run);
@@ -78,11 +80,14 @@ struct Lineups {
     static void of(int lanes, Crew& crew, const Setup& first, std::size_t run) {
         switch (lanes) {
             case 1: return one(crew, first, run);
+#if !ARM3R_ONE_LANE
+            case 2: return two(crew, first, run);
+#endif
 #if ARM3R_WIDE_PACKS
             case 4: return four(crew, first, run);
             case 8: return eight(crew, first, run);
 #endif
-            default: return two(crew, first, run);
+            default: return one(crew, first, run);
         }
     }
 };

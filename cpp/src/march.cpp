@@ -38,7 +38,9 @@ Structure structure_of(const Setup& setup) {
 }
 
 ARM3R_MARCH(double)
+#if !ARM3R_ONE_LANE
 ARM3R_MARCH(Pack<2>)
+#endif
 #if ARM3R_WIDE_PACKS
 ARM3R_MARCH(Pack<4>)
 ARM3R_MARCH(Pack<8>)

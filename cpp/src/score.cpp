@@ -33,7 +33,9 @@ void Score<T>::tell(int lane, const Controller<double>& controller, Metrics& m) 
 }
 
 template class Score<double>;
+#if !ARM3R_ONE_LANE
 template class Score<Pack<2>>;
+#endif
 #if ARM3R_WIDE_PACKS
 template class Score<Pack<4>>;
 template class Score<Pack<8>>;

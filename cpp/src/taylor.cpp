@@ -106,8 +106,10 @@ void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, sta
 
 template void expand(Kernel, const Plant<double>&, const double&, const State<double, state_size>&, int,
                      Expansion<double>&);
+#if !ARM3R_ONE_LANE
 template void expand(Kernel, const Plant<Pack<2>>&, const Pack<2>&, const State<Pack<2>, state_size>&, int,
                      Expansion<Pack<2>>&);
+#endif
 #if ARM3R_WIDE_PACKS
 template void expand(Kernel, const Plant<Pack<4>>&, const Pack<4>&, const State<Pack<4>, state_size>&, int,
                      Expansion<Pack<4>>&);

@@ -22,12 +22,17 @@
 #define ARM3R_WIDE_PACKS 0
 #endif
 #define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
+#ifndef ARM3R_ONE_LANE
+#define ARM3R_ONE_LANE 0  // 1: a batch has no packs, to compile faster while developing
+#endif
 
 namespace arm3r {
 
 // How many lanes the registers of this processor hold.
 inline int widest_lanes() {
-#if ARM3R_WIDE_PACKS
+#if ARM3R_ONE_LANE
+    return 1;
+#elif ARM3R_WIDE_PACKS
     if (__builtin_cpu_supports("x86-64-v4")) return 8;
     if (__builtin_cpu_supports("x86-64-v3")) return 4;
 #endif
