@@ -479,7 +479,7 @@ def _wanted_force(draw: Draw, stop: float) -> Keys:
 
 
 def _sampling(draw: Draw, decay: float) -> Keys:
-    """A rate and a delay that the law's damping bears: a decay at the rate c under a hold of T needs c T well below 2."""
+    """A rate and a delay that the law's damping bears: a decay at c 1/s under a hold of T s needs c T well below 2."""
     delay = draw.one_of([0, 0, 0, 0.25, 0.4, 0.5, 1, 1, 1.4, 2, 3])
     rates = [100, 200, 250, 333, 500, 730, 1000, 1000, 2000]
     rate = draw.one_of([rate for rate in rates if decay * (0.5 + delay) < 0.4 * rate] or [4000])
@@ -490,7 +490,7 @@ def _sampling(draw: Draw, decay: float) -> Keys:
 
 
 def _fastest_decay(scenario: Keys) -> float:
-    """The fastest rate, 1/s, at which the law's dampers brake the arm at its start, and the contact's spring with it."""
+    """An upper bound, 1/s, of how fast the law's dampers brake the arm at its start and the contact's spring swings."""
     resolved = arm3r.Scenario(yaml_of(scenario))
     arm, q = resolved.arm, np.array(scenario["initial"]["q"])
     joints = np.linalg.inv(arm.mass_matrix(q))
