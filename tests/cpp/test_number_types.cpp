@@ -63,6 +63,17 @@ static std::vector<T> by_recursion(const Arm<P>& arm, const T* x) {
     return out;
 }
 
+// A right-hand side as a function of its own, so that the stages of a step do not each hold a copy of it.
+template <class T, class F>
+struct Outlined {
+    const F& f;
+
+    template <std::size_t N>
+    [[gnu::noinline]] void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
+        f(t, y, dy);
+    }
+};
+
 // One step of each method, with the books, from t = x[6], on a plant where contact is decided at every stage.
 template <class T>
 static std::vector<T> stepped(const Plant<double>& plant, const T* x) {
@@ -72,12 +83,13 @@ static std::vector<T> stepped(const Plant<double>& plant, const T* x) {
     const T t = x[6], h(0.01);
     State<T, state_size> f0;
     f.begin_step(y);
-    f(t, y, f0);
+    const Outlined<T, RightHandSide<double, T>> outlined{f};
+    outlined(t, y, f0);
     Dopri5<T, state_size, motion_size> dopri5;
-    dopri5.step(f, t, y, f0, h);
+    dopri5.step(outlined, t, y, f0, h);
     std::vector<T> out;
     put(out, f0);
-    put(out, rk4_step(f, t, y, f0, h));
+    put(out, rk4_step(outlined, t, y, f0, h));
     put(out, dopri5.y1);
     put(out, dopri5.interpolant(t, y, h)(T(0.3)));
     out.push_back(dopri5.error(y, h, 1e-9, 1e-12));
@@ -338,9 +350,10 @@ BOOST_AUTO_TEST_CASE(a_recorded_step_with_contact_plays_back_to_the_same_bits_of
     RightHandSide<double, Expr> f(plant);
     f.touch = Touch::each_stage;
     const State<Expr, motion_size> y{inputs[0], inputs[1], inputs[2], inputs[3], inputs[4], inputs[5]};
+    const Outlined<Expr, RightHandSide<double, Expr>> outlined{f};
     State<Expr, motion_size> f0;
-    f(inputs[6], y, f0);
-    for (const Expr& result : rk4_step(f, inputs[6], y, f0, Expr(0.01))) tape.output(result);
+    outlined(inputs[6], y, f0);
+    for (const Expr& result : rk4_step(outlined, inputs[6], y, f0, Expr(0.01))) tape.output(result);
     BOOST_TEST(tape.count(Op::select) > 0);
     for (int i = 0; i < 300; ++i) {
         const Numbers x = random_state(random);
