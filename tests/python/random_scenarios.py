@@ -24,6 +24,8 @@ Keys = dict[str, Any]
 IN_JOINTS = ("joint_pd", "computed_torque", "joint_stiffness")
 AT_THE_TIP = ("resolved_acceleration", "stiffness", "impedance", "shaped_impedance", "admittance", "energy_tank")
 ON_THE_FORCE = ("operational_space", "hybrid", "parallel", "adaptive_reference")
+FEELING = ("computed_torque", "resolved_acceleration", "shaped_impedance", "admittance", *ON_THE_FORCE)
+"""Laws that answer to the measured force: a one-way wall leads them astray, for the arm does not feel what they do."""
 WITHOUT_A_PATH = ("none", "constant", "gravity_compensation", "virtual_wall")
 LAWS = (*WITHOUT_A_PATH, *IN_JOINTS, *AT_THE_TIP, *ON_THE_FORCE)
 
@@ -49,8 +51,8 @@ def random_scenario(
         longest: s, the largest time.stop; the shortest is a quarter of it.
     """
     while True:
-        scenario = drawn_scenario(Draw(rng), law or Draw(rng).one_of(LAWS), sampled, longest)
         try:
+            scenario = drawn_scenario(Draw(rng), law or Draw(rng).one_of(LAWS), sampled, longest)
             arm3r.Scenario(yaml_of(scenario)).validate()
         except arm3r.ScenarioError:
             continue
@@ -68,7 +70,7 @@ def drawn_scenario(draw: Draw, law: str, sampled: bool | None, longest: float) -
     scenario: Keys = {"format": 1, "arm": arm, "initial": initial}
     has_wall = law in ON_THE_FORCE or draw.chance(0.75)
     if has_wall:
-        scenario["wall"] = _wall(draw, tip, stop)
+        scenario["wall"] = _wall(draw, tip, stop, 0.9 if law in FEELING else 0.5)
     scenario["controller"] = _controller(draw, law, tip)
     if law not in WITHOUT_A_PATH:
         scenario["reference"] = _reference(draw, law, tip, np.array(initial["q"]), stop, has_wall)
@@ -197,8 +199,11 @@ def _initial(draw: Draw) -> Keys:
 # ---- the wall --------------------------------------------------------------------------------------------------------
 
 
-def _wall(draw: Draw, tip: np.ndarray, stop: float) -> Keys:
-    """A plate in front of the tip, which the tip meets as a rule within the run."""
+def _wall(draw: Draw, tip: np.ndarray, stop: float, acting: float) -> Keys:
+    """A plate in front of the tip, which the tip meets as a rule within the run; `acting` is the share of two-way ones.
+
+    Springs along the plate are one-way only.
+    """
     outwards = np.array([tip[0], tip[1], 0]) / math.hypot(tip[0], tip[1])
     normal = -outwards + np.array(draw.numbers(-0.6, 0.6))
     normal = np.array([float(f"{part:.5g}") for part in normal])
@@ -212,11 +217,9 @@ def _wall(draw: Draw, tip: np.ndarray, stop: float) -> Keys:
         "normal": normal.tolist(),
         "size": "infinite" if draw.chance(0.5) else draw.numbers(0.25, 1.0, 2),
         "motion": _motion(draw, unit, stop),
-        "contact": _contact(draw),
-        "acts_on_arm": draw.chance(0.65),
+        "contact": _contact(draw, acts_on_arm := draw.chance(acting)),
+        "acts_on_arm": acts_on_arm,
     }
-    if wall["contact"]["law"] == "diagonal":
-        wall["acts_on_arm"] = False
     if offset:
         wall["face_offset"] = offset
     if draw.chance(0.15):
@@ -268,8 +271,9 @@ def _rotation(draw: Draw) -> Keys:
     return {"type": "sinusoid", "axis": draw.direction(), **swing, **draw.some(0.5, phase=lambda: draw.number(-3, 3))}
 
 
-def _contact(draw: Draw) -> Keys:
-    law = draw.one_of(["spring", "spring", "kelvin_voigt", "hunt_crossley", "diagonal"])
+def _contact(draw: Draw, acts_on_arm: bool) -> Keys:
+    laws = ["spring", "spring", "kelvin_voigt", "hunt_crossley"]
+    law = draw.one_of(laws if acts_on_arm else [*laws, "diagonal"])
     contact: Keys = {"law": law, "stiffness": draw.scale(200, 1e4)}
     if law == "diagonal":
         contact["stiffness"] = [draw.scale(200, 5000) for _ in range(3)]
