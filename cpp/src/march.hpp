@@ -177,7 +177,7 @@ protected:
         Mask pressed = in_.depth > T(0.0) && !embedded_;
         if (plant_.wall.has_outline) pressed = pressed && inside_outline(plant_.wall, in_) >= T(0.0);
         if (!any(pressed)) return none<T>();
-        return only_where(pressed, contact_force(plant_.wall, wall_, plant_.contact, in_, Grip::clipped)).on_tip;
+        return only_where(pressed, contact_force(plant_.wall, wall_, true_contact_, in_, Grip::clipped)).on_tip;
     }
 
     // ---- the score
@@ -210,8 +210,8 @@ protected:
         if (!plant_.acts_on_arm) return T(0.0);
         const auto pressed = touching_ && in_.depth > T(0.0);
         if (plant_.contact.law == Law::spring)
-            return select(pressed, T(0.5 * stiffness_ * in_.depth * in_.depth), T(0.0));
-        return select(pressed, T(push(plant_.contact, in_).stored + stored_sideways(plant_.contact, in_)), T(0.0));
+            return select(pressed, T(0.5 * true_contact_.stiffness[0] * in_.depth * in_.depth), T(0.0));
+        return select(pressed, T(push(true_contact_, in_).stored + stored_sideways(true_contact_, in_)), T(0.0));
     }
 
     // ---- after a step
@@ -290,13 +290,14 @@ protected:
         return force;
     }
 
-    Plant<T> plant_;  // its contact pushes nothing in lanes that are embedded, or free where so decided
+    Plant<T> plant_;  // its contact is what the motion feels: no force in lanes that are embedded, or free where so decided
     RightHandSide<T, T> rhs_;
     bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
 
     bool is_controlled_, is_scored_;
     ControlLoop<T> loop_;
     Score<T> score_;
+    Contact<T> true_contact_;  // in every mode: what sensors and the score read
 
     T t_{0.0}, h_{0.0}, stop_{0.0}, slack_{0.0};  // slack: how early an instant counts as reached, s
     Y y_{}, f_{};
@@ -306,7 +307,6 @@ protected:
     Vec3<T> tau_ = none<T>();  // N m, applied
     T kinetic_, potential_;
 
-    T stiffness_{0.0};
     Mask alive_ = false, begun_ = false, touching_ = false, embedded_ = false;
     std::array<Mode, lanes> mode_{};
     bool any_embedded_ = false, any_touching_ = false;

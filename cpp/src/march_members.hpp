@@ -27,6 +27,7 @@ March<T, N>::March(const Setup& any_lane)
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
       is_scored_(any_lane.is_scored()),
       score_(any_lane),
+      true_contact_(plant_.contact),
       is_elastic_(!is_damped(any_lane.plant.contact.law)) {
     rhs_.law_function = compiled_law<T, T>();
     for (int lane = 0; lane < lanes; ++lane) {
@@ -60,7 +61,7 @@ void March<T, N>::put(int lane, const Setup& setup) {
     set(rhs_.contact, 0.0), set(rhs_.force_phase, 0.0);
     set(stop_, setup.stop);
     set(max_steps_, setup.solver.max_steps);
-    set(stiffness_, setup.plant.contact.stiffness[0]);
+    each_contact_number(set, true_contact_, setup.plant.contact);
     contacts_[lane] = {0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0, 0};
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
@@ -189,7 +190,7 @@ void March<T, N>::set_mode(int lane, Mode mode) {
     embedded_ = mask_where<T>(mode_, Mode::embedded);
     any_touching_ = any(touching_);
     any_embedded_ = any(embedded_);
-    const bool feels = only_contact_is_felt_ ? mode == Mode::contact && plant_.acts_on_arm : mode != Mode::embedded;
+    const bool feels = only_contact_is_felt_ ? mode == Mode::contact : mode != Mode::embedded;
     const Contact<double>& own = setups_[lane].plant.contact;
     const auto set = [&](T& strength, double value) { Lanes<T>::set(strength, lane, feels ? value : 0.0); };
     for (int i = 0; i < 3; ++i) set(plant_.contact.stiffness[i], own.stiffness[i]);
@@ -260,7 +261,7 @@ Metrics March<T, N>::metrics(int lane) const {
     const auto joints_out = [&](const Vec3<double>& v) { return plain(setup.simscape ? flipped(v) : v); };
     const Contacts& contacts = contacts_[lane];
     const bool touches = mode_[lane] == Mode::contact;
-    const double stiffness = get(stiffness_);
+    const double stiffness = get(true_contact_.stiffness[0]);
 
     Metrics m;
     m.outcome = outcome_[lane];

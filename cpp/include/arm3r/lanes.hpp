@@ -81,6 +81,12 @@ ARM3R_INLINE void each_load_number(F f, Loads&... l) {
     f(l.force[0]...), f(l.force[1]...), f(l.force[2]...), f(l.start...), f(l.rise...), f(l.duration...);
 }
 
+template <class F, class... Contacts>
+ARM3R_INLINE void each_contact_number(F f, Contacts&... c) {
+    f(c.stiffness[0]...), f(c.stiffness[1]...), f(c.stiffness[2]...);
+    f(c.damping...), f(c.exponent...), f(c.dissipation...), f(c.friction...), f(c.slip_velocity...);
+}
+
 // The same of plants, but for the tables of walls and what only a law uses.
 template <class F, class... Plants>
 ARM3R_INLINE void each_number(F f, Plants&... plants) {
@@ -95,13 +101,9 @@ ARM3R_INLINE void each_number(F f, Plants&... plants) {
         vector(w.axis...), f(w.turn_rate...);
         swing(w.turn_swing...);
     };
-    const auto contact = [&](auto&... c) ARM3R_INLINE_LAMBDA {
-        vector(c.stiffness...);
-        f(c.damping...), f(c.exponent...), f(c.dissipation...), f(c.friction...), f(c.slip_velocity...);
-    };
     each_arm_number(f, plants.arm...);
     wall(plants.wall...);
-    contact(plants.contact...);
+    each_contact_number(f, plants.contact...);
     vector(plants.controller.torque...);
     each_arm_number(f, plants.controller.model...);
 }
