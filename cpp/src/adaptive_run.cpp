@@ -414,7 +414,7 @@ private:
         const double phase = setup_.digital.sampling.on ? loop_.known().force_phase : force_phase_;
         if (score_.looks().path)
             sight.path_error_2 =
-                path_error_2(controller, t, tip_position(plant.arm, p), normal(plant.wall, wall), phase);
+                path_error_2(plant.arm, controller, t, tip_position(plant.arm, p), normal(plant.wall, wall), phase);
         Y part;
         std::copy_n(y.begin(), N, part.begin());
         if (plant.load.on) f_on_tip = plus(f_on_tip, load_at(plant.load, t));

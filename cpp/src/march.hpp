@@ -197,7 +197,8 @@ protected:
         }
         if (wants_path(law.type)) {
             const T phase = loop_.is_on() ? loop_.known().force_phase : rhs_.force_phase;
-            sight.path_error_2 = path_error_2(law, t_, tip_position(plant_.arm, p_), normal(plant_.wall, wall_), phase);
+            sight.path_error_2 =
+                path_error_2(plant_.arm, law, t_, tip_position(plant_.arm, p_), normal(plant_.wall, wall_), phase);
         }
         if (!plant_.arm.has_torque_limit) return;
         sight.saturated = o;
@@ -290,7 +291,8 @@ protected:
         return force;
     }
 
-    Plant<T> plant_;  // its contact is what the motion feels: no force in lanes that are embedded, or free where so decided
+    Plant<T>
+        plant_;  // its contact is what the motion feels: no force in lanes that are embedded, or free where so decided
     RightHandSide<T, T> rhs_;
     bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
 

@@ -21,13 +21,12 @@ struct Sight {
     T work;                 // J, of all actuators so far
 };
 
-// Square of the tip's distance from its reference.
+// Square of the tip's distance from its reference; of angles, where they put the tip of the true arm.
 template <class P, class T>
-ARM3R_INLINE T path_error_2(const Controller<P>& controller, const T& t, const Vec3<T>& tip, const Vec3<T>& n,
-                            const T& force_phase) {
+ARM3R_INLINE T path_error_2(const Arm<P>& arm, const Controller<P>& controller, const T& t, const Vec3<T>& tip,
+                            const Vec3<T>& n, const T& force_phase) {
     const Wanted<T> wanted = wanted_at(controller.setpoint, t);
-    const Vec3<T> goal =
-        controller.setpoint.in_joints ? tip_position(controller.model, pose(wanted.position)) : wanted.position;
+    const Vec3<T> goal = controller.setpoint.in_joints ? tip_position(arm, pose(wanted.position)) : wanted.position;
     const Vec3<T> off = minus(tip, goal);
     const T across = wants_force(controller.type) ? T(force_phase * dot(n, off)) : T(0.0);
     return max(T(0.0), T(dot(off, off) - across * across));
