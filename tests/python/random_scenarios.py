@@ -86,8 +86,17 @@ def drawn_scenario(draw: Draw, law: str, sampled: bool | None, longest: float) -
     if draw.chance(0.25):
         scenario["push"] = _push(draw, stop)
     scenario["solver"] = {"max_steps": 20000}
-    scenario["time"] = {"stop": stop, "log_every": draw.one_of([0.01, 0.005, 0.02, 0.00731, 0.0133])}
+    scenario["time"] = {"stop": stop, "log_every": _log_every(draw, scenario)}
     return scenario
+
+
+def _log_every(draw: Draw, scenario: Keys) -> float:
+    """A time between rows, which often brings them to samples and to the instants at which a late torque changes."""
+    every = draw.one_of([0.01, 0.005, 0.02, 0.00731, 0.0133])
+    if "sampling" not in scenario or draw.chance(0.4):
+        return every
+    period, delay = 1 / scenario["sampling"]["rate"], scenario["sampling"].get("delay", 0) % 1 or 0.5
+    return draw.one_of([5 * period, 2.5 * period, (4 + delay) * period, 0.2 * period * round(every / period)])
 
 
 class Draw:

@@ -1,0 +1,170 @@
+"""Physics knows no x axis and no sign of an angle: a scenario turned about the vertical, or told in the other
+convention, gives the same motion.
+
+The scenarios are drawn from the seed of the day, which a failure prints with its YAML; ARM3R_SEED sets another.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from agreement import ADAPTIVE, Band, Gap, disturbed, rk4, run_of
+from random_scenarios import Keys, fresh_seed, random_scenario, yaml_of
+
+SEED = fresh_seed()
+PER_AXIS = ("mass", "damping", "stiffness", "position_gain", "velocity_gain")
+VECTORS = (
+    "arm.gravity", "wall.point", "wall.normal", "wall.motion.velocity", "wall.motion.direction", "wall.rotation.axis",
+    "controller.gravity", "controller.plane_point", "controller.plane_normal", "reference.tip",
+    "reference.tip_amplitude", "sensors.force.bias", "push.force",
+)  # fmt: skip
+MIRRORED = ("initial.q", "initial.qd", "controller.torque", "reference.q", "reference.q_amplitude")
+MIRRORED_COLUMNS = ("q", "qd", "qdd", "tau", "tau_g", "residual", "q_ref")
+
+
+def entry(scenario: Keys, path: str) -> tuple[dict[str, Any], str] | None:
+    """The map that holds a path's value, and its key in it; None where the scenario lacks it or it is one number."""
+    *sections, key = path.split(".")
+    place: Any = scenario
+    for section in sections:
+        place = place.get(section, {})
+    return (place, key) if isinstance(place.get(key), list) else None
+
+
+# ---- the two conventions ---------------------------------------------------------------------------------------------
+
+
+def mirrored(scenario: Keys) -> Keys:
+    """The scenario in the other convention."""
+    other = copy.deepcopy(scenario)
+    other["arm"]["convention"] = {"slide": "simscape", "simscape": "slide"}[scenario["arm"]["convention"]]
+    for path in MIRRORED:
+        if found := entry(other, path):
+            place, key = found
+            place[key] = [place[key][0], -place[key][1], -place[key][2]]
+    return other
+
+
+def wrong_in_mirror(scenario: Keys, solver: Keys) -> list[str]:
+    """Columns that are not the same bits in the other convention."""
+    run, other = run_of(scenario, solver), run_of(mirrored(scenario), solver)
+    if run is None or other is None:
+        return [] if run is other else ["one convention is refused"]
+    signs = {f"{name}{joint}": -1 for name in MIRRORED_COLUMNS for joint in (2, 3)}
+    return [name for name in run.columns if not np.array_equal(run[name], signs.get(name, 1) * other[name])]
+
+
+def check_mirror(numbers: range, longest: float) -> None:
+    found = []
+    for number in numbers:
+        scenario = random_scenario(np.random.default_rng([SEED, number]), longest=longest)
+        for method, solver in {**ADAPTIVE, "rk4": rk4(scenario, 1e-3)}.items():
+            if wrong := wrong_in_mirror(scenario, solver):
+                found.append(f"# seed {SEED}, scenario {number}, {method}: {wrong}\n{yaml_of(scenario)}")
+    assert not found, "\n".join(found[:10])
+
+
+def test_both_conventions_give_the_same_bits() -> None:
+    check_mirror(range(60), longest=0.3)
+
+
+@pytest.mark.gate
+def test_both_conventions_give_the_same_bits_in_many() -> None:
+    check_mirror(range(1000, 2000), longest=1.2)
+
+
+# ---- turned about the vertical ---------------------------------------------------------------------------------------
+
+
+def alike_in_all_directions(scenario: Keys) -> Keys | None:
+    """The scenario without what belongs to base axes or to counts of joint 1; None where that is all of it."""
+    other = copy.deepcopy(scenario)
+    for key in PER_AXIS:
+        if found := entry(other, f"controller.{key}"):
+            found[0][key] = found[0][key][0]
+    sensors = other.get("sensors", {})
+    sensors.pop("encoder", None)
+    for key in ("noise", "resolution"):
+        sensors.get("force", {}).pop(key, None)
+    if other.get("reference", {}).get("type") == "circle" and "wall" not in other:
+        return None
+    return other
+
+
+def turned(scenario: Keys, angle: float) -> Keys:
+    """The arm and the world about it turned about the vertical."""
+    other, R = copy.deepcopy(scenario), turn(angle)
+    for path in VECTORS:
+        if found := entry(other, path):
+            place, key = found
+            place[key] = (R @ place[key]).tolist()
+    reference = other.get("reference", {})
+    if reference.get("type") == "table":
+        path = R @ np.array([reference[axis] for axis in "xyz"])
+        reference |= {axis: path[i].tolist() for i, axis in enumerate("xyz")}
+    for section in (other["initial"], reference):
+        if "q" in section:
+            section["q"] = [section["q"][0] + angle, *section["q"][1:]]
+    return other
+
+
+def turn(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+class TurnedBack:
+    """A run as it looks from axes turned by an angle."""
+
+    def __init__(self, run: arm3r.Run, angle: float) -> None:
+        self.t, self.events, self._run = run.t, run.events, run
+        self._angle, self._back = angle, turn(-angle)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name in ("q1", "q_ref1"):
+            return self._run[name] - self._angle
+        stem, axis = name[:-1], "xyz".find(name[-1])
+        if axis < 0 or not all(stem + letter in self._run.columns for letter in "xyz"):
+            return self._run[name]
+        return self._back[axis] @ np.array([self._run[stem + letter] for letter in "xyz"])
+
+
+def wrong_in_turn(scenario: Keys, number: int, solver: Keys, share: float) -> Gap | None:
+    """Where the turned run leaves this share of the band."""
+    angle = float(np.random.default_rng([SEED, number, 99]).uniform(-3, 3))
+    run, other = run_of(scenario, solver), run_of(turned(scenario, angle), solver)
+    if run is None or run.outcome != "ok":
+        return None
+    if other is None or other.outcome != "ok":
+        return Gap(np.inf, "outcome", 0.0)
+    for disturbances in (2, 12):
+        others = (disturbed(scenario, np.random.default_rng([SEED, number, i])) for i in range(disturbances))
+        band = Band(run, [run_of(one, solver) for one in others])
+        gap = max(band.gap(TurnedBack(other, angle)), band.event_gap(TurnedBack(other, angle)))
+        if gap.ratio <= share:
+            return None
+    return gap
+
+
+def check_turn(numbers: range, longest: float) -> None:
+    found = []
+    for number in numbers:
+        scenario = alike_in_all_directions(random_scenario(np.random.default_rng([SEED, number]), longest=longest))
+        for method in ("dopri5", "taylor", "rk4") if scenario else ():
+            solver, share = (ADAPTIVE[method], 1.0) if method in ADAPTIVE else (rk4(scenario, 1e-3), 1e-3)
+            if gap := wrong_in_turn(scenario, number, solver, share):
+                found.append(f"# seed {SEED}, scenario {number}, {method}: {gap}\n{yaml_of(scenario)}")
+    assert not found, "\n".join(found[:10])
+
+
+def test_a_turned_world_gives_the_turned_run() -> None:
+    check_turn(range(60), longest=0.3)
+
+
+@pytest.mark.gate
+def test_many_turned_worlds_give_the_turned_runs() -> None:
+    check_turn(range(1000, 2000), longest=1.2)
