@@ -24,11 +24,6 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr int looks_per_step = 9, sights_per_step = 4;
 
-// The last instant before t > 0.
-double just_before(double t) {
-    return with_bits(t, [](auto& i) { i -= 1; });
-}
-
 // The state at t = 0.
 FullState start_of(const Setup& setup) {
     FullState y{};
@@ -44,6 +39,7 @@ struct Taken {
     double h, error;
     bool crosses, was_last;
     bool goes_on;  // but for a new torque
+    bool at_jump;  // of a formula of time alone
 };
 
 // N: state_size, or full_size where a continuous controller remembers something.
@@ -94,7 +90,7 @@ public:
         rehearsal.user = law;
         Vec3<double> held;
         Instant<double> now = instant();
-        rehearsal.attend(true, 0.0, setup_.plant.arm, now, held);
+        rehearsal.attend(true, setup_.clock_rounding(), setup_.plant.arm, now, held);
     }
 
     std::unique_ptr<Stepwise> copy() const override { return std::make_unique<AdaptiveRun>(*this); }
@@ -236,10 +232,9 @@ private:
 
     // Whatever a digital controller has to do now; whether its torque may have changed.
     bool attend() {
-        if (loop_.next() > run_.t_end || !is_going_on()) return false;
-        log_until(run_.t_end);
+        if (loop_.next() > run_.t_end + setup_.clock_rounding() || !is_going_on()) return false;
         Instant<double> now = instant();
-        loop_.attend(true, 0.0, setup_.plant.arm, now, setup_.plant.controller.torque);
+        loop_.attend(true, setup_.clock_rounding(), setup_.plant.arm, now, setup_.plant.controller.torque);
         known_ = loop_.known();
         if (asks_estimator(setup_.plant.controller) && known_.identifiable > 0)
             setup_.plant.controller.gains.assumed_stiffness = known_.stiffness;
@@ -249,7 +244,9 @@ private:
     }
 
     // Whether the controller has to be asked before the run goes on.
-    bool stand_at_sample() { return now_.waits = is_going_on() && loop_.next_sample() <= run_.t_end; }
+    bool stand_at_sample() {
+        return now_.waits = is_going_on() && loop_.next_sample() <= run_.t_end + setup_.clock_rounding();
+    }
 
     Touch touch() const {
         return mode_ == Mode::contact ? Touch::pressed : mode_ == Mode::separated ? Touch::released : Touch::none;
@@ -277,7 +274,7 @@ private:
         const double trial = size < 1e-5 || slope < 1e-5 ? 1e-6 : 0.01 * size / slope;
         Y euler, f1;
         for (std::size_t i = 0; i < N; ++i) euler[i] = y[i] + trial * f[i];
-        stepper_.evaluate(trial, euler, f1);
+        stepper_.evaluate(run_.t_end + trial, euler, f1);
         for (std::size_t i = 0; i < N; ++i) f1[i] -= f[i];
         const double bend = weighted_norm(f1) / trial;
         const double steepest = std::max(slope, bend);
@@ -305,17 +302,33 @@ private:
         return h;
     }
 
+    // Where a step ends at the latest, and what changes there.
+    struct Bound {
+        double t;                       // s
+        bool is_knot, is_jump, is_due;  // of a formula of time alone, that formula jumps; the controller is due
+        double latest;                  // s, what is seen of such formulas before (5.8)
+    };
+
+    Bound bound() const {
+        const double knot = next_knot(setup_, run_.t_end), due = loop_.next(), rounding = setup_.clock_rounding();
+        const double first = std::min({knot, due, setup_.stop});
+        const double t = knot <= std::min(first + rounding, setup_.stop) ? knot : first;
+        const bool is_knot = t == knot, is_jump = t == next_jump(setup_, run_.t_end);
+        const bool has_sides = is_jump || (is_knot && setup_.plant.wall.motion == Motion::table);
+        return {t, is_knot, is_jump, due <= t + rounding, has_sides ? just_before(t) : infinite};
+    }
+
     // Whether a step was taken; the rest of it is settle().
     bool step() {
-        const double knot = next_knot(setup_, run_.t_end), until = std::min({knot, loop_.next(), setup_.stop});
-        const double rest = until - run_.t_end, wanted = std::min(now_.h, largest_step());
+        const Bound bound = this->bound();
+        const double rest = bound.t - run_.t_end, wanted = std::min(now_.h, largest_step());
         const bool last = wanted >= rest;
         const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // no sliver of a step at the end
         if (h < 16 * epsilon * std::max(run_.t_end, 1e-3) && !last) {
             collapse(h);
             return false;
         }
-        stepper_.set(touch(), contact_, force_phase_, last && until == knot ? just_before(knot) : infinite);
+        stepper_.set(touch(), contact_, force_phase_, last ? bound.latest : infinite);
         const Y y = moving();
         const double error = stepper_.attempt(run_.t_end, y, h);
         if (!(error < 1)) {
@@ -325,8 +338,9 @@ private:
         stepper_.interpolate(run_.t_end, y, h, inside_);
         const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, run_.peak_force);
         const double theta = crossing ? crossing->theta : 1;
-        const double t1 = crossing ? run_.t_end + theta * h : last ? until : run_.t_end + h;
-        log_until(t1);
+        const double t1 = crossing ? run_.t_end + theta * h : last ? bound.t : run_.t_end + h;
+        const bool reached = t1 == bound.t;
+        log_until(reached && (bound.is_knot || bound.is_due) ? t1 - setup_.clock_rounding() : t1);
         if (!is_going_on()) return false;
         note_passage(theta);
         if (is_scored_) score_passage(theta, t1);
@@ -335,7 +349,12 @@ private:
         else std::copy_n(stepper_.end().begin(), N, now_.y.begin());
         const bool came_to_rest = accept(t1);
         if (crossing) change_mode(change_at(setup_.plant, indentation_now(), theta, t1, mode_, crossing->next));
-        now_.taken = {h, error, crossing.has_value(), last, !(crossing || came_to_rest || t1 == knot)};
+        now_.taken = {h,
+                      error,
+                      crossing.has_value(),
+                      last,
+                      !(crossing || came_to_rest || (reached && bound.is_knot)),
+                      reached && bound.is_jump};
         return true;
     }
 
@@ -349,6 +368,7 @@ private:
         now_.h = std::max(now_.taken.h, now_.taken.was_last ? now_.h : 0.0) *
                  (now_.just_rejected ? std::min(factor, 1.0) : factor);
         now_.just_rejected = false;
+        if (now_.taken.at_jump) now_.h = std::min(now_.h, first_step());
     }
 
     void reject(double h, double error) {

@@ -1,6 +1,7 @@
 #pragma once
 // Runs that march by RK4 (5.1). Steps are never split: contact is decided at each stage, and located afterwards on the
-// cubic through the depths and their rates at both ends of the step.
+// cubic through the depths and their rates at both ends of the step. Where a formula of time jumps on the end of a step,
+// the step before sees the values before it (5.8).
 
 #include "march.hpp"
 
@@ -21,6 +22,7 @@ public:
         Base::put(lane, setup);
         Lanes<T>::set(step_, lane, setup.solver.step);
         Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
+        Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
     }
 
     // changed(lane, change) is told of each change of contact, before it is made.
@@ -34,12 +36,17 @@ public:
         before_ = this->in_;
         const T aim = min(this->stop_, T((this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
+        const T t1 = select(is_last, this->stop_, aim);
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
+        has_jump_ = any(next_jump_ <= t1);
+        if (has_jump_) see_before(t1);
         const Y y1 = stepped();
         const Mask finite = Base::is_finite(y1), moved = finite && this->alive_;
-        this->accept(moved, select(is_last, this->stop_, aim), y1);
+        this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + 4.0;
         if (any(!finite && this->alive_)) diverge(finite);
+        if constexpr (Base::lanes == 1) remember_end();
+        if (has_jump_) this->rhs_.latest = T(infinite);
         this->observe();
         if (this->plant_.has_wall) watch(moved, changed);
         this->close_books();
@@ -51,12 +58,43 @@ public:
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
     FullState y0(int lane) const { return Base::state_of(y0_, lane); }
     FullState f0(int lane) const { return Base::state_of(f0_, lane); }
-    FullState f(int lane) const { return Base::state_of(this->f_, lane); }
+    // Whether something may have jumped on the end of the last step, and the derivative there as the step saw it.
+    bool turns() const { return has_jump_ || was_due_; }
+    FullState f1()
+        requires std::same_as<T, double>
+    {
+        if (!turns()) return Base::state_of(this->f_, 0);
+        Y f1{};
+        std::swap(this->plant_.controller.torque, torque_before_), std::swap(this->rhs_.latest, latest_before_);
+        this->rhs_(this->t_, this->y_, f1);
+        std::swap(this->plant_.controller.torque, torque_before_), std::swap(this->rhs_.latest, latest_before_);
+        return Base::state_of(f1, 0);
+    }
 
 private:
     ARM3R_INLINE Y stepped() const {
         if constexpr (N == state_size) return rk4_step(this->rhs_, t0_, this->y_, this->f_, this->h_);
         else return rk4_step_in_a_loop(this->rhs_, t0_, this->y_, this->f_, this->h_);
+    }
+
+    // The jumps up to the end of the step: those that lie on it are not yet seen.
+    [[gnu::noinline]] void see_before(const T& t1) {
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            const double end = Lanes<T>::get(t1, lane);
+            double jump = Lanes<T>::get(next_jump_, lane);
+            if (jump > end) continue;
+            for (; jump < end; jump = next_jump(this->setup(lane), jump)) {
+            }
+            if (jump == end) Lanes<T>::set(this->rhs_.latest, lane, just_before(end));
+            Lanes<T>::set(next_jump_, lane, next_jump(this->setup(lane), end));
+        }
+    }
+
+    // What the step saw, before a sample changes the torque.
+    ARM3R_INLINE void remember_end() {
+        was_due_ = this->is_controlled_ && any(this->is_due());
+        torque_before_ = this->plant_.controller.torque;
+        latest_before_ = this->rhs_.latest;
     }
 
     [[gnu::noinline]] void diverge(const Mask& finite) {
@@ -168,8 +206,13 @@ private:
         return anew;
     }
 
-    T step_{1.0}, t0_{0.0};
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+    T step_{1.0}, t0_{0.0}, next_jump_{infinite};
+    bool has_jump_ = false, was_due_ = false;
     Y y0_{}, f0_{};
+    Vec3<T> torque_before_;
+    T latest_before_{infinite};
     Indentation<T> before_{};
 };
 

@@ -11,8 +11,8 @@ namespace arm3r {
 namespace {
 
 template <std::size_t N>
-void solve_within(const FixedMarch<double, N>& march, Inside& inside) {
-    inside.take(hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f(0)));
+void solve_within(FixedMarch<double, N>& march, Inside& inside) {
+    inside.take(hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f1()));
 }
 
 void solve_within(const TaylorMarch<double>& march, Inside& inside) { inside = march.solution(); }
@@ -53,9 +53,10 @@ private:
         theta_ = place(march_);
         run_.t_end = march_.t(0);
         run_.steps = march_.steps(0);
-        if (is_row_due(run_.t_end)) {
+        const double until = march_.turns() ? run_.t_end - setup_.clock_rounding() : run_.t_end;
+        if (is_row_due(until)) {
             know_solution();
-            log_until(run_.t_end);
+            log_until(until);
         }
         tell_rows();
     }

@@ -120,6 +120,7 @@ void Recorder::read_clock() {
 
 Run Recorder::finish(const FullState& y, double theta, const Flows& flows) {
     if (is_going_on()) {
+        log_until(run_.t_end);
         if (options_.rows) rows_.log(scene(), run_.t_end, y, theta);
         if (const std::optional<std::string> complaint = balance_complaint(setup_.solver, flows)) {
             if (is_strict(setup_.solver)) end(ARM3R_RUN_ENERGY, *complaint);

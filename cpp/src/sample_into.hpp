@@ -134,8 +134,9 @@ struct Sampled {
 };
 
 template <class T>
-ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, full_size>& y, const T& theta,
+ARM3R_INLINE void sample_into(const Scene& scene, const T& row_time, const State<T, full_size>& y, const T& theta,
                               Sampled<T>& row) {
+    const T t = max(row_time, T(scene.inside.t0));  // a row is never seen before the step that it was put into
     const Plant<double>& plant = scene.plant;
     const Arm<double>& arm = plant.arm;
     const T o(0.0);
@@ -174,7 +175,7 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& t, const State<T, ful
         for (int i = 0; i < 3; ++i) put(v[i]);
     };
     const auto put_joints = [&](const Vec3<T>& v) ARM3R_INLINE_LAMBDA { put_vector(scene.simscape ? flipped(v) : v); };
-    put(t);
+    put(row_time);
     put_joints(q);
     put_joints(qd);
     put_joints(forward_dynamics(arm, p, qd, tau, felt));

@@ -8,7 +8,6 @@
 #include "arm3r/restitution.hpp"
 #include "at.hpp"
 #include "setup_controller.hpp"
-#include "step_limits.hpp"
 
 namespace arm3r {
 namespace {
@@ -277,25 +276,6 @@ static void put_between(std::span<const double> params, Setup& setup) {
                           setup.observes() || setup.estimation.on || plant.load.on;
 }
 
-double next_knot(const Setup& setup, double t) {
-    const Plant<double>& plant = setup.plant;
-    double next = plant.has_wall ? next_knot(plant.wall, t) : infinite;
-    const auto consider = [&](double knot) {
-        if (knot > t) next = std::min(next, knot);
-    };
-    if (plant.load.on) {
-        const TipLoad<double>& load = plant.load;
-        for (const double knot : {load.start, load.start + load.rise, load.start + load.duration}) consider(knot);
-    }
-    if (!has_law(plant.controller.type)) return next;
-    const Setpoint<double>& setpoint = plant.controller.setpoint;
-    if (setpoint.path > Path::point) consider(setpoint.start), consider(setpoint.start + setpoint.duration);
-    for (int i = 0; i < setpoint.knots; ++i) consider((*setpoint.table)[0].t[std::size_t(i)]);
-    if (setpoint.pressing == Pressing::step || setpoint.pressing == Pressing::ramp)
-        consider(setpoint.force_start), consider(setpoint.force_start + setpoint.force_duration);
-    return next;
-}
-
 Setup make_setup(std::span<const double> params) {
     Setup setup;
     setup.simscape = is_simscape(params);
@@ -310,11 +290,13 @@ Setup make_setup(std::span<const double> params) {
     setup.qd = to_slide(params, vector_at<"initial.qd">(params));
     if (has_law(setup.plant.controller.type)) set_setpoint(params, setup, setup.plant.controller.setpoint);
     setup.solver = make_solver(params);
+    setup.start = 0;
     setup.stop = at<"time.stop">(params);
     setup.log_every = at<"time.log_every">(params);
     if (at<"push">(params) != 0) setup.plant.load = make_load(params);
     if (at<"estimator">(params) != 0) setup.estimation = make_estimation(params);
     put_between(params, setup);
+    set_jumps_on_clock(setup);
     return setup;
 }
 

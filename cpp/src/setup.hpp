@@ -27,15 +27,24 @@ struct Setup {
     Estimation<double> estimation;
     Vec3<double> q, qd;  // at t = 0
     Solver solver;
-    double stop, log_every;  // s
+    double start, stop, log_every;  // s
 
     const Controller<double>& law() const { return digital.sampling.on ? digital.controller : plant.controller; }
     bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }
     bool is_scored() const { return law().type != Controls::none; }
+
+    // Instants nearer to each other than this, s, are the same but for rounding.
+    double clock_rounding() const;
 };
 
 // The next instant after t, s, at which a formula of time alone changes: of the wall's course, the setpoint, a load.
 double next_knot(const Setup& setup, double t);
+// The next at which what it gives jumps, so that the steps before and after see different values; and the instant before.
+double next_jump(const Setup& setup, double t);
+double just_before(double t);
+
+// Jumps that lie on a sample, on the end of a fixed step or of the run, but for rounding, are put there to the bit.
+void set_jumps_on_clock(Setup& setup);
 
 // The choices in `params` must be in order; what their numbers must keep to is said by validate() (schema.hpp), of
 // which `check_setup` is the last part.

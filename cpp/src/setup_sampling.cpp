@@ -80,7 +80,7 @@ TipLoad<double> make_load(std::span<const double> params) {
     load.force = vector_at<"push.force">(params);
     load.start = at<"push.start">(params);
     load.rise = at<"push.rise">(params);
-    load.duration = at<"push.duration">(params);
+    load.end = load.start + at<"push.duration">(params);
     return load;
 }
 

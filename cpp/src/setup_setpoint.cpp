@@ -102,6 +102,7 @@ void set_setpoint(std::span<const double> params, const Setup& setup, Setpoint<d
     if (wanted.path == Path::circle) set_circle(params, setup, wanted);
     if (wanted.path == Path::sinusoid) set_sinusoid(params, wanted);
     if (wanted.path == Path::table) set_table(params, wanted);
+    wanted.end = wanted.start + wanted.duration;
     set_pressing(params, wanted);
 }
 

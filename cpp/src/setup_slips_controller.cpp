@@ -165,7 +165,7 @@ double latest_turn(const Setpoint<double>& wanted) {
         case Path::hold:
         case Path::point: return 0;
         case Path::sinusoid: return wanted.start + (wanted.frequency > 0 ? 1 / wanted.frequency : 0);
-        default: return wanted.start + wanted.duration;
+        default: return wanted.end;
     }
 }
 

@@ -25,6 +25,7 @@ public:
         Base::put(lane, setup);
         Lanes<T>::set(tol_, lane, setup.solver.tol);
         Lanes<T>::set(max_step_, lane, setup.solver.max_step);
+        Lanes<T>::set(this->slack_, lane, setup.clock_rounding());
     }
 
     // changed(lane, change) is told of each change of contact, before it is made.
@@ -36,16 +37,16 @@ public:
         T wanted = min(step_of(series_, tol_), max_step_);
         if (this->plant_.arm.has_dry_friction) slow_before_friction(wanted);
         const T until = this->next_instant(), rest = until - t0_;
-        const Mask is_last = wanted >= rest;
-        this->h_ = select(is_last, rest, wanted);
-        const Mask finite = is_finite(), stands = !is_last && this->h_ < smallest_step(t0_);
+        is_last_ = wanted >= rest;
+        this->h_ = select(is_last_, rest, wanted);
+        const Mask finite = is_finite(), stands = !is_last_ && this->h_ < smallest_step(t0_);
         const Mask moved = this->alive_ && finite && !stands;
         if (any(this->alive_ && !moved)) give_up(finite, stands);
 
         crosses_ = false;
         theta_ = T(1.0);
         if (this->plant_.has_wall) watch(moved);
-        T h = this->h_, t1 = select(is_last, until, T(t0_ + h));
+        T h = this->h_, t1 = select(is_last_, until, T(t0_ + h));
         if (crosses_) {
             h = select(theta_ < T(1.0), T(theta_ * h), h);
             t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
@@ -74,6 +75,8 @@ public:
         return inside;
     }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
+    // Whether a sample may have changed something at the end of the last step.
+    bool turns() const { return this->is_controlled_ && any(is_last_); }
 
 private:
     enum Signal : std::size_t { depth = state_size, across1, across2 };
@@ -216,6 +219,7 @@ private:
     const int order_;
     const Kernel free_kernel_, pressed_kernel_;
     T tol_{1e-9}, max_step_{1.0}, t0_{0.0}, theta_{1.0};
+    Mask is_last_ = false;
     bool crosses_ = false;
     std::array<Due, Base::lanes> crossings_{};
     Expansion<T> series_;

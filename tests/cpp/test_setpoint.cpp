@@ -27,6 +27,7 @@ static Setpoint<double> random_setpoint(Random& random, Path path) {
     s.to = random.vector(-1, 1);
     s.start = random.in(0.1, 2);
     s.duration = random.in(0.3, 3);
+    s.end = s.start + s.duration;
     s.across1 = random.vector(-1, 1);
     s.across2 = s.across1.cross(random.vector(-1, 1)).normalized() * s.across1.norm();
     s.turns = random.in(0.2, 3);

@@ -510,7 +510,7 @@ BOOST_AUTO_TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
     BOOST_TEST(load.force == Vec3<double>(-1, 2, -3));
     BOOST_TEST(load.start == 0.5);
     BOOST_TEST(load.rise == 0.25);
-    BOOST_TEST(load.duration == 4);
+    BOOST_TEST(load.end == 4.5);
 }
 
 // ---- limits of loops

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 SETUP = (
-    "setup setup_controller setup_rules setup_rules_controller setup_rules_sampling setup_sampling setup_setpoint "
+    "setup setup_controller setup_instants setup_rules setup_rules_controller setup_rules_sampling setup_sampling setup_setpoint "
     "setup_slips setup_slips_controller"
 )
 

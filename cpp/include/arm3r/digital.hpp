@@ -85,15 +85,15 @@ struct Estimation : EstimationChoices {
 template <class P>
 struct TipLoad {
     bool on = false;
-    Vec3<P> force;            // N
-    P start, rise, duration;  // s
+    Vec3<P> force;       // N
+    P start, rise, end;  // s; rise: how long it grows
 };
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> load_at(const TipLoad<P>& load, const T& t) {  // (8.9)
-    const T since = t - load.start, o(0.0);
-    const T growing = min(T(1.0), T(select(load.rise > P(0.0), T(since / load.rise), T(1.0))));
-    const T share = select(since >= o, select(since < load.duration, growing, o), o);
+    const T since = t - load.start, o(0.0), l(1.0);
+    const T growing = select(t < load.start + load.rise, min(l, T(since / load.rise)), l);
+    const T share = select(t >= load.start, select(t < load.end, growing, o), o);
     return {share * load.force[0], share * load.force[1], share * load.force[2]};
 }
 

@@ -47,7 +47,7 @@ ARM3R_INLINE void each_law_number(F f, Controllers&... c) {
     };
     const auto setpoint = [&](auto&... s) ARM3R_INLINE_LAMBDA {
         vector(s.from...), vector(s.to...);
-        f(s.start...), f(s.duration...);
+        f(s.start...), f(s.duration...), f(s.end...);
         vector(s.across1...), vector(s.across2...);
         f(s.turns...);
         vector(s.amplitude...);
@@ -78,7 +78,7 @@ ARM3R_INLINE void each_observer_number(F f, Observers&... o) {
 
 template <class F, class... Loads>
 ARM3R_INLINE void each_load_number(F f, Loads&... l) {
-    f(l.force[0]...), f(l.force[1]...), f(l.force[2]...), f(l.start...), f(l.rise...), f(l.duration...);
+    f(l.force[0]...), f(l.force[1]...), f(l.force[2]...), f(l.start...), f(l.rise...), f(l.end...);
 }
 
 template <class F, class... Contacts>

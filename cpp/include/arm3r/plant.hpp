@@ -73,7 +73,7 @@ public:
     Touch touch = Touch::none;
     T contact{0.0}, force_phase{0.0};  // what a continuous controller takes them for (Sensed), constant within a step
     LawFunction<P, T> law_function = nullptr;           // of a continuous controller that has one: law_by_template
-    T latest{std::numeric_limits<double>::infinity()};  // s: the wall is not seen beyond, where a table of it jumps
+    T latest{std::numeric_limits<double>::infinity()};  // s: just before a jump on which the step ends (5.8)
 
     // The stages of a step are turned from the sines and cosines at the nearest point of a grid of angles (elementary.hpp,
     // sincos_near), which change so rarely that they are kept. What is kept never changes a result: it is that of the point.
@@ -88,10 +88,10 @@ public:
 
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
+        const T seen = min(t, latest);
         WallState<T> wall;  // where nobody looks at it, nothing
-        if (senses_wall(plant_) || (plant_.acts_on_arm && touch != Touch::none))
-            wall = wall_at(plant_.wall, plant_.wall.motion == Motion::table ? min(t, latest) : t);
-        derivative(t, wall, pose_near(y), y, dy);
+        if (senses_wall(plant_) || (plant_.acts_on_arm && touch != Touch::none)) wall = wall_at(plant_.wall, seen);
+        derivative(seen, wall, pose_near(y), y, dy);
     }
 
     // The same where the pose is known, and the wall unless it is not felt.

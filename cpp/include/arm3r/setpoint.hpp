@@ -1,6 +1,6 @@
 #pragma once
 // What a controller wants: where the arm should be, and how hard it should press; docs/model.md, section 7.1. Functions of
-// time alone. Positions are those of the tip, in base axes, or joint angles, in the slide convention.
+// time alone, which have the value after a jump at its very instant. Positions are those of the tip, in base axes, or joint angles, in the slide convention.
 
 #include <memory>
 
@@ -24,7 +24,7 @@ struct SetpointChoices {
 template <class P>
 struct Setpoint : SetpointChoices {
     Vec3<P> from, to;          // m or rad, at the start and at the end
-    P start, duration;         // s
+    P start, duration, end;    // s
     Vec3<P> across1, across2;  // m, a circle's: from its centre to its start, and a quarter turn on
     P turns;                   // of the circle
     Vec3<P> amplitude;         // m or rad, of a sinusoid about `from`
@@ -86,7 +86,7 @@ ARM3R_INLINE Wanted<T> wanted_at(const Setpoint<P>& setpoint, const T& t) {  // 
     if (setpoint.path == Path::sinusoid) {
         const T angular = T(two_pi * setpoint.frequency);
         const SinCos<T> now = turned(T(setpoint.frequency * max(since, T(0.0))));
-        const T running = select(since >= T(0.0), T(1.0), T(0.0));
+        const T running = select(t >= setpoint.start, T(1.0), T(0.0));
         for (int i = 0; i < 3; ++i) {
             wanted.position[i] = setpoint.from[i] + setpoint.amplitude[i] * now.sin;
             wanted.velocity[i] = running * (setpoint.amplitude[i] * angular * now.cos);
@@ -97,7 +97,7 @@ ARM3R_INLINE Wanted<T> wanted_at(const Setpoint<P>& setpoint, const T& t) {  // 
     const T share = since / setpoint.duration;
     if (setpoint.path == Path::line) {
         const T x = max(T(0.0), min(T(1.0), share));
-        const T rate = select(share > T(0.0) && share < T(1.0), T(1.0 / setpoint.duration), T(0.0));
+        const T rate = select(t >= setpoint.start && t < setpoint.end, T(1.0 / setpoint.duration), T(0.0));
         for (int i = 0; i < 3; ++i) {
             const P way = setpoint.to[i] - setpoint.from[i];
             wanted.position[i] = setpoint.from[i] + x * way;
@@ -134,10 +134,12 @@ ARM3R_INLINE T force_wanted_at(const Setpoint<P>& setpoint, const T& t) {  // (7
     if (setpoint.pressing == Pressing::constant) return T(setpoint.force);
     if (setpoint.pressing == Pressing::sinusoid)
         return setpoint.force + setpoint.force_amplitude * turned(T(setpoint.force_frequency * t)).sin;
-    const T since = t - setpoint.force_start;
-    const T share = setpoint.pressing == Pressing::step
-                        ? select(since >= T(0.0), T(1.0), T(0.0))
-                        : T(max(T(0.0), min(T(1.0), T(since / setpoint.force_duration))));
+    const T o(0.0), l(1.0), since = t - setpoint.force_start;
+    T reached = l;
+    if (setpoint.pressing == Pressing::ramp)
+        reached =
+            select(t < setpoint.force_start + setpoint.force_duration, min(l, T(since / setpoint.force_duration)), l);
+    const T share = select(t >= setpoint.force_start, reached, o);
     return setpoint.force_before + share * (setpoint.force - setpoint.force_before);
 }
 
