@@ -24,7 +24,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr int looks_per_step = 9, sights_per_step = 4;
 
-// The state at t = 0.
+// The state at the start.
 FullState start_of(const Setup& setup) {
     FullState y{};
     for (int i = 0; i < 3; ++i) {
@@ -53,7 +53,7 @@ public:
           stepper_(setup_),
           watch_(setup_.plant, looks_per_step),
           now_{start_of(setup_)},
-          ledger_(setup_, now_.y, mode_ = watch_.mode_at_start(now_.y)) {
+          ledger_(setup_, now_.y, mode_ = watch_.mode_at_start(setup_.start, now_.y)) {
         loop_.put(0, setup_.digital, setup_.estimation);
         loop_.user = options.user_law;
         start();
@@ -174,7 +174,7 @@ private:
     // ---- start
 
     void start() {
-        if (is_touching(mode_)) note_event(Event::make, 0.0);
+        if (is_touching(mode_)) note_event(Event::make, setup_.start);
         run_.peak_force = force_now();
         start_memory();
     }
@@ -322,9 +322,9 @@ private:
     bool step() {
         const Bound bound = this->bound();
         const double rest = bound.t - run_.t_end, wanted = std::min(now_.h, largest_step());
-        const bool last = wanted >= rest;
+        const bool last = wanted >= rest - setup_.clock_rounding();
         const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // no sliver of a step at the end
-        if (h < 16 * epsilon * std::max(run_.t_end, 1e-3) && !last) {
+        if (h < 16 * epsilon * std::max(std::abs(run_.t_end), 1e-3) && !last) {
             collapse(h);
             return false;
         }
@@ -340,7 +340,7 @@ private:
         const double theta = crossing ? crossing->theta : 1;
         const double t1 = crossing ? run_.t_end + theta * h : last ? bound.t : run_.t_end + h;
         const bool reached = t1 == bound.t;
-        log_until(reached && (bound.is_knot || bound.is_due) ? t1 - setup_.clock_rounding() : t1);
+        log_until(reached && (bound.is_jump || bound.is_due) ? t1 - setup_.clock_rounding() : t1);
         if (!is_going_on()) return false;
         note_passage(theta);
         if (is_scored_) score_passage(theta, t1);
@@ -469,7 +469,7 @@ private:
         for (std::size_t i = motion_size; i < state_size; ++i) run_.books[i - motion_size] = now_.y[i];
         if (is_touching(mode_)) run_.contact_time += run_.t_end - now_.touching_since;
         run_.final_force = force_now();
-        if (is_scored_) score_.tell(0, setup_.law(), run_);
+        if (is_scored_) score_.tell(0, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());
         run_.choices = stepper_.choices();
         if (known_.identifiable > 0) {

@@ -172,15 +172,16 @@ private:
             check.at = *time;
             if (!is_row(*time))
                 problem(at->mark, "at", "at", "no row is logged at this time", shortest(*time),
-                        "k*time.log_every, or time.stop = " + shortest(param(params_, "time.stop")));
+                        "time.start + k*time.log_every, or time.stop = " + shortest(param(params_, "time.stop")));
         }
     }
 
     bool is_row(double time) const {
-        const double every = param(params_, "time.log_every"), stop = param(params_, "time.stop");
-        const double nearest_row = std::round(time / every) * every;
+        const double every = param(params_, "time.log_every"), stop = param(params_, "time.stop"),
+                     start = param(params_, "time.start");
+        const double nearest_row = start + std::round((time - start) / every) * every;
         const double slack = 1e-9 * every;
-        return time == stop || (time >= 0 && nearest_row < stop - slack && std::abs(time - nearest_row) <= slack);
+        return time == stop || (time >= start && nearest_row < stop - slack && std::abs(time - nearest_row) <= slack);
     }
 
     void read_limits(Check& check) {

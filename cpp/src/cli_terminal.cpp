@@ -76,9 +76,11 @@ Progress::~Progress() {
 std::int32_t Progress::callback(void* self, double t, double stop_time, std::int64_t) {
     auto& progress = *static_cast<Progress*>(self);
     const double time = now();
+    if (!(progress.from_ <= t)) progress.from_ = t;
     if (!progress.terminal_ || time < progress.next_) return 0;
     progress.next_ = time + 0.1;
-    progress.draw(time - progress.start_, stop_time > 0 ? t / stop_time : 1);
+    const double whole = stop_time - progress.from_;
+    progress.draw(time - progress.start_, whole > 0 ? (t - progress.from_) / whole : 1);
     return 0;
 }
 

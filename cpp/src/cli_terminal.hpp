@@ -2,6 +2,7 @@
 // What the executable does with signals, standard output and a terminal.
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -28,7 +29,8 @@ private:
     void draw(double seconds, double fraction);
 
     std::string name_;
-    double start_, next_;  // s, monotonic
+    double start_, next_;                                    // s, monotonic
+    double from_ = std::numeric_limits<double>::infinity();  // s, the first simulated time that was reported
     bool terminal_, drawn_ = false;
 };
 

@@ -11,7 +11,8 @@ namespace {
 
 template <class F, class A, class B>
 void each_digital_number(F f, A& a, B& b) {
-    f(a.sampling.period, b.sampling.period), f(a.sampling.delay, b.sampling.delay), f(a.sampling.seed, b.sampling.seed);
+    f(a.sampling.start, b.sampling.start), f(a.sampling.period, b.sampling.period);
+    f(a.sampling.delay, b.sampling.delay), f(a.sampling.seed, b.sampling.seed);
     each_sensor_number(f, a.sensors, b.sensors);
     each_observer_number(f, a.observer, b.observer);
     for (int i = 0; i < 3; ++i) f(a.controller.torque[i], b.controller.torque[i]);
@@ -50,7 +51,7 @@ void ControlLoop<T>::put(int lane, const Digital<double>& from, const Estimation
                            &kept_pose_, &last_tip_, &last_force_})
         for (int i = 0; i < 3; ++i) set((*zeros)[i], 0.0);
     for (T& number : known_.memory) set(number, 0.0);
-    set(next_sample_, from.sampling.on ? 0.0 : never);
+    set(next_sample_, from.sampling.on ? from.sampling.start : never);
     set(next_output_, never);
     has_output_delay_ = from.sampling.has_delay;
     has_failed_ = false;
@@ -116,7 +117,9 @@ void ControlLoop<T>::put_out(const Mask& due, Vec3<T>& held) {
 // When the torque of a sample comes through, s.
 template <class T>
 double ControlLoop<T>::due_time(int lane, double sample) const {
-    return (sample + Lanes<T>::get(digital_.sampling.delay, lane)) * Lanes<T>::get(digital_.sampling.period, lane);
+    const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
+    const Sampling<T>& sampling = digital_.sampling;
+    return get(sampling.start) + (sample + get(sampling.delay)) * get(sampling.period);
 }
 
 template <class T>
@@ -134,8 +137,8 @@ void ControlLoop<T>::ask_user(const Sensed<T>& sensed, Vec3<T>& tau) {
 template <class T>
 std::string ControlLoop<T>::complaint() const {
     const double tick = Lanes<T>::get(count_, 0) - 1;
-    const std::string place =
-        " at tick " + shortest(tick) + ", t = " + shortest(tick * Lanes<T>::get(digital_.sampling.period, 0)) + " s";
+    const double t = Lanes<T>::get(digital_.sampling.start, 0) + tick * Lanes<T>::get(digital_.sampling.period, 0);
+    const std::string place = " at tick " + shortest(tick) + ", t = " + shortest(t) + " s";
     if (user_status_ != 0) return "the controller asked to stop with " + std::to_string(user_status_) + place;
     const Vec3<double>& tau = user_torque_;
     return "the controller gave the torque [" + shortest(tau[0]) + ", " + shortest(tau[1]) + ", " + shortest(tau[2]) +

@@ -39,7 +39,7 @@ public:
     UserLaw user;
     LawFunction<T, T> law_function = nullptr;
 
-    // The controller of a run put into a lane; its first sample is at t = 0.
+    // The controller of a run put into a lane; its first sample is at the start.
     void put(int lane, const Digital<double>& from, const Estimation<double>& estimation);
 
     // The next instant, s, at which it samples or its torque changes; infinite where there is no such controller.
@@ -88,7 +88,7 @@ private:
         deliver(due, tau, held);
         if (digital_.observer.on) expect(due, sensed, held);
         count_ = count_ + select(due, T(1.0), T(0.0));
-        next_sample_ = select(due, T(count_ * digital_.sampling.period), next_sample_);
+        next_sample_ = select(due, T(digital_.sampling.start + count_ * digital_.sampling.period), next_sample_);
     }
 
     // ---- sensors (8.1)
@@ -272,7 +272,7 @@ private:
         keep(due, tau, held);
     }
 
-    // Before the first torque has come through, it is the one that acts: the loop stood at rest before t = 0.
+    // Before the first torque has come through, it is the one that acts: the loop stood at rest before the start.
     [[gnu::noinline]] void queue(const Mask& due, const Vec3<T>& tau, Vec3<T>& held);
     [[gnu::noinline]] void put_out(const Mask& due, Vec3<T>& held);
 

@@ -28,10 +28,10 @@ Indentation<T> indentation_at(const Plant<double>& plant, const Inside& inside, 
 
 }  // namespace
 
-Mode ContactWatch::mode_at_start(const FullState& y) const {
+Mode ContactWatch::mode_at_start(double t, const FullState& y) const {
     if (!plant_.has_wall) return Mode::free;
     const Pose<double> p = pose(angles(y));
-    const Indentation<double> in = tip_indentation(plant_, wall_at(plant_.wall, 0.0), p, rates(y));
+    const Indentation<double> in = tip_indentation(plant_, wall_at(plant_.wall, t), p, rates(y));
     if (!(in.depth > 0)) return Mode::free;
     if (!(inside_outline(plant_.wall, in) >= 0)) return Mode::embedded;
     return is_damped(plant_.contact.law) && push(plant_.contact, in).release < 0 ? Mode::separated : Mode::contact;

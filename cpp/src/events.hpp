@@ -13,7 +13,7 @@ public:
     // `looks`: at how many places per step the depth is looked at, ends included.
     ContactWatch(const Plant<double>& plant, int looks) : plant_(plant), looks_(looks) {}
 
-    Mode mode_at_start(const FullState& y) const;
+    Mode mode_at_start(double t, const FullState& y) const;
 
     // The first change of mode after `from`, or nothing. `peak` grows to the largest normal force, N, that contact
     // reaches between the two.

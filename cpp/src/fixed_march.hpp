@@ -20,6 +20,7 @@ public:
 
     void put(int lane, const Setup& setup) {
         Base::put(lane, setup);
+        Lanes<T>::set(start_, lane, setup.start);
         Lanes<T>::set(step_, lane, setup.solver.step);
         Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
         Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
@@ -34,7 +35,7 @@ public:
             f0_ = this->f_;
         }
         before_ = this->in_;
-        const T aim = min(this->stop_, T((this->accepted_ + 1.0) * step_));
+        const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
         const T t1 = select(is_last, this->stop_, aim);
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
@@ -208,7 +209,7 @@ private:
 
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 
-    T step_{1.0}, t0_{0.0}, next_jump_{infinite};
+    T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};
     bool has_jump_ = false, was_due_ = false;
     Y y0_{}, f0_{};
     Vec3<T> torque_before_;

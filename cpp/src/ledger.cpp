@@ -49,7 +49,7 @@ std::optional<std::string> balance_complaint(const Solver& solver, const Flows& 
 }
 
 Ledger::Ledger(const Setup& setup, const FullState& y, Mode mode)
-    : setup_(setup), start_(energies(setup.plant, 0.0, y, mode)), flows_{0, stock(start_), 0} {}
+    : setup_(setup), start_(energies(setup.plant, setup.start, y, mode)), flows_{0, stock(start_), 0} {}
 
 void Ledger::close(double t, const FullState& y, Mode mode) {
     const Energies now = energies(setup_.plant, t, y, mode);

@@ -47,8 +47,8 @@ void March<T, N>::put(int lane, const Setup& setup) {
         set(y_[3 + i], setup.qd[i]);
     }
     for (std::size_t i = motion_size; i < N; ++i) set(y_[i], 0.0);
-    for (T* zero : {&t_, &residual_, &exchanged_, &held_, &deepest_, &depth_time_, &peak_, &impulse_, &accepted_,
-                    &rejected_, &evaluations_})
+    for (T* zero : {&residual_, &exchanged_, &held_, &deepest_, &depth_time_, &peak_, &impulse_, &accepted_, &rejected_,
+                    &evaluations_})
         set(*zero, 0.0);
     if (has_law(plant_.controller.type)) each_law_number(set, plant_.controller, setup.plant.controller);
     if (has_memory(plant_)) {
@@ -59,10 +59,11 @@ void March<T, N>::put(int lane, const Setup& setup) {
     if (is_controlled_) loop_.put(lane, setup.digital, setup.estimation);
     if (is_scored_) score_.put(lane);
     set(rhs_.contact, 0.0), set(rhs_.force_phase, 0.0);
-    set(stop_, setup.stop);
+    set(t_, setup.start), set(stop_, setup.stop);
     set(max_steps_, setup.solver.max_steps);
     each_contact_number(set, true_contact_, setup.plant.contact);
-    contacts_[lane] = {0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    contacts_[lane] = {
+        0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0, setup.start};
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
     set_running(lane, false);  // of a run before this one
@@ -81,7 +82,7 @@ void March<T, N>::begin_lane(int lane) {
     }
     if (mode_[lane] == Mode::contact) {
         contacts_[lane].count = contacts_[lane].events = 1;
-        contacts_[lane].first_contact = 0;
+        contacts_[lane].first_contact = setups_[lane].start;
         Lanes<T>::set(deepest_, lane, depth);
         Lanes<T>::set(peak_, lane, force_of(lane));
     }
@@ -127,7 +128,7 @@ void March<T, N>::score(const Mask& moved) {
     Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { look_at(score_.next()), score_.advance(moved); });
 }
 
-// A law's memory at t = 0 needs the contact that begin_lane() has found.
+// A law's memory at the start needs the contact that begin_lane() has found.
 template <class T, std::size_t N>
 void March<T, N>::start_memory() {
     if constexpr (N == full_size) {
@@ -169,7 +170,7 @@ void March<T, N>::tell_controller(int lane) {
 template <class T, std::size_t N>
 void March<T, N>::retire(int lane) {
     Setup rest = setups_[lane];
-    rest.stop = 0;
+    rest.stop = rest.start;
     rest.qd = {0, 0, 0};
     put(lane, rest);
     is_new_[lane] = false;
@@ -279,7 +280,7 @@ Metrics March<T, N>::metrics(int lane) const {
     m.first_contact = contacts.first_contact;
     m.first_release = contacts.first_release;
     m.steps = steps(lane);
-    if (is_scored_) score_.tell(lane, setup.law(), m);
+    if (is_scored_) score_.tell(lane, setup, m);
     if (is_controlled_ && get(loop_.known().identifiable) > 0) {
         m.stiffness_estimate = get(loop_.known().stiffness);
         m.wall_speed_estimate = get(loop_.known().wall_speed);

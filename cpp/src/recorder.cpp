@@ -22,6 +22,7 @@ Setup small_enough(Setup setup, bool rows) {
 
 Recorder::Recorder(std::span<const double> params, const RunOptions& options)
     : setup_(small_enough(make_setup(params), options.rows)), options_(options), rows_(setup_, run_, options.rows) {
+    run_.t_end = setup_.start;
     run_.has_user_law = setup_.law().type == Controls::user;
     if (!options.rows) return;
     run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
@@ -63,12 +64,13 @@ void Recorder::copy_rows(const Run& from) {
 void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start) {
     mode_ = mode;
     energy_at_start_ = energy_at_start;
-    if (is_touching(mode)) record(Event::make, 0.0, y);
+    if (is_touching(mode)) record(Event::make, setup_.start, y);
     constexpr double a_moment = 1e-3;  // s
     FullState ahead;
     for (std::size_t i = 0; i < full_size; ++i) ahead[i] = y[i] + a_moment * f[i];
-    inside_.take(hermite(0.0, a_moment, y, f, ahead, f));
-    if (options_.rows && setup_.stop > 0) rows_.log(scene(), 0.0, y, 0.0);  // whatever becomes of the first step
+    inside_.take(hermite(setup_.start, a_moment, y, f, ahead, f));
+    if (options_.rows && setup_.stop > setup_.start)
+        rows_.log(scene(), setup_.start, y, 0.0);  // whatever becomes of the first step
 }
 
 void Recorder::note_change(const Change& change, const FullState& y) {

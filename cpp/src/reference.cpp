@@ -206,12 +206,18 @@ named. Law diagonal needs `stiffness: [kn, k1, k2]`, and hunt_crossley a number 
 
 The four lists of a wall's table are equally long.
 
-At t = 0 the tip may stand in the wall, which is a make at t = 0, but not deeper than 0.1 m.
+At the start the tip may stand in the wall, which is a make at that instant, but not deeper than 0.1 m.
 
 ## Rows
 
-The rows of a run stand at t_k = k*log_every while t_k < stop - 1e-9*log_every, then exactly at stop; so t = 0 and stop
-always are rows. Events add none.
+The rows of a run stand at t_k = start + k*log_every while t_k < stop - 1e-9*log_every, then exactly at stop; so start
+and stop always are rows. Events add none. A row at an instant at which something jumps shows what holds after it.
+
+## A start other than 0
+
+`time.start` moves the beginning of a run and nothing else: rows, samples and the steps of rk4 count from it, `initial`
+holds there, and the estimator begins at the later of it and `estimator.start`. Every other instant is meant as it is
+written: `wall.point` is the place at t = 0, a phase is that at t = 0, and `start` keys and tables say t.
 
 ## --set PATH=VALUE
 

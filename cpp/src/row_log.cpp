@@ -8,7 +8,7 @@ namespace arm3r {
 RowLog::RowLog(const Setup& setup, Run& run, bool wanted) : setup_(setup), run_(run) {
     if (!wanted) return;
     run.columns = columns_of(setup);
-    const double intervals = setup.stop / setup.log_every;
+    const double intervals = (setup.stop - setup.start) / setup.log_every;
     run.capacity = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
     while (stands_before(run.capacity, setup.stop)) run.capacity += 1;
     run.capacity += 1;  // the end

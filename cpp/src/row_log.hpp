@@ -24,8 +24,8 @@ public:
 
     void log(const Scene& scene, double t, const FullState& y, double theta);
 
-    // Of the last row, s; 0 where there is none.
-    double last_time() const { return run_.rows ? run_.data[run_.rows - 1] : 0; }
+    // Of the last row, s; the start where there is none.
+    double last_time() const { return run_.rows ? run_.data[run_.rows - 1] : setup_.start; }
 
     // As far as another one of the same setup; the rows themselves are the run's.
     void go_on_from(const RowLog& other) { link_behind_wall_since_ = other.link_behind_wall_since_; }
@@ -34,7 +34,7 @@ public:
     double link_behind_wall_since() const { return link_behind_wall_since_; }
 
 private:
-    double time_of(std::size_t row) const { return double(row) * setup_.log_every; }
+    double time_of(std::size_t row) const { return setup_.start + double(row) * setup_.log_every; }
     // The end of the run is a row of its own; so is its beginning, however long the interval.
     bool stands_before(std::size_t row, double until) const {
         const double t = time_of(row);

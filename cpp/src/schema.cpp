@@ -245,7 +245,7 @@ void append_contact(std::vector<Key>& keys) {
         law, {"kelvin_voigt", "hunt_crossley"},
         derived("not asked for", number("wall.contact.restitution", {unset}, Source::ours, {0, 1, true}, "",
                                         "Instead of damping or dissipation: speed after over speed before an impact "
-                                        "of the mass that the arm shows along the normal at t = 0."))));
+                                        "of the mass that the arm shows along the normal at the start."))));
     keys.push_back(
         where(law, {"hunt_crossley"},
               derived("not asked for", number("wall.contact.impact_speed", {unset}, Source::ours, {0, 1e4, true}, "m/s",
@@ -748,9 +748,9 @@ std::vector<Key> make_schema() {
         Kind::angle,
         number(
             "initial.q", {0, -30 * pi / 180, 60 * pi / 180}, Source::lecture, {-1e5, 1e5}, "rad",
-            "Joint angles at t = 0. The default is the lecture's pose: [0, -30 deg, 60 deg], or [0, 30 deg, -60 deg] in the slide convention.")));
+            "Joint angles at the start. The default is the lecture's pose: [0, -30 deg, 60 deg], or [0, 30 deg, -60 deg] in the slide convention.")));
     keys.push_back(of_kind(Kind::angle, number("initial.qd", {0, 0, 0}, Source::lecture, {-1e6, 1e6}, "rad/s",
-                                               "Joint rates at t = 0; 10 deg means 10 deg/s.")));
+                                               "Joint rates at the start; 10 deg means 10 deg/s.")));
     append_wall(keys);
     append_controller(keys);
     append_for_laws(keys, guided, reference_keys());
@@ -759,10 +759,14 @@ std::vector<Key> make_schema() {
     append_observer(keys);
     append_push(keys);
     append_solver(keys);
-    keys.push_back(number("time.stop", {10}, Source::ours, {0, 1e9}, "s", "End of the run; 0 gives one row."));
+    keys.push_back(
+        number("time.stop", {10}, Source::ours, {-1e9, 1e9}, "s", "End of the run; one at time.start gives one row."));
     keys.push_back(
         number("time.log_every", {0.01}, Source::ours, {1e-12, 1e9}, "s",
-               "Time between rows; t = 0 and the end are always rows, and the log never changes the steps."));
+               "Time between rows; the start and the end are always rows, and the log never changes the steps."));
+    keys.push_back(number("time.start", {0}, Source::ours, {-1e9, 1e9}, "s",
+                          "Start of the run: rows, samples and fixed steps count from it, and `initial` holds there. "
+                          "wall.point stays the place at t = 0, and no other key is shifted."));
     connect(keys);
     return keys;
 }

@@ -8,27 +8,29 @@ namespace arm3r {
 
 template <class T>
 void Score<T>::put(int lane) {
-    for (T* zero : {&touching_time_, &miss_2_, &reached_, &largest_miss_, &overshoot_, &unsettled_until_, &path_2_,
-                    &largest_path_2_, &saturated_time_, &work_[0], &work_[1], &work_[2]})
+    for (T* zero : {&touching_time_, &miss_2_, &reached_, &largest_miss_, &overshoot_, &path_2_, &largest_path_2_,
+                    &saturated_time_, &work_[0], &work_[1], &work_[2]})
         Lanes<T>::set(*zero, lane, 0.0);
+    Lanes<T>::set(unsettled_until_, lane, never);
 }
 
 template <class T>
-void Score<T>::tell(int lane, const Controller<double>& controller, Metrics& m) const {
+void Score<T>::tell(int lane, const Setup& setup, Metrics& m) const {
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-    const double t = m.t_end, touching = get(touching_time_);
+    const Controller<double>& controller = setup.law();
+    const double duration = m.t_end - setup.start, touching = get(touching_time_);
     if (wants_force(controller.type) && m.contacts > 0) {
         m.force_error_rms = touching > 0 ? std::sqrt(get(miss_2_) / touching) : m.force_error_rms;
         if (get(reached_) > 0) m.force_error_peak = get(largest_miss_);
         m.overshoot = get(overshoot_);
         const double unsettled_until = get(unsettled_until_);
-        if (unsettled_until < t) m.settling_time = std::max(0.0, unsettled_until - m.first_contact);
+        if (unsettled_until < m.t_end) m.settling_time = std::max(0.0, unsettled_until - m.first_contact);
     }
-    if (wants_path(controller.type) && t > 0) {
-        m.path_error_rms = std::sqrt(get(path_2_) / t);
+    if (wants_path(controller.type) && duration > 0) {
+        m.path_error_rms = std::sqrt(get(path_2_) / duration);
         m.path_error_max = std::sqrt(get(largest_path_2_));
     }
-    m.saturation_share = t > 0 ? get(saturated_time_) / t : 0;
+    m.saturation_share = duration > 0 ? get(saturated_time_) / duration : 0;
     for (int i = 0; i < 3; ++i) m.work[std::size_t(i)] = get(work_[i]);
 }
 

@@ -72,10 +72,10 @@ public:
     }
 
     // Into the metrics of a lane.
-    void tell(int lane, const Controller<double>& controller, Metrics& metrics) const;
+    void tell(int lane, const Setup& setup, Metrics& metrics) const;
 
 private:
-    static constexpr double settled_share = 0.05;
+    static constexpr double settled_share = 0.05, never = -std::numeric_limits<double>::infinity();
 
     template <class M>
     ARM3R_INLINE void judge_force(const M& moved, const T& half, const Sight<T>& before, const Sight<T>& now) {
@@ -107,7 +107,8 @@ private:
     const Looks looks_;
     Sight<T> sights_[2];
     int last_ = 0;
-    T touching_time_{0.0}, miss_2_{0.0}, reached_{0.0}, largest_miss_{0.0}, overshoot_{0.0}, unsettled_until_{0.0};
+    T touching_time_{0.0}, miss_2_{0.0}, reached_{0.0}, largest_miss_{0.0}, overshoot_{0.0};
+    T unsettled_until_{never};
     T path_2_{0.0}, largest_path_2_{0.0}, saturated_time_{0.0};
     Vec3<T> work_{T(0.0), T(0.0), T(0.0)};
 };

@@ -168,8 +168,11 @@ Law law_of(std::span<const double> params) {
     return Law::spring;
 }
 
-// The mass that the tip shows to the wall at t = 0, kg.
-double mass_at_start(const Setup& setup) { return effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n); }
+// The mass that the tip shows to the wall at the start, kg.
+double mass_at_start(const Setup& setup) {
+    const Wall<double>& wall = setup.plant.wall;
+    return effective_mass(setup.plant.arm, pose(setup.q), normal(wall, wall_at(wall, setup.start)));
+}
 
 double damping_of(std::span<const double> params, double stiffness, double mass) {
     const double restitution = at<"wall.contact.restitution">(params);
@@ -279,6 +282,7 @@ static void put_between(std::span<const double> params, Setup& setup) {
 Setup make_setup(std::span<const double> params) {
     Setup setup;
     setup.simscape = is_simscape(params);
+    setup.start = at<"time.start">(params);
     setup.plant.arm = make_arm(params);
     set_controller(params, setup.plant.controller);
     set_model(params, setup.plant.arm, setup.plant.controller.model);
@@ -290,7 +294,6 @@ Setup make_setup(std::span<const double> params) {
     setup.qd = to_slide(params, vector_at<"initial.qd">(params));
     if (has_law(setup.plant.controller.type)) set_setpoint(params, setup, setup.plant.controller.setpoint);
     setup.solver = make_solver(params);
-    setup.start = 0;
     setup.stop = at<"time.stop">(params);
     setup.log_every = at<"time.log_every">(params);
     if (at<"push">(params) != 0) setup.plant.load = make_load(params);

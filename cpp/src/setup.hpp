@@ -25,7 +25,7 @@ struct Setup {
     Plant<double> plant;
     Digital<double> digital;  // on: the plant's own controller is the torque that this one holds
     Estimation<double> estimation;
-    Vec3<double> q, qd;  // at t = 0
+    Vec3<double> q, qd;  // at the start
     Solver solver;
     double start, stop, log_every;  // s
 

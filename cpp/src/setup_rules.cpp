@@ -52,7 +52,7 @@ void check_mass_matrix(const Arm<double>& arm, Findings& findings) {
 void check_start(const Setup& setup, Findings& findings) {
     const Plant<double>& plant = setup.plant;
     const Pose<double> p = pose(setup.q);
-    const Indentation<double> in = tip_indentation(plant, wall_at(plant.wall, 0.0), p, setup.qd);
+    const Indentation<double> in = tip_indentation(plant, wall_at(plant.wall, setup.start), p, setup.qd);
     if (in.depth > deepest_start && inside_outline(plant.wall, in) >= 0)
         findings.add([&] {
             return Problem{.code = "scenario.starts_inside_wall",
@@ -61,6 +61,19 @@ void check_start(const Setup& setup, Findings& findings) {
                            .got = shortest(in.depth) + " m deep",
                            .allowed = "at most 0.1 m",
                            .hint = "move wall.point back or change initial.q; does wall.normal point towards the arm?"};
+        });
+}
+
+void check_time(std::span<const double> params, Findings& findings) {
+    const double start = at<"time.start">(params), stop = at<"time.stop">(params);
+    if (stop < start)
+        findings.add([&] {
+            return Problem{.code = "scenario.range",
+                           .path = "time.stop",
+                           .message = "the run ends before it starts",
+                           .got = shortest(stop),
+                           .allowed = "at least time.start = " + shortest(start),
+                           .hint = "time.stop is an instant, not a duration"};
         });
 }
 
@@ -183,6 +196,7 @@ WorstPose smallest_lower_determinant(const Lumped<double>& l) {  // (3.10)
 }
 
 void check_setup(std::span<const double> params, Findings& findings) {
+    check_time(params, findings);
     check_direction<"wall.normal">(params, findings);
     check_direction<"wall.motion.direction">(params, findings);
     check_direction<"wall.rotation.axis">(params, findings);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -17,6 +18,7 @@ double share_of(double cutoff, double period) { return 1 - exp(-2 * pi * cutoff 
 Sampling<double> make_sampling(std::span<const double> params) {
     Sampling<double> sampling;
     sampling.on = true;
+    sampling.start = at<"time.start">(params);
     sampling.period = 1 / at<"sampling.rate">(params);
     sampling.delay = at<"sampling.delay">(params);
     sampling.has_delay = sampling.delay > 0;
@@ -68,7 +70,7 @@ Estimation<double> make_estimation(std::span<const double> params) {
     estimation.on = true;
     estimation.wall_moves = is<"estimator.wall", "moving">(params);
     estimation.period = 1 / at<"estimator.rate">(params);
-    estimation.start = at<"estimator.start">(params);
+    estimation.start = std::max(at<"estimator.start">(params), at<"time.start">(params));
     estimation.forgetting = at<"estimator.forgetting">(params);
     estimation.largest_condition = at<"estimator.largest_condition">(params);
     return estimation;

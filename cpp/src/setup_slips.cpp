@@ -79,7 +79,7 @@ double past_shoulder(const Setup& setup) {
         if (inside_outline(wall, in) >= 0) deepest = std::max(deepest, in.depth);
     };
     constexpr int looks = 1000;
-    for (int i = 0; i <= looks; ++i) look(setup.stop * i / looks);
+    for (int i = 0; i <= looks; ++i) look(setup.start + (setup.stop - setup.start) * i / looks);
     return deepest;
 }
 

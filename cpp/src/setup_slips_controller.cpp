@@ -170,12 +170,13 @@ double latest_turn(const Setpoint<double>& wanted) {
 }
 
 // How far the wanted tip comes out of the arm's reach, m.
-double beyond_reach(const Arm<double>& model, const Setpoint<double>& wanted, double stop) {
-    const double a2 = model.link2.length, a3 = model.link3.length, last = std::min(stop, latest_turn(wanted));
+double beyond_reach(const Arm<double>& model, const Setpoint<double>& wanted, double start, double stop) {
+    const double a2 = model.link2.length, a3 = model.link3.length,
+                 length = std::max(0.0, std::min(stop, latest_turn(wanted)) - start);
     double farthest = 0;
     constexpr int looks = 200;
     for (int i = 0; i <= looks; ++i) {
-        const Vec3<double> tip = wanted_at(wanted, last * i / looks).position;
+        const Vec3<double> tip = wanted_at(wanted, start + length * i / looks).position;
         const double from_shoulder = hypot2(hypot2(tip[0], tip[1]), tip[2] - model.base_height);
         farthest = std::max({farthest, from_shoulder - (a2 + a3), std::abs(a2 - a3) - from_shoulder});
     }
@@ -183,9 +184,9 @@ double beyond_reach(const Arm<double>& model, const Setpoint<double>& wanted, do
 }
 
 // Of a table, m.
-double distance_of_first_point(const Controller<double>& controller, const Vec3<double>& q) {
+double distance_at_start(const Controller<double>& controller, double start, const Vec3<double>& q) {
     const Vec3<double> off =
-        minus(wanted_at(controller.setpoint, 0.0).position, tip_position(controller.model, pose(q)));
+        minus(wanted_at(controller.setpoint, start).position, tip_position(controller.model, pose(q)));
     return std::sqrt(dot(off, off));
 }
 
@@ -193,10 +194,10 @@ void slips_of_reference(const Setup& setup, Slips& slips) {
     const Controller<double>& controller = setup.law();
     const Setpoint<double>& wanted = controller.setpoint;
     if (!wants_path(controller.type)) return;
-    const double beyond = wanted.in_joints ? 0 : beyond_reach(controller.model, wanted, setup.stop);
+    const double beyond = wanted.in_joints ? 0 : beyond_reach(controller.model, wanted, setup.start, setup.stop);
     if (beyond > 1e-9)
         slips.push_back("the reference of the tip leaves the reach of the arm by " + rounded(beyond) + " m");
-    const double apart = wanted.path == Path::table ? distance_of_first_point(controller, setup.q) : 0;
+    const double apart = wanted.path == Path::table ? distance_at_start(controller, setup.start, setup.q) : 0;
     if (apart > 1e-3)
         slips.push_back("the table of the reference begins " + rounded(apart) + " m from where the tip starts");
     if (wanted.path > Path::point && wanted.start > setup.stop)

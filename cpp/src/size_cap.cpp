@@ -21,8 +21,10 @@ void refuse_above(double needed, double most, Problem problem) {
     throw Error(ARM3R_E_SIZE_CAP, {std::move(problem)});
 }
 
+double duration(const Setup& setup) { return setup.stop - setup.start; }
+
 double ticks_of(const Setup& setup) {
-    return setup.digital.sampling.on ? setup.stop / setup.digital.sampling.period : 0;
+    return setup.digital.sampling.on ? duration(setup) / setup.digital.sampling.period : 0;
 }
 
 double fixed_steps_allowed(const Solver& solver) { return std::min(most_fixed_steps, solver.max_steps); }
@@ -32,12 +34,12 @@ double fixed_steps_allowed(const Solver& solver) { return std::min(most_fixed_st
 bool has_too_many_steps(const Setup& setup) {
     const bool is_fixed = setup.solver.method == Solver::rk4;
     return ticks_of(setup) > most_ticks ||
-           (is_fixed && setup.stop / setup.solver.step > fixed_steps_allowed(setup.solver));
+           (is_fixed && duration(setup) / setup.solver.step > fixed_steps_allowed(setup.solver));
 }
 
 void refuse_too_large(const Setup& setup, bool rows) {
     if (rows)
-        refuse_above(setup.stop / setup.log_every, most_bytes / double(columns_of(setup).size() * sizeof(double)),
+        refuse_above(duration(setup) / setup.log_every, most_bytes / double(columns_of(setup).size() * sizeof(double)),
                      {.code = "budget.rows",
                       .path = "time.log_every",
                       .message = "the run would need too many rows",
@@ -52,7 +54,7 @@ void refuse_too_large(const Setup& setup, bool rows) {
                   .allowed = "",
                   .hint = "sample less often"});
     if (has_too_many_steps(setup))
-        refuse_above(setup.stop / setup.solver.step, fixed_steps_allowed(setup.solver),
+        refuse_above(duration(setup) / setup.solver.step, fixed_steps_allowed(setup.solver),
                      {.code = "budget.steps",
                       .path = "solver.step",
                       .message = "the run would need too many steps",

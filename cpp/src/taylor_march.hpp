@@ -82,7 +82,7 @@ private:
     enum Signal : std::size_t { depth = state_size, across1, across2 };
 
     ARM3R_INLINE static T smallest_step(const T& t) {
-        return 16 * std::numeric_limits<double>::epsilon() * max(t, T(1e-3));
+        return 16 * std::numeric_limits<double>::epsilon() * max(abs(t), T(1e-3));
     }
 
     ARM3R_INLINE Mask is_finite() const {

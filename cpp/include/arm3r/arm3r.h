@@ -168,7 +168,7 @@ ARM3R_API int32_t arm3r_run_event_count(const arm3r_run *run, size_t *count);
 ARM3R_API int32_t arm3r_run_event(const arm3r_run *run, size_t index, arm3r_event *event);
 
 /* ---- numbers: a control law of your own ------------------------------------------------------------------------------
- * For scenarios with controller.type: user. It is called at t = tick/sampling.rate only, in increasing time, and never twice
+ * For scenarios with controller.type: user. It is called at t = time.start + tick/sampling.rate only, in increasing time, and never twice
  * for one; its torque is held until the next, within arm.torque_limit.
  */
 

@@ -19,6 +19,7 @@ struct SamplingChoices {
 
 template <class P>
 struct Sampling : SamplingChoices {
+    P start;   // s, of the first sample
     P period;  // s
     P delay;   // samples, from the sensors to the torque
     P seed;    // of the noise, a whole number

@@ -1,0 +1,252 @@
+"""Time has no origin: a scenario that is moved in time, with everything that has a time, gives the same run later."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from arm3r_cpp.scenario import Scenario
+from conftest import scenario_files
+from random_scenarios import fresh_seed, random_scenario, yaml_of
+
+SHIFTS = [0.7, 37.0]
+NUDGE = 1e-7  # rad: a perturbation of the start, by which the growth of an error over the run is measured
+COLUMNS = "q1 q2 q3 qd1 qd2 qd3 tau1 tau2 tau3 tip_x tip_y tip_z f_on_tip_x f_on_tip_y f_on_tip_z depth work_actuators"
+
+
+def get(scenario: Scenario, path: str, default: Any = None) -> Any:
+    return scenario[path] if path in scenario else default  # noqa: SIM401
+
+
+def listed(values: Any) -> list[float]:
+    return [float(value) for value in np.atleast_1d(values)]
+
+
+def prepare(scenario: Scenario, by: float) -> Scenario:
+    """The scenario where what cannot be moved can: swings without a phase come back after `by`, plates turn about z.
+
+    A reading on a grid is left out: the last bit of a state may turn it by a whole step.
+    """
+    ready = scenario.copy()
+    ready["checks"] = []
+    for path in ("reference.force.frequency", "controller.stiffness_frequency"):
+        if frequency := get(ready, path):
+            ready[path] = max(1, round(frequency * by)) / by
+    for path in ("sensors.encoder.counts", "sensors.force.resolution"):
+        if get(ready, path):
+            ready[path] = 0
+    if get(ready, "wall.rotation.type", "none") != "none":
+        ready["wall.rotation.axis"] = [0, 0, 1]
+        if get(ready, "reference.type") == "circle":
+            ready["wall.rotation"] = {"type": "none"}
+    if "wall" in ready:
+        give_direction(ready)
+    return ready
+
+
+def give_direction(scenario: Scenario) -> None:
+    """Writes the direction of the wall's course, which is else that of its normal."""
+    normal = np.array(scenario["wall.normal"])
+    kind = scenario["wall.motion.type"]
+    if kind == "constant":
+        velocity = np.array(listed(scenario["wall.motion.velocity"]))
+        along = velocity if len(velocity) == 3 and not np.isnan(velocity).any() else velocity[0] * normal / norm(normal)
+        scenario["wall.motion.velocity"] = listed(along)
+    elif kind != "fixed" and "wall.motion.direction" not in scenario:
+        scenario["wall.motion.direction"] = listed(normal)
+
+
+def norm(v: np.ndarray) -> float:
+    return float(np.linalg.norm(v))
+
+
+def moved(scenario: Scenario, by: float) -> Scenario:
+    """The same, `by` seconds later."""
+    later = scenario.copy()
+    later["time.start"], later["time.stop"] = scenario["time.start"] + by, scenario["time.stop"] + by
+    for path in ("push.start", "reference.start", "reference.force.start", "estimator.start", "wall.motion.start"):
+        if path in scenario:
+            later[path] = scenario[path] + by
+    for path in ("reference.t", "wall.motion.t"):
+        if path in scenario:
+            later[path] = [t + by for t in scenario[path]]
+    if "wall" in scenario:
+        move_wall(scenario, later, by)
+    return later
+
+
+def swing_back(scenario: Scenario, later: Scenario, section: str, by: float) -> float:
+    """Moves a swing's phase; returns how far it is ahead of its old course after that."""
+    phase = scenario[f"{section}.phase"]
+    earlier = math.remainder(phase - 2 * math.pi * scenario[f"{section}.frequency"] * by, 2 * math.pi)
+    later[f"{section}.phase"] = earlier
+    return float(scenario[f"{section}.amplitude"] * (math.sin(phase) - math.sin(earlier)))
+
+
+def move_wall(scenario: Scenario, later: Scenario, by: float) -> None:
+    back = np.zeros(3)
+    kind = scenario["wall.motion.type"]
+    if kind == "constant":
+        back = by * np.array(scenario["wall.motion.velocity"])
+    if kind == "sinusoid":
+        direction = np.array(scenario["wall.motion.direction"])
+        back = swing_back(scenario, later, "wall.motion", by) * direction / norm(direction)
+    later["wall.point"] = listed(np.array(scenario["wall.point"]) - back)
+    turning = get(scenario, "wall.rotation.type", "none")
+    if turning == "none":
+        return
+    ahead = (
+        by * scenario["wall.rotation.rate"]
+        if turning == "constant"
+        else swing_back(scenario, later, "wall.rotation", by)
+    )
+    c, s = math.cos(ahead), math.sin(ahead)
+    x, y, z = scenario["wall.normal"]
+    later["wall.normal"] = [c * x + s * y, c * y - s * x, z]
+
+
+def with_method(scenario: Scenario, method: str) -> Scenario:
+    """The scenario by this method, or as it is where the method cannot run it."""
+    other = scenario.copy()
+    other["solver"] = {"method": method, **({"step": 1e-3} if method == "rk4" else {})}
+    try:
+        other.validate()
+    except arm3r.ScenarioError:
+        return scenario
+    return other
+
+
+def run_of(scenario: Scenario) -> arm3r.Run:
+    try:
+        return scenario.run()
+    except arm3r.Arm3rError as error:
+        if getattr(error, "run", None) is None:
+            raise
+        return error.run
+
+
+def nudged(scenario: Scenario) -> Scenario:
+    other = scenario.copy()
+    other["initial.q"] = [q + NUDGE for q in scenario["initial.q"]]
+    return other
+
+
+def same_course(a: arm3r.Run, b: arm3r.Run) -> bool:
+    return a.outcome == b.outcome and len(a.t) == len(b.t) and [e.type for e in a.events] == [e.type for e in b.events]
+
+
+def hold_together(scenario: Scenario, by: float) -> bool:
+    """Asserts that the run moved in time is the run; False where a nudge already changes the course of events."""
+    scenario = prepare(scenario, by)
+    run, other = run_of(scenario), run_of(nudged(scenario))
+    if not same_course(run, other):
+        return False
+    later = run_of(moved(scenario, by))
+    assert same_course(run, later), (run.outcome, later.outcome, later.summary["message"])
+    assert np.abs(later.t - run.t - by).max() < 1e-12
+    # A shift weighs less than a tenth of the nudge; it begins as rounding, or as the tolerance of the method.
+    for a, b, c in zip(run.events, other.events, later.events, strict=True):
+        assert abs(c.t - by - a.t) < 1e-8 + 0.1 * abs(b.t - a.t), (a, c)
+    for name in COLUMNS.split():
+        if name in run.columns:
+            size, growth = np.abs(run[name]).max(), np.abs(other[name] - run[name]).max()
+            off = np.abs(later[name] - run[name])
+            assert off.max() < 1e-7 * (1 + size) + 0.1 * growth, (name, off.max(), run.t[off.argmax()], growth)
+    rejected = run.summary["steps"]["rejected"]
+    assert later.summary["steps"]["rejected"] <= rejected + 3 + rejected // 10
+    return True
+
+
+def hold_random(count: int) -> None:
+    seed = fresh_seed()
+    rng = np.random.default_rng(seed)
+    held = 0
+    for i in range(count):
+        keys = random_scenario(rng, longest=0.8)
+        method = ["dopri5", "rodas4", "auto", "rk4", "taylor"][i % 5]
+        by = SHIFTS[int(rng.integers(2))]
+        scenario = with_method(Scenario(yaml_of(keys)), method)
+        try:
+            held += hold_together(scenario, by)
+        except AssertionError as error:
+            text = scenario.to_yaml() if hasattr(scenario, "to_yaml") else yaml_of(keys)
+            raise AssertionError(f"seed {seed}, scenario {i}, {method}, moved by {by} s: {error}\n{text}") from error
+    print(f"seed {seed}: {held} of {count} held against their shift")
+    assert held > 0.8 * count
+
+
+def test_random_scenarios_do_not_know_what_time_it_is() -> None:
+    hold_random(30)
+
+
+@pytest.mark.gate
+def test_many_random_scenarios_do_not_know_what_time_it_is() -> None:
+    hold_random(300)
+
+
+@pytest.mark.parametrize("path", scenario_files(), ids=lambda path: path.stem)
+def test_shipped_scenarios_do_not_know_what_time_it_is(path: Any) -> None:
+    scenario = Scenario.load(path)
+    scenario["time.stop"] = min(scenario["time.stop"], 0.5)
+    assert hold_together(scenario, 0.7)
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("by", SHIFTS)
+@pytest.mark.parametrize("path", scenario_files(), ids=lambda path: path.stem)
+def test_whole_shipped_scenarios_do_not_know_what_time_it_is(path: Any, by: float) -> None:
+    assert hold_together(Scenario.load(path), by)
+
+
+# ---- what counts from the start -------------------------------------------------------------------------------------
+
+PLAIN = "format: 1\ncontroller: {type: gravity_compensation}\n"
+
+
+def test_rows_count_from_the_start() -> None:
+    run = Scenario(PLAIN + "time: {start: 0.3, stop: 1.05, log_every: 0.1}").run()
+    assert list(run.t) == [*(0.3 + k * 0.1 for k in range(8)), 1.05]
+    assert list(Scenario(PLAIN + "time: {start: -2, stop: -2}").run().t) == [-2]
+
+
+def test_a_run_must_not_end_before_it_starts() -> None:
+    with pytest.raises(arm3r.ScenarioError, match=r"time\.stop.*before it starts"):
+        Scenario(PLAIN + "time: {start: 3, stop: 2}").validate()
+
+
+def test_samples_count_from_the_start() -> None:
+    seen: list[float] = []
+
+    def law(t: float, state: Any) -> np.ndarray:
+        seen.append(t)
+        return state.tau_g
+
+    scenario = Scenario("format: 1\ncontroller: {type: user}\nsampling: {rate: 100}\ntime: {start: 0.7, stop: 0.75}")
+    scenario.run(controller=law)
+    assert seen == [0.7 + k * (1 / 100) for k in range(len(seen))]
+    assert len(seen) == 6
+
+
+def test_the_wall_stands_at_its_point_at_zero() -> None:
+    text = PLAIN + "wall: {motion: {type: constant, velocity: 0.05}}\ntime: {start: 2, stop: 3}"
+    run = Scenario(text).run()
+    assert np.allclose(run["wall_x"], 2 - 0.05 * run.t, rtol=0, atol=1e-15)
+
+
+def test_lanes_of_a_batch_may_start_at_different_times() -> None:
+    text = (
+        PLAIN
+        + "wall: {acts_on_arm: true}\npush: {force: [9, 0, 0], start: 2.1}\nsolver: {method: rk4}\ntime: {stop: 4}"
+    )
+    starts = np.array([0.0, 1.3, 2.0, 2.05, 2.7, -1.0, 3.2])
+    batch = Scenario(text).batch({"time.start": starts})
+    for i, start in enumerate(starts):
+        alone = Scenario(text)
+        alone["time.start"] = float(start)
+        run = alone.run()
+        for name in ("t_end", "peak_force", "q2", "contact_time", "first_contact"):
+            assert np.array_equal(batch[name][i], run.summary.get(name, batch[name][i]), equal_nan=True), (start, name)
+        assert batch["q2"][i] == run["q2"][-1]
