@@ -11,9 +11,11 @@
 #include <thread>
 #include <vector>
 
+#include "callback.hpp"
 #include "crew.hpp"
 #include "error.hpp"
 #include "schema.hpp"
+#include "validate.hpp"
 
 namespace arm3r {
 namespace {
@@ -42,6 +44,12 @@ void check_variation(const Variation& variation) {
     }
 }
 
+// Asks the threads to stop before they are joined, whichever way the calling thread leaves: it may be ended in a callback.
+struct Ending {
+    std::atomic<bool>& stop;
+    ~Ending() { stop = true; }
+};
+
 class Batch {
 public:
     Batch(const Variation& variation, const BatchOptions& options, double* results)
@@ -53,7 +61,8 @@ public:
         const std::size_t runs = work_.variation.runs;
         const std::size_t wanted = options_.threads > 0 ? options_.threads : allowed_threads();
         const std::size_t count = std::clamp<std::size_t>(runs / least_runs_per_thread, 1, wanted);
-        std::vector<std::thread> threads;
+        std::vector<std::jthread> threads;
+        const Ending ending{work_.stop};
         threads.reserve(count);
         try {
             while (threads.size() < count) threads.emplace_back([this] { work(); });
@@ -61,7 +70,7 @@ public:
             if (threads.empty()) throw;
         }
         while (!has_ended(threads.size())) watch();
-        for (std::thread& thread : threads) thread.join();
+        threads.clear();
         if (failure_) std::rethrow_exception(failure_);
     }
 
@@ -93,8 +102,8 @@ private:
         if (options_.stop && *options_.stop) work_.stop = true;
         if (!options_.progress || Clock::now() < next_report_) return;
         next_report_ = Clock::now() + between_reports;
-        const std::int32_t answer = options_.progress(options_.user, static_cast<std::int64_t>(work_.done.load()),
-                                                      static_cast<std::int64_t>(work_.variation.runs));
+        const std::int32_t answer = call_back(options_.progress, options_.user, std::int64_t(work_.done.load()),
+                                              std::int64_t(work_.variation.runs));
         if (answer != 0) work_.stop = true;
         if (answer < 0)
             fail(std::make_exception_ptr(
@@ -114,6 +123,7 @@ private:
 
 void run_batch(const Variation& variation, const BatchOptions& options, double* results) {
     check_variation(variation);
+    refuse_unknown_choices(variation.params);
     if (options.lanes > widest_lanes())
         throw Error(ARM3R_E_VALUE, "lanes: this processor has instructions for " + std::to_string(widest_lanes()) +
                                        ", not for " + std::to_string(options.lanes));

@@ -1,6 +1,8 @@
 #pragma once
 // What every function of the C interface stands on: the guard, the checks of arguments, and the handles.
 
+#include <cxxabi.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -15,6 +17,7 @@
 #include "arm3r/arm3r.h"
 #include "checks.hpp"
 #include "error.hpp"
+#include "fp_environment.hpp"
 #include "scenario.hpp"
 #include "simulation.hpp"
 
@@ -27,12 +30,16 @@ int32_t remember(arm3r_status status, const char* message) noexcept;
 inline constexpr const char* out_of_memory =
     "error[memory]: there is not enough memory; of a run most goes to its rows (time.log_every)";
 
-// The body of a C function: nothing thrown leaves it.
+// The body of a C function: no exception leaves it, and the caller's floating-point environment is neither used nor
+// changed. The one thing that passes through is the end of the thread within a callback.
 template <class Body>
-int32_t guard(Body&& body) noexcept {
+int32_t guard(Body&& body) {
+    const StandardFpEnvironment standard;
     try {
         body();
         return ARM3R_OK;
+    } catch (const abi::__forced_unwind&) {
+        throw;
     } catch (const Error& error) {
         return remember(error);
     } catch (const std::bad_alloc&) {

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "at.hpp"
 #include "batch.hpp"
 #include "c_api.hpp"
 #include "runs.hpp"
@@ -54,7 +55,7 @@ int32_t arm3r_batch_run(const double* params, size_t count, const size_t* varied
             if (runs > 0 && width > most / runs)
                 throw Error(ARM3R_E_SIZE, "runs is " + std::to_string(runs) + ": no array is as long");
         const std::span<const double> all = params_in(params, count);
-        if (choice_of(all, "controller.type") == "user") refuse_missing_law();
+        if (is<"controller.type", "user">(all)) refuse_missing_law();
         run_batch({all, {varied, varied_count}, {values, varied_count * runs}, runs}, batch_options_in(options),
                   results);
     });

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "c_api.hpp"
+#include "callback.hpp"
 #include "law_state.hpp"
 #include "numbers.hpp"
 #include "runs.hpp"
@@ -31,7 +32,7 @@ struct Law {
         Law& law = *static_cast<Law*>(self);
         law.view.look(tick, truth, sensed, known, law.state);
         double answer[3] = {NAN, NAN, NAN};
-        const int32_t status = law.function(law.user, &law.state, answer);
+        const int32_t status = call_back(law.function, law.user, &law.state, answer);
         tau = law.view.torque(answer);
         return status;
     }
@@ -51,8 +52,9 @@ Run controlled(std::span<const double> params, arm3r_law function, void* user, R
     std::vector<Problem> problems = validate(params);
     if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
     refuse_other_controllers(params);
-    Law law(function, user, make_setup(params));
-    options.user_law = {Law::ask, &law};
+    const Setup setup = make_setup(params);
+    Law law(function, user, setup);
+    options.user_law = {Law::ask, &law, setup.simscape};
     return simulate(params, options);
 }
 

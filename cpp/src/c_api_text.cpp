@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "c_api.hpp"
+#include "callback.hpp"
 #include "input.hpp"
 #include "numbers.hpp"
 #include "output.hpp"
@@ -239,7 +240,8 @@ int32_t arm3r_run_csv(const arm3r_run* run, arm3r_sink sink, void* user) {
     return guard([&] {
         need(run, "run");
         need(reinterpret_cast<const void*>(sink), "sink");
-        if (!write_csv(run->run, [&](std::string_view piece) { return sink(user, piece.data(), piece.size()) == 0; }))
+        if (!write_csv(run->run,
+                       [&](std::string_view piece) { return call_back(sink, user, piece.data(), piece.size()) == 0; }))
             throw Error(ARM3R_E_OUTPUT, "the sink did not take all of the CSV");
     });
 }

@@ -140,7 +140,7 @@ std::string ControlLoop<T>::complaint() const {
     const double t = Lanes<T>::get(digital_.sampling.start, 0) + tick * Lanes<T>::get(digital_.sampling.period, 0);
     const std::string place = " at tick " + shortest(tick) + ", t = " + shortest(t) + " s";
     if (user_status_ != 0) return "the controller asked to stop with " + std::to_string(user_status_) + place;
-    const Vec3<double>& tau = user_torque_;
+    const Vec3<double> tau = user.simscape ? flipped(user_torque_) : user_torque_;
     return "the controller gave the torque [" + shortest(tau[0]) + ", " + shortest(tau[1]) + ", " + shortest(tau[2]) +
            "] N m" + place + "; three finite numbers are needed, at most 1e12 either way";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "callback.hpp"
 #include "numbers.hpp"
 #include "schema.hpp"
 #include "size_cap.hpp"
@@ -115,7 +116,7 @@ void Recorder::read_clock() {
     if (!options_.progress || elapsed < next_report_) return;
     next_report_ = elapsed + 0.02;
     const std::int32_t answer =
-        options_.progress(options_.user, run_.t_end, setup_.stop, run_.steps.accepted + run_.steps.rejected);
+        call_back(options_.progress, options_.user, run_.t_end, setup_.stop, run_.steps.accepted + run_.steps.rejected);
     if (answer < 0) throw Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer));
     if (answer > 0) end(ARM3R_RUN_STOPPED, "stopped" + at_time(run_.t_end));
 }

@@ -21,6 +21,7 @@ struct UserLaw {
     int (*function)(void* user, double tick, const Truth& truth, const Sensed<double>& sensed,
                     const Known<double>& known, Vec3<double>& tau) = nullptr;
     void* user = nullptr;
+    bool simscape = false;  // how messages write a torque
 };
 
 }  // namespace arm3r

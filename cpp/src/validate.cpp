@@ -216,6 +216,12 @@ void drop_settled(std::vector<const Key*>& keys, std::span<const double> params,
 
 }  // namespace
 
+void refuse_unknown_choices(std::span<const double> params) {
+    Findings findings(Findings::messages);
+    check_choices(params, findings);
+    if (!findings.none()) throw Error(ARM3R_E_SCENARIO, std::move(findings.problems));
+}
+
 std::vector<Problem> validate(std::span<const double> params) {
     Findings findings(Findings::messages);
     check_choices(params, findings);

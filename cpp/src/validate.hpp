@@ -16,6 +16,9 @@ struct NumberKeys {
     std::vector<const Key*> arm, others, model;
 };
 
+// Throws Error ARM3R_E_SCENARIO where a number that stands for a choice is none of its words.
+void refuse_unknown_choices(std::span<const double> params);
+
 class Checker {
 public:
     // The arrays will differ from `params` in the numbers `varied` only, none of them a choice, a flag or a section.

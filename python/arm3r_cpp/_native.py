@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import atexit
 import json
 import math
 import os
 import re
 import threading
+import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -15,6 +19,20 @@ from numpy.typing import NDArray
 
 from .errors import Arm3rError, IncompatibleError, UsageError, class_of
 
+
+def _check_interpreter() -> None:
+    """ImportError: this is a sub-interpreter. What the library calls back there would not arrive."""
+    for name in ("_interpreters", "_xxsubinterpreters"):  # the second until Python 3.12
+        with suppress(ImportError):
+            interpreters = import_module(name)
+            if interpreters.get_current() != interpreters.get_main():
+                break
+    else:
+        return
+    raise ImportError("arm3r_cpp works in the main interpreter of a process only, and this is a sub-interpreter")
+
+
+_check_interpreter()
 try:
     from ._arm3r import ffi as ffi
     from ._arm3r import lib as lib
@@ -204,6 +222,48 @@ Progress = Callable[[float, float, int], Any]
 BatchProgress = Callable[[int, int], Any]
 
 
+_ENDING_TAKES = 0.8  # s, at most
+
+
+class _Interpreter:
+    """Its end. A daemon thread that then calls back into Python is killed there, so its runs are stopped before.
+
+    Attributes:
+        stop: the stop flag of all runs of daemon threads.
+        busy: those that are in progress.
+    """
+
+    def __init__(self) -> None:
+        self.stop = ffi.new("int32_t *")
+        self.busy: set[_InProgress] = set()
+        atexit.register(self.end)
+        os.register_at_fork(after_in_child=self.busy.clear)  # the child has one thread
+
+    def end(self) -> None:
+        """Stop the runs, and wait until their threads have seen it."""
+        self.stop[0] = 1
+        deadline = time.monotonic() + _ENDING_TAKES
+        while self.busy and time.monotonic() < deadline:
+            time.sleep(0.001)
+
+    def enter(self, call: _InProgress) -> None:
+        if threading.current_thread().daemon:
+            self.busy.add(call)
+
+    def leave(self, call: _InProgress) -> None:
+        """A thread whose run was stopped by the end of the interpreter waits here for its own end."""
+        self.busy.discard(call)
+        if self.stop[0] and threading.current_thread().daemon:
+            threading.Event().wait()
+
+    def stop_flag(self) -> Any:
+        """Of a call of this thread. Other threads than daemons have ended before the interpreter does."""
+        return self.stop if threading.current_thread().daemon else ffi.NULL
+
+
+_interpreter = _Interpreter()
+
+
 class _InProgress:
     """While the library calls `progress`, of one run or one batch. What that raises comes out again."""
 
@@ -214,9 +274,11 @@ class _InProgress:
 
     def __enter__(self) -> None:
         self._outer, _here.call = getattr(_here, "call", None), self
+        _interpreter.enter(self)
 
     def __exit__(self, kind: Any, raised: BaseException | None, traceback: Any) -> None:
         _here.call = self._outer
+        _interpreter.leave(self)
         if self.raised is not None and isinstance(raised, Arm3rError):
             raise self.raised from None
 
@@ -244,6 +306,7 @@ def start(function: Callable[..., int], *arguments: Any, progress: Progress | No
 def _run_options(time_limit: float | None) -> Any:
     options = ffi.new("arm3r_run_options *")
     options.struct_size = ffi.sizeof("arm3r_run_options")
+    options.stop = _interpreter.stop_flag()
     options.progress = lib.arm3r_python_progress
     options.time_limit = 0.0 if time_limit is None else time_limit
     return options
@@ -272,6 +335,7 @@ def batch(
     """The table of (varied, runs) values in the places of the varied numbers: (columns, runs)."""
     options = ffi.new("arm3r_batch_options *")
     options.struct_size = ffi.sizeof("arm3r_batch_options")
+    options.stop = _interpreter.stop_flag()
     options.progress = lib.arm3r_python_batch_progress
     options.threads = threads or 0
     runs = values.shape[1]
@@ -359,8 +423,8 @@ def control(
 ) -> tuple[Any, BaseException | None]:
     """A run with a law, called as law(state, tau) or, with an `address`, in machine code; and what it raised."""
     native = hasattr(law, "address")
-    given = ffi.cast("arm3r_law", law.address) if native else lib.arm3r_python_law
-    user = ffi.cast("void *", law.user) if native else ffi.NULL
+    given = ffi.cast("arm3r_law", int(law.address)) if native else lib.arm3r_python_law
+    user = ffi.cast("void *", int(law.user)) if native else ffi.NULL
     here = _InProgress(progress, law)
     with here:
         run = create("run", lib.arm3r_scenario_control, scenario, given, user, _run_options(time_limit))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable
 from contextlib import nullcontext
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from . import _native
 from .errors import BudgetError, ControllerError, UsageError
@@ -14,6 +17,8 @@ from .run import Run
 from .watchdog import OutOfTime, Watchdog
 
 Law = Callable[[float, LawState], Any]
+
+ADDRESS_BITS = 8 * ctypes.sizeof(ctypes.c_void_p)
 
 
 class NativeLaw(NamedTuple):
@@ -73,6 +78,8 @@ def run_with_law(
 ) -> Run:
     """Run a scenario's handle with a law. ControllerError, BudgetError: as Scenario.run says."""
     if isinstance(controller, NativeLaw):
+        _check_address("NativeLaw.address", controller.address)
+        _check_address("NativeLaw.user", controller.user)
         run, _ = _native.control(handle, controller, progress=progress, time_limit=time_limit)
         return Run._of(run)
     if not callable(controller):
@@ -116,6 +123,22 @@ def _failure(
 
 
 TORQUE = "three finite numbers (list, tuple, array) are needed, N m, at most 1e12 either way"
+
+
+def _check_address(name: str, address: object) -> None:
+    """TypeError: not an integer. ValueError: no address of this machine."""
+    if isinstance(address, bool) or not isinstance(address, (int, np.integer)):
+        raise TypeError(f"{name}: an address (int) is needed, got {address!r}")
+    if not 0 <= address < 2**ADDRESS_BITS:
+        raise ValueError(f"{name}: an address has {ADDRESS_BITS} bits, got {address}")
+
+
+def check_time_limit(seconds: float | None) -> None:
+    """TypeError: not a number. ValueError: not a positive one."""
+    if isinstance(seconds, bool):
+        raise TypeError(f"time_limit: a number of seconds is needed, got {seconds}")
+    if seconds is not None and not 0 < seconds < math.inf:
+        raise ValueError(f"time_limit: a positive number of seconds is needed, got {seconds}")
 
 
 def check_rate(rate: float) -> None:

@@ -16,7 +16,7 @@ from ._native import BatchProgress, Floats, Progress, lib
 from .arm import Arm
 from .batch import Batch, run_batch
 from .errors import UsageError, class_of_outcome
-from .law import Law, NativeLaw, check_rate, run_with_law
+from .law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
 from .params import param_count
 from .run import Run
 
@@ -168,8 +168,7 @@ class Scenario:
             NumericalError, BudgetError: the run did not reach its end; `error.run` holds it as far as it came.
             Arm3rError: `progress` stopped the run; `error.run` likewise.
         """
-        if time_limit is not None and not 0 < time_limit < math.inf:
-            raise ValueError(f"time_limit: a positive number of seconds is needed, got {time_limit}")
+        check_time_limit(time_limit)
         if controller is not None:
             mine = self._for_law(rate)
             run = run_with_law(mine._handle, controller, self._file, progress=progress, time_limit=time_limit)

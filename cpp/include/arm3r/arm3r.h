@@ -8,6 +8,9 @@
  * belongs to the object it came from and lives as long as that object, or until the same function is called on it again.
  * Functions return ARM3R_OK or a negative arm3r_status; the reason is then in arm3r_error_message() of the same thread.
  * A handle may be read by several threads at once; calls that change it must not overlap. Use after free is undefined.
+ * A function that the library calls back may end its thread (pthread_exit). An exception of C++ that leaves it makes the call
+ * fail with ARM3R_E_CALLBACK. It must not leave by longjmp: destructors would not run.
+ * The caller's floating-point environment (rounding mode, traps, subnormal numbers) is neither used nor changed.
  */
 #ifndef ARM3R_H
 #define ARM3R_H
