@@ -1,11 +1,33 @@
-"""The command `arm3r`: the executable inside the package takes over this process."""
+"""The commands in Python. Ctrl-C ends them by the signal, also while their modules are loaded."""
 
-import os
+import signal
 import sys
+from importlib import import_module
 
-import arm3r_cpp
+_OURS = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # not where the caller ignores the signal
+if _OURS:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def main() -> None:
-    places = (os.path.join(place, "bin", "arm3r") for place in arm3r_cpp.__path__)
-    os.execv(next(filter(os.path.isfile, places)), sys.argv)  # argv[0] stays: arm3r-plot is looked for beside it
+def plot() -> int:
+    return _call("plot_cli")
+
+
+def sweep() -> int:
+    return _call("sweep_cli")
+
+
+def animate() -> int:
+    return _call("animate_cli")
+
+
+def _call(module: str) -> int:
+    main = import_module(f".{module}", __package__).main
+    if _OURS:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return main(sys.argv[1:])
+    except KeyboardInterrupt:
+        from .exits import die_of
+
+        die_of(signal.SIGINT)
