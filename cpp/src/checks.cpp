@@ -34,18 +34,29 @@ bool is_in(const Words& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-Words columns_of(std::span<const double> params) {
+Words names_of(std::span<const std::size_t> columns) {
     Words names;
-    for (const Column& column : column_table())
-        if (column.need != Need::wall || param(params, "wall") != 0) names.emplace_back(column.name);
+    for (const std::size_t column : columns) names.emplace_back(column_table()[column].name);
     return names;
+}
+
+// Columns that differ in their last letter only, as one word: "q1..q3", "tip_x..tip_z".
+Words in_short(const Words& names) {
+    const auto stem = [](const std::string& name) { return std::string_view(name).substr(0, name.size() - 1); };
+    Words words;
+    for (std::size_t first = 0, end; first < names.size(); first = end) {
+        end = first + 1;
+        while (end < names.size() && names[end].size() > 1 && stem(names[end]) == stem(names[first])) ++end;
+        words.push_back(end > first + 1 ? names[first] + ".." + names[end - 1] : names[first]);
+    }
+    return words;
 }
 
 class CheckReader {
 public:
-    CheckReader(const Node& node, std::string path, std::span<const double> params, const std::string& file,
-                std::vector<Problem>& problems)
-        : node_(node), path_(std::move(path)), params_(params), file_(file), problems_(problems) {}
+    CheckReader(const Node& node, std::string path, std::span<const double> params,
+                std::span<const std::size_t> columns, const std::string& file, std::vector<Problem>& problems)
+        : node_(node), path_(std::move(path)), params_(params), columns_(columns), file_(file), problems_(problems) {}
 
     Check read() {
         Check check;
@@ -108,8 +119,7 @@ private:
         const Node* node = node_.find(key);
         if (!node || node->type == Node::hole) return {};
         if (node->type == Node::scalar && is_in(words, node->text)) return node->text;
-        problem(node->mark, key, std::move(code), "must be one of the words", shape_of(*node),
-                words.size() <= 8 ? listed(words) : "the columns of this run (arm3r columns)",
+        problem(node->mark, key, std::move(code), "must be one of the words", shape_of(*node), listed(in_short(words)),
                 did_you_mean(node->text, words));
         return {};
     }
@@ -150,15 +160,16 @@ private:
     }
 
     std::string column(const std::string& key) {
-        const Words here = columns_of(params_);
+        const Words here = names_of(columns_);
         const Node* node = node_.find(key);
         const auto& all = column_table();
-        const bool needs_wall =
-            node->type == Node::scalar && !is_in(here, node->text) &&
-            std::any_of(all.begin(), all.end(), [&](const Column& c) { return c.name == node->text; });
-        if (!needs_wall) return word(key, here, "column");
-        problem(node->mark, key, "column", "this column is only there with a wall", node->text, "",
-                "add `wall: {}` or take the check out");
+        const auto elsewhere = std::find_if(all.begin(), all.end(), [&](const Column& c) {
+            return node->type == Node::scalar && c.name == node->text && !is_in(here, node->text);
+        });
+        if (elsewhere == all.end()) return word(key, here, "column");
+        problem(node->mark, key, "column",
+                "this run has no such column; it is there " + std::string(need_text(elsewhere->need)), node->text,
+                listed(in_short(here)), std::string(need_hint(elsewhere->need)) + ", or take the check out");
         return {};
     }
 
@@ -231,6 +242,7 @@ private:
     const Node& node_;
     std::string path_;
     std::span<const double> params_;
+    std::span<const std::size_t> columns_;
     const std::string& file_;
     std::vector<Problem>& problems_;
 };
@@ -339,8 +351,8 @@ CheckResult evaluate_one(const Check& check, const Run& run, std::span<const dou
 
 }  // namespace
 
-std::vector<Check> read_checks(const Node& list, std::span<const double> params, const std::string& file,
-                               std::vector<Problem>& problems) {
+std::vector<Check> read_checks(const Node& list, std::span<const double> params, std::span<const std::size_t> columns,
+                               const std::string& file, std::vector<Problem>& problems) {
     std::vector<Check> checks;
     if (list.type != Node::list && list.type != Node::hole)
         problems.push_back(located({.code = "check.type",
@@ -352,7 +364,7 @@ std::vector<Check> read_checks(const Node& list, std::span<const double> params,
                                    list.mark, file));
     if (list.type != Node::list) return checks;
     for (std::size_t i = 0; i < list.children.size(); ++i)
-        checks.push_back(CheckReader(list.children[i], item("checks", i), params, file, problems).read());
+        checks.push_back(CheckReader(list.children[i], item("checks", i), params, columns, file, problems).read());
     return checks;
 }
 

@@ -33,9 +33,10 @@ struct CheckResult {
     std::string reason;
 };
 
-// The checks of a list; what is wrong in it goes to `problems`. `params` tells which columns and rows there will be.
-std::vector<Check> read_checks(const Node& list, std::span<const double> params, const std::string& file,
-                               std::vector<Problem>& problems);
+// The checks of a list; what is wrong in it goes to `problems`. `params` tells which rows there will be, `columns` which
+// columns (places in column_table()).
+std::vector<Check> read_checks(const Node& list, std::span<const double> params, std::span<const std::size_t> columns,
+                               const std::string& file, std::vector<Problem>& problems);
 
 // `params`: those of the run. On part of a run, only the rows and events that exist can be judged.
 std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, std::span<const double> params);

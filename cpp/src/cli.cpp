@@ -25,6 +25,8 @@ using RunHandle = std::unique_ptr<arm3r_run, decltype(&arm3r_run_free)>;
 int exit_code(int32_t status) {
     switch (status) {
         case ARM3R_OK: return exit_ok;
+        case ARM3R_E_VALUE:  // a word of the command line that is no text
+        case ARM3R_E_SIZE:
         case ARM3R_E_FILE: return exit_usage;
         case ARM3R_E_SIZE_CAP:
         case ARM3R_E_MEMORY: return exit_budget;
@@ -92,6 +94,16 @@ bool is_directory(const std::string& path) {
     return stat(path.c_str(), &about) == 0 && S_ISDIR(about.st_mode);
 }
 
+// With those above it.
+void make_directory(const std::string& path) {
+    for (std::size_t end = 0; end != path.npos;) {
+        end = path.find('/', end + 1);
+        mkdir(path.substr(0, end).c_str(), 0777);
+    }
+    if (!is_directory(path))
+        throw Exit{exit_output, path + ": error[output]: cannot be made; for several scenarios -o names a directory"};
+}
+
 bool is_same_file(const std::string& a, const std::string& b) {
     struct stat one{}, other{};
     return stat(a.c_str(), &one) == 0 && stat(b.c_str(), &other) == 0 && one.st_dev == other.st_dev &&
@@ -118,10 +130,8 @@ std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vec
             throw Exit{exit_usage, "arm3r: error[usage]: -o - takes one scenario"};
         return std::vector<std::string>(scenarios.size(), output);
     }
+    if (scenarios.size() > 1) make_directory(output);
     const bool directory = is_directory(output);
-    if (scenarios.size() > 1 && !directory)
-        throw Exit{exit_output,
-                   output + ": error[output]: not a directory; for several scenarios -o names one that exists"};
     std::vector<std::string> paths;
     std::set<std::string> seen;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {

@@ -28,7 +28,8 @@ struct Option {
 
 constexpr Option options[] = {
     {"--output", "-o", "OUT", "run",
-     "write OUT and, beside it, the summary as .json; - is standard output; for several files a directory"},
+     "write OUT and, beside it, the summary as .json; - is standard output; for several files a directory, which is "
+     "made"},
     {"--set", "", "PATH=VALUE", "run check",
      "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
     {"--json", "", "", "run", "print the summary as JSON: one object, or an array for several files"},

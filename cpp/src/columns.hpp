@@ -26,6 +26,7 @@ struct Column {
 };
 
 std::string_view need_text(Need need);  // "only with a wall"; "" for nothing
+std::string_view need_hint(Need need);  // "add `wall: {}`": how a run comes to have it
 
 const std::vector<Column>& column_table();
 

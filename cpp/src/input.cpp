@@ -42,13 +42,14 @@ private:
 
 std::string read_up_to(int descriptor, const std::string& path) {
     std::string text;
-    char piece[65536];
+    constexpr std::size_t at_a_time = 65536;
     while (text.size() < enough) {
-        const ssize_t size = read(descriptor, piece, std::min(sizeof piece, enough - text.size()));
-        if (size < 0 && errno == EINTR) continue;
-        if (size < 0) refuse(path, "file.read", std::strerror(errno));
+        const std::size_t before = text.size(), wanted = std::min(at_a_time, enough - before);
+        text.resize(before + wanted);
+        const ssize_t size = read(descriptor, text.data() + before, wanted);
+        text.resize(before + static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+        if (size < 0 && errno != EINTR) refuse(path, "file.read", std::strerror(errno));
         if (size == 0) break;
-        text.append(piece, static_cast<std::size_t>(size));
     }
     return text;
 }

@@ -100,7 +100,8 @@ bool is_known(std::string_view path) {
     const Key* key = find_key(path.substr(0, bracket));
     if (bracket == path.size()) return key || is_section(path);
     const std::vector<Step> steps = parse_path(path);
-    return key && steps.back().key.empty() && steps.back().index < key->size && key->size > 1;
+    const bool is_item = steps.back().key.empty() && item(path.substr(0, bracket), steps.back().index) == path;
+    return key && is_item && steps.back().index < key->size && key->size > 1;
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& words) {

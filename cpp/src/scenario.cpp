@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
+#include "columns.hpp"
+#include "meant_key.hpp"
 #include "numbers.hpp"
 #include "paths.hpp"
 #include "schema.hpp"
+#include "size_cap.hpp"
 #include "text.hpp"
 
 namespace arm3r {
@@ -40,37 +44,6 @@ std::string expected(const Key& key, std::span<const double> params) {
         case Form::by_choice: return takes_list(key, params) ? list : "a number" + unit;
         default: return key.size == 1 ? "a number" + unit : list;
     }
-}
-
-// Where the keys of this name stand in the schema, the controller's copies left out.
-Words sections_of(std::string_view name) {
-    Words sections;
-    const auto add = [&](const std::string& section) {
-        if (std::find(sections.begin(), sections.end(), section) == sections.end()) sections.push_back(section);
-    };
-    for (const Key& key : schema()) {
-        for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
-            const std::string_view below = std::string_view(key.path).substr(dot + 1);
-            const bool here = below.substr(0, below.find('.')) == name;
-            const std::string section = key.path.substr(0, dot);
-            if (here && !section.starts_with("controller.model")) add(section);
-        }
-    }
-    return sections;
-}
-
-// Whole paths of the keys whose last name is nearest to this one, the controller's copies left out.
-Words paths_like(const std::string& name) {
-    Words names, paths;
-    for (const Key& key : schema()) names.push_back(last_name(key.path));
-    const std::string near = nearest(name, names);
-    for (const Key& key : schema())
-        if (last_name(key.path) == near && !key.path.starts_with("controller.model.")) paths.push_back(key.path);
-    return paths;
-}
-
-bool is_digits(std::string_view text) {
-    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 // Text as a file name: what cannot stand in one becomes _.
@@ -108,7 +81,7 @@ public:
             read_section(root_, "");
             add_broken_rules();
             if (const Node* checks = root_.find("checks"))
-                result_.checks = read_checks(*checks, result_.params, scenario_.file, problems_);
+                result_.checks = read_checks(*checks, result_.params, columns(), scenario_.file, problems_);
         } else if (root_.type != Node::hole) {
             problem(root_.mark, {"scenario.type", "", "a scenario is a map of keys", shape_of(root_), "",
                                  "start with `format: 1`"});
@@ -214,27 +187,31 @@ private:
     void read_subsection(const Node& node, const std::string& path) {
         if (node.type == Node::map) return read_section(node, path);
         if (node.type == Node::hole) return;
-        const std::string hint = node.type == Node::nothing ? "write `" + node.key + ": {}`, or leave it out" : "";
+        std::string hint = node.type == Node::nothing ? "write `" + node.key + ": {}`, or leave it out" : "";
+        if (const Key* choice = node.type == Node::scalar ? choice_with(path, node.text) : nullptr)
+            hint = "write `" + node.key + ": {" + last_name(choice->path) + ": " + node.text + "}`";
         problem(node.type == Node::nothing ? node.key_mark : node.mark,
-                {"scenario.type", path, "expects a map", shape_of(node), "keys " + listed(names_below(path)), hint});
+                {"scenario.type", path, "expects a map", shape_of(node), "keys " + listed(names_here(path)), hint});
     }
 
     void unknown_key(const Node& map, const Node& node, const std::string& section) {
         problem(node.key_mark, {"scenario.unknown_key", join(section, node.key),
                                 section.empty() ? "no such key" : "no such key in " + section, "",
-                                listed(names_below(section)), meant_key(map, node, section)});
+                                listed(names_here(section)), meant_key(map, node, section, result_.params)});
     }
 
-    // What an unknown key most likely is: half of a number, a key of another section, or a slip of the fingers.
-    static std::string meant_key(const Node& map, const Node& node, const std::string& section) {
-        const Node* before = &node == &map.children.front() ? nullptr : &node - 1;
-        if (before && node.type == Node::nothing && is_digits(node.key))
-            return "use a point: " + before->text + "." + node.key;
-        if (const Words elsewhere = sections_of(node.key); !elsewhere.empty())
-            return "`" + visible(node.key) + "` belongs to " + listed(elsewhere, " or ");
-        if (const std::string here = did_you_mean(node.key, names_below(section)); !here.empty()) return here;
-        const Words paths = paths_like(node.key);
-        return paths.empty() ? "" : "did you mean " + listed(paths, " or ") + "?";
+    // All that there are where a choice is not known.
+    Words names_here(const std::string& section) const {
+        return unknown_choices_.empty() ? names_there(section, result_.params) : names_below(section);
+    }
+
+    // The choice of this section whose word stands there alone: `controller: joint_pd`.
+    static const Key* choice_with(const std::string& section, const std::string& word) {
+        const auto found = std::find_if(schema().begin(), schema().end(), [&](const Key& key) {
+            return key.path == join(section, last_name(key.path)) && key.kind == Kind::choice &&
+                   std::find(key.choices.begin(), key.choices.end(), word) != key.choices.end();
+        });
+        return found == schema().end() ? nullptr : &*found;
     }
 
     void read_value(const Key& key, const Node& node) {
@@ -264,6 +241,11 @@ private:
         const std::string choice = last_name(missing->when_key), name = "`" + last_name(key.path) + "`";
         const std::string& here = choice_of(result_.params, missing->when_key);
         const std::string words = listed(missing->when, " or ");
+        if (missing->when_key == "controller.type" && here == "none" && !key.path.starts_with("controller."))
+            return problem(node.key_mark, {"scenario.other_choice", key.path,
+                                           "`" + key.path.substr(0, key.path.find('.')) +
+                                               "` is followed by a control law, and controller.type is none",
+                                           "", "", "add controller: {type: ...}, one of " + words});
         const bool is_of_most = words_without(*missing).size() < missing->when.size();
         problem(node.key_mark,
                 {"scenario.other_choice", key.path,
@@ -350,8 +332,18 @@ private:
     // ---- rules of the schema
 
     void add_broken_rules() {
-        for (const Problem& broken : validate(result_.params))
-            if (!already_refused(broken.path)) problem(place(broken.path), broken);
+        const std::vector<Problem> broken = validate(result_.params);
+        keeps_rules_ = broken.empty();
+        for (const Problem& rule : broken)
+            if (!already_refused(rule.path)) problem(place(rule.path), rule);
+    }
+
+    // Of the run; all that there are where it cannot be known, because something else is wrong.
+    std::vector<std::size_t> columns() const {
+        if (keeps_rules_ && unknown_choices_.empty()) return columns_of(make_setup(result_.params));
+        std::vector<std::size_t> all(column_table().size());
+        std::iota(all.begin(), all.end(), 0);
+        return all;
     }
 
     bool already_refused(std::string_view path) const {
@@ -461,6 +453,7 @@ private:
     std::vector<Problem> problems_;
     std::vector<std::string> origin_;
     std::set<std::string> unknown_choices_;
+    bool keeps_rules_ = false;
     Resolved result_;
 };
 

@@ -82,6 +82,8 @@ Node& child(Node& node, const std::string& path, const std::string& name, const 
 }
 
 Node& child(Node& node, const std::string& path, std::size_t index) {
+    if (path.ends_with(']') && is_known(path))
+        refuse(item(path, index), "path.list", "`" + path + "` is a number, not a list", "");
     if (node.type == Node::nothing || node.type == Node::hole) {
         node.children = open_items(path, index);
         node.type = Node::list;

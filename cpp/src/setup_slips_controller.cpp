@@ -101,13 +101,25 @@ void slip_of_light_mass(const Controller<double>& controller, const Loop& loop, 
                         rounded(loop.m_n / mass - 1) + " times");
 }
 
+// Whether the measured contact force enters the torque: to reach a wanted one, to yield to it, or to cancel it.
+bool uses_force(const Controller<double>& controller) {
+    switch (controller.type) {
+        case Controls::shaped_impedance:
+        case Controls::admittance: return true;
+        case Controls::computed_torque:
+        case Controls::resolved_acceleration: return controller.cancels_force;
+        default: return wants_force(controller.type);
+    }
+}
+
 void slips_of_contact(const Setup& setup, Slips& slips) {
     const Plant<double>& plant = setup.plant;
     if (!plant.has_wall) return;
-    if (wants_force(setup.law().type) && !plant.acts_on_arm)
+    if (uses_force(setup.law()) && !plant.acts_on_arm)
         slips.push_back("controller.type " + word_of(setup.law().type) +
-                        " presses on the wall and wall.acts_on_arm is false: the arm does not feel the force that its "
-                        "controller measures; write acts_on_arm: true");
+                        (wants_force(setup.law().type) ? " presses on the wall" : " uses the contact force") +
+                        " and wall.acts_on_arm is false: the arm does not feel the force that "
+                        "its controller measures; write acts_on_arm: true");
     const Pose<double> p = pose(setup.q);
     const Loop loop{plant.contact.stiffness[0], effective_mass(setup.law().model, p, plant.wall.n), plant.wall.n};
     slip_of_light_mass(setup.law(), loop, slips);

@@ -41,6 +41,25 @@ public:
 
     std::string_view line(int number) const { return lines_[static_cast<std::size_t>(number) - 1]; }
 
+    // The byte that stands there, or 0.
+    char at(const YAML::Mark& mark) const {
+        const std::string_view line = lines_[std::min<std::size_t>(std::max(mark.line, 0), lines_.size() - 1)];
+        return mark.column >= 0 && std::size_t(mark.column) < line.size() ? line[std::size_t(mark.column)] : '\0';
+    }
+
+    // Whether the quote that stands there has its end. The parser takes the end of the text for it.
+    bool is_closed(const YAML::Mark& mark) const {
+        const char quote = at(mark);
+        const char* const first = lines_[std::size_t(mark.line)].data() + mark.column + 1;
+        const char* const last = lines_.back().data() + lines_.back().size();
+        for (const char* c = first; c < last; ++c) {
+            if (quote == '"' && *c == '\\') ++c;
+            else if (*c == quote && (quote == '"' || c + 1 == last || c[1] != quote)) return true;
+            else if (*c == quote) ++c;
+        }
+        return false;
+    }
+
 private:
     std::vector<std::string_view> lines_;
     mutable std::size_t line_ = 0, bytes_ = 0, characters_ = 0;  // the last place: the next one mostly lies behind it
@@ -51,6 +70,15 @@ public:
     Builder(const Lines& lines, const std::string& file) : lines_(lines), file_(file) {}
 
     Document document;
+
+    // The innermost bracket that is open, as "[ of line 2, column 5"; "" where none is.
+    std::string open_bracket() const {
+        for (auto frame = stack_.rbegin(); frame != stack_.rend(); ++frame)
+            if (frame->bracket)
+                return std::string(1, frame->bracket) + " of line " + std::to_string(frame->node.mark.line) +
+                       ", column " + std::to_string(frame->node.mark.column);
+        return {};
+    }
 
     void OnDocumentStart(const YAML::Mark&) override {}
     void OnDocumentEnd() override {}
@@ -65,30 +93,35 @@ public:
 
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   const std::string& value) override {
-        Node scalar = node(Node::scalar, mark, tag == "!" ? "" : tag, anchor);
+        const bool is_tagged = lines_.at(mark) == '!';  // the parser gives quoted text the tag ! too
+        Node scalar = node(Node::scalar, mark, tag == "!" && !is_tagged ? "" : tag, anchor);
         if (value.size() > longest_scalar)
             fatal(scalar.mark, "yaml.scalar_length", "a value is longer than 64 KiB",
                   std::to_string(value.size()) + " bytes");
-        scalar.quoted = tag == "!";
+        scalar.quoted = tag == "!" && !is_tagged;
+        const char first = lines_.at(mark);
+        if ((first == '\'' || first == '"') && !lines_.is_closed(mark))
+            fatal(scalar.mark, "yaml.syntax", "a quote is not closed", "");
         scalar.text = value;
         leaf(std::move(scalar));
     }
 
     void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                          YAML::EmitterStyle::value) override {
-        open(node(Node::list, mark, tag, anchor));
+        open(node(Node::list, mark, tag, anchor), mark);
     }
     void OnSequenceEnd() override { close(); }
 
     void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                     YAML::EmitterStyle::value) override {
-        open(node(Node::map, mark, tag, anchor));
+        open(node(Node::map, mark, tag, anchor), mark);
     }
     void OnMapEnd() override { close(); }
 
 private:
     struct Frame {
         Node node;
+        char bracket;  // that opened it; 0 where indentation did
         std::string key;
         Mark key_mark;
         bool has_key = false;
@@ -105,9 +138,10 @@ private:
         return node;
     }
 
-    void open(Node node) {
+    void open(Node node, const YAML::Mark& at) {
         if (stack_.size() == deepest) fatal(node.mark, "yaml.depth", "nesting deeper than 64", "");
-        stack_.push_back({std::move(node), {}, {}});
+        const char first = lines_.at(at);
+        stack_.push_back({std::move(node), first == '[' || first == '{' ? first : '\0', {}, {}});
     }
 
     void close() {
@@ -196,21 +230,54 @@ std::string tab_hint(const Lines& lines, int last) {
     return {};
 }
 
-Problem syntax_problem(const YAML::Exception& error, const Lines& lines, const std::string& file) {
+// The parser's words for what people do, in plain ones, and the likely fix. The first that the message holds counts.
+struct Fault {
+    std::string_view parsers, ours, hint;
+};
+constexpr Fault faults[] = {
+    {"end of map flow not found", "a { is not closed", "close it with }"},
+    {"end of sequence flow not found", "a [ is not closed", "close it with ]"},
+    {"illegal flow end", "a bracket closes that is not open", "take it out, or open it before"},
+    {"end of map not found", "this line belongs to no map",
+     "give the keys of one map the same indentation, and each a colon and a blank"},
+    {"end of sequence not found", "this line belongs to no list", "give the items of one list the same indentation"},
+    {"illegal map value", "a colon stands where no value can begin",
+     "write one `key: value` a line, with quotes around a text that holds a colon"},
+    {"illegal map key", "a key stands where none can begin", "begin it on a line of its own"},
+    {"illegal block entry", "a list begins where none can", "begin it on a line of its own"},
+    {"illegal EOF in scalar", "a quote is not closed", "close it"},
+    {"illegal document indicator", "a quote is not closed", "close it"},
+    {"unknown escape character", "a backslash in double quotes begins no such character", "use single quotes"},
+    {"illegal character in scalar", "a text begins with a character that needs quotes", "put it in quotes"},
+    {"unknown token", "no value begins with this character", "put the text in quotes"},
+    {"illegal tab", "a tab stands in an indentation", "use spaces"},
+};
+
+const Fault* fault_of(const std::string& message) {
+    const auto found = std::find_if(std::begin(faults), std::end(faults), [&](const Fault& fault) {
+        return message.find(fault.parsers) != std::string::npos;
+    });
+    return found == std::end(faults) ? nullptr : found;
+}
+
+Problem syntax_problem(const YAML::Exception& error, const Lines& lines, const std::string& open_bracket,
+                       const std::string& file) {
     const Mark at = lines.mark(error.mark);
-    const bool anchor = error.msg.find("anchor") != std::string::npos || error.msg.find("alias") != std::string::npos;
-    const bool deep = error.msg.find("depth") != std::string::npos || error.msg.find("nesting") != std::string::npos;
-    const std::string what = anchor ? "anchors and aliases are not supported"
-                             : deep ? "nesting deeper than 64"
-                                    : "not valid YAML at or before this place: " + error.msg;
-    Problem problem{.code = anchor ? "yaml.alias"
-                            : deep ? "yaml.depth"
-                                   : "yaml.syntax",
-                    .path = "",
-                    .message = what,
-                    .got = "",
-                    .allowed = "",
-                    .hint = tab_hint(lines, at.line)};
+    const auto has = [&](const char* word) { return error.msg.find(word) != std::string::npos; };
+    Problem problem{.code = "yaml.syntax", .path = "", .message = "", .got = "", .allowed = "", .hint = ""};
+    if (has("anchor") || has("alias")) {
+        problem.code = "yaml.alias";
+        problem.message = "anchors and aliases are not supported";
+    } else if (has("depth") || has("nesting")) {
+        problem.code = "yaml.depth";
+        problem.message = "nesting deeper than 64";
+    } else {
+        const Fault* fault = fault_of(error.msg);
+        problem.message = "not valid YAML at or before this place: " + (fault ? std::string(fault->ours) : error.msg);
+        problem.hint = fault ? fault->hint : "";
+        if (!open_bracket.empty()) problem.hint = "close the bracket that is open, " + open_bracket;
+    }
+    if (const std::string hint = tab_hint(lines, at.line); !hint.empty()) problem.hint = hint;
     return located(std::move(problem), at, file);
 }
 
@@ -271,12 +338,22 @@ void check_characters(std::string_view text, const std::string& file) {
     }
 }
 
+// Whether a # stands there from which on no bracket of this line can be one of YAML's: a comment begins there or, since no
+// quote follows in the line, it lies within a text that goes on.
+bool begins_harmless_rest(std::string_view text, std::size_t at) {
+    if (text[at] != '#' || (at > 0 && text[at - 1] != ' ' && text[at - 1] != '\t' && text[at - 1] != '\n'))
+        return false;
+    const std::string_view rest = text.substr(at, text.find('\n', at) - at);
+    return rest.find_first_of("'\"") == rest.npos;
+}
+
 // The parser reads brackets to their end before it tells of the first. Where far more of them are open than ever may be,
 // in quotes or not, it is not asked.
 void check_brackets(std::string_view text, const std::string& file) {
     std::size_t open = 0, line_begin = 0;
     int line = 1;
     for (std::size_t at = 0; at < text.size(); ++at) {
+        if (begins_harmless_rest(text, at)) at = std::min(text.find('\n', at), text.size() - 1);
         const char c = text[at];
         if (c == '\n') ++line, line_begin = at + 1;
         if (c == '[' || c == '{') ++open;
@@ -331,6 +408,7 @@ std::string checked_text(std::string text, const std::string& file) {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         refuse_bytes(text, 0, file, "UTF-16 or UTF-32, not UTF-8", "save the file as UTF-8");
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    if (text.starts_with("\xEF\xBB\xBF")) refuse_bytes(text, 0, file, "a second byte order mark", "take it out");
     check_characters(text, file);
     return text;
 }
@@ -347,7 +425,7 @@ Document parse_yaml(const std::string& text, const std::string& file) {
         parser.HandleNextDocument(none);
     } catch (const YAML::Exception& error) {
         std::vector<Problem> problems = std::move(builder.document.problems);
-        problems.push_back(syntax_problem(error, lines, file));
+        problems.push_back(syntax_problem(error, lines, builder.open_bracket(), file));
         throw Error(ARM3R_E_SCENARIO, std::move(problems));
     }
     return std::move(builder.document);

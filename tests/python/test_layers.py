@@ -12,10 +12,10 @@ SETUP = (
 
 # From the bottom up. The parts of one line do not know each other; the files of one part do.
 LAYERS = [
-    ["arm3r", "primitives", "row_memory", "presets"],
+    ["arm3r", "primitives", "row_memory", "presets", "fp_environment"],
     ["elementary", "numbers text"],
     ["real", "error", "rough_root", "random"],
-    ["dual", "expr", "pack", "schema suggest", "columns", "findings"],
+    ["dual", "expr", "pack", "schema suggest", "columns", "findings", "callback"],
     ["eigen_traits", "lane_access", "apart"],
     ["course", "vectors", "integrators", "polynomial", "restitution", "small_lu", "spline"],
     ["arm", "wall", "at", "linearization", "estimator"],
@@ -28,16 +28,20 @@ LAYERS = [
     ["laws"],
     ["plant", "compiled_laws"],
     ["lanes", "taylor_recipes", "step_limits"],
+    ["laws_of_lanes laws_of_numbers laws_of_rows laws_of_slopes"],
     ["control_loop", SETUP, "model_batch", "derive_taylor", "taylor"],
-    ["sample", "law_state"],
+    ["sample sample_into sample_together", "law_state"],
     ["validate", "contact_step", "size_cap", "stepper"],
     ["events"],
-    ["simulation ledger row_log recorder runs adaptive_run stepwise marching_run march fixed_march taylor_march score"],
+    [
+        "simulation ledger row_log recorder runs adaptive_run stepwise marching_run march march_members "
+        "march_with_memory fixed_march taylor_march score"
+    ],
     ["summary"],
     ["batch crew lineup lineup_memory lineup_rk4 lineup_taylor"],
     ["yaml_events", "input", "output"],
     ["paths", "yaml_json"],
-    ["checks results csv"],
+    ["checks results csv", "meant_key"],
     ["scenario scenario_set scenario_text"],
     ["reference"],
     ["c_api c_api_batch c_api_error c_api_law c_api_numbers c_api_text"],
