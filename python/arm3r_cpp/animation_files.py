@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import OutputError, UsageError
+from .folders import check_folder, make_folder
 
 FASTEST_GIF = 50.0  # frames a second: what viewers still show
 
@@ -66,8 +67,8 @@ def write(film: Film, path: Path) -> None:
     """
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     kinds = {".gif": _write_gif, ".mp4": _write_mp4, "": _write_folder}
+    (check_folder if path.suffix else make_folder)(path.parent)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         kinds[path.suffix](film, part)
         part.replace(path)
     except OutputError:

@@ -42,6 +42,9 @@ def attempt(program: str, work: Callable[[], None]) -> int:
     except Arm3rError as error:
         print(f"{program}: {error}", file=sys.stderr)
         return exit_code(error)
+    except ModuleNotFoundError as error:
+        print(f"{program}: needs {error.name}, which is not installed: pip install {error.name}", file=sys.stderr)
+        return exit_code(UsageError(str(error)))
     except KeyboardInterrupt:
         die_of(signal.SIGINT)
     return 0

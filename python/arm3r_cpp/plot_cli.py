@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from .errors import Arm3rError, UsageError
 from .exits import attempt, tell
+from .folders import check_folder, make_folder
 from .plot_files import check_format, write
 from .plot_style import FORMATS, WIDTH
 
@@ -66,7 +67,13 @@ def parser() -> argparse.ArgumentParser:
         "--lecture", action="store_true", help="tip, velocities, torques, energies, wall, contact, strobe: a file each"
     )
     pick("--compare", type=Path, nargs="+", metavar="RUN", help="two to six runs over each other, and their metrics")
-    add("-o", dest="out", type=Path, metavar="PATH", help="folder, or without --lecture also a file (default: here)")
+    add(
+        "-o",
+        dest="out",
+        type=Path,
+        metavar="PATH",
+        help="folder, made if it is missing, or without --lecture also a file in a folder that exists (default: here)",
+    )
     add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
     width = f"of --force and --compare (default: {WIDTH}; 3.4 fits a journal's column)"
     add("--width", type=inches, metavar="INCHES", help=width)
@@ -93,10 +100,12 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
     """What the files' names begin with, and their format."""
     out = options.out or Path()
     if out.is_dir() or not out.suffix:
+        make_folder(out)
         return out / ("compare" if options.compare else options.run.stem), options.format or "png"
     if options.lecture:
         raise UsageError(f"-o {out}: with --lecture several files are written; give a folder")
     check_format(out)
+    check_folder(out.parent)
     if options.format not in (None, out.suffix[1:]):
         raise UsageError(f"-o {out}: is not {options.format}; leave --format away or change the name")
     return out.with_suffix(""), out.suffix[1:]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .errors import OutputError, UsageError
+from .folders import check_folder
 from .plot_style import FORMATS, style
 
 if TYPE_CHECKING:
@@ -30,12 +31,13 @@ def write(figures: Mapping[Path, Figure]) -> None:
     """Each figure under its name, whose suffix tells the format. The same figure is the same bytes.
 
     Raises:
-        OutputError: one cannot be written; then none is.
+        OutputError: one cannot be written, or its folder does not exist; then none is.
     """
+    for folder in {path.parent for path in figures}:
+        check_folder(folder)
     parts = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in figures}
     try:
         for path, figure in figures.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
             kind = path.suffix[1:]
             with style():
                 figure.savefig(parts[path], format=kind, metadata=UNDATED.get(kind))

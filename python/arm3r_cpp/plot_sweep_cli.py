@@ -31,10 +31,12 @@ def save(options: argparse.Namespace) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
+    from .folders import check_folder
     from .plot_files import check_format, write
     from .plot_sweep import sweep
     from .sweep_table import SweepTable
 
     check_format(options.out)
+    check_folder(options.out.parent)
     write({options.out: sweep(SweepTable(options.folder), metric=options.metric, log=options.log)})
     tell(options.out)

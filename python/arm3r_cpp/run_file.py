@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO
@@ -13,6 +13,7 @@ import numpy as np
 from ._native import Floats
 from .errors import UsageError
 from .fnv import fnv1a64
+from .regular import regular
 
 
 class Parts(NamedTuple):
@@ -34,7 +35,7 @@ def read(path: Path) -> Parts:
     if path.suffix not in readers:
         raise UsageError(f"{path}: a file named .csv or .npz is needed, got {path.suffix!r}", code="usage")
     try:
-        parts = readers[path.suffix](path)
+        parts = readers[path.suffix](regular(path))
     except OSError as error:
         hint = "a run is NAME.csv with NAME.json beside it, or NAME.npz"
         raise _unreadable(error.filename or path, f"cannot be read: {error.strerror or error}; {hint}") from error
@@ -53,7 +54,8 @@ def _read_csv(path: Path) -> Parts:
             raise _unreadable(f"{path}:1", f"a line of column names, from t on, is needed, got {names[0]!r}")
         data = np.fromiter(_numbers(path, file, names), np.float64).reshape(-1, len(names))
     summary_path = path.with_suffix(".json")
-    summary, units = _summary(summary_path.read_text(encoding="utf-8", errors="replace"), summary_path)
+    text = regular(summary_path).read_text(encoding="utf-8", errors="replace")
+    summary, units = _summary(text, summary_path)
     return Parts(dict(zip(names, np.ascontiguousarray(data.T), strict=True)), units, summary, None)
 
 
@@ -87,11 +89,43 @@ def _summary(text: str, path: Path) -> tuple[dict[str, Any], dict[str, str]]:
     """The summary, and the columns' units that stand in it."""
     try:
         summary = json.loads(text)
-        return summary, {column["name"]: column["unit"] for column in summary["columns"]}
     except json.JSONDecodeError as error:
         raise _unreadable(f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}") from error
-    except (KeyError, TypeError) as error:
-        raise _unreadable(path, "not the summary of a run: its columns are not listed") from error
+    except RecursionError as error:
+        raise _unreadable(path, "not the summary of a run: its brackets are nested too deep") from error
+    if fault := _fault(summary, SUMMARY, "the file"):
+        raise _unreadable(path, f"not the summary of a run: {fault}")
+    return summary, {column["name"]: column["unit"] for column in summary["columns"]}
+
+
+# What readers of a summary rely on: a type, a list of one shape, or a map with at least these keys.
+_NUMBER = (int, float)
+_THREE = [_NUMBER]
+SUMMARY = {
+    "name": str,
+    "outcome": str,
+    "message": str,
+    "events": [{"type": str, "t": _NUMBER, "q": _THREE, "qd": _THREE, "tip": _THREE}],
+    "checks": [{"name": str, "passed": bool}],
+    "warnings": [str],
+    "columns": [{"name": str, "unit": str}],
+    "scenario": (str, type(None)),
+}
+
+
+def _fault(value: Any, shape: Any, place: str) -> str:
+    """Where a value from JSON has not the shape that is needed; "" where it has."""
+    if isinstance(shape, Mapping):
+        if not isinstance(value, dict):
+            return f"{place} is no map"
+        parts = ((value.get(key), part, f"{key} of {place}") for key, part in shape.items())
+    elif isinstance(shape, list):
+        if not isinstance(value, list):
+            return f"{place} is no list"
+        parts = ((item, shape[0], f"item {i} of {place}") for i, item in enumerate(value))
+    else:
+        return "" if isinstance(value, shape) else f"{place} is missing or of the wrong type"
+    return next(filter(None, (_fault(*part) for part in parts)), "")
 
 
 def _verify(parts: Parts, path: Path) -> None:

@@ -11,14 +11,16 @@ from typing import Any
 
 from . import _native
 from .batch import SLIPS, axis_of, same_places
-from .errors import Arm3rError, ScenarioError, UsageError
+from .errors import Arm3rError, IncompatibleError, ScenarioError, UsageError
 from .params import param_key, places
+from .regular import regular
 from .scenario import Scenario
 from .scenario import flow as flow_of
 from .sweep_axes import DISTRIBUTIONS, MODES, SPACES, SweepAxis, values_of
 from .sweep_reader import Node, Reader, below, did_you_mean, flow, quoted
 from .sweep_shard import STATISTICS, Statistic
 
+FORMAT = 1
 MOST_RUNS = 10**10
 MOST_COMBINATIONS_TRIED = 256
 KEYS = ("format", "scenario", "set", "axes", "mode", "runs", "seed", "metrics", "statistics", "shard")
@@ -80,9 +82,7 @@ class Sweep:
     def load(cls, path: str | os.PathLike[str], *, overrides: Sequence[str] = ()) -> Sweep:
         """Read a sweep from a file. Raises as for a text."""
         try:
-            if not Path(path).is_file() and not Path(path).is_dir() and Path(path).exists():
-                raise UsageError(f"{os.fspath(path)}: cannot be read: not a regular file", code="file")
-            data = Path(path).read_bytes()
+            data = regular(Path(path)).read_bytes()
         except OSError as error:
             raise UsageError(f"{os.fspath(path)}: cannot be read: {error.strerror}", code="file") from error
         return cls(data, file=os.fspath(path), overrides=overrides)
@@ -103,8 +103,12 @@ def _read_format(reader: Reader, top: dict[str, Node]) -> None:
     if "format" not in top:
         start = {"line": 1, "column": 1}
         reader.problem(start, "sweep.format", "format", "the version of the format is missing", hint="write format: 1")
-    else:
-        reader.whole(top["format"], "format", 1, 1)
+        return
+    found = reader.whole(top["format"], "format", 1, 2**53 - 1)
+    if found is not None and found != FORMAT:
+        place = f"{reader.file}:{top['format']['key_line']}:{top['format']['key_column']}"
+        message = f"error[sweep.format]: format: must be {FORMAT}, got {found}: it is written for another version"
+        raise IncompatibleError(f"{place}: {message}", code="sweep.format")
 
 
 def _whole(reader: Reader, top: dict[str, Node], key: str, default: int, low: int, high: int) -> int:

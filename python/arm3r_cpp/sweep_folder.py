@@ -10,10 +10,13 @@ import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from io import FileIO
+from itertools import zip_longest
 from pathlib import Path
-from typing import IO, Any, BinaryIO
+from typing import Any, BinaryIO
 
 from .errors import IncompatibleError, OutputError, UsageError
+from .regular import regular
 
 MANIFEST, LEDGER, LOCK, SHARDS = "sweep.json", "ledger.jsonl", "lock", "shards"
 
@@ -49,7 +52,7 @@ class SweepFolder:
         with _writing(path):
             path.mkdir(parents=True, exist_ok=True)
             folder._begun(resume)  # before anything is written: it may be a folder of another kind
-            lock = (path / LOCK).open("a+")
+            lock = (path / LOCK).open("a+b", buffering=0)  # nothing is left for close() to write
         with lock:
             with _writing(path):
                 _take(lock, path)
@@ -78,15 +81,11 @@ class SweepFolder:
         self._read_ledger()
 
     def _compare(self, begun: Mapping[str, Any]) -> None:
-        keys = dict.fromkeys([*begun, *self.manifest])
-        differing = [key for key in keys if begun.get(key) != self.manifest.get(key)]
-        if differing:
-            lines = [
-                f"  {key}: {_short(begun.get(key))} then, {_short(self.manifest.get(key))} now" for key in differing
-            ]
+        lines = sorted(_differences(begun, self.manifest), key=lambda line: line.startswith("hashes"))
+        if lines:
             raise IncompatibleError(
-                f"{self.path}: was begun with something else; resume with the same, or give another folder\n"
-                + "\n".join(lines),
+                f"{self.path}: was begun with something else; resume with the same, or give another folder"
+                + "".join(f"\n  {line}" for line in lines),
                 code="sweep.differs",
             )
 
@@ -120,6 +119,8 @@ class SweepFolder:
         """Believe what can be checked, say what cannot, and keep the ledger clean of it."""
         path = self.path / LEDGER
         path.touch()
+        with _writing(path):
+            regular(path)
         with path.open("rb") as ledger, publishing(path) as clean:
             for text in ledger:
                 line = _unsealed(text, self._seal)
@@ -179,17 +180,17 @@ def _writing(path: Path) -> Iterator[None]:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}", code="output") from error
 
 
-def _take(lock: IO[str], path: Path) -> None:
+def _take(lock: FileIO, path: Path) -> None:
     """The lock goes with the process, however that ends."""
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         lock.seek(0)
-        raise OutputError(f"{path}: in use by pid {lock.read().strip() or '?'}", code="output.in_use") from None
+        holder = lock.read().decode(errors="replace").strip()
+        raise OutputError(f"{path}: in use by pid {holder or '?'}", code="output.in_use") from None
     lock.seek(0)
     lock.truncate()
-    lock.write(f"{os.getpid()}\n")
-    lock.flush()
+    lock.write(f"{os.getpid()}\n".encode())
 
 
 def read_manifest(path: Path) -> dict[str, Any]:
@@ -199,12 +200,12 @@ def read_manifest(path: Path) -> dict[str, Any]:
         UsageError: it cannot be read, or is damaged.
     """
     try:
-        manifest = json.loads((path / MANIFEST).read_bytes())
+        manifest = json.loads(regular(path / MANIFEST).read_bytes())
         if isinstance(manifest, dict) and manifest.keys() >= {"table", "mode", "columns", "axes", "runs"}:
             return manifest
     except OSError as error:
         raise UsageError(f"{path}: {MANIFEST} cannot be read: {error.strerror}", code="file") from error
-    except ValueError:
+    except (ValueError, RecursionError):
         pass
     raise UsageError(f"{path}: {MANIFEST} is damaged; run the sweep in another folder", code="file")
 
@@ -220,10 +221,30 @@ def _unsealed(text: bytes, seal: str) -> dict[str, Any] | None:
         line = json.loads(text)
         del line["check"]
         return line if _sealed(line, seal).rstrip() == text.rstrip() else None
-    except (ValueError, KeyError, AttributeError, TypeError):
+    except (ValueError, RecursionError, KeyError, AttributeError, TypeError):
         return None
 
 
-def _short(value: Any) -> str:
-    text = json.dumps(value)
-    return text if len(text) <= 60 else f"{len(text)} characters with sha256 {sha256(text.encode())[:12]}"
+def _differences(then: Any, now: Any) -> Iterator[str]:
+    """What differs between two manifests, a line each: of maps part by part, of texts the first line that differs."""
+    if isinstance(then, Mapping) and isinstance(now, Mapping):
+        for key in dict.fromkeys([*then, *now]):
+            yield from (f"{key}: {line}" for line in _differences(then.get(key), now.get(key)))
+    elif isinstance(then, str) and isinstance(now, str) and "\n" in now and then.splitlines() != now.splitlines():
+        pairs = enumerate(zip_longest(then.splitlines(), now.splitlines()), 1)
+        number, (before, after) = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
+        yield from (f"line {number}: {line}" for line in _differences(before, after))
+    elif then != now:
+        yield "{} then, {} now".format(*_excerpts(json.dumps(then), json.dumps(now)))
+
+
+def _excerpts(then: str, now: str) -> tuple[str, str]:
+    """Of two texts that are too long to be shown, what stands around their first difference."""
+    before, after = 20, 40
+    if max(len(then), len(now)) <= before + after:
+        return then, now
+    same = next((i for i, (a, b) in enumerate(zip(then, now, strict=False)) if a != b), min(len(then), len(now)))
+    first = max(same - before, 0)
+    head = "..." if first else ""
+    part = slice(first, first + before + after)
+    return tuple(head + text[part] + ("..." if len(text) > part.stop else "") for text in (then, now))  # type: ignore

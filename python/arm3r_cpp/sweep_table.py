@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import UsageError, no_column
+from .regular import regular
 from .sweep_axes import SweepAxis
 from .sweep_encode import decode
 from .sweep_folder import LEDGER, count_outcomes, read_manifest
@@ -95,7 +96,7 @@ class SweepTable:
     def outcomes(self) -> dict[str, int]:
         """How many runs ended in which way, by the ledger. Raises UsageError: that is damaged."""
         try:
-            with (self.folder / LEDGER).open("rb") as ledger:
+            with regular(self.folder / LEDGER).open("rb") as ledger:
                 return count_outcomes(map(json.loads, ledger))
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except (OSError, ValueError, RecursionError, KeyError, TypeError) as error:
             raise UsageError(f"{self.folder}: {LEDGER} is damaged; --resume mends it", code="file") from error
