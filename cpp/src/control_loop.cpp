@@ -43,16 +43,17 @@ void ControlLoop<T>::put(int lane, const Digital<double>& from, const Estimation
     set(estimation_.largest_condition, estimation.largest_condition);
     set(next_estimate_, estimation.on ? estimation.start : never);
     estimator_.forget(estimation.wall_moves, [&](T& x) { set(x, 0.0); });
-    for (T* zero :
-         {&count_, &outputs_done_, &known_.contact, &known_.force_phase, &known_.collision, &known_.stiffness,
-          &known_.wall_speed, &known_.identifiable, &quiet_since_, &reacts_, &absorbed_, &estimates_, &samples_in_})
+    for (T* zero : {&count_, &outputs_done_, &known_.contact, &known_.force_phase, &known_.collision, &known_.stiffness,
+                    &known_.wall_speed, &known_.identifiable, &quiet_since_, &reacts_, &last_potential_, &early_share_,
+                    &estimates_, &samples_in_, &pressing_.counts})
         set(*zero, 0.0);
     for (Vec3<T>* zeros : {&known_.q, &known_.qd, &known_.f_on_tip, &known_.residual, &filtered_, &expected_,
-                           &kept_pose_, &last_tip_, &last_force_})
+                           &kept_pose_, &last_q_, &last_qd_, &last_wanted_, &early_torque_})
         for (int i = 0; i < 3; ++i) set((*zeros)[i], 0.0);
     for (T& number : known_.memory) set(number, 0.0);
     set(next_sample_, from.sampling.on ? from.sampling.start : never);
     set(next_output_, never);
+    set(early_share_, from.sampling.delay - std::floor(from.sampling.delay));
     has_output_delay_ = from.sampling.has_delay;
     has_failed_ = false;
     user_status_ = 0;
@@ -88,27 +89,37 @@ Vec3<T> ControlLoop<T>::delayed_force(const Mask& due, const Vec3<T>& f) {
     return seen;
 }
 
+// The torque put out at the last sample but the delay acts until the next sample, the one before it for the fraction of a
+// delay that is not whole: their mean is what an integral over the period sees.
 template <class T>
-void ControlLoop<T>::queue(const Mask& due, const Vec3<T>& tau, Vec3<T>& held) {
+void ControlLoop<T>::queue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
-        const double now = Lanes<T>::get(count_, lane);
-        Vec3<double>& place = outputs_[lane][std::size_t(now) % outputs_[lane].size()];
+        auto& ring = outputs_[lane];
+        const double now = Lanes<T>::get(count_, lane), delay = Lanes<T>::get(digital_.sampling.delay, lane);
+        const double whole = std::floor(delay), share = delay - whole;
+        const auto of = [&](double sample) -> Vec3<double>& {
+            return ring[std::size_t(std::max(0.0, sample)) % ring.size()];
+        };
+        for (int i = 0; i < 3; ++i) of(now)[i] = Lanes<T>::get(output[i], lane);
+        const Vec3<double>&before = of(now - whole - 1), &after = of(now - whole);
         for (int i = 0; i < 3; ++i) {
-            place[i] = Lanes<T>::get(tau[i], lane);
-            if (now == 0) Lanes<T>::set(held[i], lane, place[i]);
+            const double early = before[i] - after[i];
+            Lanes<T>::set(early_torque_[i], lane, early);
+            Lanes<T>::set(mean_acting_[i], lane, after[i] + share * early);
+            if (now == 0) Lanes<T>::set(acting[i], lane, after[i]);
         }
         if (now == 0) Lanes<T>::set(next_output_, lane, due_time(lane, 0));
     }
 }
 
 template <class T>
-void ControlLoop<T>::put_out(const Mask& due, Vec3<T>& held) {
+void ControlLoop<T>::put_out(const Mask& due, Vec3<T>& acting) {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
         const double done = Lanes<T>::get(outputs_done_, lane);
         const Vec3<double>& tau = outputs_[lane][std::size_t(done) % outputs_[lane].size()];
-        for (int i = 0; i < 3; ++i) Lanes<T>::set(held[i], lane, tau[i]);
+        for (int i = 0; i < 3; ++i) Lanes<T>::set(acting[i], lane, tau[i]);
         Lanes<T>::set(outputs_done_, lane, done + 1);
         Lanes<T>::set(next_output_, lane, due_time(lane, done + 1));
     }
@@ -145,45 +156,93 @@ std::string ControlLoop<T>::complaint() const {
            "] N m" + place + "; three finite numbers are needed, at most 1e12 either way";
 }
 
-// Under the hold the virtual wall gives out f . (x_{k+1} - x_k) exactly. Where it has given more than it took, a damping
-// force takes the rest back within a period (8.8).
+// What the law has given out since the last sample: the work of the torques that acted, less what has changed in the
+// potential of which the law is the gradient, less what the motion of its reference has brought in. Exact but for the two
+// torques of a delay that is no whole number of samples, where the accelerations are taken for constant.
 template <class T>
-void ControlLoop<T>::keep_passive(const Mask& due, const Sensed<T>& sensed, Command<T>& command) {
-    const Arm<T>& model = digital_.controller.model;
-    const T period = digital_.sampling.period;
-    const Vec3<T> tip = tip_position(model, sensed.pose), way = minus(tip, last_tip_);
-    const Mask first = count_ == T(0.0);
-    const T taken = select(first, T(0.0), T(-dot(last_force_, way)));
-    const T absorbed = absorbed_ + taken;
-    const Vec3<T> v{way[0] / period, way[1] / period, way[2] / period};
-    const T speed_2 = dot(v, v);
-    const Mask owes = absorbed < T(0.0) && !first && speed_2 > T(1e-300);
-    const T alpha = select(owes, T(-absorbed / (period * speed_2)), T(0.0));
-    const Gains<T>& gains = digital_.controller.gains;
-    const T pushes = virtual_wall_force(gains, tip, tip_velocity(model, sensed.pose, sensed.qd));
-    Vec3<T> force{pushes * gains.plane_normal[0], pushes * gains.plane_normal[1], pushes * gains.plane_normal[2]};
-    Vec3<T> brake;
-    for (int i = 0; i < 3; ++i) brake[i] = -alpha * v[i];
-    command.tau = plus(command.tau, tip_force_torque(model, sensed.pose, brake));
-    force = plus(force, brake);
-    absorbed_ = select(due, absorbed, absorbed_);
-    for (int i = 0; i < 3; ++i) {
-        last_tip_[i] = select(due, tip[i], last_tip_[i]);
-        last_force_[i] = select(due, force[i], last_force_[i]);
+void ControlLoop<T>::settle(const Mask& due, const Sensed<T>& sensed) {
+    const Controller<T>& controller = digital_.controller;
+    const Vec3<T> wanted = wanted_tip(sensed), way = minus(sensed.q, last_q_);
+    const T potential = law_potential(controller, sensed.pose, wanted);
+    T given = dot(mean_acting_, way) - (potential - last_potential_);
+    if (has_output_delay_) {
+        const T share = 0.5 * early_share_ * (1.0 - early_share_) * digital_.sampling.period;
+        given = given - share * dot(early_torque_, minus(sensed.qd, last_qd_));
     }
+    if (wants_path(controller.type)) given = given - work_of_reference(wanted);
+    T reserve = known_.memory[0] - given;
+    if (controller.type == Controls::energy_tank) reserve = min(reserve, controller.gains.tank_capacity);
+    known_.memory[0] = select(due && count_ > T(0.0), reserve, known_.memory[0]);
+    keep(due, sensed.q, last_q_);
+    keep(due, sensed.qd, last_qd_);
+    keep(due, wanted, last_wanted_);
+    last_potential_ = select(due, potential, last_potential_);
 }
 
-// A sample counts in contact only. The answer is the assumed stiffness of a law that asks for it.
+// J, by the force at the tip that the torque stood for, which a singular pose does not tell.
 template <class T>
-void ControlLoop<T>::estimate(const Mask& due, const Sensed<T>& sensed) {
+T ControlLoop<T>::work_of_reference(const Vec3<T>& wanted) const {
+    const Arm<T>& model = digital_.controller.model;
+    const Pose<T> before = pose(last_q_);
+    const Vec3<T> force = force_from(model, before, minus(mean_acting_, gravity_torque(model, before)));
+    const Vec3<T> moved = minus(wanted, last_wanted_);
+    const Mask stands = dot(moved, moved) == T(0.0) || distance_to_singular(model, before) < T(1e-3);
+    return select(stands, T(0.0), T(dot(force, moved)));
+}
+
+// The torque that acts `still` periods before that of this sample does, and for which share of a period.
+template <class T>
+T ControlLoop<T>::pending(const Mask& due, double still, Vec3<T>& acting) const {
+    T share(0.0);
+    for (int lane = 0; lane < Lanes<T>::count; ++lane) {
+        const double whole = std::floor(Lanes<T>::get(digital_.sampling.delay, lane));
+        if (!Lanes<T>::is(due, lane) || still > whole) continue;
+        Lanes<T>::set(share, lane, still < whole ? 1.0 : Lanes<T>::get(early_share_, lane));
+        const double now = Lanes<T>::get(count_, lane), sample = std::max(0.0, now - still - 1);
+        if (now == 0) continue;  // the torque of this sample acts from the start
+        for (int i = 0; i < 3; ++i)
+            Lanes<T>::set(acting[i], lane, outputs_[lane][std::size_t(sample) % outputs_[lane].size()][i]);
+    }
+    return share;
+}
+
+// Where the arm will be when the torque of this sample begins to act, and what will be left of the reserve by then.
+template <class T>
+Prospect<T> ControlLoop<T>::when_it_acts(const Mask& due, const Sensed<T>& sensed, const Vec3<T>& output) const {
+    Prospect<T> ahead{sensed.q, sensed.qd, sensed.pose, last_potential_, known_.memory[0]};
+    if (!has_output_delay_) return ahead;
+    const Sampling<T>& sampling = digital_.sampling;
+    double longest = 0;
+    for (int lane = 0; lane < Lanes<T>::count; ++lane)
+        if (Lanes<T>::is(due, lane)) longest = std::max(longest, std::floor(Lanes<T>::get(sampling.delay, lane)));
+    for (double still = longest; still >= 0; --still) {
+        Vec3<T> acting = output;
+        const T time = sampling.period * pending(due, still, acting);
+        advance(digital_.controller, last_wanted_, acting, time, ahead);
+    }
+    return ahead;
+}
+
+// The brake works beside any torque, and outside a virtual wall too.
+template <class T>
+void ControlLoop<T>::keep_passive(const Mask& due, const Arm<T>& arm, const Sensed<T>& sensed, Command<T>& command) {
+    const Controller<T>& controller = digital_.controller;
+    const Vec3<T> output = limited(arm, command.tau, controller.saturation);
+    const Prospect<T> ahead = when_it_acts(due, sensed, output);
+    command.tau = plus(command.tau, brake(controller, last_wanted_, output, digital_.sampling.period, ahead));
+}
+
+// What was measured counts once, and in contact only. The answer is the assumed stiffness of a law that asks for it.
+template <class T>
+void ControlLoop<T>::estimate(const Mask& due) {
     const T o(0.0), l(1.0);
-    const T f = digital_.sampling.on ? dot(sensed.n, known_.f_on_tip) : pressing_.force;
-    const Mask counts = due && pressing_.force > o;
+    const Mask counts = due && pressing_.counts > o;
     const Mask first = counts && samples_in_ == o;
     first_place_ = select(first, pressing_.place, first_place_);
-    first_time_ = select(first, sensed.t, first_time_);
-    estimator_.add_where(counts, T(pressing_.place - first_place_), T(sensed.t - first_time_), f,
+    first_time_ = select(first, pressing_.time, first_time_);
+    estimator_.add_where(counts, T(pressing_.place - first_place_), T(pressing_.time - first_time_), pressing_.force,
                          estimation_.forgetting);
+    pressing_.counts = select(due, o, pressing_.counts);
     samples_in_ = samples_in_ + select(counts, l, o);
     const WallEstimate<T> answer = estimator_.answer();
     const Mask told = samples_in_ >= T(8.0) && answer.condition < estimation_.largest_condition;
@@ -207,9 +266,10 @@ void ControlLoop<T>::estimate(const Mask& due, const Sensed<T>& sensed) {
     template void ControlLoop<__VA_ARGS__>::put_out(const Mask&, Vec3<__VA_ARGS__>&);                          \
     template void ControlLoop<__VA_ARGS__>::ask_user(const Sensed<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);          \
     template std::string ControlLoop<__VA_ARGS__>::complaint() const;                                          \
-    template void ControlLoop<__VA_ARGS__>::keep_passive(const Mask&, const Sensed<__VA_ARGS__>&,              \
-                                                         Command<__VA_ARGS__>&);                               \
-    template void ControlLoop<__VA_ARGS__>::estimate(const Mask&, const Sensed<__VA_ARGS__>&);
+    template void ControlLoop<__VA_ARGS__>::settle(const Mask&, const Sensed<__VA_ARGS__>&);                   \
+    template void ControlLoop<__VA_ARGS__>::keep_passive(const Mask&, const Arm<__VA_ARGS__>&,                 \
+                                                         const Sensed<__VA_ARGS__>&, Command<__VA_ARGS__>&);   \
+    template void ControlLoop<__VA_ARGS__>::estimate(const Mask&);
 
 ARM3R_CONTROL_LOOP(double)
 #if !ARM3R_ONE_LANE

@@ -1,11 +1,14 @@
 #pragma once
 // A digital controller beside an arm that never stops moving: what it reads, computes and holds between its samples, lane
-// by lane; docs/model.md, section 8. Sensors, law, reaction, limit, delay, hold, in this order. Slide convention.
+// by lane; docs/model.md, section 8. Sensors, law, reaction, limit, delay, hold, in this order. Three torques are told
+// apart (8.3): the law computes one, the controller puts one out behind the limit, and behind the delay it acts on the
+// joints. Slide convention.
 
 #include <array>
 #include <limits>
 #include <string>
 
+#include "arm3r/energy_reserve.hpp"
 #include "arm3r/estimator.hpp"
 #include "arm3r/lanes.hpp"
 #include "arm3r/random.hpp"
@@ -45,19 +48,21 @@ public:
     // The next instant, s, at which it samples or its torque changes; infinite where there is no such controller.
     ARM3R_INLINE T next() const { return min(min(next_sample_, next_output_), next_estimate_); }
 
-    // Those lanes for which it is time. `held` is changed where the torque does.
-    ARM3R_INLINE void attend(const Mask& due, const T& slack, const Arm<T>& arm, Instant<T>& now, Vec3<T>& held) {
+    // Those lanes for which it is time. `acting` is the torque that the joints feel from now on.
+    ARM3R_INLINE void attend(const Mask& due, const T& slack, const Arm<T>& arm, Instant<T>& now, Vec3<T>& acting) {
         const T until = now.seen.t + slack;
-        if (estimation_.on) pressing_ = pressing_of(arm, now.seen);
         const Mask samples = due && next_sample_ <= until;
-        if (any(samples)) sample(samples, arm, now, held);
+        if (any(samples)) sample(samples, arm, now, acting);
         if (has_output_delay_) {
             const Mask outputs = due && next_output_ <= until;
-            if (any(outputs)) put_out(outputs, held);
+            if (any(outputs)) put_out(outputs, acting);
         }
         if (estimation_.on) {
             const Mask estimates = due && next_estimate_ <= until;
-            if (any(estimates)) estimate(estimates, now.seen);
+            if (any(estimates)) {
+                if (!is_on()) note_pressing(estimates, arm, now.seen);
+                estimate(estimates);
+            }
         }
     }
 
@@ -70,23 +75,25 @@ public:
     std::string complaint() const;  // about the user's law, once it has failed
 
 private:
-    ARM3R_INLINE void sample(const Mask& due, const Arm<T>& arm, Instant<T>& now, Vec3<T>& held) {
+    ARM3R_INLINE void sample(const Mask& due, const Arm<T>& arm, Instant<T>& now, Vec3<T>& acting) {
         const Controller<T>& controller = digital_.controller;
         Sensed<T>& sensed = now.seen;
         if constexpr (Lanes<T>::count == 1)
             if (controller.type == Controls::user) truth_ = {sensed.q, sensed.qd, sensed.f_on_tip};
         sense(due, arm, now.f_filtered, sensed);
         judge_contact(due, sensed);
+        if (estimation_.on) note_pressing(due, controller.model, sensed);
         if (digital_.observer.on) observe(due, sensed);
         start_memory(due, sensed);
+        if (keeps_reserve(controller)) settle(due, sensed);
         Command<T> command;
         compute(controller, sensed, command);
         if (digital_.observer.reaction != Reaction::ignore) react(due, sensed, command);
-        if (controller.controls_passivity) keep_passive(due, sensed, command);
-        const Vec3<T> tau = actuated(arm, controller, command);
+        if (keeps_reserve(controller)) keep_passive(due, arm, sensed, command);
+        const Vec3<T> output = actuated(arm, controller, known_.memory[0], command);
         remember(due, command);
-        deliver(due, tau, held);
-        if (digital_.observer.on) expect(due, sensed, held);
+        deliver(due, output, acting);
+        if (digital_.observer.on) expect(due, sensed);
         count_ = count_ + select(due, T(1.0), T(0.0));
         next_sample_ = select(due, T(digital_.sampling.start + count_ * digital_.sampling.period), next_sample_);
     }
@@ -105,7 +112,7 @@ private:
         measure_force(due, arm, sensed.f_on_tip);
         if (!digital_.controller.ideal_cancellation) sensed.f_cancelled = sensed.f_on_tip;
         if (Lanes<T>::count == 1 || estimates_rate) keep(due, sensed.q, known_.q), keep(due, sensed.qd, known_.qd);
-        if (Lanes<T>::count == 1 || estimation_.on) keep(due, sensed.f_on_tip, known_.f_on_tip);
+        if (Lanes<T>::count == 1) keep(due, sensed.f_on_tip, known_.f_on_tip);
     }
 
     ARM3R_INLINE static void keep(const Mask& due, const Vec3<T>& now, Vec3<T>& kept) {
@@ -200,8 +207,9 @@ private:
         judge_collision(due, sensed, r);
     }
 
-    ARM3R_INLINE void expect(const Mask& due, const Sensed<T>& sensed, const Vec3<T>& applied) {
-        const Vec3<T> rate = expected_rate(digital_.controller.model, sensed.pose, sensed.qd, applied, known_.residual);
+    ARM3R_INLINE void expect(const Mask& due, const Sensed<T>& sensed) {
+        const Vec3<T> rate =
+            expected_rate(digital_.controller.model, sensed.pose, sensed.qd, mean_acting_, known_.residual);
         for (int i = 0; i < 3; ++i)
             expected_[i] = expected_[i] + select(due, T(digital_.sampling.period * rate[i]), T(0.0));
     }
@@ -241,47 +249,74 @@ private:
         }
     }
 
-    [[gnu::noinline]] void keep_passive(const Mask& due, const Sensed<T>& sensed, Command<T>& command);
+    // ---- the reserve of energy of a law that keeps one (8.8)
 
+    [[gnu::noinline]] void settle(const Mask& due, const Sensed<T>& sensed);
+    [[gnu::noinline]] void keep_passive(const Mask& due, const Arm<T>& arm, const Sensed<T>& sensed,
+                                        Command<T>& command);
+    T work_of_reference(const Vec3<T>& wanted) const;
+    T pending(const Mask& due, double still, Vec3<T>& acting) const;
+    Prospect<T> when_it_acts(const Mask& due, const Sensed<T>& sensed, const Vec3<T>& output) const;
+
+    ARM3R_INLINE Vec3<T> wanted_tip(const Sensed<T>& sensed) const {
+        const Controller<T>& controller = digital_.controller;
+        return wants_path(controller.type) ? wanted_at(controller.setpoint, sensed.t).position : none<T>();
+    }
+
+    // By Euler's rule; an integral of the force error ends its step at its limit (7.5). A reserve is settled instead.
     ARM3R_INLINE void remember(const Mask& due, const Command<T>& command) {
+        if (keeps_reserve(digital_.controller)) return;
         const std::size_t size = memory_size(digital_.controller.type);
         const auto add = [&](std::size_t i) ARM3R_INLINE_LAMBDA {
             known_.memory[i] = known_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0));
         };
         if (size > 0) add(0);
+        if (integrates_force(digital_.controller.type)) {
+            const T limit = digital_.controller.gains.integral_limit;
+            known_.memory[0] = max(min(known_.memory[0], limit), T(-limit));
+        }
         if (size > 1)
             for (std::size_t i = 1; i < law_memory; ++i) add(i);
     }
 
     // ---- the wall's stiffness, told from force and position in contact (8.7)
 
+    // Force and position of one instant; a sampled controller has both from its sensors.
     struct Pressing {
-        T place, force;  // m, N: of the tip and on it, along the normal
+        T time{0.0}, place{0.0}, force{0.0};  // s, m, N: of the tip and on it, along the normal
+        T counts{0.0};                        // 1: taken in contact and not estimated from yet
     };
 
-    ARM3R_INLINE static Pressing pressing_of(const Arm<T>& arm, const Sensed<T>& truth) {
-        return {-dot(truth.n, tip_position(arm, truth.pose)), dot(truth.n, truth.f_on_tip)};
+    ARM3R_INLINE void note_pressing(const Mask& due, const Arm<T>& arm, const Sensed<T>& seen) {
+        const T force = dot(seen.n, seen.f_on_tip), o(0.0), l(1.0);
+        const bool judges = is_on() && digital_.controller.switching != Switching::always;
+        const Mask touches = judges ? known_.contact > o : force > o;
+        pressing_.time = select(due, seen.t, pressing_.time);
+        pressing_.place = select(due, T(-dot(seen.n, tip_position(arm, seen.pose))), pressing_.place);
+        pressing_.force = select(due, force, pressing_.force);
+        pressing_.counts = select(due, select(touches, l, o), pressing_.counts);
     }
 
-    [[gnu::noinline]] void estimate(const Mask& due, const Sensed<T>& sensed);
+    [[gnu::noinline]] void estimate(const Mask& due);
 
     // ---- delay and hold (8.3)
 
-    ARM3R_INLINE void deliver(const Mask& due, const Vec3<T>& tau, Vec3<T>& held) {
-        if (has_output_delay_) return queue(due, tau, held);
-        keep(due, tau, held);
+    ARM3R_INLINE void deliver(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
+        if (has_output_delay_) return queue(due, output, acting);
+        keep(due, output, acting);
+        keep(due, output, mean_acting_);
     }
 
     // Before the first torque has come through, it is the one that acts: the loop stood at rest before the start.
-    [[gnu::noinline]] void queue(const Mask& due, const Vec3<T>& tau, Vec3<T>& held);
-    [[gnu::noinline]] void put_out(const Mask& due, Vec3<T>& held);
+    [[gnu::noinline]] void queue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting);
+    [[gnu::noinline]] void put_out(const Mask& due, Vec3<T>& acting);
 
     double due_time(int lane, double sample) const;
 
     static constexpr double never = std::numeric_limits<double>::infinity();
 
     Digital<T> digital_;
-    T count_{0.0}, outputs_done_{0.0};  // samples taken, torques put out
+    T count_{0.0}, outputs_done_{0.0};  // samples taken, torques that act or have acted
     T next_sample_{never}, next_output_{never}, next_estimate_{never};
     Known<T> known_;
     Truth truth_;  // for a law of the user's own
@@ -289,10 +324,15 @@ private:
     Estimation<T> estimation_;
     Estimator<T> estimator_;
     T estimates_{0.0}, first_place_{0.0}, first_time_{0.0}, samples_in_{0.0};
+    Vec3<T> mean_acting_{};  // N m: of the torques that act from the last sample to the next one (8.3)
     Vec3<T> filtered_{}, expected_{}, kept_pose_{};
     T quiet_since_{0.0}, reacts_{0.0};
-    Vec3<T> last_tip_{}, last_force_{};  // m, N: at the last sample of a virtual wall
-    T absorbed_{0.0};                    // J, by the virtual wall
+    Vec3<T> last_q_{}, last_qd_{}, last_wanted_{};  // rad, rad/s, m: at the last sample of a law with a reserve
+    T last_potential_{0.0};                         // J
+    // Of a delay that is no whole number of samples: the share of the period in which the torque before still acts, and
+    // by how much that differs from the next one, N m.
+    T early_share_{0.0};
+    Vec3<T> early_torque_{};
     bool has_output_delay_ = false;
     bool has_failed_ = false;
     int user_status_ = 0;         // what the user's law returned

@@ -18,6 +18,9 @@ double reference_gain_limit(double M, double B, double K, double k_e);
 // How long an acceleration -Kp e - Kd e' may be held.
 double longest_period(double Kp, double Kd);
 
+// rad: by how much an oscillation may turn within a period and the delay for a sampled law to foresee its energy (8.8).
+inline constexpr double largest_foreseen_turn = 0.5;
+
 // The smallest real part of an eigenvalue of M^-1 P, P = J^-1 (I - n n^T) J, on the motion that P lets through: where it is
 // negative, a position loop through J^-1 S_p runs away.
 double projected_mobility(const Arm<double>& arm, const Pose<double>& p, const Vec3<double>& n);

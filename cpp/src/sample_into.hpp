@@ -121,8 +121,9 @@ ARM3R_INLINE void put_observer(const Scene& scene, const RightHandSide<double, T
     const Vec3<T> r = continuous ? rhs.residual_at(p, qd, y) : lifted<T>(scene.known.residual);
     put_joints(r);
     const Arm<double>& model = scene.law.model;
-    const auto regular = distance_to_singular(model, p) > T(1e-3);
-    const Vec3<T> f = force_from(model, p, r);
+    const Pose<T> seen = scene.is_sampled ? pose(lifted<T>(scene.known.q)) : p;  // a sampled observer reads encoders
+    const auto regular = distance_to_singular(model, seen) > T(1e-3);
+    const Vec3<T> f = force_from(model, seen, r);
     put_vector({select(regular, f[0], T(0.0)), select(regular, f[1], T(0.0)), select(regular, f[2], T(0.0))});
     put(T(scene.known.collision));
 }

@@ -490,9 +490,9 @@ void append_special_laws(std::vector<Key>& keys) {
                                                      "m", "A point of the virtual wall's face.")));
     keys.push_back(for_laws({"virtual_wall"}, number("controller.plane_normal", {-1, 0, 0}, Source::ours, any_position,
                                                      "", "From the virtual wall towards the arm.")));
-    keys.push_back(
-        for_laws({"virtual_wall"}, flag("controller.passivity_control", false,
-                                        "Whether the energy that sampling creates is watched and damped away.")));
+    keys.push_back(for_laws({"virtual_wall"}, flag("controller.passivity_control", false,
+                                                   "Whether a brake takes the energy that samples and delay would "
+                                                   "create. It acts outside the wall too, where it pulls.")));
 }
 
 void append_controller(std::vector<Key>& keys) {

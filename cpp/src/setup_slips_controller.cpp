@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
+#include "arm3r/energy_reserve.hpp"
 #include "loop_limits.hpp"
 #include "numbers.hpp"
 #include "setup_controller.hpp"
@@ -248,6 +250,97 @@ void slips_of_tank(const Setup& setup, Slips& slips) {
                         " N/m about which it varies: the spring will push outwards");
 }
 
+// ---- the reserve of energy (8.8)
+
+// What a law with a reserve holds: its spring along the axes, and the mass that the tip shows there.
+struct Spring {
+    double stiffness, damping, mass;  // N/m, N s/m, kg
+    Vec3<double> axis;
+};
+
+std::vector<Spring> springs_of(const Controller<double>& controller, const Pose<double>& p) {
+    const Gains<double>& g = controller.gains;
+    const auto spring = [&](double stiffness, double damping, const Vec3<double>& axis) {
+        return Spring{stiffness, damping, effective_mass(controller.model, p, axis), axis};
+    };
+    if (controller.type == Controls::virtual_wall) return {spring(g.stiffness[0], g.damping[0], g.plane_normal)};
+    return {spring(g.stiffness[0], g.damping[0], {1, 0, 0}), spring(g.stiffness[1], g.damping[1], {0, 1, 0}),
+            spring(g.stiffness[2], g.damping[2], {0, 0, 1})};
+}
+
+// A torque that comes late by T (1/2 + d) on average makes a spring K give out what a damping of K T (1/2 + d) takes.
+void slips_of_held_spring(const Setup& setup, const Spring& spring, Slips& slips) {
+    const Sampling<double>& sampling = setup.digital.sampling;
+    const double lag = sampling.period * (0.5 + sampling.delay), reach = sampling.period * (1 + sampling.delay);
+    const std::string held = "controller.stiffness is " + shortest(spring.stiffness) + " N/m";
+    if (setup.law().type == Controls::energy_tank && spring.stiffness * lag > spring.damping)
+        slips.push_back(held + ", and torques that act " + rounded(lag) +
+                        " s late on average make such a spring give out more energy than controller.damping takes: "
+                        "the tank pays until it is empty, and then a brake works all the time; keep the stiffness "
+                        "below " +
+                        rounded(spring.damping / lag) + " N/m, or raise sampling.rate");
+    const double turn = reach * std::sqrt(spring.stiffness / spring.mass);
+    if (turn > largest_foreseen_turn)
+        slips.push_back(held + ": its oscillation turns by " + rounded(turn) +
+                        " rad until a torque has acted, and beyond " + rounded(largest_foreseen_turn) +
+                        " rad the controller cannot foresee how much energy it gives out: it may create energy; "
+                        "raise sampling.rate or lower sampling.delay");
+}
+
+// How far the spring may be pressed until an actuator gives less than it asks for, m.
+double pressed_at_limit(const Setup& setup, const Spring& spring) {
+    const Pose<double> p = pose(setup.q);
+    const Vec3<double> weight = gravity_torque(setup.law().model, p);
+    const Vec3<double> per_newton = tip_force_torque(setup.law().model, p, spring.axis);
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i)
+        if (per_newton[i] != 0)
+            least = std::min(least, (setup.plant.arm.torque_limit[i] - std::abs(weight[i])) / std::abs(per_newton[i]));
+    return std::max(0.0, least) / spring.stiffness;
+}
+
+// What the controller cannot count exactly or foresee.
+void slips_of_counting(const Setup& setup, const std::string& law, Slips& slips) {
+    const Sampling<double>& sampling = setup.digital.sampling;
+    const Sensors<double>& sensors = setup.digital.sensors;
+    if (sensors.has_encoder || sensors.velocity != VelocityEstimate::exact)
+        slips.push_back(
+            law + " counts its energy by what sensors.encoder and sensors.velocity tell" +
+            (sensors.has_encoder ? ", here in steps of " + rounded(sensors.encoder_step) + " rad" : std::string()) +
+            ": it never creates energy only as far as they are exact");
+    if (sampling.delay != std::floor(sampling.delay))
+        slips.push_back("sampling.delay is " + shortest(sampling.delay) +
+                        " samples, and two torques act within each period of " + rounded(sampling.period) +
+                        " s: " + law +
+                        " counts its energy to the third order of the period only; "
+                        "whole delays are counted exactly");
+    const TipLoad<double>& load = setup.plant.load;
+    if (setup.law().type != Controls::virtual_wall || !load.on) return;
+    const double size = std::sqrt(dot(load.force, load.force)), reach = sampling.period * (1 + sampling.delay);
+    if (size == 0) return;
+    const Vec3<double> along(load.force[0] / size, load.force[1] / size, load.force[2] / size);
+    const double mass = effective_mass(setup.law().model, pose(setup.q), along);
+    slips.push_back("push.force moves the tip by " + rounded(0.5 * reach * reach * size / mass) +
+                    " m until a torque has acted, which the controller does not foresee: it takes the energy that it "
+                    "creates meanwhile back at the next samples");
+}
+
+void slips_of_reserve(const Setup& setup, Slips& slips) {
+    const Controller<double>& controller = setup.law();
+    if (!keeps_reserve(controller)) return;
+    const std::string law = "controller.type " + word_of(controller.type);
+    double pressed = std::numeric_limits<double>::infinity();
+    for (const Spring& spring : springs_of(controller, pose(setup.q))) {
+        if (setup.digital.sampling.on) slips_of_held_spring(setup, spring, slips);
+        if (spring.stiffness > 0) pressed = std::min(pressed, pressed_at_limit(setup, spring));
+    }
+    if (setup.plant.arm.has_torque_limit)
+        slips.push_back(
+            law + " never creates energy as long as no torque is at arm.torque_limit, which a spring pressed by " +
+            rounded(pressed) + " m reaches at the start");
+    if (setup.digital.sampling.on) slips_of_counting(setup, law, slips);
+}
+
 void slips_of_push(const Setup& setup, Slips& slips) {
     if (!setup.plant.load.on) return;
     const Vec3<double>& force = setup.plant.load.force;
@@ -267,6 +360,7 @@ void add_controller_slips(const Setup& setup, Slips& slips) {
     slips_of_reference(setup, slips);
     slips_of_pressing(setup, slips);
     slips_of_tank(setup, slips);
+    slips_of_reserve(setup, slips);
     slips_of_push(setup, slips);
 }
 

@@ -25,6 +25,7 @@ LAYERS = [
     ["controllers"],
     ["task_space", "digital", "observer", "user_law", "loop_limits"],
     ["motion_laws impedance_laws force_loop force_laws adaptive_reference admittance energy_tank virtual_wall"],
+    ["energy_reserve"],
     ["laws"],
     ["plant", "compiled_laws"],
     ["lanes", "taylor_recipes", "step_limits"],

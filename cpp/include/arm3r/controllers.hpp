@@ -161,21 +161,32 @@ ARM3R_INLINE Vec3<T> limited(const Arm<P>& arm, const Vec3<T>& tau, Saturation s
     return {scaled(0), scaled(1), scaled(2)};
 }
 
-// The command after the limit of the actuators; the law's integral takes note of what they could not give (7.5).
+// The rate of an integral of the force error that stays within its limit (7.5).
 template <class P, class T>
-ARM3R_INLINE Vec3<T> actuated(const Arm<P>& arm, const Controller<P>& controller, Command<T>& command) {
-    const Vec3<T> tau = limited(arm, command.tau, controller.saturation);
-    if (!arm.has_torque_limit || controller.anti_windup == AntiWindup::none) return tau;
-    const Vec3<T> lack = minus(tau, command.tau);
+ARM3R_INLINE T within_limit(const Gains<P>& gains, const T& integral, const T& rate) {
+    const T o(0.0), limit(gains.integral_limit);
+    const auto full = (integral >= limit && rate > o) || (integral <= -limit && rate < o);
+    return select(full, o, rate);
+}
+
+// The torque that is put out: the computed one behind the limit of the actuators. The law's integral takes note of what
+// they could not give (7.5).
+template <class P, class T>
+ARM3R_INLINE Vec3<T> actuated(const Arm<P>& arm, const Controller<P>& controller, const T& integral,
+                              Command<T>& command) {
+    const Vec3<T> output = limited(arm, command.tau, controller.saturation);
+    if (!arm.has_torque_limit || controller.anti_windup == AntiWindup::none) return output;
+    const Vec3<T> lack = minus(output, command.tau);
     const T turned_back = dot(command.per_integral, lack);
     T& rate = command.rates[0];
     if (controller.anti_windup == AntiWindup::conditional) {
         rate = select(turned_back * rate < T(0.0), T(0.0), rate);
     } else {
         const T size = max(dot(command.per_integral, command.per_integral), T(1e-300));
-        rate = rate + turned_back / (size * controller.gains.tracking_time);
+        rate =
+            within_limit(controller.gains, integral, T(rate + turned_back / (size * controller.gains.tracking_time)));
     }
-    return tau;
+    return output;
 }
 
 }  // namespace arm3r

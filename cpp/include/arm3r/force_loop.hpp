@@ -15,10 +15,7 @@ ARM3R_INLINE T force_error(const Controller<P>& controller, const Sensed<T>& sen
 // The rate of the integral, within its limit (7.5).
 template <class P, class T>
 ARM3R_INLINE T integral_rate(const Gains<P>& gains, const Sensed<T>& sensed, const T& integral, const T& error) {
-    const T rate = error * sensed.contact * sensed.force_phase, o(0.0);
-    const T limit(gains.integral_limit);
-    const auto full = (integral >= limit && rate > o) || (integral <= -limit && rate < o);
-    return select(full, o, rate);
+    return within_limit(gains, integral, T(error * sensed.contact * sensed.force_phase));
 }
 
 // kP e_f + kI int e_f: N.

@@ -161,7 +161,7 @@ public:
                 command.rates.fill(T(0.0));
                 command.per_integral = {T(0.0), T(0.0), T(0.0)};
             }
-            const Vec3<T> tau = actuated(plant_.arm, controller, command);
+            const Vec3<T> tau = actuated(plant_.arm, controller, y[law_at], command);
             for (std::size_t i = 0; i < law_memory; ++i) dy[law_at + i] = command.rates[i];
             for (std::size_t i = observer_at; i < full_size; ++i) dy[i] = T(0.0);
             if (plant_.observer.on) {

@@ -6,7 +6,7 @@ axes. A force with three components is that on the tip; f >= 0 is what the wall 
 
 from __future__ import annotations
 
-from . import estimation, impact, laws, linear, sampled, statics
+from . import estimation, held, impact, laws, linear, sampled, statics
 from .arm import Arm, G, Motion
 from .scenario import control_of, run_of, wall_of
 from .settings import LECTURE_CONTACT, QA, SETTINGS, XA, varied
@@ -28,6 +28,7 @@ __all__ = [
     "Wall",
     "control_of",
     "estimation",
+    "held",
     "hunt_crossley",
     "impact",
     "kelvin_voigt",
