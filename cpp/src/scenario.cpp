@@ -241,7 +241,7 @@ private:
         const std::string choice = last_name(missing->when_key), name = "`" + last_name(key.path) + "`";
         const std::string& here = choice_of(result_.params, missing->when_key);
         const std::string words = listed(missing->when, " or ");
-        if (missing->when_key == "controller.type" && here == "none" && !key.path.starts_with("controller."))
+        if (missing->when_key == "controller.type" && here == "none" && key.path.starts_with("reference."))
             return problem(node.key_mark, {"scenario.other_choice", key.path,
                                            "`" + key.path.substr(0, key.path.find('.')) +
                                                "` is followed by a control law, and controller.type is none",
