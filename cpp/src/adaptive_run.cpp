@@ -112,6 +112,7 @@ private:
         bool just_rejected = false;
         bool trial_was_finite = true;  // the last one that was rejected
         double touching_since = 0, events = 0;
+        Peak peak{};
         bool waits = true, has_set_off = false;  // at a sample not yet attended; the first one is behind
         Taken taken{};
     };
@@ -175,7 +176,7 @@ private:
 
     void start() {
         if (is_touching(mode_)) note_event(Event::make, setup_.start);
-        run_.peak_force = force_now();
+        now_.peak = {force_now(), setup_.start};
         start_memory();
     }
 
@@ -336,7 +337,7 @@ private:
             return false;
         }
         stepper_.interpolate(run_.t_end, y, h, inside_);
-        const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, run_.peak_force);
+        const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, now_.peak);
         const double theta = crossing ? crossing->theta : 1;
         const double t1 = crossing ? run_.t_end + theta * h : last ? bound.t : run_.t_end + h;
         const bool reached = t1 == bound.t;
@@ -468,6 +469,8 @@ private:
         run_.tip = plain(tip_position(setup_.plant.arm, pose(angles(now_.y))));
         for (std::size_t i = motion_size; i < state_size; ++i) run_.books[i - motion_size] = now_.y[i];
         if (is_touching(mode_)) run_.contact_time += run_.t_end - now_.touching_since;
+        run_.peak_force = now_.peak.force;
+        if (run_.contacts > 0) run_.peak_force_time = now_.peak.t;
         run_.final_force = force_now();
         if (is_scored_) score_.tell(0, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());

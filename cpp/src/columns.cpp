@@ -51,8 +51,8 @@ const std::vector<Column>& column_table() {
          "work of the wall's drive on the arm since the start; 0 when the wall does not act on the arm"},
         {"energy_dissipated", "J", "energy lost to friction, damping and contact since the start"},
         {"energy_residual", "J", "what the balance of the six before leaves over: the error of the run"},
-        {"force", "N", "normal contact force, > 0 when pressing", Need::force},
-        {"force_measured", "N", "the same as the controller reads it", Need::force},
+        {"force", "N", "normal contact force, > 0 when pressing", Need::wall},
+        {"force_measured", "N", "the same as the controller reads it, or would", Need::wall},
         {"force_ref", "N", "the pressing force that is wanted", Need::force_reference},
         {"force_phase", "1", "1 while force is controlled along the normal, 0 while position is",
          Need::force_reference},
@@ -85,7 +85,6 @@ std::string_view need_text(Need need) {
     switch (need) {
         case Need::nothing: return "";
         case Need::wall: return "only with a wall";
-        case Need::force: return "only with a control law beside a wall";
         case Need::force_reference: return "only with a law that wants a force";
         case Need::path: return "only with a law that wants tip positions";
         case Need::joint_path: return "only with a law that wants joint angles";

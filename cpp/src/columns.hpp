@@ -10,7 +10,6 @@ namespace arm3r {
 enum class Need {
     nothing,
     wall,
-    force,            // a law beside a wall
     force_reference,  // a law that wants a force
     path,             // a law that wants positions of the tip
     joint_path,       // or joint angles

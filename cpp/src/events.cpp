@@ -96,11 +96,16 @@ std::optional<double> ContactWatch::first_fall(const Inside& inside, const Falli
     return std::nullopt;
 }
 
-double ContactWatch::peak_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const {
-    const double at_ends = std::max(at_a.value[force_signal], at_b.value[force_signal]);
-    if (!(at_a.rate[force_signal] > 0 && at_b.rate[force_signal] < 0)) return at_ends;
-    const Falling rising{force_signal, -1, Mode::contact};
-    return std::max(at_ends, look(inside, turning_point(inside, rising, a, b)).value[force_signal]);
+void ContactWatch::look_for_peak(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b,
+                                 Peak& peak) const {
+    const auto include = [&](double theta, const Look& there) {
+        peak.include(there.value[force_signal], inside.t0 + theta * inside.h);
+    };
+    include(a, at_a);
+    include(b, at_b);
+    if (!(at_a.rate[force_signal] > 0 && at_b.rate[force_signal] < 0)) return;
+    const double top = turning_point(inside, {force_signal, -1, Mode::contact}, a, b);
+    include(top, look(inside, top));
 }
 
 double ContactWatch::impulse(const Inside& inside, double a, double b) const {
@@ -114,7 +119,7 @@ double ContactWatch::impulse(const Inside& inside, double a, double b) const {
     return 0.5 * (b - a) * inside.h * sum;
 }
 
-std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mode mode, double& peak) const {
+std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mode mode, Peak& peak) const {
     if (!plant_.has_wall) return std::nullopt;
     double a = from;
     Look at_a = look(inside, a);
@@ -137,8 +142,8 @@ std::optional<Crossing> ContactWatch::next(const Inside& inside, double from, Mo
             if (mode == Mode::separated) consider({release_signal, -1, Mode::contact});
         }
         if (mode == Mode::contact)
-            peak = std::max(peak, first ? peak_of(inside, a, at_a, first->theta, look(inside, first->theta))
-                                        : peak_of(inside, a, at_a, b, at_b));
+            first ? look_for_peak(inside, a, at_a, first->theta, look(inside, first->theta), peak)
+                  : look_for_peak(inside, a, at_a, b, at_b, peak);
         if (first) return first;
         a = b;
         at_a = at_b;

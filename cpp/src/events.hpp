@@ -8,6 +8,15 @@
 
 namespace arm3r {
 
+// The largest normal force so far.
+struct Peak {
+    double force = 0, t = 0;  // N, s
+
+    void include(double force_here, double t_here) {
+        if (force_here > force) *this = {force_here, t_here};
+    }
+};
+
 class ContactWatch {
 public:
     // `looks`: at how many places per step the depth is looked at, ends included.
@@ -15,9 +24,9 @@ public:
 
     Mode mode_at_start(double t, const FullState& y) const;
 
-    // The first change of mode after `from`, or nothing. `peak` grows to the largest normal force, N, that contact
-    // reaches between the two.
-    std::optional<Crossing> next(const Inside& inside, double from, Mode mode, double& peak) const;
+    // The first change of mode after `from`, or nothing. `peak` grows to the largest normal force that contact reaches
+    // between the two.
+    std::optional<Crossing> next(const Inside& inside, double from, Mode mode, Peak& peak) const;
 
     // Integral of the normal force of contact, N s, along the solution from place a to place b within the step.
     double impulse(const Inside& inside, double a, double b) const;
@@ -40,8 +49,8 @@ private:
     std::optional<double> first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b,
                                      const Look& at_b) const;
     double turning_point(const Inside& inside, const Falling& falling, double a, double b) const;
-    // The largest normal force from a to b in contact.
-    double peak_of(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b) const;
+    // The largest normal force from a to b in contact joins the peak.
+    void look_for_peak(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b, Peak& peak) const;
     double root(const Inside& inside, const Falling& falling, double a, double b) const;
 
     const Plant<double>& plant_;

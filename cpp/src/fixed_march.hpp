@@ -125,7 +125,7 @@ private:
             if (this->plant_.wall.has_outline) special = special || (this->touching_ && comes_near_edge());
             const Mask plainly = this->touching_ && !special && moved;
             if (this->is_elastic_) {
-                this->deepest_ = max_where(plainly, this->deepest_, depth.fourth);
+                this->reach(plainly, depth.fourth, this->t_, this->deepest_);
                 this->depth_time_ = this->depth_time_ + select(plainly, T(h * depth.mean()), o);
             } else {
                 measure_damped(plainly);
@@ -143,14 +143,14 @@ private:
         const std::array<T, 5> force = Base::forces(this->plant_.contact, depth, h, o, T(1.0));
         const Mask turns = plainly && range_of(through_five(force)).high > max(this->peak_, force[4]);
         const Mask rises = plainly && !turns;
-        this->peak_ = max_where(rises, this->peak_, force[4]);
+        this->reach(rises, force[4], this->t_, this->peak_);
         this->impulse_ = this->impulse_ + select(rises, T(h * mean_of_five(force)), o);
         if (!any(turns)) return;
         for (int lane = 0; lane < Base::lanes; ++lane) {
             if (!Lanes<T>::is(turns, lane)) continue;
             std::array<double, 5> alone;
             for (int i = 0; i < 5; ++i) alone[i] = Lanes<T>::get(force[i], lane);
-            this->pass_damped(lane, alone, this->h(lane));
+            this->pass_damped(lane, alone, Lanes<T>::get(t0_, lane), this->h(lane));
         }
     }
 
@@ -195,7 +195,7 @@ private:
         double from = 0;
         bool anew = false;
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
-            this->pass(lane, signals.depth, from, crossing->theta);
+            this->pass(lane, signals.depth, t0, from, crossing->theta);
             from = crossing->theta;
             const Change change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
             changed(lane, change);
@@ -203,7 +203,7 @@ private:
             anew = true;
             if (this->outcome(lane) != ARM3R_RUN_OK || from >= 1) break;
         }
-        this->pass(lane, signals.depth, from, 1.0);
+        this->pass(lane, signals.depth, t0, from, 1.0);
         return anew;
     }
 

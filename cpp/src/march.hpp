@@ -259,10 +259,10 @@ protected:
 
     // ---- contact
 
-    // The depth from a to b within the step has been gone through.
-    void pass(int lane, const Polynomial<double>& depth, double a, double b);
+    // The depth from a to b within the step that began at t0 has been gone through.
+    void pass(int lane, const Polynomial<double>& depth, double t0, double a, double b);
     void change_mode(int lane, const Change& change);
-    void pass_damped(int lane, const std::array<double, 5>& force, double duration);
+    void pass_damped(int lane, const std::array<double, 5>& force, double t0, double duration);
 
     const Setup& setup(int lane) const { return setups_[lane]; }
 
@@ -277,6 +277,12 @@ protected:
     }
 
     void fail_lanes(const Mask& bad);
+
+    // The depth or the force that `peak` is of, at t, where `here`.
+    ARM3R_INLINE void reach(const Mask& here, const T& value, const T& t, T& peak) {
+        peak_time_ = select(here && value > peak, t, peak_time_);
+        peak = max_where(here, peak, value);
+    }
 
     // N, along a depth over the step h: at five places, from one end to the other.
     template <class P, class S>
@@ -317,6 +323,7 @@ protected:
     bool is_elastic_;                   // the force is the stiffness times the depth:
     T deepest_{0.0}, depth_time_{0.0};  // m, m s
     T peak_{0.0}, impulse_{0.0};        // N, N s: else
+    T peak_time_{0.0};                  // s
     T accepted_{0.0}, rejected_{0.0}, evaluations_{0.0}, max_steps_{0.0};
 
 private:
@@ -327,6 +334,7 @@ private:
     void tell_controller(int lane);
     void set_mode(int lane, Mode mode);
     double force_of(int lane) const;  // N, normal
+    void note_peak(int lane, double value, double t, T& peak);
     void set_running(int lane, bool running);
 
     std::array<Setup, lanes> setups_;

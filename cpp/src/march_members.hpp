@@ -59,7 +59,7 @@ void March<T, N>::put(int lane, const Setup& setup) {
     if (is_controlled_) loop_.put(lane, setup.digital, setup.estimation);
     if (is_scored_) score_.put(lane);
     set(rhs_.contact, 0.0), set(rhs_.force_phase, 0.0);
-    set(t_, setup.start), set(stop_, setup.stop);
+    set(t_, setup.start), set(stop_, setup.stop), set(peak_time_, setup.start);
     set(max_steps_, setup.solver.max_steps);
     each_contact_number(set, true_contact_, setup.plant.contact);
     contacts_[lane] = {
@@ -205,20 +205,33 @@ double March<T, N>::force_of(int lane) const {
 }
 
 template <class T, std::size_t N>
-void March<T, N>::pass(int lane, const Polynomial<double>& depth, double a, double b) {
+void March<T, N>::pass(int lane, const Polynomial<double>& depth, double t0, double a, double b) {
     if (mode_[lane] != Mode::contact) return;
-    const double deepest = Lanes<T>::get(deepest_, lane), h = Lanes<T>::get(h_, lane);
-    if (!is_elastic_) return pass_damped(lane, forces(setups_[lane].plant.contact, depth, h, a, b), h * (b - a));
-    if (range_of(depth).high > deepest) Lanes<T>::set(deepest_, lane, std::max(deepest, largest(depth, a, b)));
+    const double h = Lanes<T>::get(h_, lane);
+    if (!is_elastic_)
+        return pass_damped(lane, forces(setups_[lane].plant.contact, depth, h, a, b), t0 + h * a, h * (b - a));
+    if (range_of(depth).high > Lanes<T>::get(deepest_, lane)) {
+        const Maximum most = maximum(depth, a, b);
+        note_peak(lane, most.value, t0 + h * most.place, deepest_);
+    }
     Lanes<T>::set(depth_time_, lane, Lanes<T>::get(depth_time_, lane) + h * integral(depth, a, b));
 }
 
 template <class T, std::size_t N>
-void March<T, N>::pass_damped(int lane, const std::array<double, 5>& force, double duration) {
+void March<T, N>::pass_damped(int lane, const std::array<double, 5>& force, double t0, double duration) {
     const Polynomial<double> over_time = through_five(force);
-    const double peak = Lanes<T>::get(peak_, lane);
-    if (range_of(over_time).high > peak) Lanes<T>::set(peak_, lane, std::max(peak, largest(over_time, 0, 1)));
+    if (range_of(over_time).high > Lanes<T>::get(peak_, lane)) {
+        const Maximum most = maximum(over_time, 0, 1);
+        note_peak(lane, most.value, t0 + duration * most.place, peak_);
+    }
     Lanes<T>::set(impulse_, lane, Lanes<T>::get(impulse_, lane) + duration * mean_of_five(force));
+}
+
+template <class T, std::size_t N>
+void March<T, N>::note_peak(int lane, double value, double t, T& peak) {
+    if (!(value > Lanes<T>::get(peak, lane))) return;
+    Lanes<T>::set(peak, lane, value);
+    Lanes<T>::set(peak_time_, lane, t);
 }
 
 template <class T, std::size_t N>
@@ -268,6 +281,7 @@ Metrics March<T, N>::metrics(int lane) const {
     m.outcome = outcome_[lane];
     m.t_end = get(t_);
     m.peak_force = is_elastic_ ? stiffness * get(deepest_) : get(peak_);
+    if (contacts.count > 0) m.peak_force_time = get(peak_time_);
     m.impulse = is_elastic_ ? stiffness * get(depth_time_) : get(impulse_);
     m.contact_time = contacts.time + (touches ? m.t_end - contacts.since : 0);
     m.final_force = touches ? force_of(lane) : 0;
@@ -296,22 +310,22 @@ Flows March<T, N>::flows(int lane) const {
 }
 
 // By name: `template class` would also build, for no caller, what is inlined everywhere (ARM3R_INLINE).
-#define ARM3R_MARCH(...)                                                                      \
-    template March<__VA_ARGS__>::March(const Setup&);                                         \
-    template void March<__VA_ARGS__>::put(int, const Setup&);                                 \
-    template void March<__VA_ARGS__>::begin_lane(int);                                        \
-    template void March<__VA_ARGS__>::look();                                                 \
-    template void March<__VA_ARGS__>::evaluate_anew();                                        \
-    template void March<__VA_ARGS__>::control();                                              \
-    template void March<__VA_ARGS__>::start_score();                                          \
-    template void March<__VA_ARGS__>::score(const Mask&);                                     \
-    template void March<__VA_ARGS__>::start_memory();                                         \
-    template void March<__VA_ARGS__>::retire(int);                                            \
-    template void March<__VA_ARGS__>::pass(int, const Polynomial<double>&, double, double);   \
-    template void March<__VA_ARGS__>::pass_damped(int, const std::array<double, 5>&, double); \
-    template void March<__VA_ARGS__>::change_mode(int, const Change&);                        \
-    template void March<__VA_ARGS__>::fail_lanes(const Mask&);                                \
-    template Metrics March<__VA_ARGS__>::metrics(int) const;                                  \
+#define ARM3R_MARCH(...)                                                                              \
+    template March<__VA_ARGS__>::March(const Setup&);                                                 \
+    template void March<__VA_ARGS__>::put(int, const Setup&);                                         \
+    template void March<__VA_ARGS__>::begin_lane(int);                                                \
+    template void March<__VA_ARGS__>::look();                                                         \
+    template void March<__VA_ARGS__>::evaluate_anew();                                                \
+    template void March<__VA_ARGS__>::control();                                                      \
+    template void March<__VA_ARGS__>::start_score();                                                  \
+    template void March<__VA_ARGS__>::score(const Mask&);                                             \
+    template void March<__VA_ARGS__>::start_memory();                                                 \
+    template void March<__VA_ARGS__>::retire(int);                                                    \
+    template void March<__VA_ARGS__>::pass(int, const Polynomial<double>&, double, double, double);   \
+    template void March<__VA_ARGS__>::pass_damped(int, const std::array<double, 5>&, double, double); \
+    template void March<__VA_ARGS__>::change_mode(int, const Change&);                                \
+    template void March<__VA_ARGS__>::fail_lanes(const Mask&);                                        \
+    template Metrics March<__VA_ARGS__>::metrics(int) const;                                          \
     template Flows March<__VA_ARGS__>::flows(int) const;
 
 }  // namespace arm3r

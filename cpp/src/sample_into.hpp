@@ -196,7 +196,7 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& row_time, const State
     put(stored);
     for (std::size_t i = motion_size; i < state_size; ++i) put(y[i]);
     put(energy_residual(y, T(kinetic + potential + stored), scene.energy_at_start));
-    if (scene.law.type == Controls::none && !plant.observer.on) return;
+    if (scene.law.type == Controls::none && !plant.observer.on && !plant.has_wall) return;
     const Sensed<T> sensed = sensed_by(scene, rhs, t, wall, p, q, qd, at_tip, y);
     put_law(scene, sensed, force, y, put, put_vector, put_joints);
     put_observer(scene, rhs, p, qd, y, put, put_vector, put_joints);

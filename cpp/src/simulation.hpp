@@ -30,15 +30,16 @@ struct Metrics {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
     arm3r_outcome outcome = ARM3R_RUN_OK;
-    double t_end = 0;                // s, the time reached
-    double contacts = 0;             // makes so far
-    double first_contact = unknown;  // s
-    double first_release = unknown;  // s
-    double contact_time = 0;         // s
-    double peak_force = 0;           // N, largest normal contact force, on the dense trajectory
-    double final_force = 0;          // N, normal
-    double impulse = 0;              // N s, of the normal force
-    double ledger_residual = 0;      // J, largest at the end of a step
+    double t_end = 0;                  // s, the time reached
+    double contacts = 0;               // makes so far
+    double first_contact = unknown;    // s
+    double first_release = unknown;    // s
+    double contact_time = 0;           // s
+    double peak_force = 0;             // N, largest normal contact force, on the dense trajectory
+    double peak_force_time = unknown;  // s, when that was
+    double final_force = 0;            // N, normal
+    double impulse = 0;                // N s, of the normal force
+    double ledger_residual = 0;        // J, largest at the end of a step
     std::array<double, 3> q{}, qd{}, tip{};
     std::array<double, 3> books{};  // J: work of the actuators, work of the wall, dissipated energy
     Steps steps;

@@ -71,7 +71,6 @@ std::vector<std::size_t> columns_of(const Setup& setup) {
         switch (need) {
             case Need::nothing: return true;
             case Need::wall: return plant.has_wall;
-            case Need::force: return plant.has_wall && has_law(law.type);
             case Need::force_reference: return wants_force(law.type);
             case Need::path: return has_path && !law.setpoint.in_joints;
             case Need::joint_path: return has_path && law.setpoint.in_joints;

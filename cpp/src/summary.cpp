@@ -53,6 +53,7 @@ const std::vector<SummaryNumber>& summary_table() {
         {"steps.evaluations", "1", "evaluations of the equation of motion",
          [](R r) { return double(r.steps.evaluations); }},
         {"steps.stiff", "1", "steps taken by the method for stiff equations", [](R r) { return r.stiff_steps; }},
+        {"peak_force_time", "s", "when the normal contact force was largest", [](R r) { return r.peak_force_time; }},
     };
     return table;
 }

@@ -136,7 +136,7 @@ private:
         if (this->any_touching_) {
             if (this->plant_.wall.has_outline) special = special || (moved && this->touching_ && comes_near_edge());
             const Mask plainly = this->touching_ && !special && moved;
-            this->deepest_ = max_where(plainly, this->deepest_, end);
+            this->reach(plainly, end, T(t0_ + this->h_), this->deepest_);
             this->depth_time_ = this->depth_time_ + select(plainly, T(this->h_ * mean), T(0.0));
         }
         if (any(special)) settle(special);
@@ -161,10 +161,10 @@ private:
     }
 
     ARM3R_INLINE Mask comes_near_edge() const {
-        return reach(across1) >= this->plant_.wall.half1 || reach(across2) >= this->plant_.wall.half2;
+        return reach_of(across1) >= this->plant_.wall.half1 || reach_of(across2) >= this->plant_.wall.half2;
     }
 
-    ARM3R_INLINE T reach(Signal signal) const {
+    ARM3R_INLINE T reach_of(Signal signal) const {
         T power(1.0), most = abs(series_.c[0][signal]);
         for (int i = 1; i <= order_; ++i) {
             power = power * this->h_;
@@ -181,10 +181,10 @@ private:
     void settle_lane(int lane) {
         const ContactSignals<double> signals{polynomial(lane, depth), polynomial(lane, across1),
                                              polynomial(lane, across2)};
-        const double h = this->h(lane), t = Lanes<T>::get(t0_, lane) + h;
+        const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane), t = t0 + h;
         const auto crossing =
             next_crossing(this->setup(lane).plant.wall, signals, 0, this->mode(lane), event_resolution(t, h));
-        this->pass(lane, signals.depth, 0, crossing ? crossing->theta : 1);
+        this->pass(lane, signals.depth, t0, 0, crossing ? crossing->theta : 1);
         if (!crossing) return;
         crosses_ = true;
         Lanes<T>::set(theta_, lane, crossing->theta);

@@ -242,18 +242,30 @@ inline std::optional<double> first_fall(const Polynomial<double>& g, double from
     return falls::first(g, *up, 1.0, resolution);
 }
 
+struct Maximum {
+    double place, value;
+
+    void include(const Polynomial<double>& p, double at) {
+        const double here = arm3r::value(p, at);
+        if (here > value) *this = {at, here};
+    }
+};
+
 // The maximum of p on [a, b], part of [0, 1]: at an end or where p turns, exact to rounding.
-inline double largest(const Polynomial<double>& p, double a, double b) {
+inline Maximum maximum(const Polynomial<double>& p, double a, double b) {
     constexpr double resolution = 0x1p-32;  // p is flat where it turns
-    double most = max(value(p, a), value(p, b));
+    Maximum most{a, value(p, a)};
+    most.include(p, b);
     Polynomial<double> signed_slope = derivative(p);
     if (value(signed_slope, a) < 0) signed_slope = negative(signed_slope);
     while (const auto turn = falls::first(signed_slope, a, b, resolution)) {
-        most = max(most, value(p, *turn));
+        most.include(p, *turn);
         signed_slope = negative(signed_slope);
         a = *turn;
     }
     return most;
 }
+
+inline double largest(const Polynomial<double>& p, double a, double b) { return maximum(p, a, b).value; }
 
 }  // namespace arm3r
