@@ -26,7 +26,9 @@ class Peak(NamedTuple):
     t: float
     force: float
     seen: bool
-    """Whether rows show it; else it lies between two of them, and t is an estimate."""
+    """Whether rows show it; else it lies between two of them."""
+    exact: bool
+    """Whether the summary tells the instant; else t is that of a row, or an estimate."""
 
 
 class Settling(NamedTuple):
@@ -108,9 +110,11 @@ class ForceRun:
         row = int(force.argmax())
         if level <= 0:
             return None
-        if force[row] >= SEEN * level:
-            return Peak(float(t[row]), level, seen=True)
-        return Peak(self._peak_between_rows(level), level, seen=False)
+        seen = bool(force[row] >= SEEN * level)
+        told = self.metric("peak_force_time")
+        if told is not None:
+            return Peak(float(told), level, seen, exact=True)
+        return Peak(float(t[row]) if seen else self._peak_between_rows(level), level, seen, exact=False)
 
     def _peak_between_rows(self, level: float) -> float:
         """Where parabolas through rows and events come highest; else in the longest contact that no row saw."""
@@ -168,16 +172,20 @@ class ForceRun:
         return self._along_frame(self.run[name] - self.run["wall"])[:, :2]
 
     @property
-    def tip_error(self) -> dict[str, Floats]:
-        """Tip minus its reference by direction, m: on the wall's face; and into it where no force is controlled."""
+    def path_error(self) -> dict[str, Floats]:
+        """Tip minus its reference by direction, m: on the wall's face; and into it, zero while force is controlled.
+
+        Its size is what the summary's `tip_path_error_max` is the largest of.
+        """
         if "tip_ref" not in self.run:
             return {}
         error = self.run["tip"] - self.run["tip_ref"]
         if self.frame is None:
             return dict(zip(("x", "y", "z"), error.T, strict=True))
         along = dict(zip(("e_1", "e_2", "n"), self._along_frame(error).T, strict=True))
-        if self.reference is not None:
-            del along["n"]
+        phase = self.column("force_phase")
+        if phase is not None:
+            along["n"] = (1 - phase) * along["n"]
         return along
 
     @property

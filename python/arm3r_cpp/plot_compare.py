@@ -61,7 +61,7 @@ def compare_figure(runs: Sequence[ForceRun], *, width: float) -> Figure:
     panels = {
         Panel(1.6, partial(draw_force, runs)): True,
         Panel(0.75, partial(draw_force_error, runs), legend=False): any(run.reference is not None for run in runs),
-        Panel(0.75, partial(draw_tip_error, runs), legend=False): any(run.tip_error for run in runs),
+        Panel(0.75, partial(draw_path_error, runs), legend=False): any(run.path_error for run in runs),
         Panel(0.75, partial(draw_joint_error, runs), legend=False): any(run.joint_error for run in runs),
         **{Panel(0.75, partial(draw_torque, runs, joint), legend=False): True for joint in JOINTS},
         Panel(0.1 * len(runs), partial(draw_contact, runs), legend=False): True,
@@ -131,9 +131,9 @@ def draw_force_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
     overlay(ax, runs, lambda run: run.error, "force error,\nN")
 
 
-def draw_tip_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
-    """Along the face alone: into it, the runs do not want the same."""
-    overlay(ax, runs, lambda run: size(run.tip_error, but="n"), "tip error,\nmm")
+def draw_path_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
+    """As the table's numbers have it: of all three directions, without the normal one while force is controlled."""
+    overlay(ax, runs, lambda run: size(run.path_error), "path error,\nmm")
 
 
 def draw_joint_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
@@ -152,10 +152,9 @@ def overlay(ax: Axes, runs: Sequence[ForceRun], values: Callable[[ForceRun], Flo
     ax.set_ylabel(quantity)
 
 
-def size(error: Mapping[str, Floats], *, but: str = "") -> Floats | None:
-    """Of an error of several parts without one of them, in thousandths."""
-    parts = [part for name, part in error.items() if name != but]
-    return 1e3 * np.linalg.norm(parts, axis=0) if parts else None
+def size(error: Mapping[str, Floats]) -> Floats | None:
+    """Of an error of several parts, in thousandths."""
+    return 1e3 * np.linalg.norm(list(error.values()), axis=0) if error else None
 
 
 def draw_contact(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:

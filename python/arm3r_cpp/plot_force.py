@@ -40,7 +40,7 @@ def force_figure(run: ForceRun, *, width: float) -> Figure:
     """width: inches."""
     there = {
         Panel(1.6, partial(draw_force, run)): True,
-        Panel(0.8, partial(draw_tip_error, run)): bool(run.tip_error),
+        Panel(0.8, partial(draw_path_error, run)): bool(run.path_error),
         Panel(0.8, partial(draw_joint_error, run)): bool(run.joint_error),
         Panel(1.2, partial(draw_torques, run)): True,
         Panel(0.8, partial(draw_residuals, run)): "residual" in run.run,
@@ -90,7 +90,7 @@ def mark_peak(ax: Axes, run: ForceRun) -> None:
     peak = run.peak
     if peak is None:
         return
-    label = f"peak {peak.force:.4g} N, t {'=' if peak.seen else '≈'} {peak.t:.4f} s"
+    label = f"peak {peak.force:.4g} N, t {'=' if peak.exact or peak.seen else '≈'} {peak.t:.4f} s"
     if not peak.seen:
         ax.vlines(peak.t, np.interp(peak.t, *run.force_line), peak.force, color=RED, ls=":", lw=1.0)
     ax.plot(peak.t, peak.force, color=RED, ls="", marker=7, ms=7, clip_on=False, zorder=5, label=label)
@@ -165,10 +165,10 @@ def heights(runs: Sequence[ForceRun], window: tuple[float, float]) -> tuple[floa
 # ---- the other panels -----------------------------------------------------------------------------------------------
 
 
-def draw_tip_error(run: ForceRun, ax: Axes, room: float) -> None:
-    for (axis, error), look in zip(run.tip_error.items(), TRIPLE, strict=False):
+def draw_path_error(run: ForceRun, ax: Axes, room: float) -> None:
+    for (axis, error), look in zip(run.path_error.items(), TRIPLE, strict=False):
         ax.plot(run.run.t, 1e3 * error, label=f"along ${axis}$", **look)
-    finish(ax, run, "tip error, mm", room)
+    finish(ax, run, "path error, mm", room)
 
 
 def draw_joint_error(run: ForceRun, ax: Axes, room: float) -> None:

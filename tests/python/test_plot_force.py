@@ -25,7 +25,7 @@ from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
 pytestmark = pytest.mark.filterwarnings("error")  # such as a layout that does not fit
-PANELS = ["pressing force, N", "tip error, mm", "torque, N m", "residual, N m"]
+PANELS = ["pressing force, N", "path error, mm", "torque, N m", "residual, N m"]
 BELOW = ["pressing force, N", "along $e_2$, m"]
 
 
@@ -177,10 +177,10 @@ def test_the_tip_on_the_face(hybrid: arm3r.Run) -> None:
 
 
 def test_errors_are_those_along_the_face_where_force_is_controlled(hybrid: arm3r.Run) -> None:
-    assert set(ForceRun(hybrid).tip_error) == {"e_1", "e_2"}
-    free = ForceRun(force_runs.without(hybrid, "force_ref"))
-    assert free.tip_error["n"] == pytest.approx(-hybrid["depth"], abs=1e-12)
-    size = np.linalg.norm(list(free.tip_error.values()), axis=0)
+    assert not ForceRun(hybrid).path_error["n"][hybrid["force_phase"] > 0].any()
+    free = ForceRun(force_runs.without(hybrid, "force_phase"))
+    assert free.path_error["n"] == pytest.approx(-hybrid["depth"], abs=1e-12)
+    size = np.linalg.norm(list(free.path_error.values()), axis=0)
     assert size == pytest.approx(np.linalg.norm(hybrid["tip"] - hybrid["tip_ref"], axis=1), abs=1e-12)
 
 
@@ -211,7 +211,7 @@ def test_all_panels(hybrid: arm3r.Run) -> None:
 @pytest.mark.parametrize(
     ("missing", "gone"),
     [
-        (("tip_ref",), {"tip error, mm"}),
+        (("tip_ref",), {"path error, mm"}),
         (("residual",), {"residual, N m"}),
         (("wall", "depth"), {"along $e_2$, m"}),
         (("force_measured", "f_estimate", "force_phase", "saturated"), set()),
@@ -480,7 +480,7 @@ def test_a_comparison_overlays_runs_by_name(hybrid: arm3r.Run, proportional: arm
     figure = arm3r.plot.compare([hybrid, proportional])
     assert legend(figure.axes[0]) == ["hybrid", "without integral", "reference"]
     assert [label.replace("\n", " ") for label in labels(figure)][:6] == [
-        "pressing force, N", "force error, N", "tip error, mm", *(rf"$\tau_{i}$, N m" for i in "123"),
+        "pressing force, N", "force error, N", "path error, mm", *(rf"$\tau_{i}$, N m" for i in "123"),
     ]  # fmt: skip
     for ax, run_of in ((figure.axes[3], "tau1"), (figure.axes[5], "tau3")):
         for line, run in zip(ax.lines, (hybrid, proportional), strict=True):
