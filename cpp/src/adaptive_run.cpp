@@ -22,7 +22,7 @@ namespace {
 using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr int looks_per_step = 9, sights_per_step = 4;
+constexpr int looks_per_step = 9;
 
 // The state at the start.
 FullState start_of(const Setup& setup) {
@@ -64,7 +64,7 @@ public:
           stepper_(setup_, other.stepper_),
           watch_(setup_.plant, looks_per_step),
           loop_(other.loop_),
-          score_(other.score_),
+          tally_(other.tally_),
           now_(other.now_),
           ledger_(setup_, other.ledger_) {}
 
@@ -188,7 +188,6 @@ private:
         FullState f{};
         std::copy_n(stepper_.f0().begin(), N, f.begin());
         begin(now_.y, f, mode_, ledger_.energy_at_start());
-        if (is_scored_) look_again();
     }
 
     void start_memory() {
@@ -361,7 +360,6 @@ private:
 
     void settle() {
         const bool new_torque = attend();
-        if (is_scored_ && (now_.taken.crosses || new_torque)) look_again();
         stepper_.set(touch(), contact_, force_phase_, infinite);
         stepper_.accept(run_.t_end, moving(), now_.taken.h, now_.taken.goes_on && !new_torque);
         ledger_.close(run_.t_end, now_.y, mode_);
@@ -413,53 +411,18 @@ private:
 
     // ---- score
 
-    Sight<double> sight(double t, const FullState& y) const {
-        const Plant<double>& plant = setup_.plant;
-        const Controller<double>& controller = setup_.law();
-        const Vec3<double> q = angles(y);
-        const Pose<double> p = pose(q);
-        Sight<double> sight{t, 0, 0, is_touching(mode_) ? 1.0 : 0.0, 0, 0, q, {0, 0, 0}, y[6]};
-        WallState<double> wall = no_wall<double>();
-        Vec3<double> f_on_tip(0, 0, 0);
-        if (score_sees_wall_) {
-            wall = wall_at(plant.wall, t);
-            if (mode_ == Mode::contact) {
-                const Indentation<double> in = tip_indentation(plant, wall, p, rates(y));
-                const ContactForce<double> force =
-                    only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Grip::clipped));
-                sight.force = force.normal;
-                f_on_tip = force.on_tip;
-            }
-        }
-        if (score_.looks().force) sight.force_wanted = force_wanted_at(controller.setpoint, t);
-        const double phase = setup_.digital.sampling.on ? loop_.known().force_phase : force_phase_;
-        if (score_.looks().path)
-            sight.path_error_2 =
-                path_error_2(plant.arm, controller, t, tip_position(plant.arm, p), normal(plant.wall, wall), phase);
-        Y part;
-        std::copy_n(y.begin(), N, part.begin());
-        if (plant.load.on) f_on_tip = plus(f_on_tip, load_at(plant.load, t));
-        sight.tau = stepper_.torque(t, wall, p, f_on_tip, part);
-        const Vec3<double>& most = plant.arm.torque_limit;
-        for (int i = 0; i < 3; ++i)
-            if (std::abs(sight.tau[i]) >= most[i]) sight.saturated = 1;
-        return sight;
-    }
-
-    void look_again() {
-        score_.next() = sight(run_.t_end, now_.y);
-        score_.begin();
-    }
-
-    void score_passage(double theta, double t1) {
-        const int sights = score_.needs_ends_only() ? 1 : sights_per_step;
-        for (int i = 1; i < sights; ++i) {
-            const double place = theta * i / sights;
-            score_.next() = sight(inside_.t0 + place * inside_.h, inside_(place));
-            score_.advance(true);
-        }
-        score_.next() = sight(t1, inside_(theta));
-        score_.advance(true);
+    // From the begin of the step to place b in it, at t1.
+    void score_passage(double b, double t1) {
+        const bool is_sampled = setup_.digital.sampling.on;
+        const StepView view{setup_,
+                            inside_,
+                            mode_ == Mode::contact,
+                            contact_,
+                            is_sampled ? loop_.known().force_phase : force_phase_,
+                            is_sampled ? &setup_.plant.controller.torque : nullptr,
+                            short_of(t1)};
+        if (is_sampled && !Looks(setup_).motion()) add_alone(trapezoid, is_touching(mode_), view, 0, b, tally_);
+        else add_alone(boole, is_touching(mode_), view, 0, b, tally_);
     }
 
     void note_end() {
@@ -472,7 +435,7 @@ private:
         run_.peak_force = now_.peak.force;
         if (run_.contacts > 0) run_.peak_force_time = now_.peak.t;
         run_.final_force = force_now();
-        if (is_scored_) score_.tell(0, setup_, run_);
+        if (is_scored_) tell_score(tally_, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());
         run_.choices = stepper_.choices();
         if (known_.identifiable > 0) {
@@ -484,10 +447,8 @@ private:
     Stepper<N> stepper_;
     ContactWatch watch_;
     ControlLoop<double> loop_;
-    Score<double> score_{setup_};
+    Tally<double> tally_;
     const bool is_scored_ = setup_.is_scored();
-    const bool score_sees_wall_ =
-        setup_.plant.has_wall && (score_.looks().force || score_.looks().path || has_law(setup_.plant.controller.type));
     Present now_;
     Ledger ledger_;
 };

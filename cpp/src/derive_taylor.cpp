@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t wall_size = 9, given_size = wall_size + state_size;
 
 // Inputs: the squared angular frequency of the wall, its state, the motion, the numbers of the plant.
-// Outputs: the derivatives of the given states, then the signals.
+// Outputs: the derivatives of the given states, the powers of the torques, then the signals.
 struct Recording {
     Tape tape;
 
@@ -41,12 +41,16 @@ struct Recording {
         RightHandSide<Expr, Expr> rhs(plant);
         rhs.touch = recipe.force ? Touch::pressed : Touch::none;
         const Pose<Expr> p = rhs.pose_near(y);
-        rhs.derivative(Expr(0.0), wall, p, y, dy);
+        Indentation<Expr> felt;
+        if (recipe.force) felt = indentation_at_rest(plant.wall, wall, tip_position(plant.arm, p));
+        Vec3<Expr> tau;
+        rhs.derivative(Expr(0.0), wall, p, felt, y, dy, tau);
 
         for (const Expr& x : wall.velocity) tape.output(x);
         for (const Expr& x : wall.acceleration) tape.output(x);
         for (const Expr& x : wall.velocity) tape.output(-(frequency_2 * x));  // zero unless the wall swings
         for (const Expr& x : dy) tape.output(x);
+        for (std::size_t i = 0; i < 3; ++i) tape.output(tau[i] * y[3 + i]);
         if (!recipe.signals) return;
         const Vec3<Expr> still{0.0, 0.0, 0.0};
         const Indentation<Expr> in = indentation(plant.wall, wall, tip_position(plant.arm, p), still);
@@ -232,8 +236,9 @@ struct System {
     Series series;
     std::vector<int> numbers;  // of the plant
     int frequency_2 = -1;
-    std::vector<int> given;  // states; one of the books is -1
-    std::vector<int> rates;  // the derivatives of the given states
+    std::vector<int> given;   // states; one of the books is -1
+    std::vector<int> rates;   // the derivatives of the given states
+    std::vector<int> powers;  // of the torques
     std::vector<int> signals;
     std::vector<int> states;         // that matter: each before its derivative where that is a state too
     std::map<int, int> derivatives;  // of the states
@@ -243,7 +248,7 @@ struct System {
         std::vector<int> place;
         for (const Node& node : tape.nodes()) place.push_back(translated(node, place));
         for (const int output : tape.outputs()) {
-            std::vector<int>& list = rates.size() < given_size ? rates : signals;
+            std::vector<int>& list = rates.size() < given_size ? rates : powers.size() < 3 ? powers : signals;
             list.push_back(place[output]);
         }
         given.resize(given_size, -1);
@@ -282,6 +287,7 @@ private:
             if (given[i] >= 0) reach(given[i], found);
             reach(rates[i], found);
         }
+        for (const int i : powers) reach(i, found);
         for (const int i : signals) reach(i, found);
         live.assign(found.begin(), found.end());
         for (const int i : given)
@@ -437,10 +443,12 @@ private:
             const std::string book = kind == 'z' ? "given[" + std::to_string(wall_size + j) + "]" : named('b', j);
             out_ << where << "[" << j << "] = " << (j < motion_size ? named(kind, i) : book) << ";\n";
         }
+        for (std::size_t j = 0; j < 3; ++j)
+            out_ << where << "[" << works_at + j << "] = " << (kind == 'z' ? "T(0.0)" : named('w', j)) << ";\n";
     }
 
     void print_signals(const std::string& where, char kind) {
-        for (std::size_t j = state_size; j < quantities; ++j) {
+        for (std::size_t j = state_size; j < works_at; ++j) {
             const std::size_t signal = j - state_size;
             out_ << where << "[" << j
                  << "] = " << (signal < system_.signals.size() ? named(kind, system_.signals[signal]) : "T(0.0)")
@@ -456,6 +464,8 @@ private:
         };
         for (std::size_t j = motion_size; j < state_size; ++j)
             out_ << indent << named('b', j) << " = " << rate(system_.rates[wall_size + j]) << ";\n";
+        for (std::size_t j = 0; j < 3; ++j)
+            out_ << indent << named('w', j) << " = " << rate(system_.powers[j]) << ";\n";
         for (const int i : system_.states)
             out_ << indent << named('x', i) << " = " << rate(system_.derivatives.at(i)) << ";\n";
     }
@@ -475,6 +485,7 @@ private:
     std::vector<int> roots() const {
         std::vector<int> all = system_.signals;
         all.insert(all.end(), system_.rates.begin() + wall_size, system_.rates.end());
+        all.insert(all.end(), system_.powers.begin(), system_.powers.end());
         for (const int state : system_.states) all.push_back(system_.derivatives.at(state));
         return all;
     }

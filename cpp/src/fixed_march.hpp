@@ -30,10 +30,11 @@ public:
     template <class Changed>
     ARM3R_INLINE void step(Changed changed) {
         t0_ = this->t_;
-        if constexpr (Base::lanes == 1) {
+        if (Base::lanes == 1 || this->is_scored_) {
             y0_ = this->y_;
             f0_ = this->f_;
         }
+        if (this->is_scored_) Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_passage(); });
         before_ = this->in_;
         const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
@@ -49,9 +50,11 @@ public:
         if constexpr (Base::lanes == 1) remember_end();
         if (has_jump_) this->rhs_.latest = T(infinite);
         this->observe();
+        special_ = false;
         if (this->plant_.has_wall) watch(moved, changed);
         this->close_books();
-        if (this->is_scored_) this->score(moved);
+        if (this->is_scored_)
+            this->holds_torque() && !this->looks_.motion() ? score(trapezoid, moved) : score(simpson, moved);
         this->judge_lanes();
     }
 
@@ -131,8 +134,8 @@ private:
                 measure_damped(plainly);
             }
         }
-        special = special && moved;
-        if (any(special)) settle(special, changed);
+        special_ = special && moved;
+        if (any(special_)) settle(special_, changed);
     }
 
     // The force of a damped contact over the step; where it may turn within, one lane at a time.
@@ -192,10 +195,13 @@ private:
         const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane);
         const double resolution = event_resolution(this->t(lane), h);
         const ContactSignals<double> signals = signals_of(lane);
+        Inside inside;
+        if (this->is_scored_) inside = inside_of(lane);
         double from = 0;
         bool anew = false;
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
             this->pass(lane, signals.depth, t0, from, crossing->theta);
+            if (this->is_scored_) this->score_alone(lane, simpson, inside, from, crossing->theta);
             from = crossing->theta;
             const Change change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
             changed(lane, change);
@@ -204,9 +210,58 @@ private:
             if (this->outcome(lane) != ARM3R_RUN_OK || from >= 1) break;
         }
         this->pass(lane, signals.depth, t0, from, 1.0);
+        if (this->is_scored_ && from < 1) this->score_alone(lane, simpson, inside, from, 1.0);
         return anew;
     }
 
+    // ---- the score
+
+    Inside inside_of(int lane) const {
+        Inside inside;
+        inside.take(
+            hermite(t0(lane), this->h(lane), y0(lane), f0(lane), this->y(lane), Base::state_of(this->f_, lane)));
+        return inside;
+    }
+
+    // The step as one passage, but where contact has changed in it.
+    template <std::size_t n>
+    ARM3R_INLINE void score(const Rule<n>& rule, const Mask& moved) {
+        Mask closer = false;
+        Apart<T>::run([&]() ARM3R_INLINE_LAMBDA {
+            if (n == simpson.place.size()) see_middle();
+            this->end_passage(rule, this->h_);
+            closer = add_passage(this->looks_, rule, Mask(moved && !special_), this->passage_, this->tally_);
+        });
+        if (any(closer)) look_closer(rule, closer);
+    }
+
+    template <std::size_t n>
+    [[gnu::noinline]] void look_closer(const Rule<n>& rule, const Mask& closer) {
+        for (int lane = 0; lane < Base::lanes; ++lane)
+            if (Lanes<T>::is(closer, lane)) this->score_closely(lane, rule, inside_of(lane), 1.0);
+    }
+
+    // On the cubic through both ends.
+    ARM3R_INLINE void see_middle() {
+        const T &h = this->h_, t = t0_ + 0.5 * h;
+        Y y;
+        [[maybe_unused]] Y rates;
+        for (std::size_t i = 0; i < N; ++i) y[i] = 0.5 * (y0_[i] + this->y_[i]) + (0.125 * h) * (f0_[i] - this->f_[i]);
+        const Pose<T> p = this->rhs_.pose_near(y);
+        const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
+        WallState<T> wall = no_wall<T>();
+        Indentation<T> in{};
+        if (this->plant_.has_wall) {
+            wall = wall_at(this->plant_.wall, t);
+            in = tip_indentation(this->plant_, wall, p, qd);
+        }
+        Vec3<T> tau;
+        if constexpr (N == state_size) tau = this->torque_without_memory(q, p);
+        else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
+        this->see(t, p, wall, in, tau, qd, this->passage_.sights[1]);
+    }
+
+    Mask special_ = false;  // where contact may have changed in the step
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};

@@ -65,7 +65,6 @@ public:
         if (N == full_size) start_memory();
         begun_ = alive_;
         if (is_controlled_ || N == full_size || any_embedded_) look();
-        if (is_scored_) start_score();
         for (bool& is_new : is_new_) is_new = false;
     }
 
@@ -135,11 +134,13 @@ protected:
         potential_ = potential_energy(plant_.arm, p_);
         if (is_controlled_ && any(is_due())) control();
         if (needs_derivative_) derive();
-        else if (is_scored_)
-            tau_ = limited(plant_.arm, arm3r::control(plant_.controller, Vec3<T>(y_[0], y_[1], y_[2]), p_),
-                           plant_.controller.saturation);
+        else if (is_scored_) tau_ = torque_without_memory({y_[0], y_[1], y_[2]}, p_);
     }
     void look();
+
+    ARM3R_INLINE Vec3<T> torque_without_memory(const Vec3<T>& q, const Pose<T>& p) const {
+        return limited(plant_.arm, arm3r::control(plant_.controller, q, p), plant_.controller.saturation);
+    }
 
     // With a controller's memory it is long: once for all who ask.
     ARM3R_INLINE void derive() {
@@ -182,30 +183,77 @@ protected:
 
     // ---- the score
 
-    ARM3R_INLINE void look_at(Sight<T>& sight) const {
-        const T o(0.0), l(1.0);
-        const Controller<T>& law = loop_.is_on() ? loop_.controller() : plant_.controller;
-        sight.t = t_;
-        sight.q = {y_[0], y_[1], y_[2]};
-        sight.tau = tau_;
-        sight.work = y_[6];
-        if (wants_force(law.type)) {
-            const Mask pressed = touching_ && in_.depth > o;
-            sight.force = select(pressed, dot(normal(plant_.wall, wall_), force_on_tip()), o);
-            sight.touches = select(pressed, l, o);
-            sight.force_wanted = force_wanted_at(law.setpoint, t_);
-        }
-        if (wants_path(law.type)) {
-            const T phase = loop_.is_on() ? loop_.known().force_phase : rhs_.force_phase;
-            sight.path_error_2 =
-                path_error_2(plant_.arm, law, t_, tip_position(plant_.arm, p_), normal(plant_.wall, wall_), phase);
-        }
-        if (!plant_.arm.has_torque_limit) return;
-        sight.saturated = o;
-        for (int i = 0; i < 3; ++i)
-            sight.saturated = select(abs(tau_[i]) >= plant_.arm.torque_limit[i], l, sight.saturated);
+    // A step begins; contact, phase and a held torque are for all of it what they are now.
+    ARM3R_INLINE void begin_passage() {
+        passage_.start = t_;
+        passage_.touching = touching_;
+        phase_ = loop_.is_on() ? loop_.known().force_phase : rhs_.force_phase;
+        for (int i = 0; i < 3; ++i) q_before_[i] = y_[i], tau_before_[i] = tau_[i];
+        see(t_, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, passage_.sights[0]);
     }
-    void score(const Mask& moved);
+
+    // A sight of the present passage.
+    ARM3R_INLINE void see(const T& t, const Pose<T>& p, const WallState<T>& wall, const Indentation<T>& in,
+                          const Vec3<T>& tau, const Vec3<T>& qd, Sight<T>& sight) const {
+        const Controller<T>& law = loop_.is_on() ? loop_.controller() : plant_.controller;
+        see_motion(looks_, plant_, true_contact_, law, t, p, wall, in, passage_.touching, phase_, sight);
+        see_torque(plant_.arm, holds_torque() ? tau_before_ : tau, qd, sight);
+    }
+
+    // The present instant is the passage's last.
+    template <std::size_t n>
+    ARM3R_INLINE void end_passage(const Rule<n>& rule, const T& duration) {
+        passage_.duration = duration;
+        see(short_of(t_), p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, passage_.sights[n - 1]);
+        for (int i = 0; i < 3; ++i)
+            passage_.work[i] = holds_torque()
+                                   ? T(tau_before_[i] * (y_[i] - q_before_[i]))
+                                   : T(duration * mean_of(rule, passage_, [i](const Sight<T>& s) ARM3R_INLINE_LAMBDA {
+                                           return s.power[i];
+                                       }));
+    }
+
+    bool holds_torque() const { return plant_.controller.type == Controls::constant; }
+
+    // The same in doubles, at places of the step; the torque of a digital controller is the step's.
+    template <class See>
+    void with_view(int lane, const Inside& inside, See see) const {
+        const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+        Setup setup = setups_[lane];
+        if (asks_estimator(plant_.controller))
+            setup.plant.controller.gains.assumed_stiffness = get(plant_.controller.gains.assumed_stiffness);
+        const Vec3<double> held{get(tau_before_[0]), get(tau_before_[1]), get(tau_before_[2])};
+        const double phase = loop_.is_on() ? get(phase_) : force_phase(lane);
+        see(StepView{setup, inside, mode_[lane] == Mode::contact, contact(lane), phase,
+                     holds_torque() ? &held : nullptr, short_of(t(lane))});
+    }
+
+    // From place a to place b of the step in the lane's present mode.
+    template <std::size_t n>
+    void score_alone(int lane, const Rule<n>& rule, const Inside& inside, double a, double b) {
+        Tally<double> tally = tally_of(lane);
+        with_view(lane, inside, [&](const StepView& view) { add_alone(rule, view.pressed, view, a, b, tally); });
+        set_tally(lane, tally);
+    }
+
+    // What the last passage hides between its sights; it ends at place b of the step.
+    template <std::size_t n>
+    void score_closely(int lane, const Rule<n>& rule, const Inside& inside, double b) {
+        const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+        Passage<double> passage{
+            get(passage_.start), get(passage_.duration), Lanes<T>::is(passage_.touching, lane), {}, {}};
+        for (std::size_t j = 0; j < n; ++j) {
+            const Sight<T>& sight = passage_.sights[j];
+            passage.sights[j] = {
+                get(sight.force), get(sight.force_wanted), get(sight.path_error_2), get(sight.saturated), {}};
+        }
+        Tally<double> tally = tally_of(lane);
+        with_view(lane, inside, [&](StepView view) {
+            view.pressed = passage.touching;
+            look_closer(rule, passage, view, 0, b, tally);
+        });
+        set_tally(lane, tally);
+    }
 
     ARM3R_INLINE T stored() const {
         if (!plant_.acts_on_arm) return T(0.0);
@@ -304,8 +352,12 @@ protected:
 
     bool is_controlled_, is_scored_;
     ControlLoop<T> loop_;
-    Score<T> score_;
-    Contact<T> true_contact_;  // in every mode: what sensors and the score read
+    Looks looks_;
+    Tally<T> tally_;
+    Passage<T> passage_;
+    T phase_{0.0};                                           // of force control, in the passage
+    Vec3<T> q_before_ = none<T>(), tau_before_ = none<T>();  // rad, N m: at its begin
+    Contact<T> true_contact_;                                // in every mode: what sensors and the score read
 
     T t_{0.0}, h_{0.0}, stop_{0.0}, slack_{0.0};  // slack: how early an instant counts as reached, s
     Y y_{}, f_{};
@@ -330,7 +382,8 @@ private:
     bool at_stop(int lane) const { return !(Lanes<T>::get(t_, lane) < Lanes<T>::get(stop_, lane)); }
     void begin_lane(int lane);
     void start_memory();
-    void start_score();
+    Tally<double> tally_of(int lane) const;
+    void set_tally(int lane, const Tally<double>& tally);
     void tell_controller(int lane);
     void set_mode(int lane, Mode mode);
     double force_of(int lane) const;  // N, normal

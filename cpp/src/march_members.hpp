@@ -26,7 +26,7 @@ March<T, N>::March(const Setup& any_lane)
       may_be_ill_conditioned_(structure_of(any_lane).may_be_ill_conditioned),
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
       is_scored_(any_lane.is_scored()),
-      score_(any_lane),
+      looks_(any_lane),
       true_contact_(plant_.contact),
       is_elastic_(!is_damped(any_lane.plant.contact.law)) {
     rhs_.law_function = compiled_law<T, T>();
@@ -57,7 +57,7 @@ void March<T, N>::put(int lane, const Setup& setup) {
     }
     if (plant_.load.on) each_load_number(set, plant_.load, setup.plant.load);
     if (is_controlled_) loop_.put(lane, setup.digital, setup.estimation);
-    if (is_scored_) score_.put(lane);
+    set_tally(lane, {});
     set(rhs_.contact, 0.0), set(rhs_.force_phase, 0.0);
     set(t_, setup.start), set(stop_, setup.stop), set(peak_time_, setup.start);
     set(max_steps_, setup.solver.max_steps);
@@ -119,13 +119,15 @@ void March<T, N>::control() {
 }
 
 template <class T, std::size_t N>
-void March<T, N>::start_score() {
-    Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { look_at(score_.next()), score_.begin(); });
+Tally<double> March<T, N>::tally_of(int lane) const {
+    Tally<double> tally;
+    each_tally_number([&](double& to, const T& from) { to = Lanes<T>::get(from, lane); }, tally, tally_);
+    return tally;
 }
 
 template <class T, std::size_t N>
-void March<T, N>::score(const Mask& moved) {
-    Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { look_at(score_.next()), score_.advance(moved); });
+void March<T, N>::set_tally(int lane, const Tally<double>& tally) {
+    each_tally_number([&](T& to, const double& from) { Lanes<T>::set(to, lane, from); }, tally_, tally);
 }
 
 // A law's memory at the start needs the contact that begin_lane() has found.
@@ -294,7 +296,7 @@ Metrics March<T, N>::metrics(int lane) const {
     m.first_contact = contacts.first_contact;
     m.first_release = contacts.first_release;
     m.steps = steps(lane);
-    if (is_scored_) score_.tell(lane, setup, m);
+    if (is_scored_) tell_score(tally_of(lane), setup, m);
     if (is_controlled_ && get(loop_.known().identifiable) > 0) {
         m.stiffness_estimate = get(loop_.known().stiffness);
         m.wall_speed_estimate = get(loop_.known().wall_speed);
@@ -317,14 +319,14 @@ Flows March<T, N>::flows(int lane) const {
     template void March<__VA_ARGS__>::look();                                                         \
     template void March<__VA_ARGS__>::evaluate_anew();                                                \
     template void March<__VA_ARGS__>::control();                                                      \
-    template void March<__VA_ARGS__>::start_score();                                                  \
-    template void March<__VA_ARGS__>::score(const Mask&);                                             \
     template void March<__VA_ARGS__>::start_memory();                                                 \
     template void March<__VA_ARGS__>::retire(int);                                                    \
     template void March<__VA_ARGS__>::pass(int, const Polynomial<double>&, double, double, double);   \
     template void March<__VA_ARGS__>::pass_damped(int, const std::array<double, 5>&, double, double); \
     template void March<__VA_ARGS__>::change_mode(int, const Change&);                                \
     template void March<__VA_ARGS__>::fail_lanes(const Mask&);                                        \
+    template Tally<double> March<__VA_ARGS__>::tally_of(int) const;                                   \
+    template void March<__VA_ARGS__>::set_tally(int, const Tally<double>&);                           \
     template Metrics March<__VA_ARGS__>::metrics(int) const;                                          \
     template Flows March<__VA_ARGS__>::flows(int) const;
 

@@ -15,7 +15,7 @@ void solve_within(FixedMarch<double, N>& march, Inside& inside) {
     inside.take(hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f1()));
 }
 
-void solve_within(const TaylorMarch<double>& march, Inside& inside) { inside = march.solution(); }
+void solve_within(const TaylorMarch<double>& march, Inside& inside) { inside = march.solution(0); }
 
 template <std::size_t N>
 double place(const FixedMarch<double, N>&) {

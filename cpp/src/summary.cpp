@@ -32,7 +32,7 @@ const std::vector<SummaryNumber>& summary_table() {
          [](R r) { return r.force_error_rms; }},
         {"force_error_peak", "N", "largest force error in contact since the force first reached what is wanted",
          [](R r) { return r.force_error_peak; }},
-        {"overshoot", "N", "largest force above what is wanted", [](R r) { return r.overshoot; }},
+        {"overshoot", "N", "largest force above what is wanted; 0 where it never is above", [](R r) { return r.overshoot; }},
         {"settling_time", "s", "from first contact until the force stays within 5 % of what is wanted",
          [](R r) { return r.settling_time; }},
         {"tip_path_error_rms", "m", "root mean square of the tip's distance from its reference",

@@ -12,7 +12,7 @@
 namespace arm3r {
 
 // Quantity j is the sum of c[i][j] h^i, i = 0..order, at h seconds after the instant: q, qd and the books, then depth,
-// across1, across2 where there is a wall, else zero.
+// across1, across2 where there is a wall, else zero; then the work of each torque from the instant on.
 template <class T>
 struct Expansion {
     int order;
@@ -45,7 +45,7 @@ ARM3R_INLINE T inverse_power(const T& x) {
 template <class T>
 ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
     T before(0.0), last(0.0);
-    for (std::size_t j = 0; j < quantities; ++j) {
+    for (std::size_t j = 0; j < works_at; ++j) {
         const T scale = j < state_size ? inverse_power(max(T(1.0), abs(e.c[0][j]))) : T(1.0);
         before = max(before, T(abs(e.c[e.order - 1][j]) * scale));
         last = max(last, T(abs(e.c[e.order][j]) * scale));

@@ -32,6 +32,7 @@ public:
     template <class Changed>
     ARM3R_INLINE void step(Changed changed) {
         t0_ = this->t_;
+        if (this->is_scored_) Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_passage(); });
         const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
@@ -58,20 +59,18 @@ public:
         this->observe();
         if (crosses_) cross(changed);
         this->close_books();
-        if (this->is_scored_) this->score(moved);
+        if (this->is_scored_) this->looks_.motion() ? score(lobatto, moved, h) : score(trapezoid, moved, h);
         this->judge_lanes();
     }
 
     // The solution within the last step.
-    Inside solution() const
-        requires std::same_as<T, double>
-    {
+    Inside solution(int lane) const {
         Inside inside;
-        inside.t0 = t0_;
-        inside.h = this->h_;
+        inside.t0 = Lanes<T>::get(t0_, lane);
+        inside.h = this->h(lane);
         inside.order = order_;
         for (int i = 0; i <= order_; ++i)
-            for (std::size_t j = 0; j < state_size; ++j) inside.c[i][j] = series_.c[i][j];
+            for (std::size_t j = 0; j < state_size; ++j) inside.c[i][j] = Lanes<T>::get(series_.c[i][j], lane);
         return inside;
     }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
@@ -79,7 +78,7 @@ public:
     bool turns() const { return this->is_controlled_ && any(is_last_); }
 
 private:
-    enum Signal : std::size_t { depth = state_size, across1, across2 };
+    enum Signal : std::size_t { depth = state_size, across1, across2, work1 };
 
     ARM3R_INLINE static T smallest_step(const T& t) {
         return 16 * std::numeric_limits<double>::epsilon() * max(abs(t), T(1e-3));
@@ -87,7 +86,7 @@ private:
 
     ARM3R_INLINE Mask is_finite() const {
         T zero(0.0);
-        for (std::size_t j = 0; j < quantities; ++j) zero = zero + series_.c[order_][j] * 0.0;
+        for (std::size_t j = 0; j < works_at; ++j) zero = zero + series_.c[order_][j] * 0.0;
         return zero == T(0.0);
     }
 
@@ -209,6 +208,41 @@ private:
             changed(lane, change);
             this->change_mode(lane, change);
         }
+    }
+
+    // ---- the score: a step is a passage of h seconds, which ends where contact changes
+
+    template <std::size_t n>
+    ARM3R_INLINE void score(const Rule<n>& rule, const Mask& moved, const T& h) {
+        Mask closer = false;
+        Apart<T>::run([&]() ARM3R_INLINE_LAMBDA {
+            for (std::size_t j = 1; j + 1 < n; ++j) see_at(T(rule.place[j] * h), this->passage_.sights[j]);
+            this->end_passage(rule, h);
+            if (!this->holds_torque())
+                for (int i = 0; i < 3; ++i) this->passage_.work[i] = value(series_, work1 + i, h);
+            closer = add_passage(this->looks_, rule, moved, this->passage_, this->tally_);
+        });
+        if (any(closer)) look_closer(rule, closer);
+    }
+
+    ARM3R_INLINE void see_at(const T& seconds, Sight<T>& sight) const {
+        Vec3<T> q, qd;
+        for (std::size_t i = 0; i < 3; ++i) q[i] = value(series_, i, seconds), qd[i] = value(series_, 3 + i, seconds);
+        const T t = t0_ + seconds;
+        const Pose<T> p = pose(q);
+        WallState<T> wall = no_wall<T>();
+        Indentation<T> in{};
+        if (this->plant_.has_wall) {
+            wall = wall_at(this->plant_.wall, t);
+            in = tip_indentation(this->plant_, wall, p, qd);
+        }
+        this->see(t, p, wall, in, this->tau_before_, qd, sight);
+    }
+
+    template <std::size_t n>
+    [[gnu::noinline]] void look_closer(const Rule<n>& rule, const Mask& closer) {
+        for (int lane = 0; lane < Base::lanes; ++lane)
+            if (Lanes<T>::is(closer, lane)) this->score_closely(lane, rule, solution(lane), theta(lane));
     }
 
     struct Due {

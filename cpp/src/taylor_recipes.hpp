@@ -7,8 +7,8 @@
 
 namespace arm3r {
 
-// What is expanded: the state, and where the tip is on the plate: depth, across1, across2.
-enum : std::size_t { signals_size = 3, quantities = state_size + signals_size };
+// What is expanded: the state; where the tip is on the plate: depth, across1, across2; and the work of each torque since.
+enum : std::size_t { signals_size = 3, works_at = state_size + signals_size, quantities = works_at + 3 };
 
 // What a motion is made of. `control`: a constant torque may also be none, with a torque of zero.
 struct Recipe {

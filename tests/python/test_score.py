@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+from typing import Any
+
 import arm3r_cpp as arm3r
+import numpy as np
 import pytest
+from force_scenarios import read
+from scipy.interpolate import make_interp_spline
 
 
 @pytest.mark.parametrize("solver", ["{}", "{method: rk4}", "{method: rodas4}"])
@@ -16,3 +22,94 @@ def test_the_path_error_of_a_law_in_joints_is_that_of_the_true_arm(solver: str) 
     )
     assert scenario.run().summary["metrics"]["tip_path_error_max"] == pytest.approx(0, abs=1e-15)
     assert scenario.batch({})["tip_path_error_rms"] == pytest.approx(0, abs=1e-15)
+
+
+# ---- the numbers of a summary against a dense log -------------------------------------------------------------------
+
+SCORED = ["b9a_hybrid", "b9d_hybrid_transpose", "b10a_parallel_moving_wall", "b10b_adaptive_reference", "b7a_stiffness",
+          "b8a_shaped_impedance", "b8c_admittance"]  # fmt: skip
+METHODS: dict[str, dict[str, Any]] = {
+    "dopri5": {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13},
+    "rodas4": {"method": "rodas4", "rtol": 1e-10, "atol": 1e-13},
+    "rk4": {"method": "rk4", "step": 1e-4},
+}
+STOP, ROWS = 0.6, 24000
+
+
+class DenseLog:
+    """The same numbers from the rows alone: splines of degree five between contact's changes, parabolas at peaks."""
+
+    def __init__(self, run: arm3r.Run) -> None:
+        self.run, self.t = run, np.asarray(run.t)
+        ends = [0.0, *(event.t for event in run.events), float(run.t[-1])]
+        self.pieces = [(a, b) for a, b in pairwise(ends) if b - a > 8 * self.t[1]]
+        self.in_contact = [(a, b) for a, b in self.pieces if run["contact"][np.searchsorted(self.t, 0.5 * (a + b))] > 0]
+
+    def integral(self, values: Any, pieces: list[tuple[float, float]]) -> float:
+        total = 0.0
+        for a, b in pieces:
+            inside = (self.t >= a) & (self.t <= b)
+            total += make_interp_spline(self.t[inside], values[inside], k=5).integrate(a, b)
+        return float(total)
+
+    def peak(self, values: Any) -> tuple[float, float]:
+        """Place and height of the parabola through the highest row and its neighbours, or the row at an end."""
+        i = int(np.argmax(values))
+        if i in (0, len(values) - 1):
+            return float(self.t[i]), float(values[i])
+        (before, here, after), spacing = values[i - 1 : i + 2], self.t[1]
+        share = 0.5 * (before - after) / (before - 2 * here + after)
+        return float(self.t[i] + share * spacing), float(here - 0.25 * (before - after) * share)
+
+
+def numbers_of(run: arm3r.Run) -> dict[str, float]:
+    log, numbers = DenseLog(run), {}
+    for i in range(3):
+        numbers[f"work_{i + 1}"] = log.integral(run["tau"][:, i] * run["qd"][:, i], log.pieces)
+    numbers["impulse"] = log.integral(run["force"], log.in_contact)
+    numbers["contact_time"] = sum(b - a for a, b in log.in_contact)
+    numbers["peak_force_time"], numbers["peak_force"] = log.peak(run["force"])
+    if "force_ref" in run:
+        miss = run["force_ref"] - run["force"]
+        numbers["force_error_rms"] = np.sqrt(log.integral(miss**2, log.in_contact) / numbers["contact_time"])
+        numbers["overshoot"] = max(0.0, log.peak(-miss)[1])
+    if "tip_ref" in run:
+        away = run["tip"] - run["tip_ref"]
+        across = away @ np.array(arm3r.Scenario(run.summary["scenario"])["wall.normal"])
+        error_2 = np.sum(away**2, axis=1) - (run["force_phase"] * across) ** 2 if "force_phase" in run else None
+        error_2 = np.sum(away**2, axis=1) if error_2 is None else error_2
+        numbers["tip_path_error_rms"] = np.sqrt(log.integral(error_2, log.pieces) / log.t[-1])
+        numbers["tip_path_error_max"] = np.sqrt(log.peak(error_2)[1])
+    return numbers
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", SCORED)
+def test_a_dense_log_has_the_numbers_of_the_summary(name: str, method: str) -> None:
+    run = read(name, {"solver": METHODS[method], "time.stop": STOP, "time.log_every": STOP / ROWS}).run()
+    told = {**run.summary["metrics"], **{key: run.summary[key] for key in ("peak_force", "impulse", "contact_time")}}
+    for key, due in numbers_of(run).items():
+        scale = max(abs(due), 1e-3)
+        assert told[key] == pytest.approx(due, abs=1e-8 * scale if "time" not in key else 1e-6), key
+    if "force_ref" in run:
+        assert told["overshoot"] == max(0.0, told["peak_force"] - run["force_ref"][0]), "a constant reference"
+
+
+@pytest.mark.parametrize("method", [*METHODS, "taylor"])
+def test_numbers_of_a_sampled_run_are_those_of_its_rows(method: str) -> None:
+    """P14: a circle on a moving wall at 50 Hz; steps may be as long as a sample."""
+    solver = {"method": "taylor", "tol": 1e-12} if method == "taylor" else METHODS[method]
+    changes = {
+        "sampling.rate": 50, "wall.motion": {"type": "constant", "velocity": 0.05}, "solver": solver,
+        "reference": {"type": "circle", "radius": 0.1, "period": 1, "force": {"value": 20}},
+        "time.stop": 1.0, "time.log_every": 1e-4,
+    }  # fmt: skip
+    run = read("b9a_hybrid", changes).run()
+    told, log = run.summary["metrics"], DenseLog(run)
+    held = run["tau"][:-1] * np.diff(run["q"], axis=0)
+    assert [told[f"work_{i}"] for i in (1, 2, 3)] == pytest.approx(held.sum(axis=0).tolist(), abs=1e-9)
+    miss = run["force_ref"] - run["force"]
+    assert told["force_error_rms"] == pytest.approx(
+        np.sqrt(log.integral(miss**2, log.in_contact) / run.summary["contact_time"]), rel=1e-5
+    )
+    assert told["overshoot"] == pytest.approx(log.peak(-miss)[1], rel=1e-6)
