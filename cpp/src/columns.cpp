@@ -99,7 +99,6 @@ std::string_view need_hint(Need need) {
     switch (need) {
         case Need::nothing: return "";
         case Need::wall: return "add `wall: {}`";
-        case Need::force: return "add `wall: {}` and choose a controller.type";
         case Need::force_reference: return "choose a controller.type that controls a force, such as hybrid";
         case Need::path: return "choose a controller.type that follows the tip, such as impedance, and a reference";
         case Need::joint_path: return "choose controller.type joint_pd or computed_torque, and a reference";
