@@ -25,6 +25,18 @@ Submit = Callable[[Job], "Future[Done]"]
 
 IN_FLIGHT = 64  # shards, of an executor that does not say how many workers it has
 
+_of_daemons: set[threading.Event] = set()
+"""Those that end sweeps of daemon threads: the interpreter does not wait for these, but it would for their pools."""
+
+
+def _leave_daemons() -> None:
+    for left in list(_of_daemons):
+        left.set()
+
+
+if hasattr(threading, "_register_atexit"):  # called before the threads of pools are joined
+    threading._register_atexit(_leave_daemons)
+
 
 def sweep(
     source: Sweep | Mapping[str, Any] | str | os.PathLike[str],
@@ -153,11 +165,14 @@ def _submitting(executor: Executor | None, jobs: int | None) -> Iterator[tuple[S
         if left.is_set():
             raise Arm3rError("the sweep was left", code="stopped")
 
+    if threading.current_thread().daemon:
+        _of_daemons.add(left)
     with ThreadPoolExecutor(threads) as pool:
         try:
             yield lambda job: pool.submit(work, job, go_on), 2 * threads
         finally:
             left.set()
+            _of_daemons.discard(left)
 
 
 def _allowed(jobs: int | None) -> int:
