@@ -15,7 +15,7 @@ import numpy as np
 from . import _native
 from ._native import Floats, lib
 from .errors import UsageError
-from .run_file import read
+from .run_file import read, with_numbers
 
 
 class Event(NamedTuple):
@@ -110,8 +110,11 @@ class Run:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The summary, as in the JSON file beside a CSV: name, outcome, events, checks, peak_force, hash, ..."""
-        return json.loads(_native.text(lib.arm3r_run_summary, self._handle))
+        """The summary, as in the JSON file beside a CSV: name, outcome, events, checks, peak_force, hash, ...
+
+        The text "inf", which stands in JSON for a number without end, is `math.inf` here, as it is in a batch.
+        """
+        return with_numbers(json.loads(_native.text(lib.arm3r_run_summary, self._handle)))
 
     def report(self) -> str:
         """The summary for people.

@@ -95,7 +95,18 @@ def _summary(text: str, path: Path) -> tuple[dict[str, Any], dict[str, str]]:
         raise _unreadable(path, "not the summary of a run: its brackets are nested too deep") from error
     if fault := _fault(summary, SUMMARY, "the file"):
         raise _unreadable(path, f"not the summary of a run: {fault}")
-    return summary, {column["name"]: column["unit"] for column in summary["columns"]}
+    return with_numbers(summary), {column["name"]: column["unit"] for column in summary["columns"]}
+
+
+def with_numbers(summary: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no infinity, and the library writes "inf": here the summary's numbers are numbers, as a batch's are."""
+
+    def number(value: Any) -> Any:
+        return float(value) if value in ("inf", "-inf") else value
+
+    metrics = {name: number(value) for name, value in (summary.get("metrics") or {}).items()}
+    own = {name: number(summary[name]) for name in ("energy_residual_max", *metrics) if name in summary}
+    return {**summary, **own, **({"metrics": metrics} if metrics else {})}
 
 
 # What readers of a summary rely on: a type, a list of one shape, or a map with at least these keys.
