@@ -138,44 +138,54 @@ def same_course(a: arm3r.Run, b: arm3r.Run) -> bool:
     return a.outcome == b.outcome and len(a.t) == len(b.t) and [e.type for e in a.events] == [e.type for e in b.events]
 
 
-def hold_together(scenario: Scenario, by: float) -> bool:
-    """Asserts that the run moved in time is the run; False where a nudge already changes the course of events."""
+def rejected(run: arm3r.Run) -> int:
+    return int(run.summary["steps"]["rejected"])
+
+
+def hold_together(scenario: Scenario, by: float) -> tuple[int, int] | None:
+    """Asserts that the run moved in time is the run; None where a nudge already changes the course of events.
+
+    Returns:
+        How many steps were rejected before the move and after it. A nudge alone changes this number by a quarter.
+    """
     scenario = prepare(scenario, by)
     run, other = run_of(scenario), run_of(nudged(scenario))
     if not same_course(run, other):
-        return False
+        return None
     later = run_of(moved(scenario, by))
     assert same_course(run, later), (run.outcome, later.outcome, later.summary["message"])
     assert np.abs(later.t - run.t - by).max() < 1e-12
-    # A shift weighs less than a tenth of the nudge; it begins as rounding, or as the tolerance of the method.
+    # A shift weighs less than a fifth of the nudge: it begins as rounding, and grows to what the tolerance allows.
     for a, b, c in zip(run.events, other.events, later.events, strict=True):
-        assert abs(c.t - by - a.t) < 1e-8 + 0.1 * abs(b.t - a.t), (a, c)
+        assert abs(c.t - by - a.t) < 1e-8 + 0.2 * abs(b.t - a.t), (a, c)
     for name in COLUMNS.split():
         if name in run.columns:
             size, growth = np.abs(run[name]).max(), np.abs(other[name] - run[name]).max()
             off = np.abs(later[name] - run[name])
-            assert off.max() < 1e-7 * (1 + size) + 0.1 * growth, (name, off.max(), run.t[off.argmax()], growth)
-    rejected = run.summary["steps"]["rejected"]
-    assert later.summary["steps"]["rejected"] <= rejected + 3 + rejected // 10
-    return True
+            assert off.max() < 1e-6 * (1 + size) + 0.2 * growth, (name, off.max(), run.t[off.argmax()], growth)
+    assert rejected(later) <= 5 + 1.4 * max(rejected(run), rejected(other))
+    return rejected(run), rejected(later)
 
 
 def hold_random(count: int) -> None:
     seed = fresh_seed()
     rng = np.random.default_rng(seed)
-    held = 0
+    counts: list[tuple[int, int]] = []
     for i in range(count):
         keys = random_scenario(rng, longest=0.8)
         method = ["dopri5", "rodas4", "auto", "rk4", "taylor"][i % 5]
         by = SHIFTS[int(rng.integers(2))]
         scenario = with_method(Scenario(yaml_of(keys)), method)
         try:
-            held += hold_together(scenario, by)
+            if steps := hold_together(scenario, by):
+                counts.append(steps)
         except AssertionError as error:
-            text = scenario.to_yaml() if hasattr(scenario, "to_yaml") else yaml_of(keys)
+            text = scenario.to_yaml()
             raise AssertionError(f"seed {seed}, scenario {i}, {method}, moved by {by} s: {error}\n{text}") from error
-    print(f"seed {seed}: {held} of {count} held against their shift")
-    assert held > 0.8 * count
+    before, after = (sum(column) for column in zip(*counts, strict=True))
+    print(f"seed {seed}: {len(counts)} of {count} held against their shift; rejected steps {before}, after it {after}")
+    assert len(counts) > 0.8 * count
+    assert after <= 1.05 * before + 20
 
 
 def test_random_scenarios_do_not_know_what_time_it_is() -> None:
@@ -191,14 +201,14 @@ def test_many_random_scenarios_do_not_know_what_time_it_is() -> None:
 def test_shipped_scenarios_do_not_know_what_time_it_is(path: Any) -> None:
     scenario = Scenario.load(path)
     scenario["time.stop"] = min(scenario["time.stop"], 0.5)
-    assert hold_together(scenario, 0.7)
+    assert hold_together(scenario, 0.7) is not None
 
 
 @pytest.mark.gate
 @pytest.mark.parametrize("by", SHIFTS)
 @pytest.mark.parametrize("path", scenario_files(), ids=lambda path: path.stem)
 def test_whole_shipped_scenarios_do_not_know_what_time_it_is(path: Any, by: float) -> None:
-    assert hold_together(Scenario.load(path), by)
+    assert hold_together(Scenario.load(path), by) is not None
 
 
 # ---- what counts from the start -------------------------------------------------------------------------------------
