@@ -50,7 +50,10 @@ public:
             for (int j = i + 1; j < size_; ++j) rest = rest - at(i, j) * x[j];
             x[i] = rest / at(i, i);
         }
-        return {x[0], T(-x[1] / x[0]), T(x[2] / x[0]), condition()};
+        const auto none = x[0] == T(0.0);  // of a force that no place changes: there is no face and no speed either
+        const T stiffness = select(none, T(1.0), x[0]);
+        return {x[0], select(none, T(0.0), T(-x[1] / stiffness)), select(none, T(0.0), T(x[2] / stiffness)),
+                condition()};
     }
 
 private:
