@@ -19,6 +19,8 @@ SIZE = 1e-7
 """of the disturbance: rad, rad/s and m, and ten times as much in m/s^2 of gravity"""
 FLOOR = SIZE
 """of what may differ, in a column's unit and relative to its largest value: some columns feel no disturbance"""
+NOISY = {"tip_dv": 100.0, "f_estimate": 10.0}
+"""times the floor: the error of an interpolant's slope, and a residual divided by a nearly singular Jacobian"""
 
 ADAPTIVE: dict[str, Keys] = {
     "dopri5": {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13},
@@ -98,7 +100,8 @@ class Band:
         for other in self.others:
             rows = min(len(other.t), len(column))
             spread[:rows] = np.maximum(spread[:rows], abs(other[name][:rows] - column[:rows]))
-        return np.maximum.accumulate(spread) + FLOOR * (1 + abs(column).max())
+        floor = FLOOR * next((factor for stem, factor in NOISY.items() if name.startswith(stem)), 1.0)
+        return np.maximum.accumulate(spread) + floor * (1 + abs(column).max())
 
     @property
     def growth(self) -> float:
