@@ -113,6 +113,19 @@ void slip_of_contact_step(const Setup& setup, std::vector<std::string>& slips) {
         check("step*damping/m_n", setup.solver.step * contact.damping / m_n, 1.3925, "2.785");
 }
 
+// A fixed step keeps its order where a jump lies on its grid only (5.8).
+void slip_of_jump(const Setup& setup, std::vector<std::string>& slips) {
+    if (setup.solver.method != Solver::rk4) return;
+    const double step = setup.solver.step;
+    for (double t = next_jump(setup, setup.start); t < setup.stop; t = next_jump(setup, t)) {
+        if (t == setup.start + nearest_integer((t - setup.start) / step) * step) continue;
+        slips.push_back("a push, the reference or the wall's table jumps at t = " + shortest(t) +
+                        " s, within a step of rk4, which is of first order there; take a solver.step that reaches this "
+                        "instant in whole steps, or method: dopri5");
+        return;
+    }
+}
+
 void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
     if (!setup.plant.has_wall) return;
     const double past = past_shoulder(setup);
@@ -132,6 +145,7 @@ std::vector<std::string> likely_slips(std::span<const double> params) {
     slip_of_links(setup.plant.arm, slips);
     slip_of_units(setup.plant.arm, slips);
     slip_of_wall(setup, slips);
+    slip_of_jump(setup, slips);
     add_controller_slips(setup, slips);
     return slips;
 }

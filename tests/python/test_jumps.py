@@ -173,3 +173,12 @@ def test_a_row_where_a_torque_changes_shows_the_new_one(method: str, rate: float
     same = np.flatnonzero(first >= 0)
     stale = [int(i) for i in same if run["tau2"][i] != run["tau2"][int(first[i])]]
     assert not stale, (len(stale), stale[:5])
+
+
+def test_a_jump_within_a_fixed_step_is_warned_of() -> None:
+    def warnings(start: float, method: str) -> list[str]:
+        changes = {"push": {"force": [9, -4, 6], "start": start}, "time.stop": 0.5, "solver": {"method": method}}
+        return [text for text in scenario(HELD, changes).run().summary["warnings"] if "first order" in text]
+
+    assert "t = 0.1004 s" in warnings(0.1004, "rk4")[0]
+    assert warnings(0.1, "rk4") == warnings(0.1004, "dopri5") == []
