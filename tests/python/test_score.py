@@ -120,8 +120,9 @@ def test_numbers_of_a_sampled_run_are_those_of_its_rows(method: str) -> None:
 
 def test_an_infinite_number_is_the_same_in_a_run_and_in_a_batch() -> None:
     scenario = arm3r.Scenario(
-        "{format: 1, wall: {acts_on_arm: true, contact: {stiffness: 1.0e+9}}, initial: {q: [0.1, -0.5, 1.1], qd: [0, 3, -5]},"
-        " controller: {type: gravity_compensation}, solver: {method: rk4, step: 1}, time: {stop: 200}}"
+        "{format: 1, wall: {acts_on_arm: true, contact: {stiffness: 1.0e+9}},"
+        " initial: {q: [0.1, -0.5, 1.1], qd: [0, 3, -5]}, controller: {type: gravity_compensation},"
+        " solver: {method: rk4, step: 1}, time: {stop: 200}}"
     )
     with pytest.raises(arm3r.NumericalError) as failed:
         scenario.run()
