@@ -9,6 +9,7 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from force_scenarios import read
+from random_scenarios import fresh_seed, random_scenario, yaml_of
 from scipy.interpolate import make_interp_spline
 
 
@@ -113,6 +114,67 @@ def test_numbers_of_a_sampled_run_are_those_of_its_rows(method: str) -> None:
         np.sqrt(log.integral(miss**2, log.in_contact) / run.summary["contact_time"]), rel=1e-5
     )
     assert told["overshoot"] == pytest.approx(log.peak(-miss)[1], rel=1e-6)
+
+
+# ---- random scenarios -----------------------------------------------------------------------------------------------
+
+
+def check_against_rows(run: arm3r.Run) -> None:
+    """What holds whatever jumps: works add up, peaks are those of rows and what may lie between, means agree."""
+    told, log = {**run.summary["metrics"], "peak_force": run.summary["peak_force"]}, DenseLog(run)
+    works = [told[f"work_{i}"] for i in (1, 2, 3)]
+    scale = max(1e-3, *np.abs(works), *np.abs(run["work_actuators"]))
+    assert sum(works) == pytest.approx(told["work_actuators"], abs=1e-7 * scale)
+
+    def check_peak(name: str, values: Any) -> None:
+        i, highest, top = int(np.argmax(values)), float(np.max(values)), log.peak(values)[1]
+        due = max(0.0, highest)
+        slack = 3 * abs(top - highest)
+        if 0 < i < len(values) - 1:  # a damped force is largest where contact begins, between two rows
+            slack += 2 * min(abs(values[i] - values[i - 1]), abs(values[i] - values[i + 1]))
+        assert told[name] >= due - 1e-9 * max(1.0, due), name
+        assert told[name] <= due + slack + 1e-4 * max(1.0, due), name
+
+    if run.events:
+        check_peak("peak_force", run["force"])
+    if "force_ref" in run and run.events:
+        touching = run["contact"] > 0
+        check_peak("overshoot", np.where(touching, run["force"] - run["force_ref"], 0.0))
+        miss_2 = np.where(touching, run["force_ref"] - run["force"], 0.0) ** 2
+        due = np.sqrt(np.trapezoid(miss_2, run.t) / run.summary["contact_time"])
+        assert told["force_error_rms"] == pytest.approx(due, rel=1e-2, abs=1e-3)
+    if "tip_ref" in run and "force_phase" not in run:
+        away = np.linalg.norm(run["tip"] - run["tip_ref"], axis=1)
+        check_peak("tip_path_error_max", away)
+        due = np.sqrt(np.trapezoid(away**2, run.t) / (run.t[-1] - run.t[0]))
+        assert told["tip_path_error_rms"] == pytest.approx(due, rel=1e-4, abs=1e-9)
+
+
+def check_random_scenarios(count: int) -> None:
+    seed = fresh_seed()
+    print("seed", seed)
+    rng = np.random.default_rng(seed)
+    for number in range(count):
+        keys = random_scenario(rng, longest=0.5)
+        keys["solver"] = {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13}
+        keys["time"]["log_every"] = keys["time"]["stop"] / 4000
+        try:
+            run = arm3r.Scenario(yaml_of(keys)).run(time_limit=20)
+        except (arm3r.NumericalError, arm3r.BudgetError):
+            continue
+        try:
+            check_against_rows(run)
+        except AssertionError as error:
+            raise AssertionError(f"scenario {number} of seed {seed}:\n{yaml_of(keys)}") from error
+
+
+def test_numbers_of_random_runs_are_those_of_their_rows() -> None:
+    check_random_scenarios(20)
+
+
+@pytest.mark.gate
+def test_numbers_of_many_random_runs_are_those_of_their_rows() -> None:
+    check_random_scenarios(300)
 
 
 # ---- numbers without end --------------------------------------------------------------------------------------------
