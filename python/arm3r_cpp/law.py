@@ -48,6 +48,7 @@ class Caller:
         self._law = law
         self._memory: _native.StateMemory | None = None
         self._period = 1.0
+        self._first = 0.0
         self.t = 0.0
         self.received: Any = None
 
@@ -55,7 +56,7 @@ class Caller:
         memory = self._memory
         if memory is None:
             memory = self._memory = _native.StateMemory(struct)
-            self._period = struct.period
+            self._period, self._first = struct.period, struct.t
         self.t = t = struct.t
         self.received = None
         state = _new(LawState)
@@ -70,7 +71,7 @@ class Caller:
     @property
     def tick(self) -> int:
         """The last one."""
-        return round(self.t / self._period)
+        return round((self.t - self._first) / self._period)
 
 
 def run_with_law(

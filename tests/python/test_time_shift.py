@@ -240,6 +240,15 @@ def test_samples_count_from_the_start() -> None:
     assert len(seen) == 6
 
 
+def test_a_law_that_fails_is_told_its_sample() -> None:
+    def law(t: float, state: Any) -> Any:
+        return state.tau_g if t < 0.73 else "no torque"
+
+    scenario = Scenario("format: 1\ncontroller: {type: user}\nsampling: {rate: 100}\ntime: {start: 0.7, stop: 0.75}")
+    with pytest.raises(arm3r.ControllerError, match=r"at tick 3, t = 0\.73 s"):
+        scenario.run(controller=law)
+
+
 def test_the_wall_stands_at_its_point_at_zero() -> None:
     text = PLAIN + "wall: {motion: {type: constant, velocity: 0.05}}\ntime: {start: 2, stop: 3}"
     run = Scenario(text).run()
