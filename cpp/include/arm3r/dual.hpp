@@ -58,9 +58,10 @@ struct Dual {
         return Dual(arm3r::nearest_integer(x.number));
     }  // flat but for its jumps
 
+    // Where the slope is infinite or undefined it is taken for 0: a clamped argument stands there and does not move.
     friend Dual sqrt(const Dual& x) {
         const double root = sqrt(x.number);
-        return chain(root, x, 0.5 / root);
+        return chain(root, x, root > 0.0 ? 0.5 / root : 0.0);
     }
     friend SinCos<Dual> sincos(const Dual& x) {
         const auto [sine, cosine] = sincos(x.number);
@@ -72,7 +73,8 @@ struct Dual {
     }
     friend Dual atan2(const Dual& y, const Dual& x) {
         const double square = x.number * x.number + y.number * y.number;
-        return chain(atan2(y.number, x.number), y, x.number / square, x, -y.number / square);
+        const double by_y = square > 0.0 ? x.number / square : 0.0, by_x = square > 0.0 ? -y.number / square : 0.0;
+        return chain(atan2(y.number, x.number), y, by_y, x, by_x);
     }
     friend Dual fifth_root(const Dual& x) {
         const double root = fifth_root(x.number);
