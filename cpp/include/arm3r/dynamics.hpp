@@ -56,10 +56,15 @@ ARM3R_INLINE Vec3<T> link_weight(const Lumped<P>& l, const Vec3<G>& g, bool vert
             (l.G3 * p.S23) * gr - (l.G3 * p.C23) * g[2]};
 }
 
+template <class P, class T>
+ARM3R_INLINE Vec3<T> link_weight(const Arm<P>& arm, const Pose<T>& p) {
+    return link_weight(arm.lumped, arm.gravity, arm.gravity_is_vertical, p);
+}
+
 // tau_g: the torque that holds the arm at rest, dU/dq (3.5).
 template <class P, class T>
 ARM3R_INLINE Vec3<T> gravity_torque(const Arm<P>& arm, const Pose<T>& p) {
-    const Vec3<T> weight = link_weight(arm.lumped, arm.gravity, arm.gravity_is_vertical, p);
+    const Vec3<T> weight = link_weight(arm, p);
     return {weight[0], weight[1] + weight[2], weight[2]};
 }
 
@@ -101,9 +106,11 @@ ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const
     return {radius(arm, p) * around, second + third, third};
 }
 
-// qdd from the torques that drive the joints: actuators less friction plus J^T f. Solved in the absolute link angles (3.8).
+// qdd from the torques that drive the joints: actuators less friction plus J^T f; and from the weight on the link angles,
+// or what a controller leaves of it. Solved in the absolute link angles (3.8).
 template <class P, class T>
-ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive) {
+ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive,
+                                        const Vec3<T>& weight) {
     const Lumped<P>& l = arm.lumped;
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T w1_2 = w1 * w1;
@@ -112,7 +119,6 @@ ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, con
     const T BC23 = l.B * p.C23, BC2 = l.B * p.C2;
     const T Pc = l.A2 * p.C2 + BC23, Q = l.A3 * p.C23 + BC2;
     const T S2P = p.S2 * Pc, S23Q = p.S23 * Q;
-    const Vec3<T> weight = link_weight(l, arm.gravity, arm.gravity_is_vertical, p);
 
     const T M11 = l.A1 + p.C2 * Pc + p.C23 * Q;
     const T R1 = drive[0] - weight[0] + 2.0 * (S2P * w2 + S23Q * w3) * w1;
@@ -125,6 +131,11 @@ ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, con
     const T phi2_dd = (Mb33 * R2 - Mb23 * R3) * inverse_det;
     const T phi3_dd = (Mb22 * R3 - Mb23 * R2) * inverse_det;
     return {R1 / M11, phi2_dd, phi3_dd - phi2_dd};
+}
+
+template <class P, class T>
+ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive) {
+    return joint_acceleration(arm, p, qd, drive, link_weight(arm, p));
 }
 
 // M qdd + C qd + tau_g + tau_f = tau + J^T f_on_tip (3.1), solved for qdd.

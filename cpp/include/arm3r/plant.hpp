@@ -118,7 +118,7 @@ public:
         const Vec3<T> load = plant_.load.on ? load_at(plant_.load, t) : none<T>();
         tau = torque(t, wall, p, q, qd, plant_.load.on ? plus(feeling.on_tip, load) : feeling.on_tip, y, dy);
         const Vec3<T> tau_f = friction_torque(arm, qd);
-        Vec3<T> drive = minus(tau, tau_f);
+        Vec3<T> drive = minus(compensates_weight() ? none<T>() : tau, tau_f);
         T outer_power(0.0), contact_loss(0.0);
         if (plant_.acts_on_arm && feeling.anything) {
             drive = plus(drive, tip_force_torque(arm, p, feeling.on_tip));
@@ -129,7 +129,7 @@ public:
             drive = plus(drive, tip_force_torque(arm, p, load));
             outer_power = outer_power + dot(load, tip_velocity(arm, p, qd));
         }
-        const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive);
+        const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive, weight_left(p));
         for (int i = 0; i < 3; ++i) {
             dy[i] = qd[i];
             dy[3 + i] = qdd[i];
@@ -205,6 +205,18 @@ public:
     }
 
 private:
+    // Whether the actuators do nothing but carry the weight of the controller's arm: they are then taken together with that
+    // of the arm, so that nothing is left by rounding where the two are equal (3.8).
+    ARM3R_INLINE bool compensates_weight() const {
+        const Controller<P>& controller = plant_.controller;
+        return controller.type == Controls::gravity_compensation && controller.algorithm == Algorithm::closed_form &&
+               !plant_.arm.has_torque_limit;
+    }
+    ARM3R_INLINE Vec3<T> weight_left(const Pose<T>& p) const {
+        const Vec3<T> weight = link_weight(plant_.arm, p);
+        return compensates_weight() ? minus(weight, link_weight(plant_.controller.model, p)) : weight;
+    }
+
     // What the wall does to the tip: nothing but where it touches.
     struct Feeling {
         bool anything = false;
