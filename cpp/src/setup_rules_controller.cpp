@@ -206,6 +206,30 @@ void check_levels(const Controller<double>& controller, Findings& findings) {
                     findings);
 }
 
+// An indirect reference is shifted until the spring presses with the wanted force: where the spring is to press, it needs
+// a stiffness (7.18).
+void check_compliance(const Setup& setup, Findings& findings) {
+    const Controller<double>& law = setup.law();
+    if (law.type != Controls::adaptive_reference || law.adaptation != Adaptation::indirect) return;
+    const Wall<double>& wall = setup.plant.wall;
+    for (int i = 0; i < 3; ++i) {
+        const bool presses = wall.rotation != Rotation::none || wall.n[i] != 0;
+        if (!presses || law.gains.stiffness[i] > 0) continue;
+        findings.add([&] {
+            return Problem{.code = "scenario.needs_stiffness",
+                           .path = "controller.stiffness",
+                           .message =
+                               "adaptation indirect shifts the reference until the spring presses on the wall, and "
+                               "along " +
+                               std::string(1, "xyz"[i]) + " there is no spring",
+                           .got = shortest(law.gains.stiffness[i]) + " N/m along " + "xyz"[i],
+                           .allowed = "above 0 along each axis of which the wall's normal has a part",
+                           .hint = "give a stiffness, or take adaptation: integral"};
+        });
+        return;
+    }
+}
+
 }  // namespace
 
 void check_controller_keys(std::span<const double> params, Findings& findings) {
@@ -227,6 +251,7 @@ void check_controller(std::span<const double> params, const Setup& setup, Findin
     check_target(params, setup, findings);
     check_pose(params, setup, findings);
     check_levels(setup.law(), findings);
+    check_compliance(setup, findings);
 }
 
 }  // namespace arm3r
