@@ -42,31 +42,45 @@ struct Taken {
     bool at_jump;  // of a formula of time alone
 };
 
+// All that changes in the course of a run, beside what its recorder and its stepper keep: a copy goes on by itself.
+struct Progress {
+    struct Present {
+        FullState y{};
+        double h = 0;
+        double theta = 0;  // where the present instant lies in the last step
+        bool just_rejected = false;
+        bool trial_was_finite = true;  // the last one that was rejected
+        double touching_since = 0, events = 0;
+        Peak peak{};
+        bool waits = true, has_set_off = false;  // at a sample not yet attended; the first one is behind
+        Taken taken{};
+    };
+
+    explicit Progress(const Setup& setup) : now_{start_of(setup)} {}
+
+    ControlLoop<double> loop_;
+    Tally<double> tally_;
+    Present now_;
+    Ledger ledger_;
+};
+
 // N: state_size, or full_size where a continuous controller remembers something.
 template <std::size_t N>
-class AdaptiveRun : public Stepwise, Recorder {
+class AdaptiveRun : public Stepwise, Recorder, Progress {
     using Y = State<double, N>;
 
 public:
     AdaptiveRun(std::span<const double> params, const RunOptions& options)
-        : Recorder(params, options),
-          stepper_(setup_),
-          watch_(setup_.plant, looks_per_step),
-          now_{start_of(setup_)},
-          ledger_(setup_, now_.y, mode_ = watch_.mode_at_start(setup_.start, now_.y)) {
+        : Recorder(params, options), Progress(setup_), stepper_(setup_), watch_(setup_.plant, looks_per_step) {
+        mode_ = watch_.mode_at_start(setup_.start, now_.y);
+        ledger_ = Ledger(setup_.plant, setup_.start, now_.y, mode_);
         loop_.put(0, setup_.digital, setup_.estimation);
         loop_.user = options.user_law;
         start();
     }
 
     AdaptiveRun(const AdaptiveRun& other)
-        : Recorder(other),
-          stepper_(setup_, other.stepper_),
-          watch_(setup_.plant, looks_per_step),
-          loop_(other.loop_),
-          tally_(other.tally_),
-          now_(other.now_),
-          ledger_(setup_, other.ledger_) {}
+        : Recorder(other), Progress(other), stepper_(setup_, other.stepper_), watch_(setup_.plant, looks_per_step) {}
 
     bool is_over() const override { return !now_.waits; }
     void use(const UserLaw& law) override { loop_.user = law; }
@@ -100,23 +114,12 @@ public:
     Run conclude() override {
         if (!is_over()) end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(run_.t_end));
         note_end();
-        return finish(now_.y, now_.theta, ledger_.flows());
+        Flows flows = ledger_.flows();
+        flows.leverage = leverage(setup_.plant, run_.peak_force);
+        return finish(now_.y, now_.theta, flows);
     }
 
 private:
-    // All that changes in the course of the run and is no part's own.
-    struct Present {
-        FullState y;
-        double h = 0;
-        double theta = 0;  // where the present instant lies in the last step
-        bool just_rejected = false;
-        bool trial_was_finite = true;  // the last one that was rejected
-        double touching_since = 0, events = 0;
-        Peak peak{};
-        bool waits = true, has_set_off = false;  // at a sample not yet attended; the first one is behind
-        Taken taken{};
-    };
-
     // The components that there are.
     Y moving() const {
         Y y;
@@ -235,6 +238,7 @@ private:
         if (loop_.next() > run_.t_end + setup_.clock_rounding() || !is_going_on()) return false;
         Instant<double> now = instant();
         loop_.attend(true, setup_.clock_rounding(), setup_.plant.arm, now, setup_.plant.controller.torque);
+        note_torque();
         known_ = loop_.known();
         if (asks_estimator(setup_.plant.controller) && known_.identifiable > 0)
             setup_.plant.controller.gains.assumed_stiffness = known_.stiffness;
@@ -362,7 +366,7 @@ private:
         const bool new_torque = attend();
         stepper_.set(touch(), contact_, force_phase_, infinite);
         stepper_.accept(run_.t_end, moving(), now_.taken.h, now_.taken.goes_on && !new_torque);
-        ledger_.close(run_.t_end, now_.y, mode_);
+        ledger_.close(setup_.plant, run_.t_end, now_.y, mode_);
         const double factor = stepper_.factor(now_.taken.error);
         now_.h = std::max(now_.taken.h, now_.taken.was_last ? now_.h : 0.0) *
                  (now_.just_rejected ? std::min(factor, 1.0) : factor);
@@ -446,11 +450,7 @@ private:
 
     Stepper<N> stepper_;
     ContactWatch watch_;
-    ControlLoop<double> loop_;
-    Tally<double> tally_;
     const bool is_scored_ = setup_.is_scored();
-    Present now_;
-    Ledger ledger_;
 };
 
 }  // namespace

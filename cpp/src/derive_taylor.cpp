@@ -93,14 +93,14 @@ public:
         return size() - 1;
     }
 
-    const Node& operator[](int i) const { return tape_.nodes()[i]; }
+    const TapeNode& operator[](int i) const { return tape_.nodes()[i]; }
     int size() const { return static_cast<int>(tape_.nodes().size()); }
     bool is_series(int i) const { return series_[i]; }
     bool is_state(int i) const { return series_[i] && (*this)[i].op == Op::input; }
     bool is_number(int i, double x) const { return (*this)[i].op == Op::constant && (*this)[i].number == x; }
     bool is_scaled(int i) const { return is_series(i) && (*this)[i].op == Op::multiply && !is_series((*this)[i].a); }
     bool is_convolution(int i) const {
-        const Node& n = (*this)[i];
+        const TapeNode& n = (*this)[i];
         return is_series(i) && ((n.op == Op::multiply && is_series(n.a)) || n.op == Op::divide);
     }
     const std::vector<Function>& functions() const { return functions_; }
@@ -208,7 +208,7 @@ private:
     }
 
     int derivative(int i, const std::map<int, int>& derivatives) {
-        const Node n = (*this)[i];
+        const TapeNode n = (*this)[i];
         if (!is_series(i)) return number(0);
         if (is_state(i)) return derivatives.at(i);
         if (n.op == Op::negate) return negate(derivative(n.a, derivatives));
@@ -218,7 +218,7 @@ private:
         throw std::logic_error("the argument of a function is not linear in the states");
     }
 
-    int record(const Node& node) {
+    int record(const TapeNode& node) {
         const int place = tape_.record(node);
         if (place == static_cast<int>(series_.size()))
             series_.push_back((node.a >= 0 && series_[node.a]) || (node.b >= 0 && series_[node.b]));
@@ -246,7 +246,7 @@ struct System {
 
     explicit System(const Tape& tape) {
         std::vector<int> place;
-        for (const Node& node : tape.nodes()) place.push_back(translated(node, place));
+        for (const TapeNode& node : tape.nodes()) place.push_back(translated(node, place));
         for (const int output : tape.outputs()) {
             std::vector<int>& list = rates.size() < given_size ? rates : powers.size() < 3 ? powers : signals;
             list.push_back(place[output]);
@@ -259,7 +259,7 @@ struct System {
     }
 
 private:
-    int translated(const Node& n, const std::vector<int>& place) {
+    int translated(const TapeNode& n, const std::vector<int>& place) {
         if (n.op == Op::input) return input();
         if (n.op == Op::constant) return series.number(n.number);
         const int a = place[n.a], b = n.b < 0 ? -1 : place[n.b];
@@ -366,7 +366,7 @@ private:
         const auto position = [i](const std::vector<int>& list) {
             return std::to_string(std::find(list.begin(), list.end(), i) - list.begin());
         };
-        const Node& n = series_[i];
+        const TapeNode& n = series_[i];
         if (const Series::Function* f = series_.function_of(i)) {
             if (f->start >= 0) return named('z', f->start);
             if (f->op == Op::tanh) return "tanh(" + named('z', f->argument) + ")";
@@ -397,7 +397,7 @@ private:
 
     // Of order k >= 1. Each adds what is known last at the end: the newest coefficients come as a chain.
     std::string next(int i) const {
-        const Node& n = series_[i];
+        const TapeNode& n = series_[i];
         const auto x = [](int operand) { return named('x', operand); };
         const auto z = [](int operand) { return named('z', operand); };
         const bool a_moves = series_.is_series(n.a), b_moves = n.b >= 0 && series_.is_series(n.b);
@@ -493,7 +493,7 @@ private:
     // ---- inner sums: a[1] b[k-1] + ... + a[k-1] b[1], from the middle outwards, so that the newest come last; of a
     // square, half of it
     std::array<int, 2> factors(int i) const {
-        const Node& n = series_[i];
+        const TapeNode& n = series_[i];
         return n.op == Op::divide ? std::array{n.b, i} : std::array{n.a, n.b};
     }
 

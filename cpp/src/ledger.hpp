@@ -13,10 +13,15 @@
 
 namespace arm3r {
 
-// J, over a run so far: the largest flow, the largest stock, and the largest residual.
+// J, over a run so far: the largest flow, the largest stock, and the largest residual; and the largest force of the wall
+// times the arm's reach, of which the rounding of a place makes an energy.
 struct Flows {
-    double exchanged = 0, held = 0, residual = 0;
+    double exchanged = 0, held = 0, residual = 0, leverage = 0;
 };
+
+inline double leverage(const Plant<double>& plant, double peak_force) {
+    return plant.acts_on_arm ? peak_force * (plant.arm.link2.length + plant.arm.link3.length) : 0;
+}
 
 // What the residual may be at the end, and whether more is the run's outcome or only a warning.
 double balance_limit(const Solver& solver, const Flows& flows);
@@ -27,20 +32,18 @@ std::optional<std::string> balance_complaint(const Solver& solver, const Flows& 
 
 class Ledger {
 public:
-    Ledger(const Setup& setup, const FullState& y, Mode mode);
-    // As far as another one of the same setup.
-    Ledger(const Setup& setup, const Ledger& other) : setup_(setup), start_(other.start_), flows_(other.flows_) {}
+    Ledger() = default;
+    Ledger(const Plant<double>& plant, double t, const FullState& y, Mode mode);
 
     double energy_at_start() const { return start_.sum(); }  // J
 
     // After each step: note what the balance leaves over, and the largest flows.
-    void close(double t, const FullState& y, Mode mode);
+    void close(const Plant<double>& plant, double t, const FullState& y, Mode mode);
 
     const Flows& flows() const { return flows_; }
 
 private:
-    const Setup& setup_;
-    Energies start_;
+    Energies start_{};
     Flows flows_;
 };
 

@@ -91,6 +91,10 @@ public:
         failed_ = true;
     }
     Metrics metrics(int lane) const;
+    double peak_force(int lane) const {  // N, normal
+        return is_elastic_ ? Lanes<T>::get(true_contact_.stiffness[0], lane) * Lanes<T>::get(deepest_, lane)
+                           : Lanes<T>::get(peak_, lane);
+    }
     Flows flows(int lane) const;
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };

@@ -282,7 +282,7 @@ Metrics March<T, N>::metrics(int lane) const {
     Metrics m;
     m.outcome = outcome_[lane];
     m.t_end = get(t_);
-    m.peak_force = is_elastic_ ? stiffness * get(deepest_) : get(peak_);
+    m.peak_force = peak_force(lane);
     if (contacts.count > 0) m.peak_force_time = get(peak_time_);
     m.impulse = is_elastic_ ? stiffness * get(depth_time_) : get(impulse_);
     m.contact_time = contacts.time + (touches ? m.t_end - contacts.since : 0);
@@ -308,7 +308,8 @@ Metrics March<T, N>::metrics(int lane) const {
 
 template <class T, std::size_t N>
 Flows March<T, N>::flows(int lane) const {
-    return {Lanes<T>::get(exchanged_, lane), Lanes<T>::get(held_, lane), Lanes<T>::get(residual_, lane)};
+    const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+    return {get(exchanged_), get(held_), get(residual_), leverage(setups_[lane].plant, peak_force(lane))};
 }
 
 // By name: `template class` would also build, for no caller, what is inlined everywhere (ARM3R_INLINE).

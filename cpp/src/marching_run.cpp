@@ -66,7 +66,9 @@ private:
         known_ = march_.known();
         contact_ = march_.contact(0);
         force_phase_ = march_.force_phase(0);
-        if (setup_.digital.sampling.on) setup_.plant.controller.torque = march_.torque(0);
+        if (!setup_.digital.sampling.on) return;
+        setup_.plant.controller.torque = march_.torque(0);
+        note_torque();
     }
 
     // The solution within the last step; it is asked for only where rows or events lie in the step.
@@ -103,8 +105,7 @@ private:
         for (int i = 0; i < 3; ++i)
             if (!(std::abs(run_.q[i]) <= sincos_limit))
                 return "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad" + at_time(t);
-        return "the motion is no longer finite after t = " + shortest(t) + " s; " +
-               (setup_.solver.method == Solver::rk4 ? "a smaller solver.step may hold it" : "tighten solver.tol");
+        return "the motion is no longer finite after t = " + shortest(t) + " s";
     }
 
     Marching march_;

@@ -10,10 +10,6 @@
 namespace arm3r {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 Setup small_enough(Setup setup, bool rows) {
     refuse_too_large(setup, rows);
     return setup;
@@ -22,44 +18,15 @@ Setup small_enough(Setup setup, bool rows) {
 }  // namespace
 
 Recorder::Recorder(std::span<const double> params, const RunOptions& options)
-    : setup_(small_enough(make_setup(params), options.rows)), options_(options), rows_(setup_, run_, options.rows) {
+    : setup_(small_enough(make_setup(params), options.rows)), options_(options) {
     run_.t_end = setup_.start;
     run_.has_user_law = setup_.law().type == Controls::user;
     if (!options.rows) return;
+    rows().reserve();
     run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
     run_.torque_limit = plain(setup_.plant.arm.torque_limit);
     run_.events.reserve(static_cast<std::size_t>(most_events));
     run_.warnings = likely_slips(params);
-}
-
-Recorder::Recorder(const Recorder& other)
-    : setup_(other.setup_),
-      options_(other.options_),
-      mode_(other.mode_),
-      inside_(other.inside_),
-      known_(other.known_),
-      contact_(other.contact_),
-      force_phase_(other.force_phase_),
-      rows_(setup_, run_, other.options_.rows),
-      energy_at_start_(other.energy_at_start_) {
-    static_cast<Metrics&>(run_) = other.run_;
-    run_.message = other.run_.message;
-    run_.warnings = other.run_.warnings;
-    run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
-    run_.torque_limit = other.run_.torque_limit;
-    run_.energy_residual_max = other.run_.energy_residual_max;
-    run_.has_user_law = other.run_.has_user_law;
-    rows_.go_on_from(other.rows_);
-    if (!options_.rows) return;
-    run_.events.reserve(static_cast<std::size_t>(most_events));
-    run_.events.assign(other.run_.events.begin(), other.run_.events.end());
-    copy_rows(other.run_);
-}
-
-void Recorder::copy_rows(const Run& from) {
-    run_.rows = from.rows;
-    for (std::size_t i = 0; i < from.columns.size(); ++i)
-        std::copy_n(from.data.get() + i * from.capacity, from.rows, run_.data.get() + i * run_.capacity);
 }
 
 void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start) {
@@ -71,7 +38,7 @@ void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double e
     for (std::size_t i = 0; i < full_size; ++i) ahead[i] = y[i] + a_moment * f[i];
     inside_.take(hermite(setup_.start, a_moment, y, f, ahead, f));
     if (options_.rows && setup_.stop > setup_.start)
-        rows_.log(scene(), setup_.start, y, 0.0);  // whatever becomes of the first step
+        rows().log(scene(), setup_.start, y, 0.0);  // whatever becomes of the first step
 }
 
 void Recorder::note_change(const Change& change, const FullState& y) {
@@ -109,7 +76,7 @@ bool Recorder::poll() {
 }
 
 void Recorder::read_clock() {
-    const double elapsed = seconds_since(begun_);
+    const double elapsed = stopwatch_.seconds();
     if (options_.time_limit > 0 && elapsed > options_.time_limit)
         end(ARM3R_RUN_BUDGET,
             "the time limit of " + shortest(options_.time_limit) + " s is used up" + at_time(run_.t_end));
@@ -121,22 +88,40 @@ void Recorder::read_clock() {
     if (answer > 0) end(ARM3R_RUN_STOPPED, "stopped" + at_time(run_.t_end));
 }
 
+// What can be seen of the cause of a bad end, and else what may help.
+void Recorder::explain(const FullState& y) {
+    const auto is = [&](arm3r_outcome outcome) { return run_.outcome == outcome; };
+    const bool is_numerical = is(ARM3R_RUN_DIVERGED) || is(ARM3R_RUN_ENERGY) || is(ARM3R_RUN_STEP_COLLAPSE);
+    if (!is_numerical && !is(ARM3R_RUN_EVENT_STORM) && !is(ARM3R_RUN_BUDGET)) return;
+    std::optional<std::string> cause;
+    if (setup_.digital.sampling.on) cause = swings_.complaint(setup_.digital.sampling.period);
+    if (!cause) cause = singular_pose(setup_, run_, angles(y));
+    if (cause) run_.message += "; " + *cause;
+    else if (is(ARM3R_RUN_ENERGY)) run_.message += std::string("; ") + accuracy_advice(setup_.solver);
+}
+
 Run Recorder::finish(const FullState& y, double theta, const Flows& flows) {
     if (is_going_on()) {
         log_until(run_.t_end);
-        if (options_.rows) rows_.log(scene(), run_.t_end, y, theta);
+        if (options_.rows) rows().log(scene(), run_.t_end, y, theta);
         if (const std::optional<std::string> complaint = balance_complaint(setup_.solver, flows)) {
             if (is_strict(setup_.solver)) end(ARM3R_RUN_ENERGY, *complaint);
-            else run_.warnings.push_back(*complaint);
+            else run_.warnings.push_back(*complaint + "; " + accuracy_advice(setup_.solver));
         }
     }
-    if (rows_.link_behind_wall_since() >= 0)
+    explain(y);
+    if (run_.link_behind_wall_since >= 0)
         run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
-                                shortest(rows_.link_behind_wall_since()) + " s on; only the tip feels the wall");
-    run_.t_end = std::max(run_.t_end, rows_.last_time());
+                                shortest(run_.link_behind_wall_since) + " s on; only the tip feels the wall");
+    if (run_.out_of_reach_since >= 0)
+        run_.warnings.push_back(
+            "the point that the admittance gives its joint loop is out of the arm's reach from t = " +
+            shortest(run_.out_of_reach_since) + " s on, by at most " + shortest(run_.out_of_reach_by) +
+            " m; the arm is stretched towards it");
+    run_.t_end = std::max(run_.t_end, rows().last_time());
     run_.ledger_residual = flows.residual;
     run_.energy_residual_max = std::max(run_.energy_residual_max, flows.residual);
-    run_.elapsed_s = seconds_since(begun_);
+    run_.elapsed_s = stopwatch_.seconds();
     return std::move(run_);
 }
 

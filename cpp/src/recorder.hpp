@@ -4,30 +4,45 @@
 #include <chrono>
 
 #include "contact_step.hpp"
+#include "diagnosis.hpp"
 #include "row_log.hpp"
 
 namespace arm3r {
 
 inline constexpr double most_events = 4096;
 
+// The time since it was made; a copy starts anew.
+class Stopwatch {
+public:
+    Stopwatch() = default;
+    Stopwatch(const Stopwatch&) {}
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begun_ = Clock::now();
+};
+
+// A copy goes on by itself: no member refers to another one.
 class Recorder {
 public:
     Recorder(std::span<const double> params, const RunOptions& options);
-    Recorder(const Recorder& other);
+    Recorder(const Recorder&) = default;
     Recorder& operator=(const Recorder&) = delete;
 
 protected:
-    using Clock = std::chrono::steady_clock;
-
     // The first row, and the present mode. Before the first step the solution is a straight line.
     void begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start);
 
     // Whether there are rows before t still to log.
-    bool is_row_due(double t) const { return options_.rows && rows_.is_due(t); }
+    bool is_row_due(double t) { return options_.rows && rows().is_due(t); }
     // All rows before t, from the solution within the last step.
     void log_until(double t) {
-        if (options_.rows) rows_.log_until(t, scene(), [this] { return poll(); });
+        if (options_.rows) rows().log_until(t, scene(), [this] { return poll(); });
     }
+
+    // The torque of a digital controller that acts from now on.
+    void note_torque() { swings_.note(run_.t_end, setup_.plant.controller.torque); }
 
     // A change of contact at place theta within the last step: its rows before, the event, and what it cost.
     void note_change(const Change& change, const FullState& y);
@@ -44,7 +59,7 @@ protected:
     std::array<double, 3> joints_out(const Vec3<double>& v) const;
     std::string at_time(double t) const;  // " at t = 1.5 s"
 
-    const Clock::time_point begun_ = Clock::now();
+    Stopwatch stopwatch_;
     Setup setup_;  // of its plant, a digital controller changes the torque
     const RunOptions options_;
     Run run_;  // its t_end is the present time
@@ -54,14 +69,15 @@ protected:
     double contact_ = 0, force_phase_ = 0;  // to a continuous one
 
 private:
+    RowLog rows() { return {setup_, run_}; }
     Scene scene() const {
         return {setup_.plant, setup_.simscape, energy_at_start_,           mode_,
                 inside_,      setup_.law(),    setup_.digital.sampling.on, known_,
                 contact_,     force_phase_};
     }
-    void copy_rows(const Run& from);
+    void explain(const FullState& y);
     void record(Event::Type type, double t, const FullState& y);
-    RowLog rows_;
+    TorqueSwings swings_;
     double energy_at_start_ = 0;
     unsigned polls_ = 0;
     double next_report_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// The rows of a run: when they stand, and where they go. The memory is taken before the first step.
+// The rows of a run: when they stand, and where they go. The memory is taken before the first step. All that changes is
+// the run's own.
 
 #include "ledger.hpp"
 
@@ -7,8 +8,10 @@ namespace arm3r {
 
 class RowLog {
 public:
-    // Reserves all rows, if any are wanted; refuse_too_large() (size_cap.hpp) has seen to it that they are not too many.
-    RowLog(const Setup& setup, Run& run, bool wanted);
+    RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {}
+
+    // Takes the memory of all rows; refuse_too_large() (size_cap.hpp) has seen to it that they are not too many.
+    void reserve();
 
     // All rows before `until`, from the solution within the step, while go_on() holds.
     template <class GoOn>
@@ -22,16 +25,11 @@ public:
 
     bool is_due(double until) const { return stands_before(run_.rows, until); }
 
+    // A row with a number that is not finite is not written: it ends the run.
     void log(const Scene& scene, double t, const FullState& y, double theta);
 
     // Of the last row, s; the start where there is none.
     double last_time() const { return run_.rows ? run_.data[run_.rows - 1] : setup_.start; }
-
-    // As far as another one of the same setup; the rows themselves are the run's.
-    void go_on_from(const RowLog& other) { link_behind_wall_since_ = other.link_behind_wall_since_; }
-
-    // When a link other than at its tip was first behind the wall, s; < 0: never.
-    double link_behind_wall_since() const { return link_behind_wall_since_; }
 
 private:
     double time_of(std::size_t row) const { return setup_.start + double(row) * setup_.log_every; }
@@ -41,11 +39,13 @@ private:
         return t < until && (row == 0 || t < setup_.stop - 1e-9 * setup_.log_every);
     }
     void log_together(const Scene& scene);
+    void log_one_by_one(const Scene& scene, std::span<const double> t);
     void note_link_behind_wall(double t);
+    void note_reach(const Scene& scene, double t, const FullState& y);
+    void end_without(const Row& row, double t);
 
     const Setup& setup_;
     Run& run_;
-    double link_behind_wall_since_ = -1;
 };
 
 }  // namespace arm3r

@@ -1,7 +1,9 @@
 #include "row_memory.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -22,6 +24,20 @@ RowMemory allocate_rows(std::size_t doubles) {
     if (unit == large_page) madvise(block, bytes, MADV_HUGEPAGE);  // advice: nothing depends on it being taken
 #endif
     return RowMemory(static_cast<double*>(block));
+}
+
+RowTable::RowTable(const RowTable& other) {
+    if (!other.data) return;
+    reserve(other.columns, other.capacity);
+    rows = other.rows;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        std::copy_n(other.data.get() + i * capacity, rows, data.get() + i * capacity);
+}
+
+void RowTable::reserve(std::vector<std::size_t> wanted, std::size_t most_rows) {
+    columns = std::move(wanted);
+    capacity = most_rows;
+    data = allocate_rows(capacity * columns.size());
 }
 
 }  // namespace arm3r

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
+#include <vector>
 
 namespace arm3r {
 
@@ -15,5 +17,21 @@ using RowMemory = std::unique_ptr<double[], FreeRows>;
 
 // Not initialised. Throws std::bad_alloc.
 RowMemory allocate_rows(std::size_t doubles);
+
+// Columns lie one after the other in one block: column i is data[i*capacity .. i*capacity + rows).
+struct RowTable {
+    std::vector<std::size_t> columns;  // indices into column_table() (columns.hpp), in order
+    std::size_t rows = 0, capacity = 0;
+    RowMemory data;
+
+    RowTable() = default;
+    RowTable(RowTable&&) = default;
+    RowTable& operator=(RowTable&&) = default;
+    RowTable(const RowTable& other);
+
+    // Takes the memory for so many rows of these columns.
+    void reserve(std::vector<std::size_t> columns, std::size_t capacity);
+    std::span<const double> column(std::size_t i) const { return {data.get() + i * capacity, rows}; }
+};
 
 }  // namespace arm3r

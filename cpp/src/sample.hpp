@@ -108,11 +108,11 @@ Row sample(const Scene& scene, double t, const FullState& y, double theta);
 // Eight rows on the solution within the step, side by side: value[column][row], the same bits as one by one.
 constexpr int together = 8;
 
-struct Rows {
+struct RowBlock {
     alignas(64) double value[column_count][together];
     int first_link_behind_wall;  // the row where Row::link_behind_wall first holds; `together` for none
 };
 
-void sample_together(const Scene& scene, const double* t, Rows& rows);
+void sample_together(const Scene& scene, const double* t, RowBlock& rows);
 
 }  // namespace arm3r

@@ -5,7 +5,7 @@ namespace {
 
 // As many rows side by side as the registers hold, one such group after the other.
 template <int N>
-ARM3R_INLINE void sample_groups(const Scene& scene, const double* t, Rows& rows) {
+ARM3R_INLINE void sample_groups(const Scene& scene, const double* t, RowBlock& rows) {
     using Group = Pack<N>;
     rows.first_link_behind_wall = together;
     for (int first = together - N; first >= 0; first -= N) {
@@ -21,14 +21,14 @@ ARM3R_INLINE void sample_groups(const Scene& scene, const double* t, Rows& rows)
     }
 }
 
-void by_two(const Scene& scene, const double* t, Rows& rows) { sample_groups<2>(scene, t, rows); }
+void by_two(const Scene& scene, const double* t, RowBlock& rows) { sample_groups<2>(scene, t, rows); }
 #if ARM3R_WIDE_PACKS
-ARM3R_FOR_FOUR void by_four(const Scene& scene, const double* t, Rows& rows) { sample_groups<4>(scene, t, rows); }
+ARM3R_FOR_FOUR void by_four(const Scene& scene, const double* t, RowBlock& rows) { sample_groups<4>(scene, t, rows); }
 #endif
 
 }  // namespace
 
-void sample_together(const Scene& scene, const double* t, Rows& rows) {
+void sample_together(const Scene& scene, const double* t, RowBlock& rows) {
 #if ARM3R_WIDE_PACKS
     static const bool has_four = widest_lanes() >= 4;  // by eight takes twice as long: more numbers than registers
     if (has_four) return by_four(scene, t, rows);

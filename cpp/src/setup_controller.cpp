@@ -65,6 +65,20 @@ void set_special_gains(std::span<const double> params, Gains<double>& gains) {
 
 }  // namespace
 
+bool inverts_jacobian(const Controller<double>& controller) {
+    switch (controller.type) {
+        case Controls::resolved_acceleration:
+        case Controls::shaped_impedance:
+        case Controls::operational_space:
+        case Controls::parallel:
+        case Controls::adaptive_reference: return true;
+        case Controls::impedance: return controller.setpoint.path > Path::point;
+        case Controls::hybrid: return controller.variant != Variant::jacobian_transpose;
+        case Controls::admittance: return controller.inner != Inner::joint_pd;
+        default: return false;
+    }
+}
+
 void set_controller(std::span<const double> params, Controller<double>& controller) {
     controller.type = controls_of(params);
     controller.algorithm = choice_at<"controller.algorithm", Algorithm>(params);

@@ -39,6 +39,9 @@ constexpr bool is_in_joints(Controls type) {
     return type == Controls::joint_pd || type == Controls::computed_torque || type == Controls::joint_stiffness;
 }
 
+// Whether the law divides by what vanishes in a singular pose.
+bool inverts_jacobian(const Controller<double>& controller);
+
 // All but the model and the setpoint.
 void set_controller(std::span<const double> params, Controller<double>& controller);
 

@@ -109,20 +109,6 @@ void check_target(std::span<const double> params, const Setup& setup, Findings& 
 
 // ---- where the law can work
 
-bool inverts_jacobian(const Controller<double>& controller) {
-    switch (controller.type) {
-        case Controls::resolved_acceleration:
-        case Controls::shaped_impedance:
-        case Controls::operational_space:
-        case Controls::parallel:
-        case Controls::adaptive_reference: return true;
-        case Controls::impedance: return controller.setpoint.path > Path::point;
-        case Controls::hybrid: return controller.variant != Variant::jacobian_transpose;
-        case Controls::admittance: return controller.inner != Inner::joint_pd;
-        default: return false;
-    }
-}
-
 void check_pose(std::span<const double> params, const Setup& setup, Findings& findings) {
     if (!inverts_jacobian(setup.law())) return;
     const Arm<double>& model = setup.law().model;

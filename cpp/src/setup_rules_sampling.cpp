@@ -50,7 +50,8 @@ void check_digital(const Setup& setup, Findings& findings) {
     need_samples(sensors.has_resolution, "sensors.force.resolution", "rounding to a resolution", findings);
     need_samples(sensors.has_filter, "sensors.force.cutoff", "a digital filter", findings);
     need_samples(sensors.has_delay, "sensors.force.delay", "a delay of samples", findings);
-    need_samples(sensors.has_tool, "sensors.force.tool_mass", "the weight of a tool, which gravity adds to the reading,", findings);
+    need_samples(sensors.has_tool, "sensors.force.tool_mass",
+                 "the weight of a tool, which gravity adds to the reading,", findings);
 }
 
 // ---- rk4: a sample, and a torque that comes later, fall on steps

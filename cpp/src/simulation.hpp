@@ -53,12 +53,8 @@ struct Metrics {
     double stiff_steps = 0;                                              // accepted by the stiff method
 };
 
-// Columns lie one after the other in one block: column i is data[i*capacity .. i*capacity + rows).
-struct Run : Metrics {
-    std::string message;               // why, when the outcome is not ok; "" else
-    std::vector<std::size_t> columns;  // indices into column_table() (columns.hpp), in order
-    std::size_t rows = 0, capacity = 0;
-    RowMemory data;
+struct Run : Metrics, RowTable {
+    std::string message;  // why, when the outcome is not ok; "" else
     std::vector<Event> events;
     std::vector<std::string> warnings;
     std::string method;                    // that of the scenario
@@ -67,8 +63,10 @@ struct Run : Metrics {
     double energy_residual_max = 0;        // J, over steps and rows
     double elapsed_s = 0;                  // wall clock
     bool has_user_law = false;             // what it does is not known from the scenario
-
-    std::span<const double> column(std::size_t i) const { return {data.get() + i * capacity, rows}; }
+    // What the rows showed; s, and < 0: never.
+    double link_behind_wall_since = -1;  // of a link other than at its tip
+    double out_of_reach_since = -1;      // of the point that an inner joint loop follows
+    double out_of_reach_by = 0;          // m, at most
 };
 
 struct RunOptions {

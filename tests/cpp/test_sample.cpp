@@ -37,7 +37,7 @@ BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
                           false,       known,         1,   double(trial % 7 < 4)};
         double t[together];
         for (int i = 0; i < together; ++i) t[i] = 3.0 + 0.025 * i;
-        Rows rows;
+        RowBlock rows;
         sample_together(scene, t, rows);
         int first_behind = together;
         for (int i = 0; i < together; ++i) {

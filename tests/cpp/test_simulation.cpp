@@ -284,10 +284,10 @@ static void check_limit(const Params& params, const FullState& later, double exc
     const Setup setup = make_setup(params);
     FullState start{};
     for (int i = 0; i < 3; ++i) start[i] = setup.q[i];
-    Ledger ledger(setup, start, Mode::free);
-    ledger.close(0, start, Mode::free);
+    Ledger ledger(setup.plant, 0, start, Mode::free);
+    ledger.close(setup.plant, 0, start, Mode::free);
     BOOST_TEST(ledger.flows().residual == 0);
-    ledger.close(1, later, Mode::free);
+    ledger.close(setup.plant, 1, later, Mode::free);
     Flows flows = ledger.flows();
     const double limit = 100 * setup.solver.rtol * exchanged;
     flows.residual = 0.99 * limit;
@@ -318,8 +318,8 @@ BOOST_AUTO_TEST_CASE(every_flow_of_energy_widens_the_limit_of_the_balance) {
 BOOST_AUTO_TEST_CASE(rounding_at_rest_is_no_complaint_and_a_residual_that_is_no_number_is_the_largest) {
     const Setup setup = make_setup(unequal_params());
     const FullState rest{setup.q[0], setup.q[1], setup.q[2]};
-    Ledger ledger(setup, rest, Mode::free);
-    ledger.close(0, rest, Mode::free);
+    Ledger ledger(setup.plant, 0, rest, Mode::free);
+    ledger.close(setup.plant, 0, rest, Mode::free);
     Flows flows = ledger.flows();
     flows.residual = 0.9e-12 * energies(setup.plant, 0, rest, Mode::free).potential;
     BOOST_TEST(!balance_complaint(setup.solver, flows).has_value());

@@ -58,7 +58,7 @@ static Expansion<double> expanded(Kernel kernel, const Plant<double>& plant, con
 // ---- by definition ---------------------------------------------------------------------------------------------------
 
 // Coefficient k of one node of a tape, from the coefficients of its operands; x: those known of the node itself.
-static Real80 by_definition(const Node& n, const std::vector<Terms>& all, const Terms& x, std::size_t k) {
+static Real80 by_definition(const TapeNode& n, const std::vector<Terms>& all, const Terms& x, std::size_t k) {
     const auto a = [&](std::size_t i) { return all[n.a][i]; };
     const auto b = [&](std::size_t i) { return all[n.b][i]; };
     Real80 sum = 0;
@@ -101,7 +101,7 @@ static Terms turned(Op op, const Terms& a) {
 
 static std::vector<Terms> played(const Tape& tape, const std::vector<Terms>& inputs) {
     std::vector<Terms> all;
-    for (const Node& n : tape.nodes()) {
+    for (const TapeNode& n : tape.nodes()) {
         Terms x;
         if (n.op == Op::input) x = inputs[std::size_t(n.number)];
         else if (n.op == Op::sine || n.op == Op::cosine) x = turned(n.op, all[n.a]);

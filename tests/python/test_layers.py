@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sysconfig
 from pathlib import Path
 
+import pytest
+
 SETUP = (
-    "setup setup_controller setup_instants setup_rules setup_rules_controller setup_rules_sampling setup_sampling setup_setpoint "
-    "setup_slips setup_slips_controller"
+    "setup setup_controller setup_instants setup_rules setup_rules_controller setup_rules_sampling setup_sampling "
+    "setup_setpoint setup_slips setup_slips_controller"
+)
+
+RUNS = (
+    "simulation ledger diagnosis row_log recorder runs adaptive_run stepwise marching_run march march_members "
+    "march_with_memory fixed_march taylor_march score"
 )
 
 # From the bottom up. The parts of one line do not know each other; the files of one part do.
@@ -34,10 +44,7 @@ LAYERS = [
     ["sample sample_into sample_together", "law_state"],
     ["validate", "contact_step", "size_cap", "stepper"],
     ["events"],
-    [
-        "simulation ledger row_log recorder runs adaptive_run stepwise marching_run march march_members "
-        "march_with_memory fixed_march taylor_march score"
-    ],
+    [RUNS],
     ["summary"],
     ["batch crew lineup lineup_memory lineup_rk4 lineup_taylor"],
     ["yaml_events", "input", "output"],
@@ -110,3 +117,54 @@ def test_the_executable_knows_only_the_c_interface(root: Path) -> None:
         if _stem(path.name) == "cli":
             own = [name for kind, name in _includes(path) if kind == '"' and not name.startswith("cli")]
             assert own == ["arm3r/arm3r.h"] or own == [], path.name
+
+
+KIND = r"(?:struct|class|enum class|enum)"
+TYPE = re.compile(rf"(?:template ?<.*> ?)?{KIND} (?:\w+\(\d+\) )?(\w+)(?: final)?(?: ?: ?[^;]*)? ?\{{")
+
+
+def _types(path: Path) -> list[str]:
+    """The types that a file defines for others, with their namespaces: not those in an unnamed one or in a type."""
+    found: list[str] = []
+    around: list[str | None] = []  # a namespace's name, or None of any other pair of braces
+    text = re.sub(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])'", "", path.read_text(), flags=re.S)
+    start = 0
+    for brace in re.finditer(r"[{};]", text):
+        head = " ".join(text[start : brace.end()].split())
+        start = brace.end()
+        if brace[0] == "}":
+            around.pop()
+        elif brace[0] == "{":
+            space = re.search(r"\bnamespace ?([\w:]*) ?\{$", head)
+            kind = TYPE.search(head)
+            if kind and all(around):
+                found.append("::".join([*filter(None, around), kind[1]]))
+            around.append(space[1] if space else None)
+    return found
+
+
+def test_one_name_is_one_type(root: Path) -> None:
+    """Two types of one name in one namespace are undefined behaviour in every program that has both."""
+    places: dict[str, set[str]] = {}
+    for path in _sources(root):
+        for name in _types(path):
+            places.setdefault(name, set()).add(path.name)
+    assert places.keys() >= {"arm3r::Plant", "arm3r::TapeNode", "arm3r::Node", "arm3r::Rows", "arm3r::Controls"}
+    assert {name: files for name, files in places.items() if len(files) > 1} == {}
+
+
+@pytest.mark.gate
+def test_one_name_is_one_type_to_the_linker(root: Path, tmp_path: Path, scripts: Path) -> None:
+    """All of the library, its programs and its tests as one program: the linker compares the types of one name."""
+    environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
+    flags = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O0", "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"]
+    flags += ["-DARM3R_LANES=2", "-DARM3R_PCH=OFF", "-DARM3R_TESTS=ON", "-DARM3R_PYTHON=OFF"]
+    flags += [f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}"]
+    make = ["cmake", "--build", str(tmp_path), "--target", "all", "arm3r_tests", "--parallel", "4"]
+    for command in (["cmake", "-S", str(root), "-B", str(tmp_path), *flags], make):
+        subprocess.run(command, check=True, env=environment, capture_output=True)
+    objects = [str(path) for path in tmp_path.rglob("*.o")]
+    assert len(objects) > 90
+    link = ["g++", "-O0", "-flto=4", "-shared", "-Wodr", "-Werror=odr", "-Wl,--allow-multiple-definition"]
+    done = subprocess.run([*link, *objects, "-o", str(tmp_path / "all.so")], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -525,6 +525,32 @@ def test_back_to_a_snapshot_bit_for_bit(scenario: arm3r.Scenario, delay: float) 
             assert _same(_stepped(one), expected)
 
 
+def _told(run: arm3r.Run) -> dict[str, Any]:
+    """All that a summary says but the time it took."""
+    return {key: value for key, value in run.summary.items() if key != "elapsed_s"}
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4", "auto"])
+@pytest.mark.parametrize("sensors", ["null", NOISY])
+def test_a_copy_forgets_nothing(root: Path, method: str, sensors: str) -> None:
+    """In stiff contact, with a force filter, with events: the rows and every number of the summary are the run's."""
+    path = root / "scenarios/force_control/x4_stiff_damping.yaml"
+    scenario = arm3r.Scenario(path.read_text().split("checks:")[0])
+    scenario["controller"] = {"type": "user"}
+    scenario["sampling"] = {"rate": 100}
+    scenario._edit("sensors", sensors, "test")
+    scenario["solver.method"] = method
+    expected, simulation = scenario.run(controller=damp), Simulation(scenario)
+    assert ("rodas4 from" in expected.summary["solver"]["choices"]) == (method == "auto")
+    while not simulation.is_over:
+        simulation = simulation.copy()
+        before = simulation.snapshot()
+        simulation.step([5, -3, 2])
+        simulation.restore(before)
+        simulation.step(damp(simulation.t, simulation.state))
+    assert _same(simulation.run, expected) and _told(simulation.run) == _told(expected)
+
+
 def test_a_simulation_tells_where_it_stands(scenario: arm3r.Scenario) -> None:
     simulation = Simulation(scenario, rate=100)
     assert simulation.t == 0 and np.array_equal(simulation.state.q, START)

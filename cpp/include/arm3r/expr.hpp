@@ -44,12 +44,12 @@ enum class Op {
 };
 
 // One operation on the results of earlier nodes; unused operands are -1.
-struct Node {
+struct TapeNode {
     Op op;
     int a = -1, b = -1, c = -1;
     double number = 0.0;  // of a constant
 
-    friend bool operator==(const Node& x, const Node& y) {
+    friend bool operator==(const TapeNode& x, const TapeNode& y) {
         return x.op == y.op && x.a == y.a && x.b == y.b && x.c == y.c &&
                std::bit_cast<std::uint64_t>(x.number) == std::bit_cast<std::uint64_t>(y.number);
     }
@@ -66,11 +66,11 @@ public:
     Expr input();
     void output(const Expr& x);
 
-    std::span<const Node> nodes() const { return nodes_; }
+    std::span<const TapeNode> nodes() const { return nodes_; }
     std::span<const int> inputs() const { return inputs_; }
     std::span<const int> outputs() const { return outputs_; }
     int count(Op op) const {
-        const auto same = [op](const Node& node) { return node.op == op; };
+        const auto same = [op](const TapeNode& node) { return node.op == op; };
         return static_cast<int>(std::count_if(nodes_.begin(), nodes_.end(), same));
     }
 
@@ -79,7 +79,7 @@ public:
     void play(std::span<const T> inputs, std::span<T> outputs) const;
 
     // The node's index: that of an equal earlier one where there is one.
-    int record(const Node& node) {
+    int record(const TapeNode& node) {
         const auto [place, is_new] = known_.try_emplace(node, static_cast<int>(nodes_.size()));
         if (is_new) nodes_.push_back(node);
         return place->second;
@@ -87,7 +87,7 @@ public:
 
 private:
     struct Hash {
-        std::size_t operator()(const Node& n) const {
+        std::size_t operator()(const TapeNode& n) const {
             std::size_t hash = std::bit_cast<std::uint64_t>(n.number);
             for (const int part : {static_cast<int>(n.op), n.a, n.b, n.c})
                 hash = (hash ^ static_cast<std::size_t>(part)) * 0x9e3779b97f4a7c15 + (hash >> 29);
@@ -95,9 +95,9 @@ private:
         }
     };
 
-    std::vector<Node> nodes_;
+    std::vector<TapeNode> nodes_;
     std::vector<int> inputs_, outputs_;
-    std::unordered_map<Node, int, Hash> known_;
+    std::unordered_map<TapeNode, int, Hash> known_;
 };
 
 // What Expr and its truth values share: a node of a tape, or a constant that needs none yet.
@@ -268,7 +268,7 @@ inline SinCos<Expr> sincos(const Expr& x) {
 inline SinCos<Expr> sincos_near(const Expr&, const SinCos<Expr>&, const Expr& angle) { return sincos(angle); }
 
 inline Expr Tape::input() {
-    const Node node{.op = Op::input, .number = static_cast<double>(inputs_.size())};
+    const TapeNode node{.op = Op::input, .number = static_cast<double>(inputs_.size())};
     inputs_.push_back(record(node));
     return Expr(*this, inputs_.back());
 }
@@ -283,7 +283,7 @@ void Tape::play(std::span<const T> inputs, std::span<T> outputs) const {
     std::vector<T> numbers(nodes_.size(), T(0.0));
     std::vector<Mask> masks(nodes_.size(), Mask(false));
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        const Node& n = nodes_[i];
+        const TapeNode& n = nodes_[i];
         if (n.op == Op::constant) {
             numbers[i] = T(n.number);
             masks[i] = Mask(n.number != 0.0);

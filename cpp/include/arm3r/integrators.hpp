@@ -123,15 +123,19 @@ struct Dopri5 {
         f(t + h, y1, f1);
     }
 
+    // The estimated error of component i over the step of h.
+    T error_of(std::size_t i, const T& h) const {
+        const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] -
+                         17253.0 / 339200 * k[4][i] + 22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
+        return abs(e);
+    }
+
     // The largest error estimate, in units of its tolerance, of all but the books, or of these too. A step is good below 1.
     // The largest, not a mean: a joint that stands still must not loosen the tolerance of one that moves.
     T error(const State<T, N>& y, const T& h, double rtol, double atol, bool with_books = false) const {
         T largest(0.0);
-        for (std::size_t i = 0; i < N; i = i + 1 == Norm && !with_books ? i + 1 + Books : i + 1) {
-            const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] -
-                             17253.0 / 339200 * k[4][i] + 22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
-            largest = max(largest, T(abs(e) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
-        }
+        for (std::size_t i = 0; i < N; i = i + 1 == Norm && !with_books ? i + 1 + Books : i + 1)
+            largest = max(largest, T(error_of(i, h) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
         return largest;
     }
 

@@ -133,6 +133,14 @@ ARM3R_INLINE T manipulability(const Arm<P>& arm, const Pose<T>& p) {  // |det J|
     return abs(T(arm.link2.length * arm.link3.length * S3 * radius(arm, p)));
 }
 
+// How far a point lies beyond the reach of the arm or within the hollow that it cannot reach, m; not above 0: neither.
+template <class P>
+double beyond_reach(const Arm<P>& arm, const Vec3<double>& tip) {
+    const double a2 = arm.link2.length, a3 = arm.link3.length, zeta = tip[2] - arm.base_height;
+    const double distance = sqrt(tip[0] * tip[0] + tip[1] * tip[1] + zeta * zeta);
+    return max(distance - (a2 + a3), abs(a2 - a3) - distance);
+}
+
 template <class T>
 struct Reach {
     Vec3<T> q;

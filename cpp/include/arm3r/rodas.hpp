@@ -71,12 +71,15 @@ struct Rodas4 {
         return is_finite();
     }
 
+    // The estimated error of component i.
+    double error_of(std::size_t i) const { return abs(u[rodas4::stages - 1][i]); }
+
     // The largest error estimate, in units of its tolerance, over motion and memory, or over the books too; see Dopri5.
     double error(const State<double, N>& y, double rtol, double atol, bool with_books = false) const {
         double largest = 0;
         for (std::size_t k = 0; k < (with_books ? in_use() : Motion + memory); ++k) {
             const std::size_t i = with_books ? k : place(k);
-            largest = max(largest, abs(u[rodas4::stages - 1][i]) / (atol + rtol * max(abs(y[i]), abs(y1[i]))));
+            largest = max(largest, error_of(i) / (atol + rtol * max(abs(y[i]), abs(y1[i]))));
         }
         return largest;
     }

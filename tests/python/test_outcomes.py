@@ -1,0 +1,311 @@
+"""A run ends with the outcome that is due, and its message names the cause: with the instant and with a number."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from random_scenarios import Keys, fresh_seed, random_scenario, yaml_of
+
+ADAPTIVE = ("dopri5", "rodas4", "auto")
+METHODS = (*ADAPTIVE, "taylor", "rk4")
+
+
+def _run(text: str, **solver: Any) -> arm3r.Run:
+    """The run, whatever its outcome."""
+    scenario = arm3r.Scenario(text)
+    if solver:
+        scenario["solver"] = solver
+    try:
+        return scenario.run()
+    except (arm3r.NumericalError, arm3r.BudgetError) as error:
+        return error.run
+
+
+def _is_finite(run: arm3r.Run) -> bool:
+    return all(np.isfinite(run[name]).all() for name in run)
+
+
+# ---- a target out of reach ------------------------------------------------------------------------------------------
+
+STRETCHED = """
+format: 1
+wall: {point: [1.5, 0, -5], acts_on_arm: true, motion: {type: fixed}}
+controller: {type: admittance, inner: joint_pd}
+reference: {type: minimum_jerk, tip: [2.3, 0.1, 0.05], duration: 1}
+time: {stop: 1}
+"""
+
+
+def test_a_target_out_of_reach_is_followed_as_far_as_the_arm_is_long() -> None:
+    runs = {method: _run(STRETCHED, method=method, rtol=1e-8) for method in ADAPTIVE}
+    for run in runs.values():
+        assert run.outcome == "ok", run.summary["message"]
+        for joint in ("q1", "q2", "q3"):
+            assert run[joint][-1] == pytest.approx(runs["dopri5"][joint][-1], abs=1e-5)
+
+
+@pytest.mark.parametrize("sampling", ["", "sampling: {rate: 500}\n"])
+def test_a_target_out_of_reach_is_a_warning_with_instant_and_distance(sampling: str) -> None:
+    [warning] = [text for text in _run(STRETCHED + sampling).warnings if "out of the arm's reach" in text]
+    since, most = map(float, re.findall(r"from t = (\S+) s on, by at most (\S+) m", warning)[0])
+    assert 0.3 < since < 1 and since == pytest.approx(round(since, 2))  # a row's instant
+    assert 0.01 < most < 0.35
+    assert not _run(STRETCHED.replace("2.3, 0.1", "1.6, 0.1") + sampling).warnings
+
+
+# ---- no row with a number that is not finite ------------------------------------------------------------------------
+
+INDIRECT = """
+format: 1
+wall: {point: [1.7320508075688772, 0, 0], motion: {type: fixed}, acts_on_arm: true}
+controller: {type: adaptive_reference, adaptation: indirect, assumed_stiffness: 6000, stiffness: [0, 50, 50]}
+time: {stop: 0.1}
+"""
+
+
+def test_an_indirect_reference_needs_a_spring_that_presses() -> None:
+    with pytest.raises(arm3r.ScenarioError, match=r"controller.stiffness: .* along x there is no spring"):
+        arm3r.Scenario(INDIRECT).run()
+    turned = INDIRECT.replace("fixed}", "fixed}, rotation: {type: constant, axis: [0, 0, 1], rate: 0.1}")
+    with pytest.raises(arm3r.ScenarioError, match="along y there is no spring"):
+        arm3r.Scenario(turned.replace("[0, 50, 50]", "[50, 0, 50]")).run()
+    across = _run(INDIRECT.replace("[0, 50, 50]", "[50, 0, 0]"))
+    assert across.outcome == "ok" and _is_finite(across)
+
+
+def _ends(part: dict[str, Any], path: str = "") -> Iterator[tuple[str, float]]:
+    """Every number of the schema at the ends of its range."""
+    for choice in part.get("anyOf", [part]):
+        if choice.get("type") == "number":
+            yield from ((path, choice[end]) for end in ("minimum", "maximum") if end in choice)
+        for key, inner in choice.get("properties", {}).items():
+            yield from _ends(inner, f"{path}.{key}" if path else key)
+
+
+def _extremes(root: Path) -> list[tuple[str, float]]:
+    ends = _ends(json.loads((root / "docs/scenario.schema.json").read_text()))
+    return [(path, end) for path, end in ends if not path.startswith(("time", "checks", "format"))]
+
+
+def _check_extreme(scenario: Keys, path: str, value: float) -> bool:
+    """Whether the scenario takes the value; then each row is finite, or it is not there and the outcome says why."""
+    scenario = json.loads(json.dumps(scenario))
+    *sections, key = path.split(".")
+    part = scenario
+    for section in sections:
+        part = part.get(section)
+        if not isinstance(part, dict):
+            return False
+    part[key] = value
+    scenario["time"] = {"stop": 0.05, "log_every": 0.01}
+    scenario["solver"] = scenario.get("solver", {}) | {"max_steps": 2000}
+    try:
+        run = _run(yaml_of(scenario))
+    except (arm3r.ScenarioError, arm3r.Arm3rError):
+        return False
+    assert _is_finite(run), (path, value, yaml_of(scenario))
+    assert run.outcome == "ok" or run.summary["message"]
+    return True
+
+
+def _hold_extremes(root: Path, scenarios: int, each: int | None) -> None:
+    rng = np.random.default_rng(fresh_seed())
+    print("ARM3R_SEED =", fresh_seed())
+    extremes, taken = _extremes(root), 0
+    for _ in range(scenarios):
+        scenario = random_scenario(rng, longest=0.4)
+        chosen = extremes if each is None else [extremes[i] for i in rng.choice(len(extremes), each, replace=False)]
+        taken += sum(_check_extreme(scenario, path, value) for path, value in chosen)
+    assert taken > scenarios
+
+
+def test_no_extreme_of_a_key_puts_what_is_no_number_into_a_row(root: Path) -> None:
+    _hold_extremes(root, scenarios=25, each=20)
+
+
+@pytest.mark.gate
+def test_no_extreme_of_any_key_puts_what_is_no_number_into_a_row(root: Path) -> None:
+    _hold_extremes(root, scenarios=200, each=None)
+
+
+# ---- the work of a wall on an arm that stands still -----------------------------------------------------------------
+
+CANCELLED = """
+format: 1
+wall: {point: [1.74, 0, 0], motion: {type: sinusoid, amplitude: 0.02, frequency: 1}, acts_on_arm: true}
+controller: {type: resolved_acceleration}
+time: {stop: 2}
+"""
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+def test_a_law_that_cancels_the_force_of_a_moving_wall_ends_ok(method: str, rtol: float) -> None:
+    run = _run(CANCELLED, method=method, rtol=rtol, atol=rtol * 1e-3)
+    assert run.outcome == "ok", run.summary["message"]
+    assert np.max(np.abs(run["q2"] - run["q2"][0])) < 1e-9
+    largest = np.max(np.abs(run["work_wall"]))
+    assert largest > 0.05 and run.summary["ledger_residual"] < 10 * rtol * largest + 1e-13
+
+
+@pytest.mark.parametrize("method", (*ADAPTIVE, "taylor"))
+@pytest.mark.parametrize("stiffness", [1e3, 1e6])
+@pytest.mark.parametrize("speed", [1e-5, 4.5e-4])
+def test_a_bounce_of_next_to_no_energy_ends_ok(method: str, stiffness: float, speed: float) -> None:
+    """1e-10 and 2e-7 J without gravity: the rounding of the tip's place is all that is left over."""
+    scenario = arm3r.Scenario(f"""
+format: 1
+arm: {{gravity: [0, 0, 0]}}
+initial: {{q: [0.1, 0.5, -1.1]}}
+wall:
+  size: infinite
+  motion: {{type: constant, velocity: {speed}}}
+  contact: {{law: spring, stiffness: {stiffness}}}
+  acts_on_arm: true
+controller: {{type: gravity_compensation, gravity: 0}}
+time: {{stop: 3}}
+""")
+    x, y, z = map(float, scenario.arm.tip_position([0.1, 0.5, -1.1]))
+    scenario["wall.point"] = [x + 0.5 * speed, y, z]
+    scenario["solver"] = {"method": method} | ({"tol": 1e-12} if method == "taylor" else {"rtol": 1e-12, "atol": 1e-15})
+    run = scenario.run()
+    assert run.summary["contacts"] == 1 and run.summary["peak_force"] > 0
+
+
+def _balance(rng: np.random.Generator) -> tuple[str, float]:
+    """Of a random scenario: the outcome, and the largest residual in units of tolerance and largest energy."""
+    scenario, tolerance = random_scenario(rng, longest=3), 10 ** rng.uniform(-11, -5)
+    methods = [{"method": method, "rtol": tolerance, "atol": tolerance * 1e-3} for method in ADAPTIVE]
+    solver = [*methods, {"method": "taylor", "tol": tolerance}][rng.integers(4)]
+    try:
+        arm3r.Scenario(yaml_of(scenario | {"solver": solver})).validate()
+    except arm3r.ScenarioError:  # there is no series
+        solver = methods[0]
+    built = arm3r.Scenario(yaml_of(scenario | {"solver": solver}))
+    try:
+        run = built.run(time_limit=5)
+    except (arm3r.NumericalError, arm3r.BudgetError) as error:
+        run = error.run
+    assert run.outcome != "energy", (run.summary["message"], built.to_yaml())
+    largest = max(np.max(np.abs(run[name]), initial=0) for name in run if name.startswith(("energy_", "work_")))
+    judged = run.outcome == "ok" and 0 < largest < 500  # J: an unstable loop grows without bound
+    share = run.summary["ledger_residual"] / (tolerance * largest) if judged else 0.0
+    return run.outcome, share
+
+
+def _hold_balance(scenarios: int, most: float, worst: float) -> None:
+    rng = np.random.default_rng(fresh_seed())
+    print("ARM3R_SEED =", fresh_seed())
+    runs = [_balance(rng) for _ in range(scenarios)]
+    shares = sorted(share for _, share in runs)
+    assert shares[int(most * scenarios)] <= worst
+    assert sum(outcome == "ok" for outcome, _ in runs) > 0.95 * scenarios
+
+
+def test_the_energy_balance_of_random_scenarios_closes() -> None:
+    _hold_balance(scenarios=25, most=0.95, worst=5)
+
+
+@pytest.mark.gate
+def test_the_energy_balance_of_many_random_scenarios_closes() -> None:
+    _hold_balance(scenarios=5000, most=0.999, worst=10)
+
+
+# ---- a compensated arm at rest --------------------------------------------------------------------------------------
+
+
+def _resting(rng: np.random.Generator) -> str:
+    lengths, angles = rng.uniform(0.6, 1.3, 2), rng.uniform(-1.2, 1.2, 3)
+    convention, gravity = (
+        rng.choice(["slide", "simscape"]),
+        rng.uniform(-10, -4) * np.array([*rng.uniform(-1, 1, 2), 1]),
+    )
+    weight = np.array2string(gravity, separator=", ") if rng.random() < 0.5 else "[0, 0, -9.80665]"
+    return f"""
+format: 1
+arm:
+  convention: {convention}
+  gravity: {weight}
+  link2: {{length: {lengths[0]}, density: 5100}}
+  link3: {{length: {lengths[1]}, section: [0.012, 0.009]}}
+  payload: {{mass: {rng.uniform(0, 0.5)}}}
+initial: {{q: {np.array2string(angles, separator=", ")}}}
+controller: {{type: gravity_compensation, gravity: {weight}}}
+time: {{stop: 100, log_every: 10}}
+"""
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_compensated_arm_rests_to_the_bit(method: str) -> None:
+    rng = np.random.default_rng(fresh_seed())
+    print("ARM3R_SEED =", fresh_seed())
+    for _ in range(8):
+        text = _resting(rng)
+        run = _run(text, method=method, **({"step": 0.02} if method == "rk4" else {}))
+        for joint in ("q1", "q2", "q3"):
+            assert np.all(run[joint] == run[joint][0]), text
+            assert not np.any(run["qd" + joint[1]])
+        assert run.outcome == "ok" and run["tau2"][-1] == run["tau_g2"][-1]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_work_of_a_compensation_is_that_of_its_torque(method: str) -> None:
+    """On the way, and with a wrong model, the balance closes: the power is that of the whole torque."""
+    for model in ("", ", model: {link3: {mass: 0.9, com: 0.4}}"):
+        text = f"""
+format: 1
+initial: {{q: [0.3, -0.4, 0.9], qd: [0.5, -0.3, 0.4]}}
+controller: {{type: gravity_compensation{model}}}
+time: {{stop: 1}}
+"""
+        run = _run(text, method=method, **({"step": 1e-3} if method == "rk4" else {}))
+        assert run.outcome == "ok" and abs(run["work_actuators"][-1]) > 0.1
+        assert np.max(np.abs(run["energy_residual"])) < 1e-8
+        power = sum(run[f"tau{i}"] * run[f"qd{i}"] for i in (1, 2, 3))
+        work = np.concatenate([[0], np.cumsum(0.5 * np.diff(run.t) * (power[1:] + power[:-1]))])
+        assert np.max(np.abs(work - run["work_actuators"])) < 1e-3
+
+
+# ---- what a bad end is laid to --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_unstable_sampled_loop_is_named(method: str) -> None:
+    text = """
+format: 1
+initial: {q: [0.2, -0.5, 1.1]}
+controller: {type: joint_pd, joint_stiffness: [60, 60, 60], joint_damping: [20, 20, 20]}
+reference: {type: point, q: [0.25, -0.4, 1.0]}
+sampling: {rate: 100}
+time: {stop: 20}
+"""
+    run = _run(text, method=method, max_steps=20000, **({"step": 1e-3} if method == "rk4" else {}))
+    assert run.outcome in ("diverged", "energy", "step_collapse", "budget"), run.outcome
+    message = run.summary["message"]
+    since, growth = map(float, re.findall(r"unstable: from t = (\S+) s on .* (\S+) times as far", message)[0])
+    assert 0 <= since < 1 and 1.02 < growth < 10
+    assert "sampling.rate" in message and "tighten" not in message
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4"])
+def test_a_singular_pose_is_named(method: str) -> None:
+    text = """
+format: 1
+arm: {convention: slide}
+initial: {q: [0.2, -0.5, 1.1]}
+controller: {type: resolved_acceleration, position_gain: 400, velocity_gain: 40}
+reference: {type: minimum_jerk, tip: [2.2, 0.1, 0.1], duration: 0.5}
+time: {stop: 3}
+"""
+    run = _run(text, method=method)
+    assert run.outcome not in ("ok", "stopped")
+    message = run.summary["message"]
+    t, determinant = map(float, re.findall(r"singular pose at t = (\S+) s, where det J = (\S+) m\^3", message)[0])
+    assert 0 < t <= run.t[-1] + 0.01 and abs(determinant) < 0.1 and "tighten" not in message
