@@ -281,7 +281,7 @@ def test_an_unstable_sampled_loop_is_named(method: str) -> None:
     text = """
 format: 1
 initial: {q: [0.2, -0.5, 1.1]}
-controller: {type: joint_pd, joint_stiffness: [60, 60, 60], joint_damping: [20, 20, 20]}
+controller: {type: joint_pd, joint_stiffness: [60, 60, 60], joint_damping: [50, 50, 50]}
 reference: {type: point, q: [0.25, -0.4, 1.0]}
 sampling: {rate: 100}
 time: {stop: 20}
