@@ -118,6 +118,13 @@ struct arm3r_run {
     arm3r::Texts texts;
 };
 
+namespace arm3r {
+
+// What a run has of its scenario: name, text, warnings, checks.
+void describe(arm3r_run& handle, const Resolved& resolved);
+
+}  // namespace arm3r
+
 struct arm3r_scenario {
     arm3r::Scenario scenario;
     arm3r::Texts texts;

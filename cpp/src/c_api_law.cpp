@@ -80,10 +80,8 @@ int32_t arm3r_scenario_control(const arm3r_scenario* scenario, arm3r_law law, vo
         const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        handle->name = resolved.name;
-        handle->scenario = to_yaml(resolved.tree, false);
         handle->run = with_places(scenario->scenario, [&] { return controlled(resolved.params, law, user, chosen); });
-        handle->checks = evaluate(resolved.checks, handle->run, resolved.params);
+        describe(*handle, resolved);
         *run = handle.release();
     });
 }
@@ -247,10 +245,8 @@ int32_t arm3r_simulation_run(const arm3r_simulation* simulation, arm3r_run** run
         const Hold hold(simulation);
         need(run, "run");
         auto handle = std::make_unique<arm3r_run>();
-        handle->name = simulation->resolved->name;
-        handle->scenario = *simulation->yaml;
         handle->run = simulation->run->so_far();
-        handle->checks = evaluate(simulation->resolved->checks, handle->run, simulation->resolved->params);
+        describe(*handle, *simulation->resolved);
         *run = handle.release();
     });
 }

@@ -61,6 +61,13 @@ const char* made_once() noexcept {
 
 }  // namespace
 
+void arm3r::describe(arm3r_run& handle, const Resolved& resolved) {
+    handle.name = resolved.name;
+    handle.scenario = to_yaml(resolved.tree, false);
+    handle.run.warnings.insert(handle.run.warnings.begin(), resolved.warnings.begin(), resolved.warnings.end());
+    handle.checks = evaluate(resolved.checks, handle.run, resolved.params);
+}
+
 const Resolved& arm3r_scenario::resolved() const {
     const std::lock_guard lock(mutex_);
     if (!resolved_) resolved_ = resolve(scenario);
@@ -163,6 +170,7 @@ int32_t arm3r_scenario_warnings(const arm3r_scenario* scenario, const char** tex
         *text = scenario->texts.get("warnings", [&] {
             const std::string place = visible(scenario->scenario.file, 4096) + ": warning: ";
             std::string lines;
+            for (const std::string& slip : resolved.warnings) lines += place + slip + "\n";
             for (const std::string& slip : likely_slips(resolved.params)) lines += place + slip + "\n";
             return lines;
         });
@@ -188,10 +196,8 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        handle->name = resolved.name;
-        handle->scenario = to_yaml(resolved.tree, false);
         handle->run = with_places(scenario->scenario, [&] { return simulate(resolved.params, chosen); });
-        handle->checks = evaluate(resolved.checks, handle->run, resolved.params);
+        describe(*handle, resolved);
         *run = handle.release();
     });
 }

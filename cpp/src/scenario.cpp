@@ -11,6 +11,7 @@
 #include "numbers.hpp"
 #include "paths.hpp"
 #include "schema.hpp"
+#include "setup_slips.hpp"
 #include "size_cap.hpp"
 #include "text.hpp"
 
@@ -87,6 +88,7 @@ public:
                                  "start with `format: 1`"});
         }
         finish();
+        add_warnings();
         build_tree();
         return std::move(result_);
     }
@@ -336,6 +338,11 @@ private:
         keeps_rules_ = broken.empty();
         for (const Problem& rule : broken)
             if (!already_refused(rule.path)) problem(place(rule.path), rule);
+    }
+
+    void add_warnings() {
+        if (find(root_, parse_path("controller.gravity"))) return;
+        if (const auto slip = slip_of_default_gravity(result_.params)) result_.warnings.push_back(*slip);
     }
 
     // Of the run; all that there are where it cannot be known, because something else is wrong.

@@ -26,7 +26,8 @@ struct Resolved {
     std::string name;
     std::vector<double> params;
     std::vector<Check> checks;
-    Node tree;  // every value there is, each with its origin as note
+    std::vector<std::string> warnings;  // likely slips that the numbers alone do not show
+    Node tree;                          // every value there is, each with its origin as note
 };
 
 // Throws Error with every problem of the scenario.

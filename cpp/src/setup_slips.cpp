@@ -22,28 +22,23 @@ std::string vector_text(const Vec3<double>& v) {
     return "[" + shortest(v[0] + 0.0) + ", " + shortest(v[1] + 0.0) + ", " + shortest(v[2] + 0.0) + "]";
 }
 
-// Whether the key stands at its default. One number is a default, the same gravity as a list is somebody's choice.
-bool is_default_gravity(std::span<const double> params) {
-    static const Key& key = known_key("controller.gravity");
-    return params[key.offset] == key.fallback[0] && std::isnan(params[key.offset + 1]);
+bool uses_gravity(const Controller<double>& controller) {
+    return has_model(controller.type) && (controller.type != Controls::joint_pd || controller.compensates_gravity);
 }
 
-void slip_of_gravity(std::span<const double> params, const Setup& setup, std::vector<std::string>& slips) {
-    const Controller<double>& controller = setup.law();
-    const bool uses_gravity =
-        has_model(controller.type) && (controller.type != Controls::joint_pd || controller.compensates_gravity);
-    if (!uses_gravity) return;
-    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = controller.model.gravity;
+// What the plant feels and what the controller compensates differ, but by so little that a slip of typing is likely.
+bool is_nearly_equal(const Vec3<double>& feels, const Vec3<double>& compensates) {
     const double apart = norm(minus(feels, compensates));
-    if (apart > 0 && apart < 0.01 * norm(feels))
+    return apart > 0 && apart < 0.01 * norm(feels);
+}
+
+void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
+    const Controller<double>& controller = setup.law();
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = controller.model.gravity;
+    if (uses_gravity(controller) && is_nearly_equal(feels, compensates))
         slips.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
                         shortest(norm(compensates)) +
                         ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
-    else if (apart > 0 && is_default_gravity(params))
-        slips.push_back("the plant feels the gravity " + vector_text(feels) + " m/s^2 and the controller compensates " +
-                        vector_text(compensates) +
-                        " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
-                        ", or as a list what it shall believe instead");
 }
 
 void slip_of_angles(std::span<const double> params, std::vector<std::string>& slips) {
@@ -137,10 +132,21 @@ void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
 
 }  // namespace
 
+std::optional<std::string> slip_of_default_gravity(std::span<const double> params) {
+    const Setup setup = make_setup(params);
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.law().model.gravity;
+    const bool differ = norm(minus(feels, compensates)) > 0 && !is_nearly_equal(feels, compensates);
+    if (!differ || !uses_gravity(setup.law())) return {};
+    return "the plant feels the gravity " + vector_text(feels) + " m/s^2 and the controller compensates " +
+           vector_text(compensates) +
+           " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
+           ", or what it shall believe instead";
+}
+
 std::vector<std::string> likely_slips(std::span<const double> params) {
     const Setup setup = make_setup(params);
     std::vector<std::string> slips;
-    slip_of_gravity(params, setup, slips);
+    slip_of_gravity(setup, slips);
     slip_of_angles(params, slips);
     slip_of_links(setup.plant.arm, slips);
     slip_of_units(setup.plant.arm, slips);
