@@ -314,8 +314,15 @@ void slips_of_counting(const Setup& setup, const std::string& law, Slips& slips)
                         " s: " + law +
                         " counts its energy to the third order of the period only; "
                         "whole delays are counted exactly");
+    if (setup.law().type != Controls::virtual_wall) return;
+    const Gains<double>& g = setup.law().gains;
+    const double depth = dot(g.plane_normal, minus(g.plane_point, tip_position(setup.law().model, pose(setup.q))));
+    if (depth > 0 && sampling.delay > 0)
+        slips.push_back(
+            "the tip starts " + rounded(depth) + " m inside the virtual wall, and the first torque acts there for " +
+            rounded(1 + sampling.delay) + " periods: it may create energy that is taken back later; start outside");
     const TipLoad<double>& load = setup.plant.load;
-    if (setup.law().type != Controls::virtual_wall || !load.on) return;
+    if (!load.on) return;
     const double size = std::sqrt(dot(load.force, load.force)), reach = sampling.period * (1 + sampling.delay);
     if (size == 0) return;
     const Vec3<double> along(load.force[0] / size, load.force[1] / size, load.force[2] / size);
