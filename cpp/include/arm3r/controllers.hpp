@@ -175,7 +175,7 @@ template <class P, class T>
 ARM3R_INLINE Vec3<T> actuated(const Arm<P>& arm, const Controller<P>& controller, const T& integral,
                               Command<T>& command) {
     const Vec3<T> output = limited(arm, command.tau, controller.saturation);
-    if (!arm.has_torque_limit || controller.anti_windup == AntiWindup::none) return output;
+    if (controller.anti_windup == AntiWindup::none) return output;
     const Vec3<T> lack = minus(output, command.tau);
     const T turned_back = dot(command.per_integral, lack);
     T& rate = command.rates[0];

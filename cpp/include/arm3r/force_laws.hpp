@@ -89,7 +89,7 @@ ARM3R_INLINE void force_law(const Controller<P>& controller, const Sensed<T>& se
                             Command<T>& command) {
     const T error = force_error(controller, sensed);
     const T correction = corrected(controller.gains, error, integral);
-    command.rates[0] = integral_rate(controller.gains, sensed, integral, error);
+    command.rates[0] = integral_rate(controller, sensed, integral, error);
     if (controller.type == Controls::operational_space)
         command.tau = operational_space_control(controller, sensed, correction);
     else if (controller.type == Controls::parallel) command.tau = parallel_control(controller, sensed, correction);

@@ -12,10 +12,13 @@ ARM3R_INLINE T force_error(const Controller<P>& controller, const Sensed<T>& sen
     return force_wanted_at(controller.setpoint, sensed.t) - dot(sensed.n, sensed.f_on_tip);
 }
 
-// The rate of the integral, within its limit (7.5).
+// The rate of the integral, within its limit (7.5): back-calculation adds its part first, and then limits both together.
 template <class P, class T>
-ARM3R_INLINE T integral_rate(const Gains<P>& gains, const Sensed<T>& sensed, const T& integral, const T& error) {
-    return within_limit(gains, integral, T(error * sensed.contact * sensed.force_phase));
+ARM3R_INLINE T integral_rate(const Controller<P>& controller, const Sensed<T>& sensed, const T& integral,
+                             const T& error) {
+    const T rate = error * sensed.contact * sensed.force_phase;
+    if (controller.anti_windup == AntiWindup::back_calculation) return rate;
+    return within_limit(controller.gains, integral, rate);
 }
 
 // kP e_f + kI int e_f: N.
