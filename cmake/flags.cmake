@@ -26,7 +26,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 add_library(arm3r_flags INTERFACE)
 target_compile_features(arm3r_flags INTERFACE cxx_std_20)
-set(_false_alarms -Wno-restrict -Wno-stringop-overflow) # of g++ 12, over std::string
+# Of g++ 12: over std::string, and over walls and forces that are only read where there is a wall.
+set(_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
 target_compile_options(arm3r_flags INTERFACE ${_numeric} -Wall -Wextra
                        "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:${_false_alarms}>")
 target_compile_definitions(arm3r_flags INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY ARM3R_VERSION="${PROJECT_VERSION}")

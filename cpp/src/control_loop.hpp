@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "apart.hpp"
 #include "arm3r/energy_reserve.hpp"
 #include "arm3r/estimator.hpp"
 #include "arm3r/lanes.hpp"
@@ -91,7 +92,8 @@ private:
         if (digital_.observer.reaction != Reaction::ignore) react(due, sensed, command);
         if (keeps_reserve(controller)) keep_passive(due, arm, sensed, command);
         const Vec3<T> output = actuated(arm, controller, known_.memory[0], command);
-        remember(due, command);
+        const T limit = memory_limit();
+        if (remembers()) Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { remember(due, command, limit); });
         deliver(due, output, acting);
         if (digital_.observer.on) expect(due, sensed);
         count_ = count_ + select(due, T(1.0), T(0.0));
@@ -263,20 +265,21 @@ private:
         return wants_path(controller.type) ? wanted_at(controller.setpoint, sensed.t).position : none<T>();
     }
 
-    // By Euler's rule; an integral of the force error ends its step at its limit (7.5). A reserve is settled instead.
-    ARM3R_INLINE void remember(const Mask& due, const Command<T>& command) {
-        if (keeps_reserve(digital_.controller)) return;
-        const std::size_t size = memory_size(digital_.controller.type);
-        const auto add = [&](std::size_t i) ARM3R_INLINE_LAMBDA {
-            known_.memory[i] = known_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0));
+    // By Euler's rule; an integral of the force error ends its step at its limit (7.5). A reserve is settled instead. What
+    // a law does not remember has no rate. Without branches or loops, for g++ 12 (pack.hpp).
+    ARM3R_INLINE void remember(const Mask& due, const Command<T>& command, const T& limit) {
+        const auto next = [&](std::size_t i) ARM3R_INLINE_LAMBDA {
+            return T(known_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0)));
         };
-        if (size > 0) add(0);
-        if (integrates_force(digital_.controller.type)) {
-            const T limit = digital_.controller.gains.integral_limit;
-            known_.memory[0] = max(min(known_.memory[0], limit), T(-limit));
-        }
-        if (size > 1)
-            for (std::size_t i = 1; i < law_memory; ++i) add(i);
+        known_.memory = {max(min(next(0), limit), T(-limit)), next(1), next(2), next(3), next(4), next(5)};
+    }
+
+    ARM3R_INLINE bool remembers() const {
+        return memory_size(digital_.controller.type) > 0 && !keeps_reserve(digital_.controller);
+    }
+
+    ARM3R_INLINE T memory_limit() const {
+        return integrates_force(digital_.controller.type) ? digital_.controller.gains.integral_limit : T(never);
     }
 
     // ---- the wall's stiffness, told from force and position in contact (8.7)

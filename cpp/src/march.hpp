@@ -248,8 +248,8 @@ protected:
             get(passage_.start), get(passage_.duration), Lanes<T>::is(passage_.touching, lane), {}, {}};
         for (std::size_t j = 0; j < n; ++j) {
             const Sight<T>& sight = passage_.sights[j];
-            passage.sights[j] = {
-                get(sight.force), get(sight.force_wanted), get(sight.path_error_2), get(sight.saturated), {}};
+            passage.sights[j] = {get(sight.force), get(sight.force_wanted), get(sight.path_error_2),
+                                 get(sight.saturated), none<double>()};
         }
         Tally<double> tally = tally_of(lane);
         with_view(lane, inside, [&](StepView view) {
