@@ -62,12 +62,14 @@ def rk4(scenario: Mapping[str, Any], about: float) -> Keys:
 
 
 def changes_on_grid(scenario: Mapping[str, Any], step: float) -> bool:
-    """Whether every instant at which something is told to begin or end is a whole number of steps."""
+    """Whether every instant at which something begins or ends, or the estimator samples, is a whole number of steps."""
     reference, motion = scenario.get("reference", {}), scenario.get("wall", {}).get("motion", {})
     instants = [*motion.get("t", []), *reference.get("t", [])]
     for section in (scenario.get("push", {}), reference, reference.get("force", {}), motion):
         start = section.get("start", 0)
         instants += [start, start + section.get("duration", 0), start + section.get("rise", 0)]
+    if (estimator := scenario.get("estimator")) is not None:
+        instants += [estimator.get("start", 0), 1 / estimator.get("rate", 500)]
     return all(abs(t / step - round(t / step)) < 1e-6 for t in instants)
 
 
