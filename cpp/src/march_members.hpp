@@ -193,7 +193,7 @@ void March<T, N>::set_mode(int lane, Mode mode) {
     embedded_ = mask_where<T>(mode_, Mode::embedded);
     any_touching_ = any(touching_);
     any_embedded_ = any(embedded_);
-    const bool feels = only_contact_is_felt_ ? mode == Mode::contact : mode != Mode::embedded;
+    const bool feels = only_contact_is_felt_ ? mode == Mode::contact && plant_.acts_on_arm : mode != Mode::embedded;
     const Contact<double>& own = setups_[lane].plant.contact;
     const auto set = [&](T& strength, double value) { Lanes<T>::set(strength, lane, feels ? value : 0.0); };
     for (int i = 0; i < 3; ++i) set(plant_.contact.stiffness[i], own.stiffness[i]);

@@ -41,7 +41,8 @@ BOOST_AUTO_TEST_CASE(series_find_the_contacts_forces_and_rows_that_dopri5_finds)
         const Params params = any_contact(random);
         if (!is_valid(params)) continue;
         const Run truth = tight(params, "dopri5").run(), series = tight(params, "taylor").run();
-        BOOST_REQUIRE(series.outcome == truth.outcome);
+        BOOST_REQUIRE_MESSAGE(series.outcome == truth.outcome,
+                              n << ": " << series.message << " against " << truth.message);
         BOOST_REQUIRE(series.events.size() == truth.events.size());
         events += truth.events.size();
         for (std::size_t i = 0; i < truth.events.size(); ++i) {
