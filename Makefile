@@ -27,7 +27,7 @@ test: $(VENV)/test $(BUILD)/tests
 	exit $$failed
 
 gates: $(VENV)/test $(BUILD)/tests
-	$(BIN)/python -m pytest -q -m gate
+	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(BIN)/python -m pytest -q -m gate
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null

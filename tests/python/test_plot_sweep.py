@@ -154,7 +154,7 @@ def test_a_sweep_that_kept_nothing_is_not_drawn(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_the_command_writes_a_file(table: Any, tmp_path: Path, scripts: Path, suffix: str) -> None:
-    folder, out = table(STIFFNESS).folder, tmp_path / f"new/figure.{suffix}"
+    folder, out = table(STIFFNESS).folder, tmp_path / f"figure.{suffix}"
     call = [scripts / "arm3r-plot", "sweep", folder, "-o", out, "--metric", "contact_time", "--log"]
     done = subprocess.run(call, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (0, f"{out}\n"), done.stderr

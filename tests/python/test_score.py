@@ -9,7 +9,7 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from force_scenarios import read
-from random_scenarios import fresh_seed, random_scenario, yaml_of
+from random_scenarios import sample_seed, random_scenario, yaml_of
 from scipy.interpolate import make_interp_spline
 
 
@@ -151,7 +151,7 @@ def check_against_rows(run: arm3r.Run) -> None:
 
 
 def check_random_scenarios(count: int) -> None:
-    seed = fresh_seed()
+    seed = sample_seed()
     print("seed", seed)
     rng = np.random.default_rng(seed)
     for number in range(count):

@@ -13,9 +13,9 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from agreement import ADAPTIVE, Band, Gap, disturbed, rk4, run_of
-from random_scenarios import Keys, fresh_seed, random_scenario, yaml_of
+from random_scenarios import Keys, sample_seed, random_scenario, yaml_of
 
-SEED = fresh_seed()
+SEED = sample_seed()
 PER_AXIS = ("mass", "damping", "stiffness", "position_gain", "velocity_gain")
 VECTORS = (
     "arm.gravity", "wall.point", "wall.normal", "wall.motion.velocity", "wall.motion.direction", "wall.rotation.axis",
@@ -91,6 +91,8 @@ def alike_in_all_directions(scenario: Keys) -> Keys | None:
     for key in ("noise", "resolution"):
         sensors.get("force", {}).pop(key, None)
     if other.get("reference", {}).get("type") == "circle" and "wall" not in other:
+        return None
+    if "estimator" in other and "push" in other:  # the estimator takes a push for a contact of no stiffness
         return None
     return other
 
