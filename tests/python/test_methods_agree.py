@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from agreement import ADAPTIVE, Band, Gap, changes_on_grid, disturbed, rk4, run_of
-from random_scenarios import Keys, sample_seed, random_scenario, yaml_of
+from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 SEED = sample_seed()
 WITH_TOLERANCE = ("rodas4", "auto", "taylor")

@@ -11,7 +11,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from random_scenarios import Keys, sample_seed, random_scenario, yaml_of
+from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 ADAPTIVE = ("dopri5", "rodas4", "auto")
 METHODS = (*ADAPTIVE, "taylor", "rk4")

@@ -15,7 +15,7 @@ import pytest
 from agreement import ADAPTIVE, rk4, run_of
 from arm3r_cpp import _native
 from arm3r_cpp._native import ffi, lib
-from random_scenarios import Keys, sample_seed, random_scenario, yaml_of
+from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 SEED = sample_seed()
 TIP = ("tip_x", "tip_y", "tip_z")  # a batch has them from the kinematics, a run's rows from the recursion

@@ -9,7 +9,7 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from force_scenarios import read
-from random_scenarios import sample_seed, random_scenario, yaml_of
+from random_scenarios import random_scenario, sample_seed, yaml_of
 from scipy.interpolate import make_interp_spline
 
 

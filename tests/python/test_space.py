@@ -13,7 +13,7 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from agreement import ADAPTIVE, Band, Gap, disturbed, rk4, run_of
-from random_scenarios import Keys, sample_seed, random_scenario, yaml_of
+from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 SEED = sample_seed()
 PER_AXIS = ("mass", "damping", "stiffness", "position_gain", "velocity_gain")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from arm3r_cpp.scenario import Scenario
 from conftest import scenario_files
-from random_scenarios import sample_seed, random_scenario, yaml_of
+from random_scenarios import random_scenario, sample_seed, yaml_of
 
 SHIFTS = [0.7, 37.0]
 NUDGE = 1e-7  # rad: a perturbation of the start, by which the growth of an error over the run is measured
