@@ -1,7 +1,7 @@
 """A run is one and the same, however it is asked for: alone or in a batch, in a stride or step by step, with many rows
 or few. Random scenarios by every method, to the bit.
 
-The scenarios are drawn from the seed of the day, which a failure prints with its YAML; ARM3R_SEED sets another.
+A failure prints the seed of its scenario and its YAML; ARM3R_SEED sets another seed, the gates that of the day.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Physics knows no x axis and no sign of an angle: a scenario turned about the vertical, or told in the other
 convention, gives the same motion.
 
-The scenarios are drawn from the seed of the day, which a failure prints with its YAML; ARM3R_SEED sets another.
+A failure prints the seed of its scenario and its YAML; ARM3R_SEED sets another seed, the gates that of the day.
 """
 
 from __future__ import annotations
