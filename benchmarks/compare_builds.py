@@ -1,120 +1,101 @@
-"""Compare the results of two builds of arm3r, bit by bit.
+"""Compare two builds of arm3r: what they answer, to the last bit, and how many instructions they take.
 
-    python benchmarks/compare_builds.py OLD_PYTHON NEW_PYTHON
+    python benchmarks/compare_builds.py OLD_PYTHON NEW_PYTHON [--instructions] [--programs OLD NEW]
 
-OLD_PYTHON and NEW_PYTHON are interpreters in whose environments one build each is installed. Each of them runs every
-scenario of this checkout by every method that the scenario allows, runs some batches, and prints the reference pages.
-The program lists what differs: columns, summary numbers, events, batch columns, pages and exported symbols. It compares
-what both builds have, and names what only one of them has. Exit code 0: nothing differs, 1: something does.
+OLD_PYTHON and NEW_PYTHON are interpreters in whose environments one build each is installed. Both run every scenario of
+this checkout by every method, batches, sweeps and laws in Python, and print the reference pages, messages, names and
+symbols (build_results.py). What only one build has is named and is no difference.
+
+--instructions counts the instructions of the benchmarks' jobs by valgrind (instruction_jobs.py), and --programs those
+of two arm3r_benchmarks (instructions.py). A job may take 0.5 % more than before.
+
+Exit code 0: the results are the same and no job takes more; 1: they are not, or a job does.
 """
 
 from __future__ import annotations
 
-import hashlib
+import argparse
+import csv
 import json
 import subprocess
 import sys
+import time
 from collections import Counter
+from collections.abc import Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-SCENARIOS = Path(__file__).parents[1] / "scenarios"
-METHODS = ("dopri5", "rodas4", "auto", "rk4", "taylor")
-BATCHES = {
-    "moving_wall.yaml": {"wall.contact.stiffness": [100, 1e3, 1e4, 1e5], "wall.acts_on_arm": True},
-    "force_control/b9a_hybrid.yaml": {"wall.contact.stiffness": [500, 1e3, 2e3]},
-    "force_control/sampled_with_sensors.yaml": {"wall.contact.stiffness": [500, 1e3, 2e3]},
-}
-PAGES = ("schema", "columns", "template", "--help")
-
-# Not a result: wall-clock time, the build's own name, and a hash over all columns, which new columns change.
-NOT_RESULTS = {"elapsed_s", "version", "hash"}
+HERE = Path(__file__).parent
+LIMIT = 1.005  # of the instructions before
+WIDTH = 160  # of a line that is shown
 
 
-def digest(data: bytes) -> str:
-    """A short hash of `data`."""
-    return hashlib.sha256(data).hexdigest()[:16]
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("old", metavar="OLD_PYTHON")
+    parser.add_argument("new", metavar="NEW_PYTHON")
+    parser.add_argument("--instructions", action="store_true", help="count instructions too; takes some minutes")
+    parser.add_argument("--programs", nargs=2, metavar=("OLD", "NEW"), help="two arm3r_benchmarks, counted too")
+    options = parser.parse_args()
+    pythons = options.old, options.new
+
+    begun = time.perf_counter()
+    changed = report(*map(json.loads, outputs([[python, HERE / "build_results.py"] for python in pythons])))
+    if options.instructions:
+        counts = map(json.loads, outputs([[python, HERE / "instruction_jobs.py"] for python in pythons]))
+        changed |= report_instructions(*counts)
+    if options.programs:
+        commands = [[sys.executable, HERE / "instructions.py", program] for program in options.programs]
+        changed |= report_instructions(*map(counts_of_table, outputs(commands)))
+    print(f"compared in {time.perf_counter() - begun:.0f} s")
+    return int(changed)
 
 
-def run_results(scenario: Any, prefix: str) -> dict[str, str]:
-    """Hashes of every column, and the text of every summary number, of one run."""
-    import arm3r_cpp as arm3r
-
-    try:
-        run = scenario.run()
-    except arm3r.Arm3rError as error:
-        run = error.run  # the rows so far and the outcome are results too
-        if run is None:
-            return {f"{prefix} refused": type(error).__name__}
-    results = {f"{prefix} column {name}": digest(run[name].tobytes()) for name in run.columns}
-    for name, value in run.summary.items():
-        if isinstance(value, dict) and name not in NOT_RESULTS:
-            results |= {f"{prefix} summary {name}.{key}": repr(number) for key, number in value.items()}
-        elif name not in NOT_RESULTS:
-            results[f"{prefix} summary {name}"] = repr(value)
-    return results
+def outputs(commands: Sequence[Sequence[Any]]) -> list[str]:
+    """What commands print that run at the same time."""
+    running = [subprocess.Popen(words, stdout=subprocess.PIPE, text=True) for words in commands]
+    printed = [process.communicate()[0] for process in running]
+    for process in running:
+        if process.returncode != 0:
+            raise SystemExit(f"{' '.join(map(str, process.args))}: ended with exit code {process.returncode}")
+    return printed
 
 
-def collect() -> dict[str, str]:
-    """All results of the build that this interpreter has."""
-    import arm3r_cpp as arm3r
-
-    package = Path(arm3r.__file__).parent
-    results: dict[str, str] = {}
-    for path in sorted(SCENARIOS.rglob("*.yaml")):
-        if path.parent.name == "sweeps":
-            continue
-        name = str(path.relative_to(SCENARIOS))
-        results |= run_results(arm3r.Scenario.load(path), f"{name} as it is:")
-        for method in METHODS:
-            scenario = arm3r.Scenario.load(path)
-            scenario["solver"] = {"method": method}
-            scenario["checks"] = []
-            results |= run_results(scenario, f"{name} by {method}:")
-    for name, values in BATCHES.items():
-        for method in METHODS:
-            scenario = arm3r.Scenario.load(SCENARIOS / name)
-            scenario["solver"] = {"method": method}
-            scenario["checks"] = []
-            try:
-                batch = scenario.batch(values)
-            except arm3r.Arm3rError as error:
-                results[f"batch {name} by {method}: refused"] = type(error).__name__
-                continue
-            for column in batch.names:
-                results[f"batch {name} by {method}: {column}"] = digest(batch[column].tobytes())
-    for page in PAGES:
-        text = subprocess.run([package / "bin" / "arm3r", page], capture_output=True, check=True).stdout
-        results[f"page {page}"] = digest(text)
-    symbols = subprocess.run(
-        ["nm", "-D", "--defined-only", package / "lib" / "libarm3r.so"], capture_output=True, text=True, check=True
-    ).stdout
-    results |= {f"symbol {line.split()[-1]}": "" for line in symbols.splitlines()}
-    return results
+def differing(before: dict[str, str], after: dict[str, str]) -> list[str]:
+    """The names of the results that both builds have and that are not the same."""
+    return [name for name in before if name in after and before[name] != after[name]]
 
 
-def main(old: str, new: str) -> int:
-    """Compare two builds and print what differs."""
-    builds = [subprocess.Popen([python, __file__, "--collect"], stdout=subprocess.PIPE) for python in (old, new)]
-    before, after = (json.loads(build.communicate()[0]) for build in builds)
-    differing = [name for name in before if name in after and before[name] != after[name]]
-    for name in differing:
+def report(before: dict[str, str], after: dict[str, str]) -> bool:
+    """Print what differs, and what only one build has; whether anything differs."""
+    names = differing(before, after)
+    for name in names:
         print(f"differs: {name}")
-    for label, only in (
-        ("only the old build has", before.keys() - after.keys()),
-        ("only the new build has", after.keys() - before.keys()),
-    ):
-        counts = Counter(name.partition(": ")[2] or name for name in only)
-        for name, count in sorted(counts.items()):
-            print(f"{label}: {name} ({count} times)")
-    print(f"{len(before.keys() & after.keys())} results compared, {len(differing)} differ")
-    return 1 if differing else 0
+        lines = zip_longest(before[name].splitlines(), after[name].splitlines(), fillvalue="(no more lines)")
+        old, new = next((pair for pair in lines if pair[0] != pair[1]), ("other line ends", "other line ends"))
+        print(f"    old: {old[:WIDTH]}\n    new: {new[:WIDTH]}")
+    for build, only in ("old", before.keys() - after.keys()), ("new", after.keys() - before.keys()):
+        for name, count in sorted(Counter(name.partition(": ")[2] or name for name in only).items()):
+            print(f"only the {build} build has: {name} ({count} times)")
+    print(f"{len(before.keys() & after.keys())} results compared, {len(names)} differ")
+    return bool(names)
+
+
+def counts_of_table(table: str) -> dict[str, float]:
+    """Instructions by job, of the table that instructions.py prints."""
+    return {f"{row['job']}: {row['who']}": float(row["median"]) for row in csv.DictReader(table.splitlines())}
+
+
+def report_instructions(before: dict[str, float], after: dict[str, float]) -> bool:
+    """Print the instructions of every job that both builds do; whether one takes more than the limit."""
+    jobs = {job: after[job] / before[job] for job in before if job in after}
+    print(f"{'before':>12} {'after':>12}  ratio  instructions of")
+    for job, ratio in jobs.items():
+        more = f"  takes more than {LIMIT} times as many" if ratio > LIMIT else ""
+        print(f"{before[job]:12.0f} {after[job]:12.0f} {ratio:6.3f}  {job}{more}")
+    return any(ratio > LIMIT for ratio in jobs.values())
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--collect"]:
-        json.dump(collect(), sys.stdout)
-    elif len(sys.argv) == 3:
-        sys.exit(main(*sys.argv[1:]))
-    else:
-        sys.exit(__doc__)
+    sys.exit(main())

@@ -1,4 +1,4 @@
-"""Instructions a job takes, counted by valgrind: the same on a busy machine as on a quiet one. CSV out.
+"""Instructions that a job of arm3r_benchmarks takes, counted by valgrind. CSV out.
 
     python benchmarks/instructions.py PROGRAM    # arm3r_benchmarks
 
@@ -8,19 +8,17 @@ Only ours are counted: the peers use instructions that valgrind does not know.
 from __future__ import annotations
 
 import csv
-import re
 import subprocess
 import sys
 
+from callgrind import counts
 from table import Table
 
 FEW, MANY = 5_000, 25_000
 
 
 def counted(program: str, number: str, times: int) -> int:
-    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, "--only", number, str(times)]
-    report = subprocess.run(command, check=True, capture_output=True, text=True).stderr
-    return int(re.findall(r"Collected : (\d+)", report)[0])
+    return counts([program, "--only", number, str(times)])[0]
 
 
 def main() -> None:
