@@ -145,8 +145,8 @@ private:
     }
 
     void change_mode(const Change& change) {
-        now_.y[7] += change.gained;
-        now_.y[8] += change.lost;
+        now_.y[work_of_wall] += change.gained;
+        now_.y[dissipated] += change.lost;
         if (change.makes()) note_event(Event::make, change.t);
         if (change.breaks()) note_event(Event::brk, change.t);
         note_change(change, now_.y);
@@ -434,7 +434,7 @@ private:
         run_.q = joints_out(angles(now_.y));
         run_.qd = joints_out(rates(now_.y));
         run_.tip = plain(tip_position(setup_.plant.arm, pose(angles(now_.y))));
-        for (std::size_t i = motion_size; i < state_size; ++i) run_.books[i - motion_size] = now_.y[i];
+        note_energies(now_.y, setup_.plant, lost_at_edges_, run_);
         if (is_touching(mode_)) run_.contact_time += run_.t_end - now_.touching_since;
         run_.peak_force = now_.peak.force;
         if (run_.contacts > 0) run_.peak_force_time = now_.peak.t;

@@ -77,6 +77,13 @@ const std::vector<Column>& column_table() {
         {"identifiable", "1", "1 where the data tell stiffness and speed apart", Need::estimator},
         {"tank_energy", "J", "what is in the energy tank", Need::tank},
         {"saturated", "1", "1 where a torque is at its limit", Need::limits},
+        {"energy_dissipated_joints", "J", "the part of energy_dissipated lost to damping and friction of the joints",
+         Need::loss},
+        {"energy_dissipated_contact", "J",
+         "the part lost in the contact: by damping along its normal, and by springs along the plate that let go",
+         Need::loss},
+        {"energy_dissipated_friction", "J", "the part lost to friction along the wall", Need::loss},
+        {"energy_dissipated_edges", "J", "the part lost where the tip left the plate across an edge", Need::loss},
     };
     return table;
 }
@@ -91,6 +98,7 @@ std::string_view need_text(Need need) {
         case Need::observer: return "only with an observer";
         case Need::estimator: return "only with an estimator";
         case Need::tank: return "only with an energy tank";
+        case Need::loss: return "only where energy can be lost: in the joints, or at a wall that acts on the arm";
         default: return "only with torque limits and a control law";
     }
 }
@@ -105,6 +113,7 @@ std::string_view need_hint(Need need) {
         case Need::observer: return "add `observer: {}`";
         case Need::estimator: return "add `estimator: {}`";
         case Need::tank: return "choose controller.type energy_tank";
+        case Need::loss: return "give arm.joint_damping or arm.dry_friction, or a wall that acts on the arm and damps";
         default: return "give arm.torque_limit, and choose a controller.type";
     }
 }

@@ -16,6 +16,7 @@ enum class Need {
     observer,
     estimator,
     tank,
+    loss,    // something that can turn energy into heat
     limits,  // torque limits
 };
 

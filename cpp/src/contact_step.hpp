@@ -24,6 +24,7 @@ struct Change {
 
     bool makes() const { return !is_touching(from) && is_touching(to); }
     bool breaks() const { return is_touching(from) && !is_touching(to); }
+    double lost_at_edge() const { return to == Mode::embedded ? lost : 0; }  // J
 };
 
 // The same for a tip that stands at `in` then.

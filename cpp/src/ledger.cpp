@@ -46,8 +46,8 @@ Ledger::Ledger(const Plant<double>& plant, double t, const FullState& y, Mode mo
 void Ledger::close(const Plant<double>& plant, double t, const FullState& y, Mode mode) {
     const Energies now = energies(plant, t, y, mode);
     note_residual(flows_.residual, energy_residual(y, now.sum(), start_.sum()));
-    flows_.exchanged = std::max({flows_.exchanged, std::abs(y[6]), std::abs(y[7]), std::abs(y[8]), now.kinetic,
-                                 std::abs(now.potential - start_.potential)});
+    flows_.exchanged = std::max({flows_.exchanged, std::abs(y[work_of_actuators]), std::abs(y[work_of_wall]),
+                                 std::abs(y[dissipated]), now.kinetic, std::abs(now.potential - start_.potential)});
     flows_.held = std::max(flows_.held, stock(now));
 }
 

@@ -287,11 +287,13 @@ protected:
 
     ARM3R_INLINE void close_books() {
         const T contact = stored();
-        const T residual = ((kinetic_ + potential_ + contact) - energy_at_start_) - (y_[6] + y_[7] - y_[8]);
+        const T residual = ((kinetic_ + potential_ + contact) - energy_at_start_) -
+                           (y_[work_of_actuators] + y_[work_of_wall] - y_[dissipated]);
         const T size = select(residual == residual, abs(residual), T(std::numeric_limits<double>::infinity()));
         residual_ = max(residual_, size);
-        exchanged_ = max(max(max(exchanged_, abs(y_[6])), max(abs(y_[7]), abs(y_[8]))),
-                         max(kinetic_, abs(potential_ - potential_at_start_)));
+        exchanged_ =
+            max(max(max(exchanged_, abs(y_[work_of_actuators])), max(abs(y_[work_of_wall]), abs(y_[dissipated]))),
+                max(kinetic_, abs(potential_ - potential_at_start_)));
         held_ = max(held_, T(abs(kinetic_) + abs(potential_) + abs(contact)));
     }
 
@@ -399,7 +401,7 @@ private:
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;
     struct Contacts {
-        double count, events, first_contact, first_release, time, since;
+        double count, events, first_contact, first_release, time, since, lost_at_edges;
     };
     std::array<Contacts, lanes> contacts_;
 };

@@ -63,7 +63,7 @@ void March<T, N>::put(int lane, const Setup& setup) {
     set(max_steps_, setup.solver.max_steps);
     each_contact_number(set, true_contact_, setup.plant.contact);
     contacts_[lane] = {
-        0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0, setup.start};
+        0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0, setup.start, 0};
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
     set_running(lane, false);  // of a run before this one
@@ -238,9 +238,11 @@ void March<T, N>::note_peak(int lane, double value, double t, T& peak) {
 
 template <class T, std::size_t N>
 void March<T, N>::change_mode(int lane, const Change& change) {
-    Lanes<T>::set(y_[7], lane, Lanes<T>::get(y_[7], lane) + change.gained);
-    Lanes<T>::set(y_[8], lane, Lanes<T>::get(y_[8], lane) + change.lost);
+    const auto add = [lane](T& x, double more) { Lanes<T>::set(x, lane, Lanes<T>::get(x, lane) + more); };
+    add(y_[work_of_wall], change.gained);
+    add(y_[dissipated], change.lost);
     Contacts& contacts = contacts_[lane];
+    contacts.lost_at_edges += change.lost_at_edge();
     if (change.to == Mode::contact) {
         if (contacts.count == 0) contacts.first_contact = change.t;
         contacts.count += 1;
@@ -291,7 +293,7 @@ Metrics March<T, N>::metrics(int lane) const {
     m.q = joints_out(angles(y));
     m.qd = joints_out(rates(y));
     m.tip = plain(tip_position(setup.plant.arm, pose(angles(y))));
-    for (std::size_t i = motion_size; i < state_size; ++i) m.books[i - motion_size] = y[i];
+    note_energies(y, setup.plant, contacts.lost_at_edges, m);
     m.contacts = contacts.count;
     m.first_contact = contacts.first_contact;
     m.first_release = contacts.first_release;

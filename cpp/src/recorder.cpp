@@ -43,8 +43,9 @@ void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double e
 
 void Recorder::note_change(const Change& change, const FullState& y) {
     log_until(change.t);
-    inside_.c[0][7] += change.gained;  // for the rows of this step that are still to come
-    inside_.c[0][8] += change.lost;
+    inside_.c[0][work_of_wall] += change.gained;  // for the rows of this step that are still to come
+    inside_.c[0][dissipated] += change.lost;
+    lost_at_edges_ += change.lost_at_edge();
     if (change.makes()) record(Event::make, change.t, y);
     if (change.breaks()) record(Event::brk, change.t, y);
     mode_ = change.to;

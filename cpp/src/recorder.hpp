@@ -23,6 +23,13 @@ private:
     const Clock::time_point begun_ = Clock::now();
 };
 
+inline void note_energies(const FullState& y, const Plant<double>& plant, double lost_at_edges, Metrics& metrics) {
+    metrics.work_of_actuators = y[work_of_actuators];
+    metrics.work_of_wall = y[work_of_wall];
+    metrics.dissipated = y[dissipated];
+    metrics.dissipated_parts = dissipated_parts(plant, y, lost_at_edges);
+}
+
 // A copy goes on by itself: no member refers to another one.
 class Recorder {
 public:
@@ -67,13 +74,22 @@ protected:
     Inside inside_;                         // the solution within the last step
     Known<double> known_;                   // to a digital controller
     double contact_ = 0, force_phase_ = 0;  // to a continuous one
+    double lost_at_edges_ = 0;              // J, by springs that lose the tip across an edge of the plate
 
 private:
     RowLog rows() { return {setup_, run_}; }
     Scene scene() const {
-        return {setup_.plant, setup_.simscape, energy_at_start_,           mode_,
-                inside_,      setup_.law(),    setup_.digital.sampling.on, known_,
-                contact_,     force_phase_};
+        return {setup_.plant,
+                setup_.simscape,
+                energy_at_start_,
+                mode_,
+                inside_,
+                setup_.law(),
+                setup_.digital.sampling.on,
+                known_,
+                contact_,
+                force_phase_,
+                lost_at_edges_};
     }
     void explain(const FullState& y);
     void record(Event::Type type, double t, const FullState& y);

@@ -78,11 +78,19 @@ Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode
 // What the balance leaves over (4.9).
 template <class T>
 ARM3R_INLINE T energy_residual(const State<T, full_size>& y, const T& energy, double energy_at_start) {
-    return (energy - energy_at_start) - (y[6] + y[7] - y[8]);
+    return (energy - energy_at_start) - (y[work_of_actuators] + y[work_of_wall] - y[dissipated]);
+}
+
+// J since the start: the dissipated energy in parts (4.9). `at_edges` is known from the changes of contact.
+template <class P, class T>
+ARM3R_INLINE std::array<T, 4> dissipated_parts(const Plant<P>& plant, const State<T, full_size>& y, double at_edges) {
+    const T joints = y[dissipated_in_joints], friction = y[dissipated_in_friction], edges(at_edges);
+    const T contact = dissipates_in_contact(plant) ? T(y[dissipated] - joints - friction - edges) : T(0.0);
+    return {joints, contact, friction, edges};
 }
 
 // The columns of columns.cpp in their order, wall columns included; joint vectors in the convention of the faces.
-constexpr std::size_t column_count = 68, residual_column = 45;
+constexpr std::size_t column_count = 72, residual_column = 45, parts_column = 68;
 
 struct Row {
     std::array<double, column_count> value;
@@ -100,6 +108,7 @@ struct Scene {
     bool is_sampled;              // the law is a digital controller's
     const Known<double>& known;   // to it
     double contact, force_phase;  // to a continuous one
+    double lost_at_edges;         // J, so far
 };
 
 // `theta` is where t lies within the step.

@@ -194,8 +194,10 @@ ARM3R_INLINE void sample_into(const Scene& scene, const T& row_time, const State
     put(kinetic);
     put(potential);
     put(stored);
-    for (std::size_t i = motion_size; i < state_size; ++i) put(y[i]);
+    for (const std::size_t i : {work_of_actuators, work_of_wall, dissipated}) put(y[i]);
     put(energy_residual(y, T(kinetic + potential + stored), scene.energy_at_start));
+    const std::array<T, 4> parts = dissipated_parts(plant, y, scene.lost_at_edges);
+    for (std::size_t i = 0; i < parts.size(); ++i) row.value[parts_column + i] = parts[i] + 0.0;
     if (scene.law.type == Controls::none && !plant.observer.on && !plant.has_wall) return;
     const Sensed<T> sensed = sensed_by(scene, rhs, t, wall, p, q, qd, at_tip, y);
     put_law(scene, sensed, force, y, put, put_vector, put_joints);

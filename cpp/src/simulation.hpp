@@ -41,7 +41,8 @@ struct Metrics {
     double impulse = 0;                // N s, of the normal force
     double ledger_residual = 0;        // J, largest at the end of a step
     std::array<double, 3> q{}, qd{}, tip{};
-    std::array<double, 3> books{};  // J: work of the actuators, work of the wall, dissipated energy
+    double work_of_actuators = 0, work_of_wall = 0, dissipated = 0;  // J
+    std::array<double, 4> dissipated_parts{};                        // J: in joints, contact, friction, at edges
     Steps steps;
     // What a controller is judged by (score.hpp); NaN where it does not apply.
     double force_error_rms = unknown, force_error_peak = unknown, overshoot = unknown;  // N

@@ -77,6 +77,7 @@ std::vector<std::size_t> columns_of(const Setup& setup) {
             case Need::observer: return setup.observes();
             case Need::estimator: return setup.estimation.on;
             case Need::tank: return law.type == Controls::energy_tank;
+            case Need::loss: return can_lose_energy(plant);
             default: return plant.arm.has_torque_limit && law.type != Controls::none;
         }
     };

@@ -14,7 +14,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double accuracy_limit = 1.2;  // of h lambda: beyond it the explicit method is held down by its stability
 constexpr int enough_signs = 40, enough_doubts = 6;
 constexpr double quiet_motion = 1e-2, rounding_of_motion = 1e-14;  // of the tolerance; rad, rad/s
-constexpr std::size_t work_of_wall = motion_size + 1;
 
 template <std::size_t N>
 bool is_finite(const State<double, N>& y) {

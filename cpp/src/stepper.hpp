@@ -51,8 +51,8 @@ public:
                         const Y& y) const;
 
 private:
-    using Explicit = Dopri5<double, N, motion_size, ledger_size>;
-    using Stiff = Rodas4<N, motion_size, ledger_size>;
+    using Explicit = Dopri5<double, N, motion_size, ledger_size, ledger_parts>;
+    using Stiff = Rodas4<N, motion_size, ledger_size, ledger_parts>;
     using D = Dual<slopes_at_once>;
 
     bool counts_heat() const;

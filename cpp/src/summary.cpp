@@ -23,9 +23,9 @@ const std::vector<SummaryNumber>& summary_table() {
         {"tip_x", "m", "tip position along base x at the end", [](R r) { return r.tip[0]; }},
         {"tip_y", "m", "tip position along base y at the end", [](R r) { return r.tip[1]; }},
         {"tip_z", "m", "tip position along base z at the end", [](R r) { return r.tip[2]; }},
-        {"work_actuators", "J", "work of the applied torques", [](R r) { return r.books[0]; }},
-        {"work_wall", "J", "work of the wall's drive on the arm", [](R r) { return r.books[1]; }},
-        {"energy_dissipated", "J", "energy lost to friction, damping and contact", [](R r) { return r.books[2]; }},
+        {"work_actuators", "J", "work of the applied torques", [](R r) { return r.work_of_actuators; }},
+        {"work_wall", "J", "work of the wall's drive on the arm", [](R r) { return r.work_of_wall; }},
+        {"energy_dissipated", "J", "energy lost to friction, damping and contact", [](R r) { return r.dissipated; }},
         {"ledger_residual", "J", "largest residual of the energy balance at the end of a step",
          [](R r) { return r.ledger_residual; }},
         {"force_error_rms", "N", "root mean square of the force error over the time in contact",
@@ -55,6 +55,14 @@ const std::vector<SummaryNumber>& summary_table() {
          [](R r) { return double(r.steps.evaluations); }},
         {"steps.stiff", "1", "steps taken by the method for stiff equations", [](R r) { return r.stiff_steps; }},
         {"peak_force_time", "s", "when the normal contact force was largest", [](R r) { return r.peak_force_time; }},
+        {"energy_dissipated_joints", "J", "the part lost to damping and friction of the joints",
+         [](R r) { return r.dissipated_parts[0]; }},
+        {"energy_dissipated_contact", "J", "the part lost in the contact along its normal and by springs that let go",
+         [](R r) { return r.dissipated_parts[1]; }},
+        {"energy_dissipated_friction", "J", "the part lost to friction along the wall",
+         [](R r) { return r.dissipated_parts[2]; }},
+        {"energy_dissipated_edges", "J", "the part lost where the tip left the plate across an edge",
+         [](R r) { return r.dissipated_parts[3]; }},
     };
     return table;
 }

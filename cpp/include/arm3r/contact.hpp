@@ -57,10 +57,11 @@ ARM3R_INLINE T stored_sideways(const Contact<P>& contact, const Indentation<T>& 
 
 template <class T>
 struct ContactForce {
-    Vec3<T> on_tip;  // N, base axes; the wall feels the opposite
-    T normal;        // N, along n, >= 0 when pressing
-    T stored;        // J, elastic energy of the indentation
-    T dissipated;    // W, turned into heat
+    Vec3<T> on_tip;   // N, base axes; the wall feels the opposite
+    T normal;         // N, along n, >= 0 when pressing
+    T stored;         // J, elastic energy of the indentation
+    T dissipated;     // W, turned into heat
+    T friction_loss;  // W, the part of it that friction along the plate turns into heat
 };
 
 enum class Grip {
@@ -71,7 +72,7 @@ enum class Grip {
 
 template <class T, class V>
 ARM3R_INLINE ContactForce<T> along_normal(const V& n, const T& normal, const T& stored, const T& dissipated) {
-    return {{normal * n[0], normal * n[1], normal * n[2]}, normal, stored, dissipated};
+    return {{normal * n[0], normal * n[1], normal * n[2]}, normal, stored, dissipated, T(0.0)};
 }
 
 // A spring along a normal that stands still asks for the depth alone.
@@ -105,14 +106,15 @@ ARM3R_INLINE ContactForce<T> contact_force(const Wall<P>& wall, const WallState<
         const T slip_2 = in.slip1 * in.slip1 + in.slip2 * in.slip2;
         const T drag = contact.friction * normal / sqrt(T(slip_2 + contact.slip_velocity * contact.slip_velocity));
         sideways(-drag * in.slip1, -drag * in.slip2);
-        force.dissipated = force.dissipated + drag * slip_2;
+        force.friction_loss = drag * slip_2;
+        force.dissipated = force.dissipated + force.friction_loss;
     }
     return force;
 }
 
 template <class T>
 ARM3R_INLINE ContactForce<T> no_contact() {
-    return {{T(0.0), T(0.0), T(0.0)}, T(0.0), T(0.0), T(0.0)};
+    return {{T(0.0), T(0.0), T(0.0)}, T(0.0), T(0.0), T(0.0), T(0.0)};
 }
 
 // The same where `touching`, nothing elsewhere.
@@ -123,7 +125,8 @@ ARM3R_INLINE ContactForce<T> only_where(const M& touching, const ContactForce<T>
              select(touching, force.on_tip[2], o)},
             select(touching, force.normal, o),
             select(touching, force.stored, o),
-            select(touching, force.dissipated, o)};
+            select(touching, force.dissipated, o),
+            select(touching, force.friction_loss, o)};
 }
 
 }  // namespace arm3r

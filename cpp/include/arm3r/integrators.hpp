@@ -92,8 +92,9 @@ ARM3R_INLINE State<T, N> rk4_step_in_a_loop(const F& f, const T& t, const State<
 }
 
 // Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step. The `Books` components behind the
-// first `Norm` ride along; what comes after them counts in the error norm again.
-template <class T, std::size_t N, std::size_t Norm, std::size_t Books = N - Norm>
+// first `Norm` ride along; what comes after them counts in the error norm again. The last `Parts` of the books are parts
+// of others among them, and never count.
+template <class T, std::size_t N, std::size_t Norm, std::size_t Books = N - Norm, std::size_t Parts = 0>
 struct Dopri5 {
     State<T, N> y1, f1;            // the end of the step
     std::array<State<T, N>, 6> k;  // k[0] = f0 .. k[5]
@@ -134,7 +135,8 @@ struct Dopri5 {
     // The largest, not a mean: a joint that stands still must not loosen the tolerance of one that moves.
     T error(const State<T, N>& y, const T& h, double rtol, double atol, bool with_books = false) const {
         T largest(0.0);
-        for (std::size_t i = 0; i < N; i = i + 1 == Norm && !with_books ? i + 1 + Books : i + 1)
+        const std::size_t counted = with_books ? Norm + Books - Parts : Norm;
+        for (std::size_t i = 0; i < N; i = i + 1 == counted ? Norm + Books : i + 1)
             largest = max(largest, T(error_of(i, h) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
         return largest;
     }

@@ -11,8 +11,19 @@
 
 namespace arm3r {
 
-// q, qd, and what has passed through the books so far: work of the actuators, work of the wall, dissipated energy.
-enum : std::size_t { motion_size = 6, ledger_size = 3, state_size = motion_size + ledger_size };
+// q, qd, and the quadratures of the energy balance since the start (4.9): work of the actuators, work of the wall's drive,
+// dissipated energy, and the parts of the latter that went into the joints and into friction along the wall.
+enum : std::size_t {
+    motion_size = 6,
+    work_of_actuators = motion_size,
+    work_of_wall,
+    dissipated,
+    dissipated_in_joints,
+    dissipated_in_friction,
+    state_size,
+    ledger_size = state_size - motion_size,
+    ledger_parts = state_size - dissipated_in_joints,  // the last of them, which are parts of another one
+};
 
 // And, where a continuous controller remembers something, its law's memory, the observer's, and the filtered force.
 enum : std::size_t {
@@ -52,6 +63,19 @@ bool senses_wall(const Plant<P>& plant) {
 template <class P>
 bool has_memory(const Plant<P>& plant) {
     return has_law(plant.controller.type) || plant.observer.on || plant.sensors.has_analog_filter;
+}
+
+// Whether the contact itself turns energy into heat: by damping, or where springs along the plate let go.
+template <class P>
+bool dissipates_in_contact(const Plant<P>& plant) {
+    return plant.acts_on_arm && (is_damped(plant.contact.law) || plant.contact.law == Law::diagonal);
+}
+
+template <class P>
+bool can_lose_energy(const Plant<P>& plant) {
+    const bool loses_in_joints = plant.arm.has_damping || plant.arm.has_dry_friction;
+    const bool loses_at_wall = plant.contact.has_friction || plant.wall.has_outline;
+    return loses_in_joints || dissipates_in_contact(plant) || (plant.acts_on_arm && loses_at_wall);
 }
 
 // The tip as the wall sees it (4.3), (4.4), (4.7).
@@ -119,11 +143,12 @@ public:
         tau = torque(t, wall, p, q, qd, plant_.load.on ? plus(feeling.on_tip, load) : feeling.on_tip, y, dy);
         const Vec3<T> tau_f = friction_torque(arm, qd);
         Vec3<T> drive = minus(compensates_weight() ? none<T>() : tau, tau_f);
-        T outer_power(0.0), contact_loss(0.0);
+        T outer_power(0.0), contact_loss(0.0), friction_loss(0.0);
         if (plant_.acts_on_arm && feeling.anything) {
             drive = plus(drive, tip_force_torque(arm, p, feeling.on_tip));
             outer_power = feeling.wall_power;
             contact_loss = feeling.loss;
+            friction_loss = feeling.friction_loss;
         }
         if (plant_.load.on) {
             drive = plus(drive, tip_force_torque(arm, p, load));
@@ -135,9 +160,12 @@ public:
             dy[3 + i] = qdd[i];
         }
         if constexpr (N >= state_size) {
-            dy[6] = dot(tau, qd);
-            dy[7] = outer_power;
-            dy[8] = dot(tau_f, qd) + contact_loss;
+            const T joint_loss = dot(tau_f, qd);
+            dy[work_of_actuators] = dot(tau, qd);
+            dy[work_of_wall] = outer_power;
+            dy[dissipated] = joint_loss + contact_loss;
+            dy[dissipated_in_joints] = joint_loss;
+            dy[dissipated_in_friction] = friction_loss;
         }
     }
 
@@ -221,8 +249,8 @@ private:
     struct Feeling {
         bool anything = false;
         decltype(T(0.0) > T(0.0)) where = T(0.0) > T(0.0);
-        Vec3<T> on_tip{T(0.0), T(0.0), T(0.0)};  // N
-        T wall_power{0.0}, loss{0.0};            // W
+        Vec3<T> on_tip{T(0.0), T(0.0), T(0.0)};            // N
+        T wall_power{0.0}, loss{0.0}, friction_loss{0.0};  // W; the last is a part of the loss
     };
 
     ARM3R_INLINE bool feels() const { return touch != Touch::none && (plant_.acts_on_arm || senses_wall(plant_)); }
@@ -239,11 +267,13 @@ private:
         feeling.on_tip = force.on_tip;
         feeling.wall_power = dot(force.on_tip, velocity_at(plant_.wall, wall, tip_position(plant_.arm, p)));
         feeling.loss = force.dissipated;
+        feeling.friction_loss = force.friction_loss;
         if (touch != Touch::each_stage) return;
         const T o(0.0);
         for (int i = 0; i < 3; ++i) feeling.on_tip[i] = select(feeling.where, feeling.on_tip[i], o);
         feeling.wall_power = select(feeling.where, feeling.wall_power, o);
         feeling.loss = select(feeling.where, feeling.loss, o);
+        feeling.friction_loss = select(feeling.where, feeling.friction_loss, o);
     }
 
     ARM3R_INLINE static T on_grid(const T& angle) {

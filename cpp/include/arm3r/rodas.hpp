@@ -47,8 +47,8 @@ inline constexpr double d[2][stages - 1] = {
 }  // namespace rodas4
 
 // The state is laid out as in linearization.hpp. The books ride along: their stages follow from those of the rest, and
-// they do not count in the error norm.
-template <std::size_t N, std::size_t Motion, std::size_t Books>
+// they do not count in the error norm. The last `Parts` of them are parts of others among them, and never count.
+template <std::size_t N, std::size_t Motion, std::size_t Books, std::size_t Parts = 0>
 struct Rodas4 {
     std::size_t memory = 0;                            // components in use behind the books; the rest keep their values
     State<double, N> y1;                               // the end of the step
@@ -77,10 +77,9 @@ struct Rodas4 {
     // The largest error estimate, in units of its tolerance, over motion and memory, or over the books too; see Dopri5.
     double error(const State<double, N>& y, double rtol, double atol, bool with_books = false) const {
         double largest = 0;
-        for (std::size_t k = 0; k < (with_books ? in_use() : Motion + memory); ++k) {
-            const std::size_t i = with_books ? k : place(k);
+        const std::size_t counted = with_books ? Motion + Books - Parts : Motion;
+        for (std::size_t i = 0; i < in_use(); i = i + 1 == counted ? Motion + Books : i + 1)
             largest = max(largest, error_of(i) / (atol + rtol * max(abs(y[i]), abs(y1[i]))));
-        }
         return largest;
     }
 
