@@ -23,10 +23,11 @@ PARTS = [f"energy_dissipated_{part}" for part in ("joints", "contact", "friction
 DAMPED: Keys = {
     "format": 1,
     "arm": {"convention": "slide", "damping": [0.3, 0.2, 0.1], "friction": [0.2, 0.1, 0.3], "friction_velocity": 0.1},
-    "initial": {"q": [0.2, 0.5, -1.1], "qd": [0.3, -0.1, 0.4]},
+    "initial": {"q": [0.2, 0.5, -1.1], "qd": [0.3, -0.2, 1.5]},
     "wall": {
-        "point": [1.6, 0, 0],
+        "point": [1.672, 0, 0],
         "size": "infinite",
+        "motion": {"type": "fixed"},
         "contact": {
             "law": "kelvin_voigt",
             "stiffness": 2000,
@@ -35,8 +36,9 @@ DAMPED: Keys = {
         },
         "acts_on_arm": True,
     },
+    "controller": {"type": "gravity_compensation"},
     "solver": {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13},
-    "time": {"stop": 1, "log_every": 0.0005},
+    "time": {"stop": 0.2, "log_every": 2e-5},
 }
 
 
@@ -67,7 +69,7 @@ def test_the_parts_are_quadratures_of_what_the_rows_show() -> None:
     for name, power in zip(PARTS, (joints, contact, sliding), strict=False):
         expected = np.trapezoid(power, run["t"])
         assert expected > 1e-3, name
-        assert run[name][-1] == pytest.approx(expected, rel=2e-4), name
+        assert run[name][-1] == pytest.approx(expected, rel=1e-3), name
 
 
 def test_an_edge_takes_what_the_spring_holds() -> None:
@@ -76,11 +78,12 @@ def test_an_edge_takes_what_the_spring_holds() -> None:
             {
                 "format": 1,
                 "arm": {"convention": "slide"},
-                "initial": {"q": [0.1, 0.4, -1.0], "qd": [0.8, 0, 0]},
+                "initial": {"q": [0.1, 0.4, -1.0], "qd": [2.5, 0, 0]},
                 "wall": {
-                    "point": [1.5, 0.2, 0],
+                    "point": [1.66, 0.2, 0],
                     "size": [0.3, 4],
-                    "contact": {"stiffness": 300},
+                    "motion": {"type": "fixed"},
+                    "contact": {"stiffness": 100},
                     "acts_on_arm": True,
                 },
                 "controller": {"type": "gravity_compensation"},
@@ -113,7 +116,7 @@ def faults(scenario: Keys) -> list[str]:
     has_joint_loss = any(map(any, (scenario["arm"].get("damping", [0]), scenario["arm"].get("friction", [0]))))
     for name, solver in {**ADAPTIVE, "rk4": rk4(scenario, 1e-3)}.items():
         run = run_of(scenario, {**solver, **({"rtol": 1e-7} if "rtol" in solver else {})})
-        if run is None or not run.rows or PARTS[0] not in run.columns:
+        if run is None or not len(run["t"]) or PARTS[0] not in run.columns:
             continue
         lost, total = parts_of(run), run["energy_dissipated"]
         size = np.maximum(1e-300, np.abs(lost).max() + np.abs(total).max())
@@ -122,7 +125,7 @@ def faults(scenario: Keys) -> list[str]:
             "joints": has_joint_loss or not lost[:, 0].any(),
             "friction": has_friction or not lost[:, 2].any(),
             "edges": has_edges or not lost[:, 3].any(),
-            "joints gain energy": (np.diff(lost[:, 0]) >= -1e-9 * size).all(),
+            "joints gain energy": (np.diff(lost[:, 0]) >= -1e-6 * size - 1e-12).all(),
             "edges give energy": (np.diff(lost[:, 3]) >= 0).all(),
             "the summary": np.allclose([run.summary["metrics"][part] for part in PARTS], lost[-1], 0, 1e-12 * size),
         }
