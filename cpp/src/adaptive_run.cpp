@@ -216,7 +216,7 @@ private:
         const Plant<double>& plant = setup_.plant;
         const Pose<double> p = pose(angles(now_.y));
         Vec3<double> f(0, 0, 0), n(0, 0, 0);
-        double face = 0;
+        double face = 0, contact = 0;
         if (plant.has_wall) {
             const WallState<double> wall = wall_now();
             if (mode_ == Mode::contact) {
@@ -225,9 +225,10 @@ private:
             }
             n = normal(plant.wall, wall);
             face = dot(n, wall.position) + plant.wall.face_offset;
+            contact = dot(n, f) > 0 ? 1 : 0;
         }
         if (plant.load.on) f = plus(f, load_at(plant.load, run_.t_end));
-        Instant<double> now{{run_.t_end, angles(now_.y), rates(now_.y), p, f, f, n, face, 0, 0}, {}};
+        Instant<double> now{{run_.t_end, angles(now_.y), rates(now_.y), p, f, f, n, face, contact, 0}, {}};
         if constexpr (N == full_size)
             now.f_filtered = {now_.y[filter_at], now_.y[filter_at + 1], now_.y[filter_at + 2]};
         return now;

@@ -52,19 +52,14 @@ public:
     // Those lanes for which it is time. `acting` is the torque that the joints feel from now on.
     ARM3R_INLINE void attend(const Mask& due, const T& slack, const Arm<T>& arm, Instant<T>& now, Vec3<T>& acting) {
         const T until = now.seen.t + slack;
+        if (estimation_.on) estimate_if_due(due && next_estimate_ < next_sample_ - slack, until, arm, now.seen);
         const Mask samples = due && next_sample_ <= until;
         if (any(samples)) sample(samples, arm, now, acting);
         if (has_output_delay_) {
             const Mask outputs = due && next_output_ <= until;
             if (any(outputs)) put_out(outputs, acting);
         }
-        if (estimation_.on) {
-            const Mask estimates = due && next_estimate_ <= until;
-            if (any(estimates)) {
-                if (!is_on()) note_pressing(estimates, arm, now.seen);
-                estimate(estimates);
-            }
-        }
+        if (estimation_.on) estimate_if_due(due, until, arm, now.seen);
     }
 
     const Known<T>& known() const { return known_; }
@@ -284,6 +279,14 @@ private:
 
     // ---- the wall's stiffness, told from force and position in contact (8.7)
 
+    // Before the sample of the same step where it is due before: a step of rk4 may end after both.
+    ARM3R_INLINE void estimate_if_due(const Mask& due, const T& until, const Arm<T>& arm, const Sensed<T>& seen) {
+        const Mask estimates = due && next_estimate_ <= until;
+        if (!any(estimates)) return;
+        if (!is_on()) note_pressing(estimates, arm, seen);
+        estimate(estimates);
+    }
+
     // Force and position of one instant; a sampled controller has both from its sensors.
     struct Pressing {
         T time{0.0}, place{0.0}, force{0.0};  // s, m, N: of the tip and on it, along the normal
@@ -292,8 +295,8 @@ private:
 
     ARM3R_INLINE void note_pressing(const Mask& due, const Arm<T>& arm, const Sensed<T>& seen) {
         const T force = dot(seen.n, seen.f_on_tip), o(0.0), l(1.0);
-        const bool judges = is_on() && digital_.controller.switching != Switching::always;
-        const Mask touches = judges ? known_.contact > o : force > o;
+        const bool judges = !is_on() || digital_.controller.switching != Switching::always;
+        const Mask touches = judges ? seen.contact > o : force > o;
         pressing_.time = select(due, seen.t, pressing_.time);
         pressing_.place = select(due, T(-dot(seen.n, tip_position(arm, seen.pose))), pressing_.place);
         pressing_.force = select(due, force, pressing_.force);

@@ -164,15 +164,16 @@ protected:
     ARM3R_INLINE Instant<T> instant() const {
         const T o(0.0);
         Vec3<T> f = none<T>(), n = none<T>();
-        T face = o;
+        T face = o, contact = o;
         if (plant_.has_wall) {
             f = force_on_tip();
             n = normal(plant_.wall, wall_);
             face = dot(n, wall_.position) + plant_.wall.face_offset;
+            contact = select(dot(n, f) > o, T(1.0), o);
         }
         if (plant_.load.on) f = plus(f, load_at(plant_.load, t_));
         const Vec3<T> q(y_[0], y_[1], y_[2]), qd(y_[3], y_[4], y_[5]);
-        Instant<T> now{{t_, q, qd, p_, f, f, n, face, o, o}, {}};
+        Instant<T> now{{t_, q, qd, p_, f, f, n, face, contact, o}, {}};
         if constexpr (N == full_size) now.f_filtered = {y_[filter_at], y_[filter_at + 1], y_[filter_at + 2]};
         return now;
     }

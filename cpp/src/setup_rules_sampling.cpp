@@ -93,6 +93,31 @@ void check_grid(const Setup& setup, Findings& findings) {
     });
 }
 
+// Beside a sampled controller the estimator takes the samples of that one; else it samples itself, at the ends of steps.
+void check_estimates(const Setup& setup, Findings& findings) {
+    const Estimation<double>& estimation = setup.estimation;
+    if (setup.solver.method != Solver::rk4 || !estimation.on || setup.digital.sampling.on) return;
+    const double step = setup.solver.step, later = estimation.start - setup.start;
+    const double parts = estimation.period / step, nearest = std::max(1.0, nearest_integer(parts));
+    const bool fits = is_whole(parts) && parts > 0.5;
+    if (fits && is_whole(later / step)) return;
+    findings.add([&] {
+        const std::string period = shortest(estimation.period) + " s", begin = shortest(later) + " s";
+        return Problem{
+            .code = "scenario.grid",
+            .path = fits ? "estimator.start" : "solver.step",
+            .message = fits ? "the time from the start of the run to the estimator's first sample, " + begin +
+                                  ", is no whole number of steps"
+                            : "the period of estimator.rate, " + period + ", is no whole number of steps",
+            .got = fits ? shortest(estimation.start) + " s" : shortest(step) + " s",
+            .allowed = fits ? "a whole number of steps of " + shortest(step) + " s after the start"
+                            : "a step that parts the period evenly",
+            .hint = "the nearest is " +
+                    shortest(fits ? setup.start + nearest_integer(later / step) * step : estimation.period / nearest) +
+                    " s"};
+    });
+}
+
 // ---- taylor: between the samples everything must be a series
 
 void check_series(std::span<const double> params, const Setup& setup, Findings& findings) {
@@ -128,6 +153,7 @@ void check_sampling_keys(std::span<const double> params, Findings& findings) {
 void check_sampling(std::span<const double> params, const Setup& setup, Findings& findings) {
     check_digital(setup, findings);
     check_grid(setup, findings);
+    check_estimates(setup, findings);
     check_series(params, setup, findings);
 }
 

@@ -157,8 +157,12 @@ def test_rows_do_not_depend_on_the_others() -> None:
     assert not (text := found_in(range(80), wrong_in_rows, longest=0.3)), text
 
 
-def test_a_force_that_no_place_changes_has_no_speed_of_a_wall() -> None:
-    """The estimator sees a push, which is as large wherever the tip is: it must not divide by a stiffness of 0."""
+@pytest.mark.parametrize("sampled", [False, True])
+def test_a_force_that_no_place_changes_has_no_speed_of_a_wall(sampled: bool) -> None:
+    """The estimator sees a push, which is as large wherever the tip is: it must not divide by a stiffness of 0.
+
+    By the sensor alone, with `switching: always`, it is a contact; beside a continuous controller it is none.
+    """
     scenario = arm3r.Scenario("""
 format: 1
 initial: {q: [-1.8331, 1.1495, -1.2306]}
@@ -169,6 +173,9 @@ push: {force: [-4.613, 5.1737, -1.9032]}
 solver: {rtol: 1.0e-10, atol: 1.0e-13}
 time: {stop: 0.094751}
 """)
+    if sampled:
+        scenario["controller"] = {"type": "hybrid", "switching": "always"}
+        scenario["sampling"] = {"rate": 500}
     run = scenario.run()
     assert all(np.isfinite(run[name]).all() for name in run.columns)
 

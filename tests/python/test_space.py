@@ -92,8 +92,6 @@ def alike_in_all_directions(scenario: Keys) -> Keys | None:
         sensors.get("force", {}).pop(key, None)
     if other.get("reference", {}).get("type") == "circle" and "wall" not in other:
         return None
-    if "estimator" in other and "push" in other:  # the estimator takes a push for a contact of no stiffness
-        return None
     return other
 
 

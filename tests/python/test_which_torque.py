@@ -3,6 +3,7 @@ of its own."""
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import arm3r_cpp as arm3r
@@ -178,6 +179,66 @@ def test_the_estimator_pairs_force_and_place_of_one_instant(rate: float, estimat
     assert run["identifiable"][-1] == 1
     assert run["stiffness_estimate"][-1] == pytest.approx(1000, rel=1e-7)
     assert run["wall_speed_estimate"][-1] == pytest.approx(0.02, rel=1e-6)
+
+
+ONE_OF_ITS_OWN = """
+format: 1
+wall: {point: [1.735, 0, 0], acts_on_arm: true, motion: {type: constant, velocity: 0.02},
+       contact: {law: spring, stiffness: 1000}}
+controller: {type: impedance, damping: 10}
+push: {force: [-8, 1, 2]}
+estimator: {}
+time: {stop: 1}
+"""
+
+
+@pytest.mark.parametrize("solver", [{}, {"method": "rodas4"}, {"method": "rk4", "step": 1e-3}])
+def test_a_push_is_no_contact_with_the_wall(solver: dict[str, Any]) -> None:
+    """It is as large wherever the tip is: what it presses with in front of the wall says nothing of the wall."""
+    made = arm3r.Scenario(ONE_OF_ITS_OWN)
+    made["solver"] = solver
+    run = made.run()
+    assert not run["identifiable"][run.t < run.events[0].t].any()
+    assert run["identifiable"][-1] == 1
+    assert run["stiffness_estimate"][-1] == pytest.approx(1000, rel=1e-6)
+    assert run["wall_speed_estimate"][-1] == pytest.approx(0.02, rel=1e-6)
+    batch = made.batch({})
+    assert batch["stiffness_estimate"] == run.summary["metrics"]["stiffness_estimate"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"solver.step": 3e-4}, "the period of estimator.rate, 0.002 s, is no whole number of steps"),
+        ({"solver.step": 0.003}, "the nearest is 0.002 s"),
+        ({"estimator.start": 0.0123}, "the nearest is 0.012 s"),
+    ],
+)
+def test_rk4_takes_the_estimators_samples_on_its_steps_or_not_at_all(changes: dict[str, float], told: str) -> None:
+    made = arm3r.Scenario(ONE_OF_ITS_OWN)
+    made["solver"] = {"method": "rk4", "step": 1e-3}
+    made["estimator.start"] = 0.012
+    made.validate()
+    for path, value in changes.items():
+        made[path] = value
+    with pytest.raises(arm3r.ScenarioError, match=re.escape(told)):
+        made.validate()
+
+
+def test_an_estimate_between_two_samples_is_made_before_the_second() -> None:
+    """Also where a step of rk4 passes over its instant. A wall that comes in changes the estimate with each sample."""
+    made = arm3r.Scenario(PRESSED)
+    made["wall.motion.velocity"] = 0.05
+    made["controller"] = {"type": "adaptive_reference", "adaptation": "indirect", "assumed_stiffness": 300}
+    made["estimator"] = {"rate": 130, "wall": "fixed", "forgetting": 0.8}
+    made["sampling.rate"] = 100
+    made["time"] = {"stop": 0.6, "log_every": 0.01}
+    made["solver"] = {"rtol": 1e-10, "atol": 1e-13}
+    due = made.run()
+    made["solver"] = {"method": "rk4", "step": 2.5e-3}
+    run = made.run()
+    assert np.ptp(due["stiffness_estimate"][-20:]) > 100
+    assert run["stiffness_estimate"] == pytest.approx(due["stiffness_estimate"], rel=1e-3, abs=1e-3)
 
 
 def test_the_estimator_sees_what_the_encoder_reads() -> None:
