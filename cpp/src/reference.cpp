@@ -217,7 +217,8 @@ and stop always are rows. Events add none. A row at an instant at which somethin
 
 `time.start` moves the beginning of a run and nothing else: rows, samples and the steps of rk4 count from it, `initial`
 holds there, and the estimator begins at the later of it and `estimator.start`. Every other instant is meant as it is
-written: `wall.point` is the place at t = 0, a phase is that at t = 0, and `start` keys and tables say t.
+written: `wall.point` is the place at t = 0, a phase is that at t = 0, and `start` keys and tables say t, which may be
+negative. Where the wall's ramp or table has begun before t = 0, `wall.point` is the place at which its s is 0.
 
 ## --set PATH=VALUE
 

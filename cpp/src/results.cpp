@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "columns.hpp"
 #include "error.hpp"
@@ -100,10 +101,22 @@ std::string vector_text(const std::array<double, 3>& v) {
     return "(" + rounded(v[0], 7) + ", " + rounded(v[1], 7) + ", " + rounded(v[2], 7) + ")";
 }
 
-double last(const Run& run, std::string_view name) {
+std::span<const double> column(const Run& run, std::string_view name) {
     for (std::size_t i = 0; i < run.columns.size(); ++i)
-        if (column_table()[run.columns[i]].name == name && run.rows) return run.column(i).back();
-    return NAN;
+        if (column_table()[run.columns[i]].name == name) return run.column(i);
+    return {};
+}
+
+double last(const Run& run, std::string_view name) {
+    const std::span<const double> values = column(run, name);
+    return values.empty() ? NAN : values.back();
+}
+
+// From when to when; a run that starts at 0 s is as long as its end is late.
+std::string span_text(const Run& run) {
+    const std::span<const double> t = column(run, "t");
+    const bool starts_at_zero = t.empty() || t.front() == 0;
+    return (starts_at_zero ? "" : "from " + rounded(t.front(), 9) + " to ") + rounded(run.t_end, 9) + " s";
 }
 
 bool has_wall(const Run& run) {
@@ -243,7 +256,7 @@ std::string report(const Results& results) {
     const Run& run = results.run;
     std::string out = visible(results.name, 200) + ": " + arm3r_outcome_name(run.outcome) +
                       (run.message.empty() ? "" : ", " + visible(run.message, 400)) + "\n";
-    out += line("simulated", rounded(run.t_end, 9) + " s in " + std::to_string(run.rows) + " rows");
+    out += line("simulated", span_text(run) + " in " + std::to_string(run.rows) + " rows");
     out += event_lines(run);
     out += force_line(run);
     out += score_lines(run);

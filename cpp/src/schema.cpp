@@ -21,6 +21,7 @@ constexpr Bounds not_negative{0, 1e12};
 constexpr Bounds a_length{1e-6, 1e6};
 constexpr Bounds a_mass{1e-9, 1e9};
 constexpr Bounds a_density{1e-3, 1e6};
+constexpr Bounds an_instant{-1e9, 1e9};
 constexpr Bounds no_bounds{-1e300, 1e300};
 constexpr std::size_t table_size = 16;  // as most_knots (course.hpp)
 
@@ -161,8 +162,8 @@ void append_paths(std::vector<Key>& keys) {
     keys.push_back(where(
         type, {"ramp"},
         needed(number("wall.motion.distance", {unset}, Source::ours, {-1e3, 1e3}, "m", "How far the ramp goes."))));
-    keys.push_back(
-        where(type, {"ramp"}, number("wall.motion.start", {0}, Source::ours, {0, 1e9}, "s", "When the ramp begins.")));
+    keys.push_back(where(type, {"ramp"},
+                         number("wall.motion.start", {0}, Source::ours, an_instant, "s", "When the ramp begins.")));
     keys.push_back(
         where(type, {"ramp"},
               needed(number(
@@ -170,7 +171,7 @@ void append_paths(std::vector<Key>& keys) {
                   "How long the ramp takes: a quintic without a jump of acceleration; the wall stays at its end."))));
     keys.push_back(where(type, {"table"},
                          needed(list_of(2, table_size,
-                                        number("wall.motion.t", {}, Source::ours, {0, 1e9}, "s",
+                                        number("wall.motion.t", {}, Source::ours, an_instant, "s",
                                                "Instants of the table, increasing; before and after them the wall "
                                                "stands still.")))));
     keys.push_back(where(type, {"table"},
@@ -548,7 +549,7 @@ std::vector<Key> reference_keys() {
                    of_kind(Kind::angle, number("reference.q", {unset, unset, unset}, Source::ours, {-1e5, 1e5}, "rad",
                                                "The joint angles that are wanted, in place of tip.")))));
     keys.push_back(in({"line", "minimum_jerk", "circle", "sinusoid"},
-                      number("reference.start", {0}, Source::ours, {0, 1e9}, "s", "When the motion begins.")));
+                      number("reference.start", {0}, Source::ours, an_instant, "s", "When the motion begins.")));
     keys.push_back(in({"line", "minimum_jerk"},
                       number("reference.duration", {1}, Source::ours, {1e-9, 1e9}, "s", "How long the motion takes.")));
     keys.push_back(in({"circle"}, number("reference.radius", {0.1}, Source::ours, {0, 1e6}, "m",
@@ -571,7 +572,7 @@ std::vector<Key> reference_keys() {
         keys.push_back(
             in({"table"}, needed(list_of(2, table_size, number(path, {}, Source::ours, bounds, unit, doc)))));
     };
-    column("reference.t", {0, 1e9}, "s",
+    column("reference.t", an_instant, "s",
            "Instants of the table, increasing; before and after them the tip is to stay.");
     column("reference.x", any_position, "m",
            "Where the tip is wanted at these instants, base axes; in between it moves with as little jerk as can be.");
@@ -594,7 +595,7 @@ std::vector<Key> force_reference_keys() {
     keys.push_back(in({"step", "ramp"},
                       number("reference.force.initial", {0}, Source::ours, {-1e9, 1e9}, "N", "The force before.")));
     keys.push_back(
-        in({"step", "ramp"}, number("reference.force.start", {1}, Source::ours, {0, 1e9}, "s", "When it changes.")));
+        in({"step", "ramp"}, number("reference.force.start", {1}, Source::ours, an_instant, "s", "When it changes.")));
     keys.push_back(
         in({"ramp"}, number("reference.force.duration", {1}, Source::ours, {1e-9, 1e9}, "s", "How long it changes.")));
     keys.push_back(
@@ -668,12 +669,14 @@ void append_observer(std::vector<Key>& keys) {
     keys.push_back(
         of_kind(Kind::section, number("estimator", {0}, Source::ours, no_bounds, "",
                                       "Recursive least squares of the wall's stiffness and speed. Absent: none.")));
-    keys.push_back(number("estimator.rate", {500}, Source::ours, {1e-3, 1e6}, "Hz", "How often it takes a sample."));
+    keys.push_back(number(
+        "estimator.rate", {500}, Source::ours, {1e-3, 1e6}, "Hz",
+        "How often it takes a sample; beside a controller without `sampling`, rk4 needs a whole number of steps in between."));
     keys.push_back(
         number("estimator.forgetting", {0.995}, Source::ours, {0.5, 1}, "", "Weight of a sample per later one."));
     keys.push_back(
         choice("estimator.wall", {"moving", "fixed"}, Source::ours, "Whether the wall's speed is estimated too."));
-    keys.push_back(number("estimator.start", {0}, Source::ours, {0, 1e9}, "s", "When the first sample is taken."));
+    keys.push_back(number("estimator.start", {0}, Source::ours, an_instant, "s", "When the first sample is taken."));
     keys.push_back(number("estimator.largest_condition", {1e8}, Source::ours, {1, 1e15}, "",
                           "Condition number above which the answer is: not identifiable."));
 }
@@ -684,7 +687,7 @@ void append_push(std::vector<Key>& keys) {
         number("push", {0}, Source::ours, no_bounds, "",
                "A force on the tip from outside, beside the wall's; a force sensor reads it too. Absent: none.")));
     keys.push_back(number("push.force", {0, 0, 0}, Source::ours, {-1e9, 1e9}, "N", "On the tip, base axes."));
-    keys.push_back(number("push.start", {0}, Source::ours, {0, 1e9}, "s", "When it begins."));
+    keys.push_back(number("push.start", {0}, Source::ours, an_instant, "s", "When it begins."));
     keys.push_back(number("push.rise", {0}, Source::ours, {0, 1e9}, "s", "How long it grows, in proportion to time."));
     keys.push_back(or_infinite(number("push.duration", {infinite}, Source::ours, {0, 1e9}, "s", "How long it lasts.")));
 }
@@ -760,11 +763,11 @@ std::vector<Key> make_schema() {
     append_push(keys);
     append_solver(keys);
     keys.push_back(
-        number("time.stop", {10}, Source::ours, {-1e9, 1e9}, "s", "End of the run; one at time.start gives one row."));
+        number("time.stop", {10}, Source::ours, an_instant, "s", "End of the run; one at time.start gives one row."));
     keys.push_back(
         number("time.log_every", {0.01}, Source::ours, {1e-12, 1e9}, "s",
                "Time between rows; the start and the end are always rows, and the log never changes the steps."));
-    keys.push_back(number("time.start", {0}, Source::ours, {-1e9, 1e9}, "s",
+    keys.push_back(number("time.start", {0}, Source::ours, an_instant, "s",
                           "Start of the run: rows, samples and fixed steps count from it, and `initial` holds there. "
                           "wall.point stays the place at t = 0, and no other key is shifted."));
     connect(keys);

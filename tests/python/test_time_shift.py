@@ -257,6 +257,45 @@ def test_the_wall_stands_at_its_point_at_zero() -> None:
     assert np.allclose(run["wall_x"], 2 - 0.05 * run.t, rtol=0, atol=1e-15)
 
 
+CHANGING = """
+format: 1
+initial: {q: [0.1, -0.5, 1.1]}
+controller: {type: hybrid}
+push: {force: [2, 3, -1], start: 0.21, rise: 0.05}
+sampling: {rate: 500}
+time: {stop: 0.5}
+wall: {point: [1.64, 0.2, 0], size: infinite, acts_on_arm: true,
+"""
+COURSES = {
+    "ramp": """
+       motion: {type: ramp, distance: 0.04, start: 0.05, duration: 0.3}}
+reference: {type: line, tip: [1.66, 0.2, 0.03], start: 0.1, duration: 0.2, force: {type: step, value: 15, start: 0.32}}
+estimator: {start: 0.12}
+""",
+    "table": """
+       motion: {type: table, t: [0.03, 0.2, 0.4], s: [0, 0.01, 0.02], v: [0, 0.05, 0], a: [0, 0.2, 0]}}
+reference: {type: table, t: [0.05, 0.3], x: [1.63, 1.66], y: [0.16, 0.2], z: [0.03, 0.05], force: {value: 15}}
+""",
+}
+
+
+@pytest.mark.parametrize("course", COURSES)
+def test_what_changes_may_change_before_zero(course: str) -> None:
+    scenario = Scenario(CHANGING + COURSES[course])
+    assert scenario.run().events
+    assert hold_together(scenario, -0.3) is not None
+    assert hold_together(scenario, -40) is not None
+
+
+@pytest.mark.parametrize(
+    ("start", "told"), [("", "  0.1 s in 2 rows"), ("start: -0.3, ", "  from -0.3 to 0.1 s in 5 rows")]
+)
+def test_the_report_says_from_when_to_when(cli: Any, tmp_path: Any, start: str, told: str) -> None:
+    (tmp_path / "s.yaml").write_text(PLAIN + f"time: {{{start}stop: 0.1, log_every: 0.1}}")
+    lines = cli("run", tmp_path / "s.yaml").stdout.splitlines()
+    assert next(line for line in lines if "simulated" in line).endswith(told)
+
+
 def test_lanes_of_a_batch_may_start_at_different_times() -> None:
     text = (
         PLAIN
