@@ -17,8 +17,7 @@ void each_digital_number(F f, A& a, B& b) {
     each_observer_number(f, a.observer, b.observer);
     for (int i = 0; i < 3; ++i) f(a.controller.torque[i], b.controller.torque[i]);
     each_arm_number(f, a.controller.model, b.controller.model);
-    if (has_law(b.controller.type) || b.controller.type == Controls::user)
-        each_law_number(f, a.controller, b.controller);
+    each_law_number(f, a.controller, b.controller);
 }
 
 template <class A, class B>

@@ -86,11 +86,10 @@ void set_controller(std::span<const double> params, Controller<double>& controll
     controller.torque = {0, 0, 0};
     if (controller.type == Controls::constant)
         controller.torque = to_slide(params, vector_at<"controller.torque">(params));
-    if (controller.type == Controls::user) set_force_gains(params, controller.gains);  // when it is told of contact
+    set_force_gains(params, controller.gains);  // in samples, every controller judges contact
     if (!has_law(controller.type)) return;
     set_choices(params, controller);
     set_motion_gains(params, controller.gains);
-    set_force_gains(params, controller.gains);
     set_special_gains(params, controller.gains);
 }
 

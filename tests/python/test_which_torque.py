@@ -225,6 +225,21 @@ def test_rk4_takes_the_estimators_samples_on_its_steps_or_not_at_all(changes: di
         made.validate()
 
 
+@pytest.mark.parametrize("velocity", [0.02, 0.05, 0.1, 0.2])
+def test_a_controller_without_gains_judges_contact_as_any_other(velocity: float) -> None:
+    """In samples contact begins above 1 N: the estimator's first eight samples come after that."""
+    made = arm3r.Scenario(PRESSED)
+    made["wall.motion.velocity"] = velocity
+    made["controller"] = {"type": "gravity_compensation"}
+    made["sampling.rate"], made["estimator"] = 1000, {"rate": 1000, "wall": "fixed"}
+    made["time"] = {"stop": 0.2, "log_every": 0.001}
+    run = made.run()
+    pressed = np.flatnonzero(run["force_measured"] > 1)
+    told = np.flatnonzero(run["identifiable"])
+    assert (len(pressed) > 0) == (velocity > 0.03)
+    assert [*told[:1]] == [*(pressed[:1] + 7)]
+
+
 def test_an_estimate_between_two_samples_is_made_before_the_second() -> None:
     """Also where a step of rk4 passes over its instant. A wall that comes in changes the estimate with each sample."""
     made = arm3r.Scenario(PRESSED)
