@@ -302,8 +302,11 @@ private:
         const Plant<double>& plant = setup_.plant;
         double h = std::min(setup_.solver.max_step, turning_time());
         if (plant.has_wall) h = std::min(h, longest_look(plant.wall));
-        if (!stepper_.is_stiff() && plant.acts_on_arm && is_touching(mode_))
-            h = std::min(h, contact_time(plant, wall_now(), pose(angles(now_.y)), indentation_now()));
+        if (!stepper_.is_stiff() && plant.acts_on_arm && is_touching(mode_)) {
+            const Indentation<double> in = indentation_now();
+            const double quarter = contact_time(plant, wall_now(), pose(angles(now_.y)), in);
+            h = std::min({h, quarter, time_to_break(plant.contact, in, quarter, setup_.solver.rtol)});
+        }
         return h;
     }
 

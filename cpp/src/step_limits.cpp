@@ -60,4 +60,10 @@ double contact_time(const Plant<double>& plant, const WallState<double>& wall, c
     return swings ? 0.25 * std::numbers::pi * std::sqrt(m_n / stiffness) : infinite;
 }
 
+double time_to_break(const Contact<double>& contact, const Indentation<double>& in, double contact_time, double rtol) {
+    if (contact.law != Law::hunt_crossley || contact.exponent == 1 || in.rate >= 0) return infinite;
+    const double negligible = contact_time * power(100 * rtol, 1 / (contact.exponent + 1));
+    return std::max(0.9 * in.depth / -in.rate, negligible);
+}
+
 }  // namespace arm3r

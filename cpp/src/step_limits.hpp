@@ -16,4 +16,9 @@ double next_knot(const Wall<double>& wall, double t);
 double contact_time(const Plant<double>& plant, const WallState<double>& wall, const Pose<double>& p,
                     const Indentation<double>& in);
 
+// Nine tenths of the time after which a contact of Hunt and Crossley ends at its present rate, for no error estimate sees what
+// a step beyond depth 0 gets wrong; but not less than the time in which the spring gives out a negligible rest of its energy.
+// Infinite for other laws, and while the depth grows.
+double time_to_break(const Contact<double>& contact, const Indentation<double>& in, double contact_time, double rtol);
+
 }  // namespace arm3r
