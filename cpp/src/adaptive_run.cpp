@@ -353,7 +353,7 @@ private:
         note_passage(theta);
         if (is_scored_) score_passage(theta, t1);
         now_.theta = theta;
-        if (crossing) now_.y = inside_(theta);
+        if (crossing) now_.y = state_at_crossing(y, h, theta);
         else std::copy_n(stepper_.end().begin(), N, now_.y.begin());
         const bool came_to_rest = accept(t1);
         if (crossing) change_mode(change_at(setup_.plant, indentation_now(), theta, t1, mode_, crossing->next));
@@ -364,6 +364,15 @@ private:
                       !(crossing || came_to_rest || (reached && bound.is_knot)),
                       reached && bound.is_jump};
         return true;
+    }
+
+    // The solution within a step of RODAS4 has one order less than its end, which is not enough for the works: these are taken
+    // from a second step, which ends at the crossing (5.6).
+    FullState state_at_crossing(const Y& start, double h, double theta) {
+        FullState y = inside_(theta);
+        if (stepper_.is_stiff() && std::isfinite(stepper_.attempt(run_.t_end, start, theta * h)))
+            std::copy_n(stepper_.end().begin() + motion_size, ledger_size, y.begin() + motion_size);
+        return y;
     }
 
     void settle() {

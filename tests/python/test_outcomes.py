@@ -213,6 +213,27 @@ def test_the_energy_balance_closes_where_a_contact_of_unbounded_derivatives_ends
         assert _left_over(run, tolerance) < 3, (text, tolerance)
 
 
+CHATTER = """
+format: 1
+initial: {q: [0.2, 0.5, -1.1], qd: [0.1, -0.05, 0.08]}
+wall:
+  point: [1.672, 0.3, 0]
+  size: infinite
+  motion: {type: sinusoid, amplitude: 0.02, frequency: 1.4}
+  contact: {law: spring, stiffness: 10000}
+  acts_on_arm: true
+controller: {type: operational_space, position_gain: 700, switching: in_contact}
+reference: {type: hold, force: {type: constant, value: 0}}
+time: {stop: 2}
+"""
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-7, 1e-8])
+def test_the_works_of_a_stiff_step_that_an_event_cuts_have_the_order_of_the_method(tolerance: float) -> None:
+    run = _run(CHATTER, method="rodas4", rtol=tolerance, atol=tolerance * 1e-3)
+    assert run.summary["contacts"] > 20 and _left_over(run, tolerance) < 0.1
+
+
 def _balance(rng: np.random.Generator) -> tuple[str, float]:
     """Of a random scenario: the outcome, and what its energy balance leaves over."""
     scenario, tolerance = random_scenario(rng, longest=3), 10 ** rng.uniform(-11, -5)
