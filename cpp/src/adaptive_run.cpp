@@ -240,9 +240,7 @@ private:
         Instant<double> now = instant();
         loop_.attend(true, setup_.clock_rounding(), setup_.plant.arm, now, setup_.plant.controller.torque);
         note_torque();
-        known_ = loop_.known();
-        if (asks_estimator(setup_.plant.controller) && known_.identifiable > 0)
-            setup_.plant.controller.gains.assumed_stiffness = known_.stiffness;
+        note_known(loop_.known());
         if (loop_.has_failed()) end(ARM3R_RUN_CONTROLLER, loop_.complaint());
         if (loop_.user.function && options_.time_limit > 0) read_clock();
         return true;

@@ -69,9 +69,9 @@ public:
     {
         if (!turns()) return Base::state_of(this->f_, 0);
         Y f1{};
-        std::swap(this->plant_.controller.torque, torque_before_), std::swap(this->rhs_.latest, latest_before_);
+        swap_before();
         this->rhs_(this->t_, this->y_, f1);
-        std::swap(this->plant_.controller.torque, torque_before_), std::swap(this->rhs_.latest, latest_before_);
+        swap_before();
         return Base::state_of(f1, 0);
     }
 
@@ -94,11 +94,17 @@ private:
         }
     }
 
-    // What the step saw, before a sample changes the torque.
+    // What the step saw, before a sample changes the torque or an estimate the law.
     ARM3R_INLINE void remember_end() {
         was_due_ = this->is_controlled_ && any(this->is_due());
         torque_before_ = this->plant_.controller.torque;
+        assumed_before_ = this->plant_.controller.gains.assumed_stiffness;
         latest_before_ = this->rhs_.latest;
+    }
+    void swap_before() {
+        std::swap(this->plant_.controller.torque, torque_before_);
+        std::swap(this->plant_.controller.gains.assumed_stiffness, assumed_before_);
+        std::swap(this->rhs_.latest, latest_before_);
     }
 
     [[gnu::noinline]] void diverge(const Mask& finite) {
@@ -268,7 +274,7 @@ private:
     bool has_jump_ = false, was_due_ = false;
     Y y0_{}, f0_{};
     Vec3<T> torque_before_;
-    T latest_before_{infinite};
+    T assumed_before_{0.0}, latest_before_{infinite};
     Indentation<T> before_{};
 };
 

@@ -63,7 +63,7 @@ private:
 
     // What holds from the end of the step on: a new torque, a new phase.
     void tell_rows() {
-        known_ = march_.known();
+        note_known(march_.known());
         contact_ = march_.contact(0);
         force_phase_ = march_.force_phase(0);
         if (!setup_.digital.sampling.on) return;

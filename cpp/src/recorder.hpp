@@ -48,6 +48,13 @@ protected:
         if (options_.rows) rows().log_until(t, scene(), [this] { return poll(); });
     }
 
+    // What a digital controller and the estimator know from now on; a continuous law takes the wall for so stiff.
+    void note_known(const Known<double>& known) {
+        known_ = known;
+        Controller<double>& law = setup_.plant.controller;
+        if (asks_estimator(law) && known.identifiable > 0) law.gains.assumed_stiffness = known.stiffness;
+    }
+
     // The torque of a digital controller that acts from now on.
     void note_torque() { swings_.note(run_.t_end, setup_.plant.controller.torque); }
 

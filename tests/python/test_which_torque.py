@@ -256,6 +256,22 @@ def test_an_estimate_between_two_samples_is_made_before_the_second() -> None:
     assert run["stiffness_estimate"] == pytest.approx(due["stiffness_estimate"], rel=1e-3, abs=1e-3)
 
 
+def test_the_rows_of_rk4_show_the_torque_of_the_law_that_took_the_estimate() -> None:
+    """A continuous one: a row at an estimate shows what holds after it, any other the last estimate."""
+    made = arm3r.Scenario(ONE_OF_ITS_OWN)
+    made["controller"] = {"type": "adaptive_reference", "adaptation": "indirect", "assumed_stiffness": 3000}
+    made["wall.point"] = [1.73, 0, 0]  # in contact from the start
+    made["push.force"] = [0, 1, 2]
+    made["estimator.wall"] = "fixed"
+    made["time"] = {"stop": 0.1, "log_every": 0.0015}
+    due = made.run()
+    made["solver"] = {"method": "rk4", "step": 2e-4}
+    run = made.run()
+    assert np.ptp(due["stiffness_estimate"][-20:]) > 1
+    assert run["q"] == pytest.approx(due["q"], abs=1e-9)
+    assert run["tau"] == pytest.approx(due["tau"], abs=1e-5)
+
+
 def test_the_estimator_sees_what_the_encoder_reads() -> None:
     """Against a wall that moves, from the encoder's places and the sensor's forces alone."""
     made = arm3r.Scenario(PRESSED)
