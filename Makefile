@@ -12,6 +12,7 @@ SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md \
            $(shell find cpp cmake python -type f -not -path '*/__pycache__/*')
 CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
+PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
 .PHONY: run test gates bench format lint clean
 
@@ -23,11 +24,11 @@ run: $(VENV)/installed
 test: $(VENV)/test $(BUILD)/tests
 	@failed=0; \
 	$(BIN)/ctest --test-dir $(BUILD) --output-on-failure --parallel $(CMAKE_BUILD_PARALLEL_LEVEL) || failed=1; \
-	$(BIN)/python -m pytest -q || failed=1; \
+	$(PYTEST) || failed=1; \
 	exit $$failed
 
 gates: $(VENV)/test $(BUILD)/tests
-	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(BIN)/python -m pytest -q -m gate
+	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(PYTEST) -m gate
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null

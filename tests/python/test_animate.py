@@ -374,7 +374,7 @@ def test_the_installed_command(scripts: Path) -> None:
 def test_a_bar_on_a_terminal(here: Path, scripts: Path) -> None:
     """On a pseudo-terminal, for a film of more than a second's work."""
     leader, follower = os.openpty()
-    call = [scripts / "arm3r-animate", "hybrid.csv", "--speed", "0.1"]
+    call = [scripts / "arm3r-animate", "hybrid.csv"]
     with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=follower) as command:
         os.close(follower)
         shown = read_terminal(leader)

@@ -16,6 +16,7 @@ from pathlib import Path
 import arm3r_cpp as arm3r
 import pytest
 from conftest import scenario_files
+from random_scenarios import sample_seed
 from timing import once_within
 
 SCENARIO_EXIT, USAGE_EXIT, FORMAT_EXIT = 3, 2, 9
@@ -232,19 +233,31 @@ def shortened(text: str) -> list[str]:
     return [text[:i] for i in range(len(text))] + [text[:i] + text[i + 1 :] for i in range(len(text))]
 
 
-def test_a18_m2_every_prefix_and_every_deletion_is_valid_or_refused(root):
-    deadline = time.monotonic() + 20
-    files = scenario_files()
-    texts = [FULL, *(file.read_text() for file in files)]
-    judged = 0
-    for text in texts:
-        assert accepted_or_refused(text)
-        for piece in shortened(text):
+def judge_shipped(each: int | None) -> None:
+    """Judges some pieces of every shipped scenario, or all of them."""
+    chance = random.Random(sample_seed())
+    print("ARM3R_SEED =", sample_seed())
+    for file in scenario_files():
+        text = file.read_text()
+        assert accepted_or_refused(text), file
+        pieces = shortened(text)
+        for piece in pieces if each is None else chance.sample(pieces, each):
             accepted_or_refused(piece)
-            judged += 1
-        if time.monotonic() > deadline:
-            break
-    assert judged >= 2 * len(FULL)
+
+
+def test_a18_m2_every_prefix_and_every_deletion_is_valid_or_refused() -> None:
+    assert accepted_or_refused(FULL)
+    for piece in shortened(FULL):
+        accepted_or_refused(piece)
+
+
+def test_a18_m2_some_prefixes_and_deletions_of_every_shipped_scenario() -> None:
+    judge_shipped(each=60)
+
+
+@pytest.mark.gate
+def test_a18_m2_all_prefixes_and_deletions_of_every_shipped_scenario() -> None:
+    judge_shipped(each=None)
 
 
 def test_a18_a_section_that_was_cut_off_is_not_filled_with_defaults(refused):
@@ -254,53 +267,31 @@ def test_a18_a_section_that_was_cut_off_is_not_filled_with_defaults(refused):
         )
 
 
-def test_m1_mutated_scenarios_never_crash(root):
-    tokens = [
-        "{",
-        "}",
-        "[",
-        "]",
-        ":",
-        "-",
-        "&x",
-        "*x",
-        "!!t",
-        "<<:",
-        "#",
-        "'",
-        '"',
-        "|",
-        ">",
-        "---",
-        "...",
-        "1e9",
-        "-0.0",
-        "inf",
-        "nan",
-        "0x1",
-        "deg",
-        "true",
-        "null",
-        "~",
-        "?",
-        "é",
-        "%YAML",
-        "\n",
-        "  ",
-        "\t",
-    ]
+TOKENS = [
+    "{", "}", "[", "]", ":", "-", "&x", "*x", "!!t", "<<:", "#", "'", '"', "|", ">", "---", "...", "1e9",
+    "-0.0", "inf", "nan", "0x1", "deg", "true", "null", "~", "?", "é", "%YAML", "\n", "  ", "\t",
+]  # fmt: skip
+
+
+def mutant(chance: random.Random, texts: list[str]) -> str:
+    """One of the texts after one to six changes: a token, a piece of another text, or a deletion."""
+    text = chance.choice(texts)
+    for _ in range(chance.randint(1, 6)):
+        at = chance.randint(0, len(text))
+        other = chance.choice(texts)
+        begin = chance.randint(0, len(other))
+        piece = chance.choice([chance.choice(TOKENS), other[begin : begin + chance.randint(0, 60)], ""])
+        text = text[:at] + piece + text[at + chance.randint(0, 20) * (piece == "") :]
+    return text
+
+
+@pytest.mark.parametrize("count", [3000, pytest.param(130_000, marks=pytest.mark.gate)])
+def test_m1_mutated_scenarios_never_crash(count: int) -> None:
+    chance = random.Random(sample_seed())
+    print("ARM3R_SEED =", sample_seed())
     texts = [FULL, *(file.read_text() for file in scenario_files())]
-    chance = random.Random(20)
-    deadline = time.monotonic() + 10
-    while time.monotonic() < deadline:
-        text = chance.choice(texts)
-        for _ in range(chance.randint(1, 6)):
-            at = chance.randint(0, len(text))
-            other = chance.choice(texts)
-            begin = chance.randint(0, len(other))
-            piece = chance.choice([chance.choice(tokens), other[begin : begin + chance.randint(0, 60)], ""])
-            text = text[:at] + piece + text[at + chance.randint(0, 20) * (piece == "") :]
-        accepted_or_refused(text)
+    for _ in range(count):
+        accepted_or_refused(mutant(chance, texts))
 
 
 @pytest.mark.parametrize(

@@ -128,19 +128,28 @@ def test_csv_holds_the_bits_of_the_arrays(cli: Any, tmp_path: Path, name: str) -
         assert np.array([float(row[index]) for row in rows]).tobytes() == run[column].tobytes(), column
 
 
-@pytest.mark.parametrize("level", ["-O0", pytest.param("-O2", marks=pytest.mark.gate)])
+def cores_of_this_worker() -> int:
+    """This test's share of the processor, where others run beside it."""
+    return max(1, len(os.sched_getaffinity(0)) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1)))
+
+
+@pytest.mark.parametrize(
+    ("level", "lanes"),  # a run by itself has no lanes, so that the plain test can leave out their code
+    [("-O0", 1), pytest.param("-O0", 8, marks=pytest.mark.gate), pytest.param("-O2", 8, marks=pytest.mark.gate)],
+)
 def test_other_optimisation_gives_the_same(
-    root: Path, package: Path, scripts: Path, files: list[Path], expected: dict[str, str], tmp_path: Path, level: str
-) -> None:
+    root: Path, package: Path, scripts: Path, files: list[Path], expected: dict[str, str], tmp_path: Path,
+    level: str, lanes: int,
+) -> None:  # fmt: skip
     environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
 
     def cmake(*arguments: object) -> None:
         done = subprocess.run(["cmake", *map(str, arguments)], capture_output=True, text=True, env=environment)
         assert done.returncode == 0, done.stdout + done.stderr
 
-    flags = ["-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={level}", f"-DCMAKE_PREFIX_PATH={package.parent}"]
-    cmake("-S", root, "-B", tmp_path, "-G", "Ninja", *flags)
-    cmake("--build", tmp_path, "--target", "arm3r_cli")
+    flags = ["-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={level}", f"-DARM3R_LANES={lanes}"]
+    cmake("-S", root, "-B", tmp_path, "-G", "Ninja", *flags, f"-DCMAKE_PREFIX_PATH={package.parent}")
+    cmake("--build", tmp_path, "--target", "arm3r_cli", "--parallel", cores_of_this_worker())
     assert hashes(tmp_path / "arm3r", files) == expected
 
 

@@ -256,7 +256,12 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize("bad", BAD, ids=repr)
+def in_words(bad: Any) -> str:
+    """The same in every process, which an address is not."""
+    return repr(bad).split(" object at ")[0]
+
+
+@pytest.mark.parametrize("bad", BAD, ids=in_words)
 @pytest.mark.parametrize("tick", [0, 37, 80])
 def test_all_else_is_not(scenario: arm3r.Scenario, bad: Any, tick: int) -> None:
     calls: list[int] = []
@@ -568,7 +573,7 @@ def test_a_simulation_tells_where_it_stands(scenario: arm3r.Scenario) -> None:
         simulation.step([0, 0, 0])
 
 
-@pytest.mark.parametrize("bad", BAD, ids=repr)
+@pytest.mark.parametrize("bad", BAD, ids=in_words)
 def test_a_bad_torque_changes_nothing(scenario: arm3r.Scenario, bad: Any) -> None:
     simulation = Simulation(scenario)
     for tick in range(5):
