@@ -219,6 +219,8 @@ and stop always are rows. Events add none. A row at an instant at which somethin
 holds there, and the estimator begins at the later of it and `estimator.start`. Every other instant is meant as it is
 written: `wall.point` is the place at t = 0, a phase is that at t = 0, and `start` keys and tables say t, which may be
 negative. Where the wall's ramp or table has begun before t = 0, `wall.point` is the place at which its s is 0.
+`log_every`, `solver.step` of rk4 and the period of sampling must be at least 1e-14 of |time.start|, so that t can
+count them.
 
 ## --set PATH=VALUE
 

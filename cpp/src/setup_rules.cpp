@@ -15,6 +15,7 @@ namespace {
 using std::numbers::pi;
 constexpr double deepest_start = 0.1;      // m
 constexpr double smallest_inertia = 1e-9;  // kg m^2
+constexpr double shortest_period = 1e-14;  // of time.start: 45 to 90 units in its last place
 
 std::string degrees(double angle) { return shortest(std::round(angle * 180 / pi * 100) / 100) + " deg"; }
 
@@ -75,6 +76,26 @@ void check_time(std::span<const double> params, Findings& findings) {
                            .allowed = "at least time.start = " + shortest(start),
                            .hint = "time.stop is an instant, not a duration"};
         });
+}
+
+// A period that is to be counted from an instant must be longer than the spacing of the doubles about it.
+void check_spacing(const char* path, double period, double start, Findings& findings) {
+    const double least = shortest_period * std::abs(start);
+    if (period < least)
+        findings.add([&] {
+            return Problem{.code = "scenario.clock",
+                           .path = path,
+                           .message = "time.start is too late for so short a period",
+                           .got = shortest(period) + " s",
+                           .allowed = "at least 1e-14 |time.start| = " + shortest(least) + " s",
+                           .hint = "move the scenario towards t = 0, with all instants and phases in it"};
+        });
+}
+
+void check_clock(const Setup& setup, Findings& findings) {
+    check_spacing("time.log_every", setup.log_every, setup.start, findings);
+    if (setup.solver.method == Solver::rk4) check_spacing("solver.step", setup.solver.step, setup.start, findings);
+    if (setup.digital.sampling.on) check_spacing("sampling.rate", setup.digital.sampling.period, setup.start, findings);
 }
 
 // A damped law takes one number that says how much it damps, or a restitution to find it from.
@@ -208,6 +229,7 @@ void check_setup(std::span<const double> params, Findings& findings) {
     if (at<"wall">(params) != 0) check_law(params, findings);
     if (!findings.none()) return;
     const Setup setup = make_setup(params);
+    check_clock(setup, findings);
     check_corners(setup, findings);
     check_algorithm(setup, findings);
     check_series(setup, findings);

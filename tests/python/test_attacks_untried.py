@@ -59,6 +59,32 @@ def test_c21_steps_that_would_not_move_the_time_are_refused_before_the_run() -> 
         arm3r.Scenario(HEAD + text).run()
 
 
+@pytest.mark.parametrize("start", [9e8, -9e8])
+@pytest.mark.parametrize(
+    ("method", "more", "path"),
+    [
+        ("dopri5", "", "time.log_every"),
+        ("rk4, step: 1e-9", "", "solver.step"),
+        ("taylor", "sampling: {rate: 1e6}\ncontroller: {type: joint_pd}", "sampling.rate"),
+    ],
+)
+def test_c21_a_start_so_late_that_periods_cannot_be_counted_is_refused(
+    method: str, more: str, path: str, start: float
+) -> None:
+    every = 1e-8 if path == "time.log_every" else 0.01
+    text = f"time: {{start: {start}, stop: {start + 0.5}, log_every: {every}}}\nsolver: {{method: {method}}}\n{more}\n"
+    with pytest.raises(arm3r.ScenarioError, match="too late for so short a period") as raised:
+        arm3r.Scenario(HEAD + text).validate()
+    assert [problem["path"] for problem in raised.value.problems] == [path]
+
+
+@pytest.mark.parametrize("method", ["rk4, step: 1e-3", "taylor"])
+def test_c21_rows_of_a_late_run_never_stand_still(method: str) -> None:
+    text = f"time: {{start: 9e8, stop: {9e8 + 0.5}, log_every: 1e-5}}\nsolver: {{method: {method}}}\n"
+    t = arm3r.Scenario(HEAD + text).run().t
+    assert len(t) == 50_001 and np.all(np.diff(t) > 0)
+
+
 @pytest.mark.parametrize("method", ["rk4, step: 1e-3", "dopri5", "taylor"])
 def test_c24_rates_that_fall_below_normal_numbers_take_no_longer_and_are_the_same_where_the_host_flushes_them(
     method: str, tmp_path: Path
