@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from .errors import UsageError
 
 ROWS_AT_A_TIME = 2000
+ROWS_OF_A_GROUP = 100_000  # at least, in Parquet: each group of rows takes memory and time of its own
 
 
 def encode(columns: Mapping[str, NDArray[Any]], kind: str, go_on: Callable[[], Any]) -> bytes:
@@ -31,28 +32,39 @@ def encode(columns: Mapping[str, NDArray[Any]], kind: str, go_on: Callable[[], A
     return out.getvalue()
 
 
-def merge(pieces: Iterable[Path], names: Sequence[str], kind: str, out: BinaryIO) -> None:
-    """One table of its pieces, in their order; never more than one of them in memory."""
+def merge(pieces: Iterable[bytes], names: Sequence[str], kind: str, out: BinaryIO) -> None:
+    """One table of its pieces, in their order; never more than one of them, or one group of rows, in memory."""
     if kind == "csv":
         out.write(f"{','.join(names)}\n".encode())
         for piece in pieces:
-            out.write(piece.read_bytes())
+            out.write(piece)
         return
-    parquet = pyarrow().parquet
     writer = None
-    for piece in pieces:
-        table = parquet.read_table(piece)
-        writer = writer or parquet.ParquetWriter(out, table.schema)
+    for table in _groups(pieces):
+        writer = writer or pyarrow().parquet.ParquetWriter(out, table.schema)
         writer.write_table(table)
     if writer:
         writer.close()
+
+
+def _groups(pieces: Iterable[bytes]) -> Iterator[Any]:
+    """The tables of Parquet's pieces, as many at a time as make a group of rows."""
+    arrow = pyarrow()
+    tables: list[Any] = []
+    for piece in pieces:
+        tables.append(arrow.parquet.read_table(io.BytesIO(piece)))
+        if sum(table.num_rows for table in tables) >= ROWS_OF_A_GROUP:
+            yield arrow.concat_tables(tables)
+            tables = []
+    if tables:
+        yield arrow.concat_tables(tables)
 
 
 def decode(path: Path, kind: str) -> dict[str, NDArray[Any]]:
     """The columns of a table, by name: float64, NaN where there is nothing; or text."""
     if kind == "parquet":
         table = pyarrow().parquet.read_table(path)
-        return {name: table[name].to_numpy() for name in table.column_names}
+        return {name: column.to_numpy() for name, column in zip(table.column_names, table.columns, strict=True)}
     with path.open() as file:
         names = next(file).rstrip("\n").split(",")
         pieces = list(_pieces(file))

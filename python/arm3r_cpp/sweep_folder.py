@@ -25,6 +25,10 @@ def sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
+class _Damaged(Exception):
+    """A shard's file is not what the ledger says; the message says in what."""
+
+
 class SweepFolder:
     """A folder that this process holds the lock of.
 
@@ -36,7 +40,7 @@ class SweepFolder:
         """`SweepFolder.held` makes folders."""
         self.path, self.manifest = path, manifest
         self._seal = sha256(json.dumps(manifest).encode())
-        self.finished: set[int] = set()
+        self.finished: dict[int, tuple[int, str]] = {}  # size and checksum of a shard
         self.runs_done = 0
 
     @classmethod
@@ -109,11 +113,24 @@ class SweepFolder:
         line |= {"sha256": sha256(data), "outcomes": dict(outcomes)}
         with _writing(self.path), (self.path / LEDGER).open("ab") as ledger:
             ledger.write(_sealed(line, self._seal))
-        self._acknowledge(number, count)
+        self._acknowledge(number, line)
 
-    def _acknowledge(self, number: int, count: int) -> None:
-        self.finished.add(number)
-        self.runs_done += count
+    def read(self, number: int) -> bytes:
+        """A finished shard, read back.
+
+        Raises:
+            OutputError: the file no longer holds what was stored.
+        """
+        file = self.shard(number)
+        try:
+            return _checked(file, *self.finished[number])
+        except (_Damaged, OSError) as fault:
+            message = f"{file}: {fault}; resuming does its runs again"
+            raise OutputError(message, code="output") from None
+
+    def _acknowledge(self, number: int, line: Mapping[str, Any]) -> None:
+        self.finished[number] = line["size"], line["sha256"]
+        self.runs_done += line["count"]
 
     def _read_ledger(self) -> None:
         """Believe what can be checked, say what cannot, and keep the ledger clean of it."""
@@ -126,22 +143,29 @@ class SweepFolder:
                 line = _unsealed(text, self._seal)
                 if line is None:
                     warnings.warn(f"{path}: a line is torn or of another sweep; its runs are done again", stacklevel=2)
-                elif fault := self._fault(line):
+                    continue
+                number = line["first"] // self.manifest["shard"]
+                try:
+                    _checked(self.path / line["file"], line["size"], line["sha256"])
+                except _Damaged as fault:
                     runs = f"runs {line['first']} to {line['first'] + line['count'] - 1}"
                     warnings.warn(f"{line['file']}: {fault}; {runs} are done again", stacklevel=2)
-                elif line["first"] // self.manifest["shard"] not in self.finished:
-                    clean.write(_sealed(line, self._seal))
-                    self._acknowledge(line["first"] // self.manifest["shard"], line["count"])
+                else:
+                    if number not in self.finished:
+                        clean.write(_sealed(line, self._seal))
+                        self._acknowledge(number, line)
 
-    def _fault(self, line: Mapping[str, Any]) -> str:
-        """Why a shard's file is not what the ledger says; "" when it is."""
-        path = self.path / line["file"]
-        if not path.is_file():
-            return "is missing"
-        data = path.read_bytes()
-        if len(data) != line["size"]:
-            return f"has {len(data)} bytes, not {line['size']}"
-        return "" if sha256(data) == line["sha256"] else "does not have the checksum that the ledger says"
+
+def _checked(path: Path, size: int, checksum: str) -> bytes:
+    """What a shard's file holds. _Damaged: it is not what the ledger says."""
+    if not path.is_file():
+        raise _Damaged("is missing")
+    data = path.read_bytes()
+    if len(data) != size:
+        raise _Damaged(f"has {len(data)} bytes, not {size}")
+    if sha256(data) != checksum:
+        raise _Damaged("does not have the checksum that the ledger says")
+    return data
 
 
 def count_outcomes(lines: Iterable[Mapping[str, Any]]) -> dict[str, int]:

@@ -76,7 +76,7 @@ def sweep(
         with _submitting(executor, jobs) as (submit, at_a_time):
             _run(plan, job, folder, submit, at_a_time, progress)
         with publishing(folder.path / f"table.{job.table}") as file:
-            merge(map(folder.shard, range(_shards(plan))), columns_of(job), job.table, file)
+            merge(map(folder.read, range(_shards(plan))), columns_of(job), job.table, file)
     return SweepTable(out)
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._native import Floats
 from .batch import Batch, run_batch
-from .errors import Arm3rError, IncompatibleError
+from .errors import Arm3rError, BudgetError, IncompatibleError
 from .run import Run
 from .scenario import Scenario
 from .sweep_encode import encode
@@ -70,8 +70,20 @@ def work(job: Job, progress: Callable[[int, int], Any] | None = None) -> Done:
 
     Raises:
         IncompatibleError: this is another version than the one that plans the sweep.
+        BudgetError: the runs take more memory than there is.
     """
     _preflight(job)
+    try:
+        return _computed(job, progress)
+    except (MemoryError, BudgetError) as error:
+        if isinstance(error, BudgetError) and not error.code.endswith("memory"):
+            raise
+        last = job.first + max(len(values) for values in job.values.values()) - 1
+        message = f"runs {job.first} to {last} take more memory than there is; give a smaller `shard`"
+        raise BudgetError(message, code="budget.memory") from error
+
+
+def _computed(job: Job, progress: Callable[[int, int], Any] | None) -> Done:
     batch = run_batch(Scenario(job.scenario, file=job.file), job.values, threads=1, progress=progress)
     outcomes = batch.outcomes
     columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
