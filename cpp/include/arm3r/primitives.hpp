@@ -4,12 +4,13 @@
 #include <cstdint>
 
 // Wide registers must never cross a function call: a callee built for an older CPU would pass them differently.
+#ifndef ARM3R_INLINE  // A build without wide packs may define it as `inline`, and ARM3R_INLINE_LAMBDA as nothing.
 #define ARM3R_INLINE [[gnu::always_inline]] inline
-
-// A function of packs that is built for several instruction sets, the widest that the CPU has being taken at run time.
-// All that it calls must be inlined into it. Every variant gives the same bits. The other two: a function of packs of 4 or
-// of 8, built for the registers that hold them, and to be called only where the processor has these (widest_lanes); where
-// there are no such registers to build for (ARM3R_WIDE_PACKS 0), packs of 2 are all there is.
+#define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
+#endif
+// A function of packs built for several instruction sets; the widest that the CPU has is taken, all with the same bits.
+// All that it calls is inlined into it. ARM3R_FOR_FOUR and ARM3R_FOR_EIGHT: called only where the processor has registers
+// for packs of 4 or 8 (widest_lanes); where nothing is built for these (ARM3R_WIDE_PACKS 0), packs have 2 lanes.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && !defined(ARM3R_NARROW)
 #define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #define ARM3R_WIDEST_SCALARS __attribute__((target_clones("default", "arch=x86-64-v3")))
@@ -21,7 +22,6 @@
 #define ARM3R_WIDEST_SCALARS
 #define ARM3R_WIDE_PACKS 0
 #endif
-#define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
 #ifndef ARM3R_ONE_LANE
 #define ARM3R_ONE_LANE 0  // 1: a batch has no packs, to compile faster while developing
 #endif
