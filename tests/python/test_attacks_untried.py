@@ -269,6 +269,79 @@ def test_j4_flags_that_change_results_are_refused(root: Path, scripts: Path, tmp
     assert done.returncode != 0 and "would change results" in done.stderr
 
 
+WITHOUT_AVX = """
+#define _GNU_SOURCE
+#include <cpuid.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <ucontext.h>
+#include <unistd.h>
+#define ARCH_CPUID 0x1012
+int seen;
+/* In place of a cpuid instruction: what the processor says, without xsave, AVX, FMA, AVX2 and AVX-512. */
+static void answer(int number, siginfo_t *info, void *context) {
+    greg_t *registers = ((ucontext_t *)context)->uc_mcontext.gregs;
+    const unsigned char *at = (const unsigned char *)registers[REG_RIP];
+    if (at[0] != 0x0f || at[1] != 0xa2) _exit(99);
+    unsigned leaf = registers[REG_RAX], a, b, c, d;
+    syscall(SYS_arch_prctl, ARCH_CPUID, 1);
+    __cpuid_count(leaf, registers[REG_RCX], a, b, c, d);
+    syscall(SYS_arch_prctl, ARCH_CPUID, 0);
+    if (leaf == 1) c &= ~(1u << 12 | 1u << 26 | 1u << 27 | 1u << 28);
+    if (leaf == 7) b &= ~(1u << 5 | 1u << 16 | 1u << 17 | 1u << 28 | 1u << 30 | 1u << 31);
+    registers[REG_RAX] = a, registers[REG_RBX] = b, registers[REG_RCX] = c, registers[REG_RDX] = d;
+    registers[REG_RIP] += 2;
+    seen = 1;
+}
+int hide(void) {
+    struct sigaction action = {.sa_sigaction = answer, .sa_flags = SA_SIGINFO};
+    sigaction(SIGSEGV, &action, 0);
+    return syscall(SYS_arch_prctl, ARCH_CPUID, 0);
+}
+"""
+
+
+def test_j1_a_processor_without_avx_gives_the_same_bits(python: Any, tmp_path: Path) -> None:
+    """Every method, and batches and the arm's functions, whose widest variant the library chooses for the processor."""
+    if not (compiler := shutil.which("gcc")) or os.uname().machine != "x86_64":
+        pytest.skip("cpuid is a matter of x86-64, and hidden by a small program in C")
+    library = tmp_path / "old.so"
+    subprocess.run([compiler, "-shared", "-fPIC", "-xc", "-", "-o", library], input=WITHOUT_AVX, text=True, check=True)
+    work = """
+import arm3r_cpp as a, numpy as np
+for method in ("dopri5", "rk4", "taylor", "rodas4"):
+    s = a.Scenario("{format: 1, arm: {link3: {length: 0.7}}, wall: {point: [1.6, 0.1, 0], acts_on_arm: true}, "
+                   "time: {stop: 0.5}, solver: {method: %s}}" % method)
+    print(s.run().summary["hash"])
+    batch = s.batch({"initial.q[1]": np.linspace(-0.8, -0.6, 19)})
+    print([batch[name].tobytes().hex() for name in batch])
+q = np.random.default_rng(3).uniform(-2, 2, (2, 21, 3))
+print(s.arm.mass_matrix(q[0]).tobytes().hex(), s.arm.forward_dynamics(*q, 0 * q[0]).tobytes().hex())
+"""
+    hide = f"import ctypes\nold = ctypes.CDLL({str(library)!r})\nif old.hide(): raise SystemExit(42)\n"
+    end = "assert ctypes.c_int.in_dll(old, 'seen').value\n"
+    usual, hidden = python(work), python(hide + work + end)
+    if hidden.returncode == 42:
+        pytest.skip("this processor, or its kernel, does not let cpuid be hidden")
+    assert usual.returncode == hidden.returncode == 0, usual.stderr + hidden.stderr
+    assert usual.stdout == hidden.stdout
+
+
+@pytest.mark.parametrize("offset", [0, 1, 8, 24])
+def test_j4_arrays_of_a_host_need_no_alignment(offset: int) -> None:
+    """The C interface knows no type of Eigen, whose alignment depends on flags: doubles may lie anywhere."""
+    q = np.random.default_rng(4).uniform(-1, 1, (37, 3))
+    room = np.zeros(q.nbytes + 64, np.uint8)
+    begin = -room.ctypes.data % 64 + offset
+    moved = room[begin : begin + q.nbytes].view(float).reshape(q.shape)
+    moved[:] = q
+    assert moved.ctypes.data % 64 == offset
+    scenario = arm3r.Scenario(HEAD + "arm: {link3: {length: 0.7}}\ntime: {stop: 0.1}\n")
+    assert scenario.arm.mass_matrix(moved).tobytes() == scenario.arm.mass_matrix(q).tobytes()
+    here, there = (scenario.batch({"initial.q": values}) for values in (q, moved))
+    assert all(here[name].tobytes() == there[name].tobytes() for name in here)
+
+
 def test_j5_the_library_needs_nothing_but_the_run_time_of_c_and_cpp(package: Path) -> None:
     for part in ("lib/libarm3r.so", "bin/arm3r", "_arm3r.abi3.so"):
         text = subprocess.run(["readelf", "-d", package / part], check=True, capture_output=True, text=True).stdout

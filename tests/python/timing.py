@@ -5,6 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 
-def once_within(seconds: float, attempt: Callable[[], float], tries: int = 5) -> bool:
+def once_within(seconds: float, attempt: Callable[[], float], tries: int = 10) -> bool:
     """Whether one of some tries, each of which returns the seconds that it took, took no longer."""
     return any(attempt() < seconds for _ in range(tries))
