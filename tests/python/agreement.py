@@ -8,7 +8,7 @@ differ by no more than these runs do. No column needs a tolerance of its own.
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import arm3r_cpp as arm3r
@@ -21,6 +21,8 @@ FLOOR = SIZE
 """of what may differ, in a column's unit and relative to its largest value: some columns feel no disturbance"""
 NOISY = {"tip_dv": 100.0, "f_estimate": 10.0}
 """times the floor: the error of an interpolant's slope, and a residual divided by a nearly singular Jacobian"""
+TIMES_OWN_ERROR = 5.0
+"""how much larger the error of a method of fixed steps may be than the differences between its runs with other steps"""
 
 ADAPTIVE: dict[str, Keys] = {
     "dopri5": {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13},
@@ -51,26 +53,20 @@ def run_of(scenario: Mapping[str, Any], solver: Mapping[str, Any]) -> arm3r.Run 
 
 
 def rk4(scenario: Mapping[str, Any], about: float) -> Keys:
-    """rk4 with a step of about this many seconds that parts the period and the delay of the samples evenly."""
-    if "sampling" not in scenario:
+    """rk4 with a step of about this many seconds that parts evenly what it needs to have on its steps.
+
+    These are the period and the delay of the controller's samples, else the period and the start of the estimator's.
+    """
+    if "sampling" in scenario:
+        period, later = 1 / scenario["sampling"]["rate"], scenario["sampling"].get("delay", 0)
+    elif "estimator" in scenario:
+        period = 1 / scenario["estimator"].get("rate", 500)
+        later = scenario["estimator"].get("start", 0) / period
+    else:
         return {"method": "rk4", "step": about}
-    period, delay = 1 / scenario["sampling"]["rate"], scenario["sampling"].get("delay", 0)
-    parts = max(1, round(period / about))
-    while abs(parts * delay - round(parts * delay)) > 1e-9:
-        parts += 1
-    return {"method": "rk4", "step": period / parts}
-
-
-def changes_on_grid(scenario: Mapping[str, Any], step: float) -> bool:
-    """Whether every instant at which something begins or ends, or the estimator samples, is a whole number of steps."""
-    reference, motion = scenario.get("reference", {}), scenario.get("wall", {}).get("motion", {})
-    instants = [*motion.get("t", []), *reference.get("t", [])]
-    for section in (scenario.get("push", {}), reference, reference.get("force", {}), motion):
-        start = section.get("start", 0)
-        instants += [start, start + section.get("duration", 0), start + section.get("rise", 0)]
-    if (estimator := scenario.get("estimator")) is not None:
-        instants += [estimator.get("start", 0), 1 / estimator.get("rate", 500)]
-    return all(abs(t / step - round(t / step)) < 1e-6 for t in instants)
+    fewest = max(1, round(period / about))
+    fitting = (parts for parts in range(fewest, 2 * fewest + 5) if abs(parts * later - round(parts * later)) < 1e-9)
+    return {"method": "rk4", "step": period / next(fitting, fewest)}
 
 
 def disturbed(scenario: Mapping[str, Any], rng: np.random.Generator) -> Keys:
@@ -110,26 +106,23 @@ class Band:
         """By how much a disturbance of the joint angles has grown at the end."""
         return max(self.limits[name][-1] for name in ("q1", "q2", "q3")) / SIZE
 
-    def gap(self, other: arm3r.Run, *, wider: float = 0.0) -> Gap:
-        """Where another run leaves the band most; `wider`: by how many of its own widths the band is widened."""
+    def gap(self, other: arm3r.Run, own: OwnError | None = None) -> Gap:
+        """Where another run leaves the band most, which its own error, where it is known, widens."""
         worst = Gap(0.0, "", 0.0)
         for name, limit in self.limits.items():
             if name == "energy_residual":
                 continue  # it is the error of the run itself, which no other run shares
-            ratio = abs(other[name] - self.run[name]) / (limit * (1 + wider))
+            ratio = abs(other[name] - self.run[name]) / (limit + own.columns[name] if own else limit)
+            if own:
+                ratio = np.where(own.rows, ratio, 0.0)
             row = int(np.argmax(ratio))
             if not ratio[row] <= worst.ratio:
                 worst = Gap(float(ratio[row]), name, float(self.run.t[row]))
         return worst
 
-    def state_gap(self, a: arm3r.Run, b: arm3r.Run) -> float:
-        """The largest difference of two other runs in angles and rates, in units of the band."""
-        names = [f"{kind}{i}" for kind in ("q", "qd") for i in (1, 2, 3)]
-        return max(float((abs(a[name] - b[name]) / self.limits[name]).max()) for name in names)
-
-    def event_gap(self, other: arm3r.Run, *, wider: float = 0.0) -> Gap:
+    def event_gap(self, other: arm3r.Run, own: OwnError | None = None) -> Gap:
         """The same of the instants of contact events; infinite where there are others."""
-        if any(kinds(one) != kinds(self.run) for one in self.others):
+        if any(kinds(one) != kinds(self.run) for one in self.others) or (own and own.events is None):
             return Gap(0.0, "", 0.0)  # a disturbance makes or takes a contact: nothing can be said
         if kinds(other) != kinds(self.run):
             return Gap(np.inf, f"{len(other.events)} events for {len(self.run.events)}", 0.0)
@@ -137,9 +130,50 @@ class Band:
             return Gap(0.0, "", 0.0)
         t = instants(self.run)
         spread = np.max([abs(instants(one) - t) for one in self.others], axis=0, initial=0.0)
-        ratio = abs(instants(other) - t) / ((np.maximum.accumulate(spread) + FLOOR) * (1 + wider))
+        limit = np.maximum.accumulate(spread) + FLOOR
+        ratio = abs(instants(other) - t) / (limit + own.events if own else limit)
         event = int(np.argmax(ratio))
         return Gap(float(ratio[event]), f"event {event}", float(t[event]))
+
+
+class OwnError(NamedTuple):
+    """What rk4 tells of its own error, by runs with other steps.
+
+    The steps are no multiples of one another and none of a millisecond: a contact that begins just before the end of a
+    step must not begin just before the end of a step in every run. Up to one step away from such an instant, and from
+    an estimate that is due between two steps, the controller knows of it at the end of the step only: these rows say
+    nothing.
+    """
+
+    columns: dict[str, np.ndarray]
+    events: np.ndarray | None  # s, of the instants of contact events; None where other steps have other events
+    rows: np.ndarray  # where a row says something
+
+    @classmethod
+    def of(cls, scenario: Mapping[str, Any], finest: arm3r.Run, others: Sequence[arm3r.Run], step: float) -> OwnError:
+        """From the run with the smallest step and those with others, of which `step` is the longest."""
+        late = [t for run in (finest, *others) for t in instants(run)] + estimates_between_steps(scenario)
+        rows = np.all([abs(finest.t - t) > step for t in late], axis=0) if late else np.ones(len(finest.t), bool)
+        # An error may turn a rounded reading into the next one.
+        quanta = {"force_measured": scenario.get("sensors", {}).get("force", {}).get("resolution", 0.0)}
+
+        def error_of(name: str) -> np.ndarray:
+            apart = np.max([abs(run[name] - finest[name]) for run in others], axis=0)
+            return TIMES_OWN_ERROR * np.maximum.accumulate(np.where(rows, apart, 0.0)) + quanta.get(name, 0.0)
+
+        events = None
+        if all(kinds(run) == kinds(finest) for run in others):
+            apart = [abs(instants(run) - instants(finest)) for run in others]
+            events = TIMES_OWN_ERROR * np.maximum.accumulate(np.max(apart, axis=0))
+        return cls({name: error_of(name) for name in finest.columns}, events, rows)
+
+
+def estimates_between_steps(scenario: Mapping[str, Any]) -> list[float]:
+    """When the estimator beside a sampled controller is due, s: the steps of rk4 hold the samples of that alone."""
+    if "estimator" not in scenario or "sampling" not in scenario:
+        return []
+    start, period = scenario["estimator"].get("start", 0), 1 / scenario["estimator"].get("rate", 500)
+    return np.arange(start, scenario["time"]["stop"] + period, period).tolist()
 
 
 def kinds(run: arm3r.Run) -> list[str]:
