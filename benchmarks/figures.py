@@ -11,7 +11,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from arm3r_cpp.plot_style import AMBER, BLACK, BLUE, GREEN, PINK, RED, SKY, style
+from arm3r_cpp.plot.style import AMBER, BLACK, BLUE, GREEN, PINK, RED, SKY, style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator

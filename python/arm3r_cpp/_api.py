@@ -7,6 +7,8 @@ from importlib import import_module
 from ._native import version as __version__
 from .arm import Arm
 from .batch import Batch
+from .control.law import NativeLaw, law_state_index
+from .control.law_state import LawState
 from .errors import (
     Arm3rError,
     BudgetError,
@@ -18,8 +20,6 @@ from .errors import (
     ScenarioError,
     UsageError,
 )
-from .law import NativeLaw, law_state_index
-from .law_state import LawState
 from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
 from .run import Event, Run
 from .scenario import Scenario
@@ -29,11 +29,11 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from .sweep_file import Sweep
-    from .sweep_run import sweep
-    from .sweep_table import SweepTable
+    from .sweeps.definition import Sweep
+    from .sweeps.runner import sweep
+    from .sweeps.table import SweepTable
 
-_LATER = {"Sweep": "sweep_file", "SweepTable": "sweep_table", "sweep": "sweep_run"}
+_LATER = {"Sweep": "sweeps.definition", "SweepTable": "sweeps.table", "sweep": "sweeps.runner"}
 
 
 def __getattr__(name: str) -> Any:

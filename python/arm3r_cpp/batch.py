@@ -15,8 +15,8 @@ from ._native import BatchProgress, Floats, lib
 from .errors import BudgetError, ScenarioError, UsageError, no_column
 from .params import param_index, param_key, param_name, places
 from .run import Run
+from .scenario import Scenario
 
-Scenario = Any  # the class stands above this module
 Index = int | tuple[int, ...]
 
 # What no number could mend: the fault lies in the axes as such, not in one of the runs.

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 
+from ._hash import fnv1a64
 from ._native import Floats
 from .errors import UsageError
-from .fnv import fnv1a64
 from .regular import regular
 
 

@@ -7,18 +7,20 @@ import math
 import os
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _native
 from ._native import BatchProgress, Floats, Progress, lib
 from .arm import Arm
-from .batch import Batch, run_batch
+from .control.law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
 from .errors import UsageError, class_of_outcome
-from .law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
 from .params import param_count
 from .run import Run
+
+if TYPE_CHECKING:
+    from .batch import Batch
 
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
 
@@ -222,6 +224,8 @@ class Scenario:
             BudgetError: there is no memory for the table.
             ScenarioError: the scenario itself is not valid, or a word is none of its key's.
         """
+        from .batch import run_batch  # it stands above this module
+
         return run_batch(self, values, grid=grid, threads=threads, progress=progress)
 
 

@@ -6,9 +6,9 @@ from typing import Any
 
 from . import _native
 from ._native import lib
+from .control.law import TORQUE
+from .control.law_state import LawState, state_of
 from .errors import ControllerError, class_of_outcome
-from .law import TORQUE
-from .law_state import LawState, state_of
 from .run import Run
 from .scenario import Scenario
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
-from arm3r_cpp.fnv import fnv1a64
+from arm3r_cpp._hash import fnv1a64
 
 NORMAL = -np.array([np.cos(0.4), np.sin(0.4), 0.0])
 E1 = np.array([NORMAL[1], -NORMAL[0], 0.0])

@@ -12,10 +12,11 @@ import arm3r_cpp as arm3r
 import force_runs
 import numpy as np
 import pytest
-from arm3r_cpp import animate_cli, animation_files
-from arm3r_cpp.animation_files import Film, write
-from arm3r_cpp.animation_frames import Frames, frame_times, frames_of
-from arm3r_cpp.animation_scene import Scene, newtons_per_metre, palette, sight
+from arm3r_cpp.animation import files as animation_files
+from arm3r_cpp.animation.files import Film, write
+from arm3r_cpp.animation.frames import Frames, frame_times, frames_of
+from arm3r_cpp.animation.scene import Scene, newtons_per_metre, palette, sight
+from arm3r_cpp.commands import animate as animate_cli
 from matplotlib.colors import to_rgb
 from PIL import Image
 

@@ -123,16 +123,14 @@ def test_a_ledger_and_a_manifest_of_brackets_are_damaged(scripts: Path, sweep_fi
 # ---- what is missing ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "words", [["plot_cli", "RUN"], ["plot_cli", "sweep", "DIR"], ["animate_cli", "RUN", "-o", "a.gif"]]
-)
+@pytest.mark.parametrize("words", [["plot", "RUN"], ["plot", "sweep", "DIR"], ["animate", "RUN", "-o", "a.gif"]])
 def test_f10_without_matplotlib_figures_say_what_to_install(run_file: Path, sweep_file: Path, words: list[str]) -> None:
     folder = run_file.parent / "out"
     arm3r.sweep(sweep_file, out=folder)
     given = [{"RUN": str(run_file), "DIR": str(folder)}.get(word, word) for word in words[1:]]
     code = (
         "import sys\nsys.modules['matplotlib'] = None\n"
-        f"from arm3r_cpp.{words[0]} import main\nsys.exit(main({given!r}))\n"
+        f"from arm3r_cpp.commands.{words[0]} import main\nsys.exit(main({given!r}))\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=run_file.parent)
     assert done.returncode == 2 and "pip install matplotlib" in done.stderr and "Traceback" not in done.stderr, done

@@ -168,17 +168,17 @@ def test_an_early_ctrl_c_ends_the_command_by_the_signal(scripts: Path, long_scen
         assert process.returncode == -signal.SIGINT and b"Traceback" not in errors, (k, errors)
 
 
-@pytest.mark.parametrize("command", ["sweep_cli", "plot_cli", "animate_cli"])
+@pytest.mark.parametrize("command", ["sweep", "plot", "animate"])
 def test_ctrl_c_while_a_command_loads_its_modules_ends_it_by_the_signal(command: str) -> None:
     code = (
         "import builtins, os, signal, time\n"
-        "from arm3r_cpp import _cli\n"
+        "from arm3r_cpp.commands import entry_points\n"
         "load = builtins.__import__\n"
         "def late(name, *rest):\n"
         "    if name == 'argparse': os.kill(os.getpid(), signal.SIGINT); time.sleep(5)\n"
         "    return load(name, *rest)\n"
         "builtins.__import__ = late\n"
-        f"_cli._call({command!r})\n"
+        f"entry_points._call({command!r})\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30)
     assert (done.returncode, done.stderr) == (-signal.SIGINT, "")

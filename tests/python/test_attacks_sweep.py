@@ -16,7 +16,8 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from arm3r_cpp import sweep_encode, sweep_shard
+from arm3r_cpp.sweeps import shard as sweep_shard
+from arm3r_cpp.sweeps import table_io as sweep_encode
 
 PLAN = {
     "format": 1,

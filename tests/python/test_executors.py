@@ -13,7 +13,8 @@ from typing import Any
 
 import arm3r_cpp as arm3r
 import pytest
-from arm3r_cpp import sweep_run, sweep_shard
+from arm3r_cpp.sweeps import runner as sweep_run
+from arm3r_cpp.sweeps import shard as sweep_shard
 
 SWEEP = """\
 format: 1

@@ -14,7 +14,7 @@ import pytest
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-from arm3r_cpp import plot_cli
+from arm3r_cpp.commands import plot as plot_cli
 from conftest import Cli
 from matplotlib.figure import Figure
 

@@ -17,10 +17,10 @@ import pytest
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-from arm3r_cpp import plot_cli
-from arm3r_cpp.force_run import ForceRun
-from arm3r_cpp.plot_compare import shortened
-from arm3r_cpp.wall_frame import wall_frame
+from arm3r_cpp.commands import plot as plot_cli
+from arm3r_cpp.plot.comparison import shortened
+from arm3r_cpp.plot.force_run import ForceRun
+from arm3r_cpp.plot.wall_frame import wall_frame
 from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 

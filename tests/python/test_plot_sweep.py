@@ -14,8 +14,8 @@ import pytest
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-from arm3r_cpp import plot_cli
-from arm3r_cpp.plot_sweep import sweep as draw
+from arm3r_cpp.commands import plot as plot_cli
+from arm3r_cpp.plot.sweep_figure import sweep as draw
 from matplotlib.figure import Figure
 
 SCENARIO = """\

@@ -7,7 +7,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from arm3r_cpp.sweep_axes import SweepAxis, values_of
+from arm3r_cpp.sweeps.axes import SweepAxis, values_of
 
 BASE: dict[str, Any] = {"format": 1, "scenario": {"time": {"stop": 0.1}}}
 KEY = "wall.contact.stiffness"

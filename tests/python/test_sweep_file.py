@@ -8,9 +8,9 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from arm3r_cpp.sweep_axes import MODES
-from arm3r_cpp.sweep_file import KEYS
-from arm3r_cpp.sweep_shard import STATISTICS
+from arm3r_cpp.sweeps.axes import MODES
+from arm3r_cpp.sweeps.definition import KEYS
+from arm3r_cpp.sweeps.shard import STATISTICS
 
 GOOD = """\
 format: 1

@@ -1,0 +1,33 @@
+"""Where the installed scripts start. Ctrl-C ends them by the signal, also while their modules are loaded."""
+
+import signal
+import sys
+from importlib import import_module
+
+_OURS = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # not where the caller ignores the signal
+if _OURS:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def plot() -> int:
+    return _call("plot")
+
+
+def sweep() -> int:
+    return _call("sweep")
+
+
+def animate() -> int:
+    return _call("animate")
+
+
+def _call(module: str) -> int:
+    main = import_module(f".{module}", __package__).main
+    if _OURS:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return main(sys.argv[1:])
+    except KeyboardInterrupt:
+        from .exit_codes import die_of
+
+        die_of(signal.SIGINT)

@@ -1,0 +1,72 @@
+"""How the commands end: the exit codes of `arm3r`, and signals."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from typing import NoReturn
+
+from ..errors import (
+    Arm3rError,
+    BudgetError,
+    ControllerError,
+    IncompatibleError,
+    NumericalError,
+    OutputError,
+    ScenarioError,
+    UsageError,
+)
+
+FAILED_RUNS = 7
+_CODES: dict[type[Arm3rError], int] = {
+    UsageError: 2,
+    ScenarioError: 3,
+    NumericalError: 4,
+    BudgetError: 5,
+    OutputError: 6,
+    ControllerError: 8,
+    IncompatibleError: 9,
+}
+
+
+def exit_code(error: Arm3rError) -> int:
+    return next((code for kind, code in _CODES.items() if isinstance(error, kind)), 1)
+
+
+def attempt(program: str, work: Callable[[], None]) -> int:
+    """Do the work of a command: its exit code, and on stderr what went wrong. Ctrl-C ends it by the signal."""
+    try:
+        work()
+    except Arm3rError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return exit_code(error)
+    except ModuleNotFoundError as error:
+        print(f"{program}: needs {error.name}, which is not installed: pip install {error.name}", file=sys.stderr)
+        return exit_code(UsageError(str(error)))
+    except KeyboardInterrupt:
+        die_of(signal.SIGINT)
+    return 0
+
+
+def tell(line: object) -> None:
+    """Print a line on stdout; where nobody reads it, end as a pipe's writer does.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    try:
+        print(line, flush=True)
+    except OSError as error:
+        sys.stdout = None  # else Python tries again when it ends
+        if isinstance(error, BrokenPipeError):
+            die_of(signal.SIGPIPE)
+        raise OutputError(f"standard output cannot be written: {error.strerror}", code="output") from error
+
+
+def die_of(number: signal.Signals) -> NoReturn:
+    """End by the signal itself, so that the caller sees what happened."""
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+    raise SystemExit(128 + number)

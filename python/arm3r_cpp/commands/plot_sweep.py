@@ -1,0 +1,42 @@
+"""arm3r-plot sweep: a figure of a sweep's table."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from .exit_codes import attempt, tell
+
+
+def main(argv: Sequence[str]) -> int:
+    """argv without "arm3r-plot sweep". Returns an exit code, one of those of `arm3r`."""
+    options = parser().parse_args(argv)
+    return attempt("arm3r-plot", lambda: save(options))
+
+
+def parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="arm3r-plot sweep", description="Draw a sweep: a metric against an axis, a heat map over a grid of two."
+    )
+    add = parser.add_argument
+    add("folder", type=Path, metavar="DIR", help="folder of a finished sweep")
+    add("-o", dest="out", type=Path, metavar="OUT.png", default=Path("sweep.png"), help="also .pdf or .svg")
+    add("--metric", metavar="NAME", help="column that is drawn (default: the first one kept)")
+    add("--log", action="store_true", help="logarithmic scale of the metric")
+    return parser
+
+
+def save(options: argparse.Namespace) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from ..folders import check_folder
+    from ..plot.figure_files import check_format, write
+    from ..plot.sweep_figure import sweep
+    from ..sweeps.table import SweepTable
+
+    check_format(options.out)
+    check_folder(options.out.parent)
+    write({options.out: sweep(SweepTable(options.folder), metric=options.metric, log=options.log)})
+    tell(options.out)

@@ -1,0 +1,65 @@
+"""arm3r-sweep: many runs from one file, into a folder with one table."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+from ..errors import Arm3rError
+from .exit_codes import FAILED_RUNS, die_of, exit_code, tell
+from .progress_bar import Bar
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Entry point of `arm3r-sweep`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
+    options = parser().parse_args(argv)
+    warnings.showwarning = _say  # type: ignore[assignment]
+    bar = Bar("sweep", "runs")
+    try:
+        from ..sweeps.definition import Sweep
+        from ..sweeps.runner import sweep
+
+        plan = Sweep.load(options.sweep, overrides=options.set)
+        table = sweep(plan, out=options.out, jobs=options.jobs, resume=options.resume, parquet=options.parquet,
+                      progress=bar.draw)  # fmt: skip
+        bar.clear()
+        failed = {outcome: count for outcome, count in table.outcomes.items() if outcome != "ok"}
+        words = ", ".join(f"{count} {outcome}" for outcome, count in failed.items())
+        counted = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
+        tell(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
+    except Arm3rError as error:
+        bar.clear()
+        print(f"arm3r-sweep: {error}", file=sys.stderr)
+        return exit_code(error)
+    except KeyboardInterrupt:
+        bar.clear()
+        print(f"arm3r-sweep: interrupted; --resume goes on in {options.out}", file=sys.stderr)
+        die_of(signal.SIGINT)
+    return FAILED_RUNS if failed else 0
+
+
+def parser() -> argparse.ArgumentParser:
+    from .._native import version
+
+    parser = argparse.ArgumentParser(prog="arm3r-sweep", description="Run a sweep: a table with one row a run.")
+    add = parser.add_argument
+    add("sweep", metavar="SWEEP.yaml", help="scenario, axes, and what is kept; see docs/sweeps.md")
+    add("-o", dest="out", metavar="DIR", required=True, help="folder of the sweep: table, shards, ledger")
+    add("--jobs", type=int, metavar="N", help="shards computed at a time (default: one for each CPU allowed)")
+    add("--resume", action="store_true", help="go on where an interrupted sweep in DIR stopped")
+    add("--set", action="append", default=[], metavar="PATH=VALUE", help="put a value into the scenario")
+    add("--parquet", action="store_true", help="table.parquet instead of table.csv; needs pyarrow")
+    add("--version", action="version", version=f"arm3r-sweep {version}")
+    return parser
+
+
+def _say(message: Warning | str, *_: Any) -> None:
+    print(f"arm3r-sweep: {message}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,148 @@
+"""Control laws of your own, as `Scenario.run` takes them."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable
+from contextlib import nullcontext
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import _native
+from ..errors import BudgetError, ControllerError, UsageError
+from ..run import Run
+from .law_state import OVER, LawState
+from .time_limit import OutOfTime, Watchdog
+
+Law = Callable[[float, LawState], Any]
+
+ADDRESS_BITS = 8 * ctypes.sizeof(ctypes.c_void_p)
+
+
+class NativeLaw(NamedTuple):
+    """A law in machine code: a function `int32_t law(void *user, const arm3r_law_state *state, double *tau)`.
+
+    >>> scenario.run(controller=NativeLaw(cfunc.address, gains.ctypes.data))
+    """
+
+    address: int
+    """Of the function; the caller keeps it alive."""
+    user: int = 0
+    """Handed to it."""
+
+
+def law_state_index() -> dict[str, int]:
+    """Where each number stands in arm3r_law_state taken as an array of doubles: {"q": 4, ...}, for a NativeLaw."""
+    return _native.state_index()
+
+
+_new = object.__new__
+
+
+class Caller:
+    """Calls a law at each sample, and remembers of it what an error has to tell."""
+
+    def __init__(self, law: Law) -> None:
+        self._law = law
+        self._memory: _native.StateMemory | None = None
+        self._period = 1.0
+        self._first = 0.0
+        self.t = 0.0
+        self.received: Any = None
+
+    def __call__(self, struct: Any, tau: Any) -> int:
+        memory = self._memory
+        if memory is None:
+            memory = self._memory = _native.StateMemory(struct)
+            self._period, self._first = struct.period, struct.t
+        self.t = t = struct.t
+        self.received = None
+        state = _new(LawState)
+        state._now = memory
+        try:
+            self.received = received = self._law(t, state)
+        finally:
+            state._now = OVER
+        _native.put_torque(received, tau)
+        return 0
+
+    @property
+    def tick(self) -> int:
+        """The last one."""
+        return round((self.t - self._first) / self._period)
+
+
+def run_with_law(
+    handle: Any, controller: Law | NativeLaw, file: str, *, progress: _native.Progress | None, time_limit: float | None
+) -> Run:
+    """Run a scenario's handle with a law. ControllerError, BudgetError: as Scenario.run says."""
+    if isinstance(controller, NativeLaw):
+        _check_address("NativeLaw.address", controller.address)
+        _check_address("NativeLaw.user", controller.user)
+        run, _ = _native.control(handle, controller, progress=progress, time_limit=time_limit)
+        return Run._of(run)
+    if not callable(controller):
+        raise UsageError(f"controller: a function of (t, state) is needed, got {controller!r}", code="usage")
+    watchdog = None if time_limit is None else Watchdog(controller, time_limit)
+    caller = Caller(watchdog or controller)
+    with watchdog or nullcontext():
+        run, raised = _native.control(handle, caller, progress=progress, time_limit=time_limit)
+    if raised is not None and not isinstance(raised, (Exception, OutOfTime)):
+        raise raised
+    ended = Run._of(run)
+    if raised is None and ended.outcome != "controller":
+        return ended
+    raise _failure(caller, controller, raised, ended, file, time_limit) from _cause(raised)
+
+
+def _cause(raised: BaseException | None) -> BaseException | None:
+    return None if isinstance(raised, (_native.NoTorque, OutOfTime)) else raised
+
+
+def _failure(
+    caller: Caller, controller: Law, raised: BaseException | None, run: Run, file: str, time_limit: float | None
+) -> BudgetError | ControllerError:
+    tick, name = caller.tick, getattr(controller, "__qualname__", repr(controller))
+    place = f"at tick {tick}, t = {caller.t:.12g} s"
+    if isinstance(raised, OutOfTime):
+        why = f"the time limit of {time_limit:g} s is used up in the controller {name} {place}"
+        return BudgetError(f"{file}: budget: {why}", code="run.budget", run=run)
+    if _cause(raised) is not None:
+        why = f"{name} raised {type(raised).__name__}: {raised}"
+    else:
+        why = f"{name} returned {caller.received!r}; {TORQUE}"
+    return ControllerError(
+        f"{file}: controller: {place}: {why}",
+        code="run.controller",
+        run=run,
+        tick=tick,
+        t=caller.t,
+        received=caller.received,
+    )
+
+
+TORQUE = "three finite numbers (list, tuple, array) are needed, N m, at most 1e12 either way"
+
+
+def _check_address(name: str, address: object) -> None:
+    """TypeError: not an integer. ValueError: no address of this machine."""
+    if isinstance(address, bool) or not isinstance(address, (int, np.integer)):
+        raise TypeError(f"{name}: an address (int) is needed, got {address!r}")
+    if not 0 <= address < 2**ADDRESS_BITS:
+        raise ValueError(f"{name}: an address has {ADDRESS_BITS} bits, got {address}")
+
+
+def check_time_limit(seconds: float | None) -> None:
+    """TypeError: not a number. ValueError: not a positive one."""
+    if isinstance(seconds, bool):
+        raise TypeError(f"time_limit: a number of seconds is needed, got {seconds}")
+    if seconds is not None and not 0 < seconds < math.inf:
+        raise ValueError(f"time_limit: a positive number of seconds is needed, got {seconds}")
+
+
+def check_rate(rate: float) -> None:
+    """ValueError: not a positive number."""
+    if not 0 < rate < math.inf:
+        raise ValueError(f"rate: a positive number of Hz is needed, got {rate}")

@@ -1,0 +1,31 @@
+"""Figures and films of runs: `overview`, `lecture`, `force`, `compare` and `animate`.
+
+In comes a finished or partial run, or the table of a sweep. Out goes a matplotlib Figure that is not shown. `figures`
+holds the public functions, `style` and `layout` decide how every figure looks, and the other modules draw one kind of
+figure each. The modules of this room must not know command lines, and they never run a scenario.
+matplotlib and numpy are imported when something is drawn, not before: the names below are loaded when they are used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from ..animation.animate import animate
+    from .figures import compare, force, lecture, overview
+
+__all__ = ["animate", "compare", "force", "lecture", "overview"]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}; it has {', '.join(__all__)}")
+    module = "..animation.animate" if name == "animate" else ".figures"
+    return getattr(import_module(module, __name__), name)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -1,0 +1,247 @@
+"""Several runs that press on one wall, over each other: force, errors, torques, the tip's path, a table of metrics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..errors import UsageError
+from .contact_plane import draw_face, locate, needs_locating
+from .force_figure import heights, since_contact, transient
+from .layout import Panel, lay_out
+from .style import BLACK, JOINTS, LOOKS, contact_spans, legend_above, widen_if_flat
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from .._native import Floats
+    from .force_run import ForceRun
+
+MOST = len(LOOKS) - 1  # the last look is black: that of references
+LINE, LABELS = 0.17, 1.35  # inches: a line of the table, and its first column
+NARROWEST, WIDEST = 0.62, 1.1  # inches: its other columns
+LETTER = 0.058  # inches: in its head
+MISSING = "–"
+LONGEST = 30  # letters of a name in a legend
+SAME = ("wall.normal", "wall.size", "wall.rotation")  # what runs need to share for one face
+
+
+class Row(NamedTuple):
+    """Of the table: a metric of the summary."""
+
+    metric: str
+    label: str
+    scale: float = 1.0
+
+
+ROWS = (
+    Row("peak_force", "peak force, N"),
+    Row("overshoot", "overshoot, N"),
+    Row("force_error_rms", "force error rms, N"),
+    Row("settling_time", "settling time, s"),
+    Row("tip_path_error_rms", "path error rms, mm", 1e3),
+    Row("tip_path_error_max", "path error max, mm", 1e3),
+    Row("contact_time", "contact, s"),
+    Row("contacts", "contacts"),
+    Row("saturation_share", "saturated, %", 1e2),
+)
+
+
+def compare_figure(runs: Sequence[ForceRun], *, width: float) -> Figure:
+    """width: inches.
+
+    Raises:
+        UsageError: too few or too many runs, or walls that differ.
+    """
+    check(runs)
+    panels = {
+        Panel(1.6, partial(draw_force, runs)): True,
+        Panel(0.75, partial(draw_force_error, runs), legend=False): any(run.reference is not None for run in runs),
+        Panel(0.75, partial(draw_path_error, runs), legend=False): any(run.path_error for run in runs),
+        Panel(0.75, partial(draw_joint_error, runs), legend=False): any(run.joint_error for run in runs),
+        **{Panel(0.75, partial(draw_torque, runs, joint), legend=False): True for joint in JOINTS},
+        Panel(0.1 * len(runs), partial(draw_contact, runs), legend=False): True,
+    }
+    below = [*transient_panel(runs), *face_panel(runs)]
+    start, end = min(run.run.t[0] for run in runs), max(run.run.t[-1] for run in runs)
+    over_time = [panel for panel, has in panels.items() if has]
+    return lay_out(over_time, below, tables(runs, width), width=width, start=start, end=end)
+
+
+def check(runs: Sequence[ForceRun]) -> None:
+    if not 2 <= len(runs) <= MOST:
+        raise UsageError(f"--compare: 2 to {MOST} runs fit into one figure, got {len(runs)}", code="usage")
+    first = runs[0]
+    for run in runs[1:]:
+        for key in SAME:
+            if first.scenario and run.scenario and wall(first, key) != wall(run, key):
+                raise UsageError(
+                    f"{run.name}: {key} is {wall(run, key)}, that of {first.name} is {wall(first, key)}: paths on one "
+                    f"face need one wall; compare runs of the same wall",
+                    code="usage",
+                )
+
+
+def wall(run: ForceRun, key: str) -> Any:
+    return run.scenario[key] if run.scenario and key in run.scenario else None
+
+
+def looks(runs: Sequence[ForceRun]) -> Iterable[tuple[ForceRun, dict[str, Any]]]:
+    """Thinner ones on top, so that lines that agree are all seen."""
+    looks = enumerate(zip(runs, LOOKS, strict=False))
+    return [(run, {"color": colour, "ls": dashes, "lw": 2.0 - 0.2 * i}) for i, (run, (colour, dashes)) in looks]
+
+
+# ---- over time ------------------------------------------------------------------------------------------------------
+
+
+def draw_force(runs: Sequence[ForceRun], ax: Axes, room: float) -> None:
+    draw_forces(runs, ax)
+    ax.set_ylabel("pressing force, N")
+    legend_above(ax, room=room, handlelength=2.6)
+
+
+def draw_forces(runs: Sequence[ForceRun], ax: Axes) -> None:
+    """Those of the runs, and the references: one that all share in black."""
+    wanted = [(run.run.t, run.reference) for run in runs if run.reference is not None]
+    shared = len(wanted) > 0 and all(alike(wanted[0], other) for other in wanted[1:])
+    for run, look in looks(runs):
+        ax.plot(*run.force_line, label=shortened(run.name, LONGEST), **look)
+        if run.reference is not None and not shared:
+            ax.plot(run.run.t, run.reference, color=look["color"], ls=(0, (1, 2)), lw=1.0)
+    if shared:
+        longest = max(wanted, key=lambda line: line[0][-1])
+        ax.plot(*longest, color=BLACK, ls="--", lw=1.0, zorder=2.6, label="reference")
+    elif wanted:
+        ax.plot([], [], color=BLACK, ls=(0, (1, 2)), lw=1.0, label="references")
+
+
+def alike(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> bool:
+    """Whether two lines are one where both are told."""
+    end = min(one[0][-1], other[0][-1])
+    t = one[0][one[0] <= end]
+    return bool(np.allclose(np.interp(t, *one), np.interp(t, *other), rtol=1e-6, atol=1e-6))
+
+
+def draw_force_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
+    overlay(ax, runs, lambda run: run.error, "force error,\nN")
+
+
+def draw_path_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
+    """As the table's numbers have it: of all three directions, without the normal one while force is controlled."""
+    overlay(ax, runs, lambda run: size(run.path_error), "path error,\nmm")
+
+
+def draw_joint_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
+    overlay(ax, runs, lambda run: size(run.joint_error), "joint error,\nmrad")
+
+
+def draw_torque(runs: Sequence[ForceRun], joint: str, ax: Axes, _: float) -> None:
+    overlay(ax, runs, lambda run: run.run[f"tau{joint}"], rf"$\tau_{joint}$, N m")
+
+
+def overlay(ax: Axes, runs: Sequence[ForceRun], values: Callable[[ForceRun], Floats | None], quantity: str) -> None:
+    for run, look in looks(runs):
+        if (line := values(run)) is not None:
+            ax.plot(run.run.t, line, **look)
+    widen_if_flat(ax)
+    ax.set_ylabel(quantity)
+
+
+def size(error: Mapping[str, Floats]) -> Floats | None:
+    """Of an error of several parts, in thousandths."""
+    return 1e3 * np.linalg.norm(list(error.values()), axis=0) if error else None
+
+
+def draw_contact(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
+    """A bar a run, the first one on top."""
+    for i, (run, look) in enumerate(looks(runs)):
+        ax.broken_barh(
+            [(start, end - start) for start, end in contact_spans(run.run)], (-i - 0.4, 0.8), fc=look["color"]
+        )
+    ax.set_ylim(0.5 - len(runs), 0.5)
+    ax.set_yticks([(1 - len(runs)) / 2], ["contact"], fontsize=8)
+    ax.tick_params(axis="y", length=0)
+
+
+# ---- below ----------------------------------------------------------------------------------------------------------
+
+
+def transient_panel(runs: Sequence[ForceRun]) -> list[Panel]:
+    windows = [window for run in runs if (window := transient(run))]
+    if not windows:
+        return []
+    window = min(start for start, _ in windows), max(end for _, end in windows)
+    return [Panel(1.9, partial(draw_transient, runs, window), legend=False)]
+
+
+def draw_transient(runs: Sequence[ForceRun], window: tuple[float, float], ax: Axes, _: float) -> None:
+    draw_forces(runs, ax)
+    for run, look in looks(runs):
+        peak = run.peak
+        if peak and window[0] <= peak.t <= window[1]:
+            ax.plot(peak.t, peak.force, color=look["color"], ls="", marker=7, ms=6, clip_on=False, zorder=5)
+    since_contact(ax, window, min(span[0] for run in runs for span in contact_spans(run.run)))
+    ax.set(ylabel="pressing force, N", ylim=heights(runs, window))
+
+
+def face_panel(runs: Sequence[ForceRun]) -> list[Panel]:
+    lines = [(run, look, run.name) for run, look in looks(runs) if run.on_face("tip") is not None]
+    drawn = [run for run, _, _ in lines]
+    if not lines:
+        return []
+    beside = partial(locate, drawn) if needs_locating(drawn) else None
+    return [Panel(1.9, partial(draw_face, lines, legend=False), legend=False, beside=beside)]
+
+
+# ---- table ----------------------------------------------------------------------------------------------------------
+
+
+def tables(runs: Sequence[ForceRun], width: float) -> list[Panel]:
+    """A column a run, a row a metric that some run has; one table under the other where the width needs it."""
+    rows = [row for row in ROWS if any(cell(run, row) != MISSING for run in runs)]
+    fitting = max(1, int((width - LABELS) / NARROWEST))
+    columns = list(looks(runs))
+    parts = [columns[i : i + fitting] for i in range(0, len(columns), fitting)]
+    return [Panel(LINE * (len(rows) + 3), partial(draw_table, part, rows, width), legend=False) for part in parts]
+
+
+def draw_table(columns: Sequence[Any], rows: Sequence[Row], width: float, ax: Axes, _: float) -> None:
+    """width: inches, of the figure. Units of the axes: inches, and lines of the table."""
+    each = min((width - LABELS - 0.1) / len(columns), WIDEST)
+    ax.axis("off")
+    ax.set(xlim=(0, width), ylim=(len(rows) + 0.5, -2.5))
+    ax.plot([0, LABELS + each * len(columns)], [0, 0], color=BLACK, lw=0.8)
+    for i, row in enumerate(rows):
+        ax.text(0, i + 0.6, row.label, va="center", fontsize=8)
+    for k, (run, look) in enumerate(columns):
+        right = LABELS + each * (k + 1)
+        ax.plot([right - 0.35, right], [-0.4, -0.4], **{**look, "lw": 1.8})
+        ax.text(right, -0.75, head(run.name, int((each - 0.1) / LETTER)), ha="right", va="bottom", fontsize=7)
+        for i, row in enumerate(rows):
+            ax.text(right, i + 0.6, cell(run, row), ha="right", va="center", fontsize=8)
+
+
+def head(name: str, most: int) -> str:
+    """A name in up to two lines of so many letters, broken after a sign where it has one."""
+    breaks = [i for i in range(1, min(most, len(name) - 1) + 1) if name[i - 1] in "_-. "] or [most]
+    lines = [name] if len(name) <= most else [name[: breaks[-1]], name[breaks[-1] :]]
+    return "\n".join(shortened(line, most) for line in lines)
+
+
+def shortened(text: str, most: int) -> str:
+    """Without its middle, if it has more letters."""
+    return text if len(text) <= most else f"{text[: most // 2]}…{text[len(text) + 1 - (most + 1) // 2 :]}"
+
+
+def cell(run: ForceRun, row: Row) -> str:
+    value = run.metric(row.metric)
+    if value is None:
+        return "never" if run.settling and row.metric == "settling_time" else MISSING
+    value *= row.scale
+    is_count = row.metric == "contacts"
+    return f"{value:#.3g}".rstrip(".") if 1e-3 <= abs(value) < 1e3 and not is_count else f"{value:.3g}"

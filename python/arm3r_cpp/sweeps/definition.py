@@ -1,0 +1,378 @@
+"""A sweep: a scenario, axes, and what is kept of every run. Read from YAML by the library's own strict reader."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice, product
+from pathlib import Path
+from typing import Any
+
+from .. import _native
+from ..batch import SLIPS, axis_of, same_places
+from ..errors import Arm3rError, IncompatibleError, ScenarioError, UsageError
+from ..params import param_key, places
+from ..regular import regular
+from ..scenario import Scenario
+from ..scenario import flow as flow_of
+from .axes import DISTRIBUTIONS, MODES, SPACES, SweepAxis, values_of
+from .shard import STATISTICS, Statistic
+from .yaml_reader import Node, Reader, below, did_you_mean, flow, quoted
+
+FORMAT = 1
+MOST_RUNS = 10**10
+MOST_COMBINATIONS_TRIED = 256
+KEYS = ("format", "scenario", "set", "axes", "mode", "runs", "seed", "metrics", "statistics", "shard")
+RULES = ("values", *SPACES, *DISTRIBUTIONS)
+
+
+class Sweep:
+    """A sweep, read from YAML or made from a map of the same keys.
+
+    Attributes:
+        text: as it was read.
+        scenario: the base, with the file's `set` and the overrides put in.
+        axes: what varies, in order; in a grid the last is the fastest.
+        mode: "grid", "list", "random" or "latin_hypercube".
+        runs: how many.
+        seed: of what is random.
+        metrics: columns of a run's summary that are kept.
+        statistics: numbers made of columns of the run itself.
+        shard: runs in one piece of work.
+        units: of the table's columns, by name; "" for none.
+    """
+
+    def __init__(
+        self, source: str | bytes | Mapping[str, Any], *, file: str = "sweep.yaml", overrides: Sequence[str] = ()
+    ) -> None:
+        """Read a sweep from text, or take a map; `file` is its name in messages, and a scenario's file lies beside it.
+
+        overrides: "PATH=VALUE" each, put into the scenario last.
+
+        Raises:
+            ScenarioError: it is not valid; all that is wrong is listed.
+            UsageError: a file cannot be read, or the text is the name of one.
+        """
+        if isinstance(source, str) and os.path.isfile(source):
+            raise UsageError(f"source: a file's name instead of a sweep; use Sweep.load({source!r})", code="usage")
+        text = flow_of(source, "") if isinstance(source, Mapping) else source
+        data = text.encode() if isinstance(text, str) else text
+        self.text, self.file = data.decode(errors="replace"), file
+        reader = Reader(file)
+        top = reader.map(_native.yaml(data, file), "", KEYS)
+        _read_format(reader, top)
+        self.shard: int = _whole(reader, top, "shard", 1000, 1, 10**6)
+        self.seed: int = _whole(reader, top, "seed", 1, 0, 2**53 - 1)
+        self.mode: str = (reader.word(top["mode"], "mode", MODES) if "mode" in top else None) or MODES[0]
+        self.metrics = _read_metrics(reader, top)
+        self.axes = _read_axes(reader, top, self.mode)
+        self.runs = _read_runs(reader, top, self.mode, self.axes)
+        reader.finish()
+        self.scenario = _read_scenario(reader, top, overrides)
+        columns = _columns(self.scenario)
+        self.statistics = _read_statistics(reader, top, list(columns))
+        _check_axes(reader, top, self)
+        reader.finish()
+        self.units = {statistic.name: columns[statistic.column] for statistic in self.statistics}
+        self.units |= {name: unit.removeprefix("1") for name, unit in _native.summary_columns().items()}
+        self.units |= {name: param_key(indices[0]).unit for name, indices in places().items()}
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], *, overrides: Sequence[str] = ()) -> Sweep:
+        """Read a sweep from a file. Raises as for a text."""
+        try:
+            data = regular(Path(path)).read_bytes()
+        except OSError as error:
+            raise UsageError(f"{os.fspath(path)}: cannot be read: {error.strerror}", code="file") from error
+        return cls(data, file=os.fspath(path), overrides=overrides)
+
+    def __repr__(self) -> str:
+        return f"<Sweep {self.file}: {self.runs} runs over {', '.join(axis.key for axis in self.axes)}>"
+
+    def values(self, first: int = 0, count: int | None = None) -> dict[str, Any]:
+        """What every axis takes on in `count` runs from run `first`: arrays by key, a row a run."""
+        count = self.runs - first if count is None else count
+        return values_of(self.axes, self.mode, self.seed, self.runs, first, count)
+
+
+# ---- the file's keys ------------------------------------------------------------------------------------------------
+
+
+def _read_format(reader: Reader, top: dict[str, Node]) -> None:
+    if "format" not in top:
+        start = {"line": 1, "column": 1}
+        reader.problem(start, "sweep.format", "format", "the version of the format is missing", hint="write format: 1")
+        return
+    found = reader.whole(top["format"], "format", 1, 2**53 - 1)
+    if found is not None and found != FORMAT:
+        place = f"{reader.file}:{top['format']['key_line']}:{top['format']['key_column']}"
+        message = f"error[sweep.format]: format: must be {FORMAT}, got {found}: it is written for another version"
+        raise IncompatibleError(f"{place}: {message}", code="sweep.format")
+
+
+def _whole(reader: Reader, top: dict[str, Node], key: str, default: int, low: int, high: int) -> int:
+    found = reader.whole(top[key], key, low, high) if key in top else default
+    return default if found is None else found
+
+
+def _read_metrics(reader: Reader, top: dict[str, Node]) -> list[str]:
+    known = [name for name in _native.summary_columns() if name != "outcome"]
+    if "metrics" not in top:
+        return known
+    nodes = reader.list(top["metrics"], "metrics")
+    words = [reader.word(node, f"metrics[{i}]", ["outcome", *known]) for i, node in enumerate(nodes)]
+    for i, (node, word) in enumerate(zip(nodes, words, strict=True)):
+        if word is not None and word in words[:i]:
+            reader.problem(node, "sweep.duplicate", f"metrics[{i}]", "stands here twice", got=word)
+    return [word for word in words if word not in (None, "outcome")]
+
+
+def _read_runs(reader: Reader, top: dict[str, Node], mode: str, axes: Sequence[SweepAxis]) -> int:
+    drawn = mode in ("random", "latin_hypercube")
+    counts = [axis.count or 1 for axis in axes]
+    if drawn and "runs" not in top:
+        reader.problem(top.get("mode", top["axes"]), "sweep.missing_key", "runs", f"mode {mode} needs `runs`")
+    elif drawn:
+        return _whole(reader, top, "runs", 1, 1, MOST_RUNS)
+    elif "runs" in top:
+        reader.problem(top["runs"], "sweep.runs", "runs", f"in mode {mode} the axes say how many; take it out")
+    if mode == "list" and len(set(counts)) > 1:
+        lengths = ", ".join(f"{axis.key} {count}" for axis, count in zip(axes, counts, strict=True))
+        reader.problem(top["axes"], "sweep.length", "axes", "in mode list all have one length", got=lengths)
+    if mode == "grid" and math.prod(counts) > MOST_RUNS:
+        steps = " x ".join(map(str, counts))
+        reader.problem(top["axes"], "sweep.size", "axes", f"too many combinations: {steps} = {math.prod(counts)}",
+                       allowed=f"at most {MOST_RUNS}", hint="use mode random or latin_hypercube")  # fmt: skip
+    return math.prod(counts) if mode == "grid" else counts[0] if counts else 0
+
+
+def _read_statistics(reader: Reader, top: dict[str, Node], columns: list[str]) -> list[Statistic]:
+    found: list[Statistic] = []
+    for i, node in enumerate(reader.list(top["statistics"], "statistics") if "statistics" in top else []):
+        path = f"statistics[{i}]"
+        given = reader.map(node, path, Statistic._fields)
+        missing = [key for key in Statistic._fields if key not in given]
+        if missing:
+            reader.problem(node, "sweep.missing_key", path, f"`{missing[0]}` is missing", hint=_EXAMPLE_STATISTIC)
+            continue
+        column = reader.word(given["column"], below(path, "column"), columns)
+        of = reader.word(given["of"], below(path, "of"), STATISTICS)
+        if column and of:
+            found.append(Statistic(column, of))
+            if found.index(found[-1]) < len(found) - 1:
+                reader.problem(node, "sweep.duplicate", path, "stands here twice", got=found[-1].name)
+    return found
+
+
+_EXAMPLE_STATISTIC = "such as {column: depth, of: max}"
+
+
+def _columns(scenario: Scenario) -> dict[str, str]:
+    """The units of the columns that its runs have: those of the shortest."""
+    short = scenario.copy()
+    short["checks"], short["time.stop"] = [], short["time.start"]
+    return short.run().units
+
+
+# ---- the scenario ---------------------------------------------------------------------------------------------------
+
+
+def _read_scenario(reader: Reader, top: dict[str, Node], overrides: Sequence[str]) -> Scenario:
+    try:
+        scenario = _base(reader, top)
+        for node in top.get("set", {}).get("map", []):
+            scenario._edit(node["key"], flow(node), f"{reader.file}:{node['key_line']}:{node['key_column']}: set")
+        for override in overrides:
+            path, equals, value = override.partition("=")
+            if not equals:
+                raise UsageError(f"--set {override}: PATH=VALUE is needed, such as time.stop=5", code="usage")
+            scenario._edit(path, value, "--set")
+        scenario.validate()
+        return scenario
+    except ScenarioError as error:
+        inline = top["scenario"] if "map" in top.get("scenario", {}) else None
+        found = [_placed(reader, problem, inline) for problem in error.problems]
+        reader.problems += [problem for problem in found if problem not in reader.problems]
+        reader.finish()
+        raise
+
+
+def _base(reader: Reader, top: dict[str, Node]) -> Scenario:
+    """The scenario that the file names or holds; the lecture's arm where it says nothing."""
+    if "set" in top:
+        reader.map(top["set"], "set")
+    node = top.get("scenario")
+    if node is None:
+        reader.problem({"line": 1, "column": 1}, "sweep.missing_key", "scenario", "the scenario is missing",
+                       hint="write scenario: FILE, or the scenario itself below it")  # fmt: skip
+    elif "map" in node:
+        text = "".join(f"{quoted(child['key'])}: {flow(child)}\n" for child in node["map"])
+        return Scenario(text if "format" in [child["key"] for child in node["map"]] else f"format: 1\n{text}",
+                        file=reader.file)  # fmt: skip
+    elif (name := reader.word(node, "scenario")) is not None:
+        path = Path(reader.file).parent / name
+        try:
+            return Scenario.load(path)
+        except UsageError as error:
+            reader.problem(node, "sweep.file", "scenario", "cannot be read", got=name, hint=f"there is no {path}"
+                           if not path.exists() else str(error))  # fmt: skip
+    reader.finish()
+    return Scenario()
+
+
+def _placed(reader: Reader, problem: dict[str, Any], inline: Node | None) -> dict[str, Any]:
+    """A problem of a scenario that stands in the sweep's file, with the place where it stands there."""
+    if inline is None or problem["file"] != reader.file:
+        return problem
+    here, path = inline, f".{problem['path']}"
+    for child in _walk(inline, path):
+        here = child
+    return {**problem, "line": here.get("key_line", here["line"]), "column": here.get("key_column", here["column"])}
+
+
+def _walk(node: Node, path: str) -> Iterator[Node]:
+    """The nodes along a path, as far as there are any."""
+    while path and "map" in node:
+        key = path[1:].replace("[", ".").split(".")[0]
+        found = next((child for child in node["map"] if child["key"] == key), None)
+        if found is None:
+            return
+        node, path = found, path[1 + len(key) :]
+        yield node
+
+
+# ---- axes -----------------------------------------------------------------------------------------------------------
+
+
+def _read_axes(reader: Reader, top: dict[str, Node], mode: str) -> tuple[SweepAxis, ...]:
+    if "axes" not in top:
+        top["axes"] = {"line": 1, "column": 1, "list": []}
+        reader.problem(top["axes"], "sweep.missing_key", "axes", "there are none", hint=_EXAMPLE_AXIS)
+        return ()
+    axes: list[SweepAxis] = []
+    for i, node in enumerate(reader.list(top["axes"], "axes")):
+        axis = _read_axis(reader, node, f"axes[{i}]", mode)
+        if axis is None:
+            continue
+        for other in axes:
+            if twice := same_places(axis.key, other.key):
+                both = f"{twice[0]} varies twice, as {other.key} and as {axis.key}"
+                reader.problem(node, "sweep.duplicate", f"axes[{i}].key", both, hint="take one of the two out")
+        axes.append(axis)
+    return tuple(axes)
+
+
+_EXAMPLE_AXIS = "such as {key: wall.contact.stiffness, geomspace: [1e2, 1e6, 40]}"
+
+
+def _read_axis(reader: Reader, node: Node, path: str, mode: str) -> SweepAxis | None:
+    given = reader.map(node, path, ("key", *RULES))
+    rules = [rule for rule in RULES if rule in given]
+    if "map" in node and ("key" not in given or len(rules) != 1):
+        wrong = "`key` is missing" if "key" not in given else f"one rule is needed, got {', '.join(rules) or 'none'}"
+        reader.problem(node, "sweep.axis", path, wrong, allowed=f"one of {', '.join(RULES)}", hint=_EXAMPLE_AXIS)
+    if "key" not in given or len(rules) != 1:
+        return None
+    key, rule = reader.word(given["key"], below(path, "key")), rules[0]
+    if key is None:
+        return None
+    if key not in places():
+        reader.problem(given["key"], "sweep.unknown_key", below(path, "key"), "no number or choice has this key",
+                       got=key, hint=did_you_mean(key, places()))  # fmt: skip
+        return None
+    if rule in DISTRIBUTIONS and mode in ("grid", "list"):
+        reader.problem(given[rule], "sweep.mode", below(path, rule), f"mode {mode} does not draw numbers",
+                       hint="use linspace, geomspace or values, or mode random or latin_hypercube")  # fmt: skip
+        return None
+    read = _read_values if rule == "values" else _read_rule
+    items = read(reader, given[rule], below(path, rule), key, rule)
+    return SweepAxis(key, rule, tuple(items), param_key(places()[key][0]).unit) if items else None
+
+
+def _read_values(reader: Reader, node: Node, path: str, key: str, _: str) -> list[Any]:
+    kind = param_key(places()[key][0]).kind
+    items = [_read_value(reader, item, f"{path}[{i}]", kind) for i, item in enumerate(reader.list(node, path))]
+    shapes = {(type(item), len(item) if isinstance(item, list) else 0) for item in items}
+    if len(shapes) > 1 and None not in items:
+        reader.problem(
+            node, "sweep.shape", path, "all values of an axis are alike: numbers, words, or lists of a length"
+        )
+    return [] if len(shapes) != 1 or None in items else items
+
+
+def _read_value(reader: Reader, node: Node, path: str, kind: str) -> Any:
+    if "list" in node:
+        numbers = [_read_value(reader, item, f"{path}[{i}]", kind) for i, item in enumerate(reader.list(node, path))]
+        return None if None in numbers else numbers
+    if kind == "flag" and node.get("text") in ("true", "false") and not node["quoted"]:
+        return node["text"] == "true"
+    if kind in ("choice", "flag") or (node.get("text") == "infinite"):
+        return reader.word(node, path)
+    return reader.number(node, path, degrees=kind == "angle")
+
+
+def _read_rule(reader: Reader, node: Node, path: str, key: str, rule: str) -> list[float]:
+    kind = param_key(places()[key][0]).kind
+    nodes = reader.list(node, path)
+    if len(nodes) != (3 if rule in SPACES else 2):
+        if nodes:
+            form = "[mean, deviation]" if rule == "normal" else f"[from, to{', count' if rule in SPACES else ''}]"
+            reader.problem(node, "sweep.shape", path, f"{form} is needed", got=f"a list of {len(nodes)}")
+        return []
+    a, b = (reader.number(item, f"{path}[{i}]", degrees=kind == "angle") for i, item in enumerate(nodes[:2]))
+    counts = [reader.whole(item, f"{path}[2]", 1, MOST_RUNS) for item in nodes[2:]]
+    if a is None or b is None or None in counts:
+        return []
+    good, allowed = {
+        "linspace": (math.isfinite(b - a), "two finite numbers"),
+        "geomspace": (a > 0 and b > 0 and 0 < b / a < math.inf, "two numbers above 0"),
+        "uniform": (a < b and math.isfinite(b - a), "two numbers, the smaller one first"),
+        "log_uniform": (0 < a < b and b / a < math.inf, "two numbers above 0, the smaller one first"),
+        "normal": (b > 0 and math.isfinite(abs(a) + 10 * b), "a mean, and a deviation above 0"),
+    }[rule]
+    if not good:
+        reader.problem(node, "sweep.range", path, "out of range", got=flow(node), allowed=allowed)
+    return [a, b, *(count for count in counts if count)] if good else []
+
+
+def _check_axes(reader: Reader, top: dict[str, Node], sweep: Sweep) -> None:
+    """That every axis means something in this scenario, with every combination of words."""
+    nodes = {axis.key: node for axis, node in zip(sweep.axes, top["axes"]["list"], strict=True)}
+    first = sweep.values(0, 1)
+    for axis in sweep.axes:
+        try:
+            shape = axis_of(sweep.scenario, axis.key, first[axis.key]).values.shape
+            if len(shape) > 2:
+                reader.problem(nodes[axis.key], "sweep.axis", axis.key, "in the scenario this is one number",
+                               got=f"a list of {shape[1]}", hint="`set` it to a list there too")  # fmt: skip
+        except (Arm3rError, TypeError, ValueError) as error:
+            reader.problem(nodes[axis.key], "sweep.axis", axis.key, str(error).removeprefix(f"{axis.key}: "))
+    if reader.problems:
+        return
+    for scenario in islice(_combinations(sweep, first), MOST_COMBINATIONS_TRIED):
+        try:
+            scenario.validate()
+        except ScenarioError as error:
+            for problem in error.problems:
+                if problem["code"] in SLIPS:
+                    at = next((node for key, node in nodes.items() if _same(key, problem["path"])), top["axes"])
+                    more = {name: problem[name] for name in ("got", "allowed", "hint")}
+                    reader.problem(at, problem["code"], problem["path"], problem["message"], **more)
+        reader.finish()
+
+
+def _combinations(sweep: Sweep, first: dict[str, Any]) -> Iterator[Scenario]:
+    """The scenario with every combination of words and flags, and the first of all numbers."""
+    words = [axis for axis in sweep.axes if axis.rule == "values" and isinstance(axis.items[0], (str, bool))]
+    numbers = {axis.key: first[axis.key][0] for axis in sweep.axes if axis not in words}
+    for chosen in product(*(axis.items for axis in words)):
+        scenario = sweep.scenario.copy()
+        scenario["checks"] = []
+        for key, value in [*zip((axis.key for axis in words), chosen, strict=True), *numbers.items()]:
+            scenario[key] = int(value) if param_key(places()[key][0]).kind == "integer" else value
+        yield scenario
+
+
+def _same(key: str, path: str) -> bool:
+    return key.split("[")[0] == path.split("[")[0]

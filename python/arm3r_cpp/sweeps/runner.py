@@ -1,0 +1,183 @@
+"""Running a sweep: its shards through any executor into its folder, and from there one table."""
+
+from __future__ import annotations
+
+import os
+import threading
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from operator import index
+from pathlib import Path
+from typing import Any
+
+from .. import _native
+from ..errors import Arm3rError
+from .definition import Sweep
+from .folder import SweepFolder, publishing, sha256
+from .shard import Done, Job, columns_of, work
+from .table import SweepTable
+from .table_io import merge, pyarrow
+
+Submit = Callable[[Job], "Future[Done]"]
+
+IN_FLIGHT = 64  # shards, of an executor that does not say how many workers it has
+
+_of_daemons: set[threading.Event] = set()
+"""Those that end sweeps of daemon threads: the interpreter does not wait for these, but it would for their pools."""
+
+
+def _leave_daemons() -> None:
+    for left in list(_of_daemons):
+        left.set()
+
+
+if hasattr(threading, "_register_atexit"):  # called before the threads of pools are joined
+    threading._register_atexit(_leave_daemons)
+
+
+def sweep(
+    source: Sweep | Mapping[str, Any] | str | os.PathLike[str],
+    *,
+    out: str | os.PathLike[str],
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    resume: bool = False,
+    parquet: bool = False,
+    progress: Callable[[int, int], Any] | None = None,
+) -> SweepTable:
+    """Run a sweep into a folder; a table with one row a run. Same bytes for any executor and any number of jobs.
+
+    Args:
+        source: a Sweep, its keys as a map, or its file.
+        out: the folder; new or empty, or with `resume` that of the same sweep.
+        executor: where shards are computed; None: threads of this process.
+        jobs: how many shards at a time; None: one for each CPU that this process may use, of an executor 64.
+        resume: go on where an interrupted sweep stopped. No finished shard is done again.
+        parquet: table.parquet instead of table.csv; needs the extra `parquet`.
+        progress: called as progress(runs_done, runs) from the calling thread; a true result ends the sweep, as Ctrl-C
+            does, and it can be resumed.
+
+    Returns:
+        The table. A run that failed is a row of it, and raises nothing.
+
+    Raises:
+        ScenarioError: the sweep is not valid; all that is wrong is listed.
+        OutputError: the folder exists, is in use, or cannot be written.
+        IncompatibleError: the folder was begun with something else, or a worker has another version.
+        Arm3rError: `progress` ended the sweep, or a worker of the executor died; either can be resumed.
+    """
+    jobs = None if jobs is None else index(jobs)
+    plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
+    job = _first_job(plan, "parquet" if parquet else "csv")
+    with SweepFolder.held(Path(out), _manifest(plan, job), resume=resume) as folder:
+        with _submitting(executor, jobs) as (submit, at_a_time):
+            _run(plan, job, folder, submit, at_a_time, progress)
+        with publishing(folder.path / f"table.{job.table}") as file:
+            merge(map(folder.read, range(_shards(plan))), columns_of(job), job.table, file)
+    return SweepTable(out)
+
+
+def _first_job(plan: Sweep, table: str) -> Job:
+    scenario = plan.scenario.copy()
+    scenario["checks"] = []
+    return Job(
+        first=0,
+        scenario=scenario.to_yaml(),
+        file=plan.file,
+        values=plan.values(0, 1),
+        metrics=plan.metrics,
+        statistics=plan.statistics,
+        table=table,
+        version=_native.version,
+        abi=_native.lib.arm3r_abi_version(),
+    )
+
+
+def _manifest(plan: Sweep, job: Job) -> dict[str, Any]:
+    """What decides the table's bytes."""
+    return {
+        "version": job.version,
+        "abi": job.abi,
+        "table": job.table,
+        "pyarrow": pyarrow().__version__ if job.table == "parquet" else None,
+        "hashes": {"sweep": sha256(plan.text.encode()), "scenario": sha256(job.scenario.encode())},
+        "runs": plan.runs,
+        "shard": plan.shard,
+        "mode": plan.mode,
+        "axes": [{**asdict(axis), "items": list(axis.items)} for axis in plan.axes],
+        "columns": {name: plan.units.get(name, "") for name in columns_of(job)},
+        "sweep": plan.text,
+        "scenario": job.scenario,
+    }
+
+
+def _shards(plan: Sweep) -> int:
+    return -(-plan.runs // plan.shard)
+
+
+def _run(
+    plan: Sweep,
+    job: Job,
+    folder: SweepFolder,
+    submit: Submit,
+    at_a_time: int,
+    progress: Callable[[int, int], Any] | None,
+) -> None:
+    """Compute and store every shard that the folder does not have; at most `at_a_time` are on their way."""
+    missing = (number for number in range(_shards(plan)) if number not in folder.finished)
+    pending: dict[Future[Done], tuple[int, int, int]] = {}
+    try:
+        while True:
+            while len(pending) < at_a_time and (number := next(missing, None)) is not None:
+                first = number * plan.shard
+                count = min(plan.shard, plan.runs - first)
+                future = submit(replace(job, first=first, values=plan.values(first, count)))
+                pending[future] = number, first, count
+            if not pending:
+                return
+            finished, _ = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
+            for future in finished:
+                shard = pending.pop(future)
+                folder.store(*shard, *future.result())
+            if progress and progress(folder.runs_done, plan.runs):
+                raise Arm3rError(f"{folder.path}: stopped after {folder.runs_done} of {plan.runs} runs", code="stopped")
+    except BrokenExecutor as broken:
+        message = f"a worker died; {folder.runs_done} of {plan.runs} runs are finished, and resuming goes on from there"
+        raise Arm3rError(f"{folder.path}: {message}", code="crashed") from broken
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+@contextmanager
+def _submitting(executor: Executor | None, jobs: int | None) -> Iterator[tuple[Submit, int]]:
+    """How a job is given away, and how many at a time."""
+    if executor is not None:
+        yield lambda job: executor.submit(work, job), IN_FLIGHT if jobs is None else max(1, jobs)
+        return
+    threads = _allowed(jobs)
+    left = threading.Event()
+
+    def go_on(runs_done: int, runs: int) -> None:
+        if left.is_set():
+            raise Arm3rError("the sweep was left", code="stopped")
+
+    if threading.current_thread().daemon:
+        _of_daemons.add(left)
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            yield lambda job: pool.submit(work, job, go_on), 2 * threads
+        finally:
+            left.set()
+            _of_daemons.discard(left)
+
+
+def _allowed(jobs: int | None) -> int:
+    cpus = len(os.sched_getaffinity(0))
+    threads = cpus if jobs is None else min(max(jobs, 1), cpus)
+    if jobs not in (None, threads):
+        warnings.warn(f"{jobs} jobs: this process may use {cpus} CPUs, so it is {threads}", stacklevel=2)
+    return threads

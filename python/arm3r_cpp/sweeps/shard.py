@@ -1,0 +1,139 @@
+"""A shard of a sweep: some of its runs, computed wherever an executor puts them, as a piece of the table."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _native
+from .._native import Floats
+from ..batch import Batch, run_batch
+from ..errors import Arm3rError, BudgetError, IncompatibleError
+from ..run import Run
+from ..scenario import Scenario
+from .table_io import encode
+
+STATISTICS: dict[str, Callable[[Floats], float]] = {
+    "max": np.max,
+    "min": np.min,
+    "mean": lambda column: math.fsum(column) / len(column),
+    "final": lambda column: column[-1],
+    "range": np.ptp,
+    "max_abs": lambda column: np.max(np.abs(column)),
+}
+
+
+class Statistic(NamedTuple):
+    """A number made of a column of a run."""
+
+    column: str
+    of: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.column}.{self.of}"
+
+    def __call__(self, run: Run | None) -> float:
+        return math.nan if run is None else float(STATISTICS[self.of](run[self.column])) + 0.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker is sent: text and numbers alone."""
+
+    first: int
+    scenario: str
+    file: str
+    values: dict[str, NDArray[Any]]
+    metrics: Sequence[str]
+    statistics: Sequence[Statistic]
+    table: str
+    version: str
+    abi: int
+
+
+class Done(NamedTuple):
+    """What comes back."""
+
+    data: bytes
+    outcomes: dict[str, int]
+
+
+def work(job: Job, progress: Callable[[int, int], Any] | None = None) -> Done:
+    """The rows of a job's runs, as bytes.
+
+    Raises:
+        IncompatibleError: this is another version than the one that plans the sweep.
+        BudgetError: the runs take more memory than there is.
+    """
+    _preflight(job)
+    try:
+        return _computed(job, progress)
+    except (MemoryError, BudgetError) as error:
+        if isinstance(error, BudgetError) and not error.code.endswith("memory"):
+            raise
+        last = job.first + max(len(values) for values in job.values.values()) - 1
+        message = f"runs {job.first} to {last} take more memory than there is; give a smaller `shard`"
+        raise BudgetError(message, code="budget.memory") from error
+
+
+def _computed(job: Job, progress: Callable[[int, int], Any] | None) -> Done:
+    batch = run_batch(Scenario(job.scenario, file=job.file), job.values, threads=1, progress=progress)
+    outcomes = batch.outcomes
+    columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
+    columns |= {name: batch[name] for name in job.metrics}
+    columns |= _statistics(job.statistics, batch, progress)
+    data = encode(columns, job.table, lambda: progress and progress(len(batch), len(batch)))
+    return Done(data, dict(sorted(Counter(outcomes.tolist()).items())))
+
+
+def columns_of(job: Job) -> list[str]:
+    """The names of a table's columns, in order."""
+    return ["run", *_axes(job), "outcome", *job.metrics, *(statistic.name for statistic in job.statistics)]
+
+
+def _preflight(job: Job) -> None:
+    here, there = (_native.version, _native.lib.arm3r_abi_version()), (job.version, job.abi)
+    if here != there:
+        raise IncompatibleError(
+            f"a worker has arm3r {here[0]} with version {here[1]} of the C interface, the sweep was planned by arm3r "
+            f"{there[0]} with {there[1]}; install the same on all",
+            code="sweep.version",
+        )
+
+
+def _axes(job: Job) -> dict[str, NDArray[Any]]:
+    """The values that vary, a column a number."""
+    columns: dict[str, NDArray[Any]] = {}
+    for key, given in job.values.items():
+        values = np.where(given, "true", "false") if given.dtype.kind == "b" else given
+        wide = values.ndim > 1
+        columns |= {f"{key}[{i}]": values[:, i] for i in range(values.shape[1])} if wide else {key: values}
+    return columns
+
+
+def _statistics(
+    wanted: Sequence[Statistic], batch: Batch, progress: Callable[[int, int], Any] | None
+) -> dict[str, Any]:
+    """Of every run once more, alone and with its rows."""
+    rows = []
+    for i, outcome in enumerate(batch.outcomes if wanted else ()):
+        if progress:
+            progress(i, len(batch))
+        run = None if outcome == "invalid" else _run(batch, i, progress)
+        rows.append([statistic(run) for statistic in wanted])
+    return {statistic.name: np.array([row[j] for row in rows]) for j, statistic in enumerate(wanted)}
+
+
+def _run(batch: Batch, index: int, progress: Callable[[int, int], Any] | None) -> Run | None:
+    """The run, or as much of it as there is."""
+    try:
+        return batch.scenario(index).run(progress=lambda t, stop, steps: progress and progress(index, len(batch)))
+    except Arm3rError as error:
+        return error.run
