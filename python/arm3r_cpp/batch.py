@@ -11,17 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._messages import no_column
 from ._native import BatchProgress, Floats, lib
-from .errors import BudgetError, ScenarioError, UsageError, no_column
+from .errors import BudgetError, ScenarioError, UsageError
 from .params import param_index, param_key, param_name, places
 from .run import Run
 from .scenario import Scenario
 
 Index = int | tuple[int, ...]
 
-# What no number could mend: the fault lies in the axes as such, not in one of the runs.
-SLIPS = {f"scenario.{slip}" for slip in ("unknown_word", "type", "unknown_key", "other_choice", "missing_key")}
-SLIPS.add("number.syntax")
+# Codes of errors that no number could mend: the axes are wrong as such, not one of the runs.
+AXIS_ERRORS = {f"scenario.{error}" for error in ("unknown_word", "type", "unknown_key", "other_choice", "missing_key")}
+AXIS_ERRORS.add("number.syntax")
 
 
 class Axis(NamedTuple):
@@ -299,6 +300,6 @@ def _params(base: Scenario, axes: Sequence[Axis], shape: tuple[int, ...], group:
         try:
             return _scenario(base, axes, place, shape).params
         except ScenarioError as error:
-            if any(problem["code"] in SLIPS for problem in error.problems):
+            if any(problem["code"] in AXIS_ERRORS for problem in error.problems):
                 raise
     return None

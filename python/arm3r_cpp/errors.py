@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Sequence
 from typing import Any
 
 
@@ -102,9 +100,3 @@ def class_of(status: int) -> type[Arm3rError]:
 def class_of_outcome(outcome: str) -> type[Arm3rError]:
     """The class for a run that did not reach its end."""
     return {"stopped": Arm3rError, "budget": BudgetError, "controller": ControllerError}.get(outcome, NumericalError)
-
-
-def no_column(name: Any, names: Sequence[str]) -> KeyError:
-    """The error for a column that a table does not have; it names the nearest one."""
-    near = difflib.get_close_matches(str(name), names, n=1) or names
-    return KeyError(f"no column {name!r}; near: {', '.join(near)}")

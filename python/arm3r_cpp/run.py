@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -13,6 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _native
+from ._files import replacing
+from ._messages import no_column
 from ._native import Floats, lib
 from .errors import UsageError
 from .run_file import read, with_numbers
@@ -72,8 +73,7 @@ class Run:
             return self._columns[name]
         if parts := self._three(name):
             return np.stack([self._columns[part] for part in parts], axis=-1)
-        near = difflib.get_close_matches(name, self._columns)
-        raise KeyError(f"no column {name!r}; {'near: ' + ', '.join(near) if near else 'see run.columns'}")
+        raise no_column(name, self._columns)
 
     def __contains__(self, name: object) -> bool:
         """Whether run[name] is there."""
@@ -172,22 +172,17 @@ class Run:
         """Write everything into one file that `Run.load` and `numpy.load` read: whole or not at all.
 
         Raises:
-            OSError: it cannot be written.
+            OutputError: it cannot be written.
         """
-        part = Path(f"{os.fspath(path)}.{os.getpid()}.part")
-        try:
-            with part.open("xb") as file:
-                np.savez(
-                    file,
-                    columns=self.columns,
-                    units=list(self.units.values()),
-                    data=np.stack(list(self._columns.values())),
-                    summary=json.dumps(self.summary),
-                    report=self._text() or "",
-                )
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
+        with replacing(Path(path)) as part, part.open("wb") as file:
+            np.savez(
+                file,
+                columns=self.columns,
+                units=list(self.units.values()),
+                data=np.stack(list(self._columns.values())),
+                summary=json.dumps(self.summary),
+                report=self._text() or "",
+            )
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Run:

@@ -10,13 +10,14 @@ from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 
+from ._files import regular
 from ._hash import fnv1a64
+from ._messages import place
 from ._native import Floats
 from .errors import UsageError
-from .regular import regular
 
 
-class Parts(NamedTuple):
+class RunData(NamedTuple):
     """What a run is made of."""
 
     columns: dict[str, Floats]
@@ -25,7 +26,7 @@ class Parts(NamedTuple):
     report: str | None
 
 
-def read(path: Path) -> Parts:
+def read(path: Path) -> RunData:
     """The run in NAME.csv, with NAME.json beside it, or in NAME.npz.
 
     Raises:
@@ -43,20 +44,20 @@ def read(path: Path) -> Parts:
     return parts
 
 
-def _unreadable(place: object, why: str) -> UsageError:
-    return UsageError(f"{place}: {why}", code="file.run")
+def _unreadable(where: object, why: str) -> UsageError:
+    return UsageError(f"{where}: {why}", code="file.run")
 
 
-def _read_csv(path: Path) -> Parts:
+def _read_csv(path: Path) -> RunData:
     with path.open(encoding="utf-8", errors="replace") as file:
         names = file.readline().rstrip("\n").split(",")
         if names[0] != "t":
-            raise _unreadable(f"{path}:1", f"a line of column names, from t on, is needed, got {names[0]!r}")
+            raise _unreadable(place(path, 1), f"a line of column names, from t on, is needed, got {names[0]!r}")
         data = np.fromiter(_numbers(path, file, names), np.float64).reshape(-1, len(names))
     summary_path = path.with_suffix(".json")
     text = regular(summary_path).read_text(encoding="utf-8", errors="replace")
     summary, units = _summary(text, summary_path)
-    return Parts(dict(zip(names, np.ascontiguousarray(data.T), strict=True)), units, summary, None)
+    return RunData(dict(zip(names, np.ascontiguousarray(data.T), strict=True)), units, summary, None)
 
 
 def _numbers(path: Path, file: TextIO, names: Sequence[str]) -> Iterator[float]:
@@ -64,15 +65,15 @@ def _numbers(path: Path, file: TextIO, names: Sequence[str]) -> Iterator[float]:
         fields = line.split(",")
         if len(fields) != len(names) or not line.endswith("\n"):
             why = f"a whole line of {len(names)} numbers is needed, got {len(fields)}"
-            raise _unreadable(f"{path}:{number}", why + ("" if line.endswith("\n") else "; the file ends within it"))
+            raise _unreadable(place(path, number), why + ("" if line.endswith("\n") else "; the file ends within it"))
         for name, field in zip(names, fields, strict=True):
             try:
                 yield float(field)
             except ValueError:
-                raise _unreadable(f"{path}:{number}", f"{name}: a number is needed, got {field.strip()!r}") from None
+                raise _unreadable(place(path, number), f"{name}: a number is needed, got {field.strip()!r}") from None
 
 
-def _read_npz(path: Path) -> Parts:
+def _read_npz(path: Path) -> RunData:
     try:
         with path.open("rb") as stream, np.load(stream) as file:
             names, text, report = (file[key].tolist() for key in ("columns", "summary", "report"))
@@ -82,7 +83,7 @@ def _read_npz(path: Path) -> Parts:
     except Exception as error:  # what numpy and zipfile raise for a damaged file is not a closed list
         raise _unreadable(path, "not a run that to_npz wrote, or damaged") from error
     summary, units = _summary(text, path)
-    return Parts(columns, units, summary, report or None)
+    return RunData(columns, units, summary, report or None)
 
 
 def _summary(text: str, path: Path) -> tuple[dict[str, Any], dict[str, str]]:
@@ -90,7 +91,7 @@ def _summary(text: str, path: Path) -> tuple[dict[str, Any], dict[str, str]]:
     try:
         summary = json.loads(text)
     except json.JSONDecodeError as error:
-        raise _unreadable(f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}") from error
+        raise _unreadable(place(path, error.lineno, error.colno), f"not JSON: {error.msg}") from error
     except RecursionError as error:
         raise _unreadable(path, "not the summary of a run: its brackets are nested too deep") from error
     if fault := _fault(summary, SUMMARY, "the file"):
@@ -139,7 +140,7 @@ def _fault(value: Any, shape: Any, place: str) -> str:
     return next(filter(None, (_fault(*part) for part in parts)), "")
 
 
-def _verify(parts: Parts, path: Path) -> None:
+def _verify(parts: RunData, path: Path) -> None:
     """Refuse what is not, number by number, what the summary was written for."""
     for found, needed in zip_longest(parts.columns, parts.units):
         _compare(path, "column", found, needed)

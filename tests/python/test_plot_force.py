@@ -170,7 +170,7 @@ def test_the_estimate_ends_where_the_force_does(hybrid: arm3r.Run) -> None:
 
 
 def test_the_tip_on_the_face(hybrid: arm3r.Run) -> None:
-    wanted = ForceRun(hybrid).on_face("tip_ref")
+    wanted = ForceRun(hybrid).on_contact_plane("tip_ref")
     assert wanted is not None
     assert wanted[0] == pytest.approx([0.05, 0.13])
     assert np.linalg.norm(wanted - [-0.05, 0.13], axis=1) == pytest.approx(0.1, abs=1e-12)

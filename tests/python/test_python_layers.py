@@ -12,8 +12,8 @@ import pytest
 
 # From the bottom up. A name is a folder or a module that lies beside the folders; a line may know the lines above it.
 ROOMS = [
-    "_hash errors _arm3r",
-    "_native folders regular",
+    "errors _messages _hash _arm3r",
+    "_files _native",
     "params arm run_file run",
     "control",
     "scenario",

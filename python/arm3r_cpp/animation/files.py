@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import tempfile
@@ -14,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._files import check_folder, make_folder, replacing
 from ..errors import OutputError, UsageError
-from ..folders import check_folder, make_folder
 
 FASTEST_GIF = 50.0  # frames a second: what viewers still show
 
@@ -65,26 +64,10 @@ def write(film: Film, path: Path) -> None:
     Raises:
         OutputError: it cannot be written; then nothing is.
     """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
     kinds = {".gif": _write_gif, ".mp4": _write_mp4, "": _write_folder}
     (check_folder if path.suffix else make_folder)(path.parent)
-    try:
+    with replacing(path) as part:
         kinds[path.suffix](film, part)
-        part.replace(path)
-    except OutputError:
-        raise
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
-    finally:
-        _remove(part)
-
-
-def _remove(part: Path) -> None:
-    if part.is_dir():
-        shutil.rmtree(part, ignore_errors=True)
-    else:
-        with suppress(OSError):  # its folder is none: the error that is under way says so
-            part.unlink(missing_ok=True)
 
 
 def _write_gif(film: Film, part: Path) -> None:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from .exit_codes import attempt, tell
+from .exit_codes import attempt, print_line
 from .progress_bar import Bar
 
 
@@ -48,7 +48,7 @@ def film(options: argparse.Namespace, bar: Bar) -> None:
     run, failure = read(options.run)
     animate(run, out, fps=options.fps, speed=options.speed, every=options.every, progress=bar.draw)
     bar.clear()
-    tell(out)
+    print_line(out)
     if failure:
         raise failure
 

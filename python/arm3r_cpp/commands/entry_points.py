@@ -28,6 +28,6 @@ def _call(module: str) -> int:
     try:
         return main(sys.argv[1:])
     except KeyboardInterrupt:
-        from .exit_codes import die_of
+        from .exit_codes import end_by_signal
 
-        die_of(signal.SIGINT)
+        end_by_signal(signal.SIGINT)

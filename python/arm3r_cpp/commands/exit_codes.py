@@ -46,11 +46,11 @@ def attempt(program: str, work: Callable[[], None]) -> int:
         print(f"{program}: needs {error.name}, which is not installed: pip install {error.name}", file=sys.stderr)
         return exit_code(UsageError(str(error)))
     except KeyboardInterrupt:
-        die_of(signal.SIGINT)
+        end_by_signal(signal.SIGINT)
     return 0
 
 
-def tell(line: object) -> None:
+def print_line(line: object) -> None:
     """Print a line on stdout; where nobody reads it, end as a pipe's writer does.
 
     Raises:
@@ -61,11 +61,11 @@ def tell(line: object) -> None:
     except OSError as error:
         sys.stdout = None  # else Python tries again when it ends
         if isinstance(error, BrokenPipeError):
-            die_of(signal.SIGPIPE)
+            end_by_signal(signal.SIGPIPE)
         raise OutputError(f"standard output cannot be written: {error.strerror}", code="output") from error
 
 
-def die_of(number: signal.Signals) -> NoReturn:
+def end_by_signal(number: signal.Signals) -> NoReturn:
     """End by the signal itself, so that the caller sees what happened."""
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .._files import check_folder, make_folder
 from ..errors import Arm3rError, UsageError
-from ..folders import check_folder, make_folder
 from ..plot.figure_files import check_format, write
 from ..plot.style import FORMATS, WIDTH
-from .exit_codes import attempt, tell
+from .exit_codes import attempt, print_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -134,7 +134,7 @@ def save(runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path,
     files = {Path(f"{stem}{name}.{suffix}"): figure for name, figure in figures(runs, options).items()}
     write(files)
     for path in files:
-        tell(path)
+        print_line(path)
 
 
 def figures(runs: dict[Path, Run], options: argparse.Namespace) -> dict[str, Figure]:

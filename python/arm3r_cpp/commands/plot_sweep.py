@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from .exit_codes import attempt, tell
+from .exit_codes import attempt, print_line
 
 
 def main(argv: Sequence[str]) -> int:
@@ -31,7 +31,7 @@ def save(options: argparse.Namespace) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from ..folders import check_folder
+    from .._files import check_folder
     from ..plot.figure_files import check_format, write
     from ..plot.sweep_figure import sweep
     from ..sweeps.table import SweepTable
@@ -39,4 +39,4 @@ def save(options: argparse.Namespace) -> None:
     check_format(options.out)
     check_folder(options.out.parent)
     write({options.out: sweep(SweepTable(options.folder), metric=options.metric, log=options.log)})
-    tell(options.out)
+    print_line(options.out)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..errors import Arm3rError
-from .exit_codes import FAILED_RUNS, die_of, exit_code, tell
+from .exit_codes import FAILED_RUNS, end_by_signal, exit_code, print_line
 from .progress_bar import Bar
 
 
@@ -30,7 +30,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         failed = {outcome: count for outcome, count in table.outcomes.items() if outcome != "ok"}
         words = ", ".join(f"{count} {outcome}" for outcome, count in failed.items())
         counted = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
-        tell(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
+        print_line(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
     except Arm3rError as error:
         bar.clear()
         print(f"arm3r-sweep: {error}", file=sys.stderr)
@@ -38,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         bar.clear()
         print(f"arm3r-sweep: interrupted; --resume goes on in {options.out}", file=sys.stderr)
-        die_of(signal.SIGINT)
+        end_by_signal(signal.SIGINT)
     return FAILED_RUNS if failed else 0
 
 

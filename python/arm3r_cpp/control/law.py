@@ -14,7 +14,7 @@ from .. import _native
 from ..errors import BudgetError, ControllerError, UsageError
 from ..run import Run
 from .law_state import OVER, LawState
-from .time_limit import OutOfTime, Watchdog
+from .time_limit import TimeLimit, TimeLimitReached
 
 Law = Callable[[float, LawState], Any]
 
@@ -41,8 +41,8 @@ def law_state_index() -> dict[str, int]:
 _new = object.__new__
 
 
-class Caller:
-    """Calls a law at each sample, and remembers of it what an error has to tell."""
+class LawAdapter:
+    """Calls a law at each sample as the library calls it, and keeps what the message of an error needs."""
 
     def __init__(self, law: Law) -> None:
         self._law = law
@@ -85,41 +85,41 @@ def run_with_law(
         return Run._of(run)
     if not callable(controller):
         raise UsageError(f"controller: a function of (t, state) is needed, got {controller!r}", code="usage")
-    watchdog = None if time_limit is None else Watchdog(controller, time_limit)
-    caller = Caller(watchdog or controller)
-    with watchdog or nullcontext():
-        run, raised = _native.control(handle, caller, progress=progress, time_limit=time_limit)
-    if raised is not None and not isinstance(raised, (Exception, OutOfTime)):
+    limit = None if time_limit is None else TimeLimit(controller, time_limit)
+    adapter = LawAdapter(limit or controller)
+    with limit or nullcontext():
+        run, raised = _native.control(handle, adapter, progress=progress, time_limit=time_limit)
+    if raised is not None and not isinstance(raised, (Exception, TimeLimitReached)):
         raise raised
     ended = Run._of(run)
     if raised is None and ended.outcome != "controller":
         return ended
-    raise _failure(caller, controller, raised, ended, file, time_limit) from _cause(raised)
+    raise _failure(adapter, controller, raised, ended, file, time_limit) from _cause(raised)
 
 
 def _cause(raised: BaseException | None) -> BaseException | None:
-    return None if isinstance(raised, (_native.NoTorque, OutOfTime)) else raised
+    return None if isinstance(raised, (_native.NoTorque, TimeLimitReached)) else raised
 
 
 def _failure(
-    caller: Caller, controller: Law, raised: BaseException | None, run: Run, file: str, time_limit: float | None
+    adapter: LawAdapter, controller: Law, raised: BaseException | None, run: Run, file: str, time_limit: float | None
 ) -> BudgetError | ControllerError:
-    tick, name = caller.tick, getattr(controller, "__qualname__", repr(controller))
-    place = f"at tick {tick}, t = {caller.t:.12g} s"
-    if isinstance(raised, OutOfTime):
+    tick, name = adapter.tick, getattr(controller, "__qualname__", repr(controller))
+    place = f"at tick {tick}, t = {adapter.t:.12g} s"
+    if isinstance(raised, TimeLimitReached):
         why = f"the time limit of {time_limit:g} s is used up in the controller {name} {place}"
         return BudgetError(f"{file}: budget: {why}", code="run.budget", run=run)
     if _cause(raised) is not None:
         why = f"{name} raised {type(raised).__name__}: {raised}"
     else:
-        why = f"{name} returned {caller.received!r}; {TORQUE}"
+        why = f"{name} returned {adapter.received!r}; {TORQUE}"
     return ControllerError(
         f"{file}: controller: {place}: {why}",
         code="run.controller",
         run=run,
         tick=tick,
-        t=caller.t,
-        received=caller.received,
+        t=adapter.t,
+        received=adapter.received,
     )
 
 

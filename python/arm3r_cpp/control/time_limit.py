@@ -1,4 +1,4 @@
-"""The end of a control law that does not come back."""
+"""Ends a control law that does not return within the time limit of its run."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from collections.abc import Callable
 from typing import Any
 
 
-class OutOfTime(BaseException):
-    """Raised in a law when the time limit is used up. Not an Exception: a law that catches those shall not live on."""
+class TimeLimitReached(BaseException):
+    """Raised in a law when the time limit is used up. It is no Exception, so that a law that catches those ends too."""
 
 
-class Watchdog:
-    """Ends a function that is being called when the time is used up: a sleep in the main thread too.
+class TimeLimit:
+    """Ends a function that is being called when the time is used up, also while it sleeps in the main thread.
 
-    In other threads what blocks outside Python ends when it comes back.
+    In another thread, a call that blocks outside Python ends when it returns.
     """
 
     def __init__(self, function: Callable[..., Any], seconds: float) -> None:
@@ -28,7 +28,7 @@ class Watchdog:
         self._timer = threading.Timer(seconds, self._fire)
         self._timer.daemon = True
 
-    def __enter__(self) -> Watchdog:
+    def __enter__(self) -> TimeLimit:
         self._timer.start()
         return self
 
@@ -46,7 +46,7 @@ class Watchdog:
                     self._inside = False
         except KeyboardInterrupt:
             if self._fired:
-                raise OutOfTime from None
+                raise TimeLimitReached from None
             raise
 
     def _fire(self) -> None:
@@ -58,4 +58,5 @@ class Watchdog:
             if in_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
                 signal.pthread_kill(self._thread, signal.SIGINT)
             else:
-                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self._thread), ctypes.py_object(OutOfTime))
+                thread, error = ctypes.c_ulong(self._thread), ctypes.py_object(TimeLimitReached)
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, error)

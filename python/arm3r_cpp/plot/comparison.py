@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..errors import UsageError
-from .contact_plane import draw_face, locate, needs_locating
+from .contact_plane import draw_contact_plane, locate, needs_locating
 from .force_figure import heights, since_contact, transient
 from .layout import Panel, lay_out
 from .style import BLACK, JOINTS, LOOKS, contact_spans, legend_above, widen_if_flat
@@ -190,12 +190,12 @@ def draw_transient(runs: Sequence[ForceRun], window: tuple[float, float], ax: Ax
 
 
 def face_panel(runs: Sequence[ForceRun]) -> list[Panel]:
-    lines = [(run, look, run.name) for run, look in looks(runs) if run.on_face("tip") is not None]
+    lines = [(run, look, run.name) for run, look in looks(runs) if run.on_contact_plane("tip") is not None]
     drawn = [run for run, _, _ in lines]
     if not lines:
         return []
     beside = partial(locate, drawn) if needs_locating(drawn) else None
-    return [Panel(1.9, partial(draw_face, lines, legend=False), legend=False, beside=beside)]
+    return [Panel(1.9, partial(draw_contact_plane, lines, legend=False), legend=False, beside=beside)]
 
 
 # ---- table ----------------------------------------------------------------------------------------------------------

@@ -23,13 +23,13 @@ MILLIMETRES = 0.05  # m: below this size
 Line = tuple["ForceRun", dict[str, Any], str]
 
 
-def draw_face(lines: Sequence[Line], ax: Axes, room: float, *, legend: bool = True) -> None:
+def draw_contact_plane(lines: Sequence[Line], ax: Axes, room: float, *, legend: bool = True) -> None:
     """Runs, each with the look and the name of its line. They share one face; out of contact it is thin and grey."""
     runs = [run for run, _, _ in lines]
     middle, size = view(runs)
     scale, unit = (1e3, "mm") if size < MILLIMETRES else (1.0, "m")
     for run, look, label in lines:
-        tip = tip_on_face(run)
+        tip = tip_on_plane(run)
         touching = np.where(run.run["contact"][:, None] > 0, tip, np.nan)
         ax.plot(*(scale * tip.T), color=OFF, lw=0.7, zorder=1.5)
         ax.plot(*(scale * touching.T), label=label, zorder=2, **look)
@@ -65,20 +65,20 @@ def extent(runs: Sequence[ForceRun]) -> tuple[Floats, float]:
     return (low + high) / 2, max(float((high - low).max()), LEAST)
 
 
-def tip_on_face(run: ForceRun) -> Floats:
-    tip = run.on_face("tip")
+def tip_on_plane(run: ForceRun) -> Floats:
+    tip = run.on_contact_plane("tip")
     assert tip is not None
     return tip
 
 
 def in_sight(run: ForceRun) -> Floats:
     """Points that the panel has to show: tip and reference in contact; without any contact, the whole path."""
-    tip, reference, on = tip_on_face(run), run.on_face("tip_ref"), run.run["contact"] > 0
+    tip, reference, on = tip_on_plane(run), run.on_contact_plane("tip_ref"), run.run["contact"] > 0
     return np.concatenate([path[on] for path in (tip, reference) if path is not None]) if on.any() else tip
 
 
 def draw_reference(ax: Axes, run: ForceRun, scale: float) -> None:
-    reference = run.on_face("tip_ref")
+    reference = run.on_contact_plane("tip_ref")
     if reference is None:
         return
     label = "reference" if "reference" not in ax.get_legend_handles_labels()[1] else None

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from contextlib import suppress
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import OutputError, UsageError
-from ..folders import check_folder
+from .._files import check_folder, replacing
+from ..errors import UsageError
 from .style import FORMATS, style
 
 if TYPE_CHECKING:
@@ -35,17 +34,8 @@ def write(figures: Mapping[Path, Figure]) -> None:
     """
     for folder in {path.parent for path in figures}:
         check_folder(folder)
-    parts = {path: path.with_name(f".{path.name}.{os.getpid()}.part") for path in figures}
-    try:
+    with ExitStack() as whole:
         for path, figure in figures.items():
-            kind = path.suffix[1:]
+            part, kind = whole.enter_context(replacing(path)), path.suffix[1:]
             with style():
-                figure.savefig(parts[path], format=kind, metadata=UNDATED.get(kind))
-        for path, part in parts.items():
-            part.replace(path)
-    except OSError as error:
-        raise OutputError(f"cannot write figures: {error}") from error
-    finally:
-        for part in parts.values():
-            with suppress(OSError):  # its folder is none: the error that is under way says so
-                part.unlink(missing_ok=True)
+                figure.savefig(part, format=kind, metadata=UNDATED.get(kind))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .contact_plane import draw_face, locate, needs_locating
+from .contact_plane import draw_contact_plane, locate, needs_locating
 from .force_run import SETTLED, ForceRun
 from .layout import Panel, lay_out
 from .style import (
@@ -240,8 +240,8 @@ def strip(ax: Axes, run: ForceRun, flag: str, colour: str, label: str) -> None:
 
 def face_panel(run: ForceRun) -> list[Panel]:
     """The tip's path; none where it cannot be told."""
-    if run.on_face("tip") is None:
+    if run.on_contact_plane("tip") is None:
         return []
     runs = [(run, {"color": BLUE, "ls": "-"}, "tip in contact")]
     beside: Callable[[Any], None] | None = partial(locate, [run]) if needs_locating([run]) else None
-    return [Panel(1.9, partial(draw_face, runs), beside=beside)]
+    return [Panel(1.9, partial(draw_contact_plane, runs), beside=beside)]

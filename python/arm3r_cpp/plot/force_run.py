@@ -165,7 +165,7 @@ class ForceRun:
         """Of the plate, m; None: infinite."""
         return half_sides(self.scenario) if self.scenario and "wall" in self.run else None
 
-    def on_face(self, name: str) -> Floats | None:
+    def on_contact_plane(self, name: str) -> Floats | None:
         """A position as (rows, 2): along e1 and e2 from the plate's centre, m."""
         if self.frame is None or name not in self.run:
             return None

@@ -10,15 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from .. import _native
-from ..batch import SLIPS, axis_of, same_places
+from .._files import regular
+from .._messages import did_you_mean
+from ..batch import AXIS_ERRORS, axis_of, same_places
 from ..errors import Arm3rError, IncompatibleError, ScenarioError, UsageError
 from ..params import param_key, places
-from ..regular import regular
 from ..scenario import Scenario
 from ..scenario import flow as flow_of
 from .axes import DISTRIBUTIONS, MODES, SPACES, SweepAxis, values_of
 from .shard import STATISTICS, Statistic
-from .yaml_reader import Node, Reader, below, did_you_mean, flow, quoted
+from .yaml_reader import Node, Reader, below, flow, position, quoted
 
 FORMAT = 1
 MOST_RUNS = 10**10
@@ -106,9 +107,8 @@ def _read_format(reader: Reader, top: dict[str, Node]) -> None:
         return
     found = reader.whole(top["format"], "format", 1, 2**53 - 1)
     if found is not None and found != FORMAT:
-        place = f"{reader.file}:{top['format']['key_line']}:{top['format']['key_column']}"
         message = f"error[sweep.format]: format: must be {FORMAT}, got {found}: it is written for another version"
-        raise IncompatibleError(f"{place}: {message}", code="sweep.format")
+        raise IncompatibleError(f"{reader.place(top['format'])}: {message}", code="sweep.format")
 
 
 def _whole(reader: Reader, top: dict[str, Node], key: str, default: int, low: int, high: int) -> int:
@@ -182,7 +182,7 @@ def _read_scenario(reader: Reader, top: dict[str, Node], overrides: Sequence[str
     try:
         scenario = _base(reader, top)
         for node in top.get("set", {}).get("map", []):
-            scenario._edit(node["key"], flow(node), f"{reader.file}:{node['key_line']}:{node['key_column']}: set")
+            scenario._edit(node["key"], flow(node), f"{reader.place(node)}: set")
         for override in overrides:
             path, equals, value = override.partition("=")
             if not equals:
@@ -228,7 +228,8 @@ def _placed(reader: Reader, problem: dict[str, Any], inline: Node | None) -> dic
     here, path = inline, f".{problem['path']}"
     for child in _walk(inline, path):
         here = child
-    return {**problem, "line": here.get("key_line", here["line"]), "column": here.get("key_column", here["column"])}
+    line, column = position(here)
+    return {**problem, "line": line, "column": column}
 
 
 def _walk(node: Node, path: str) -> Iterator[Node]:
@@ -355,7 +356,7 @@ def _check_axes(reader: Reader, top: dict[str, Node], sweep: Sweep) -> None:
             scenario.validate()
         except ScenarioError as error:
             for problem in error.problems:
-                if problem["code"] in SLIPS:
+                if problem["code"] in AXIS_ERRORS:
                     at = next((node for key, node in nodes.items() if _same(key, problem["path"])), top["axes"])
                     more = {name: problem[name] for name in ("got", "allowed", "hint")}
                     reader.problem(at, problem["code"], problem["path"], problem["message"], **more)

@@ -13,10 +13,10 @@ from contextlib import contextmanager
 from io import FileIO
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
+from .._files import regular, replacing, writing
 from ..errors import IncompatibleError, OutputError, UsageError
-from ..regular import regular
 
 MANIFEST, LEDGER, LOCK, SHARDS = "sweep.json", "ledger.jsonl", "lock", "shards"
 
@@ -53,12 +53,12 @@ class SweepFolder:
             IncompatibleError: it was begun with something else; all that differs is listed.
         """
         folder = cls(path, manifest)
-        with _writing(path):
+        with writing(path):
             path.mkdir(parents=True, exist_ok=True)
             folder._begun(resume)  # before anything is written: it may be a folder of another kind
             lock = (path / LOCK).open("a+b", buffering=0)  # nothing is left for close() to write
         with lock:
-            with _writing(path):
+            with writing(path):
                 _take(lock, path)
                 folder._begin(resume)
             yield folder
@@ -111,7 +111,7 @@ class SweepFolder:
         publish(file, data)
         line = {"first": first, "count": count, "file": f"{SHARDS}/{file.name}", "size": len(data)}
         line |= {"sha256": sha256(data), "outcomes": dict(outcomes)}
-        with _writing(self.path), (self.path / LEDGER).open("ab") as ledger:
+        with writing(self.path), (self.path / LEDGER).open("ab") as ledger:
             ledger.write(_sealed(line, self._seal))
         self._acknowledge(number, line)
 
@@ -136,9 +136,9 @@ class SweepFolder:
         """Believe what can be checked, say what cannot, and keep the ledger clean of it."""
         path = self.path / LEDGER
         path.touch()
-        with _writing(path):
+        with writing(path):
             regular(path)
-        with path.open("rb") as ledger, publishing(path) as clean:
+        with path.open("rb") as ledger, replacing(path) as part, part.open("wb") as clean:
             for text in ledger:
                 line = _unsealed(text, self._seal)
                 if line is None:
@@ -177,31 +177,9 @@ def count_outcomes(lines: Iterable[Mapping[str, Any]]) -> dict[str, int]:
 
 
 def publish(path: Path, data: bytes) -> None:
-    """Write a file under a name of its own, then give it the right one: there is never half of it."""
-    with publishing(path) as file:
-        file.write(data)
-
-
-@contextmanager
-def publishing(path: Path) -> Iterator[BinaryIO]:
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    with _writing(path):
-        try:
-            with part.open("wb") as file:
-                yield file
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OutputError:
-        raise
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}", code="output") from error
+    """Write a file whole or not at all."""
+    with replacing(path) as part:
+        part.write_bytes(data)
 
 
 def _take(lock: FileIO, path: Path) -> None:

@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from .. import _native
+from .._files import replacing
 from ..errors import Arm3rError
 from .definition import Sweep
-from .folder import SweepFolder, publishing, sha256
+from .folder import SweepFolder, sha256
 from .shard import Done, Job, columns_of, work
 from .table import SweepTable
 from .table_io import merge, pyarrow
@@ -75,7 +76,7 @@ def sweep(
     with SweepFolder.held(Path(out), _manifest(plan, job), resume=resume) as folder:
         with _submitting(executor, jobs) as (submit, at_a_time):
             _run(plan, job, folder, submit, at_a_time, progress)
-        with publishing(folder.path / f"table.{job.table}") as file:
+        with replacing(folder.path / f"table.{job.table}") as part, part.open("wb") as file:
             merge(map(folder.read, range(_shards(plan))), columns_of(job), job.table, file)
     return SweepTable(out)
 

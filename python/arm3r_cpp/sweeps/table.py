@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import UsageError, no_column
-from ..regular import regular
+from .._files import regular
+from .._messages import no_column
+from ..errors import UsageError
 from .axes import SweepAxis
 from .folder import LEDGER, count_outcomes, read_manifest
 from .table_io import decode

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from .._messages import describe, did_you_mean, place
 from ..errors import ScenarioError
 
 Node = Mapping[str, Any]
@@ -22,12 +22,16 @@ class Reader:
 
     def problem(self, node: Node, code: str, path: str, message: str, **more: str) -> None:
         """Note a problem at a node, or at its key where it has one; `more`: got, allowed, hint."""
-        line, column = node.get("key_line", node["line"]), node.get("key_column", node["column"])
+        line, column = position(node)
         self.problems.append(
             {"code": code, "message": message, "file": self.file, "line": line, "column": column, "path": path}
             | {"got": "", "allowed": "", "hint": ""}
             | more
         )
+
+    def place(self, node: Node) -> str:
+        """file:line:column of a node."""
+        return place(self.file, *position(node))
 
     def finish(self) -> None:
         """Raise ScenarioError when there were problems."""
@@ -85,20 +89,9 @@ class Reader:
         return text
 
 
-def describe(problem: Mapping[str, Any]) -> str:
-    """One line: file:line:column: error[code]: path: message, got X, allowed Y; hint."""
-    place = ":".join(str(problem[part]) for part in ("file", "line", "column") if problem[part])
-    got = f", got {problem['got']}" if problem["got"] else ""
-    allowed = f", allowed {problem['allowed']}" if problem["allowed"] else ""
-    hint = f"; {problem['hint']}" if problem["hint"] else ""
-    path = f"{problem['path']}: " if problem["path"] else ""
-    line = f"{place}: error[{problem['code']}]: {path}{problem['message']}{got}{allowed}{hint}"
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
-
-
-def did_you_mean(word: str, words: Iterable[str]) -> str:
-    near = difflib.get_close_matches(word, list(words), n=1)
-    return f"did you mean {near[0]}?" if near else ""
+def position(node: Node) -> tuple[int, int]:
+    """The line and the column of a node's key, or of the node itself where it has none."""
+    return node.get("key_line", node["line"]), node.get("key_column", node["column"])
 
 
 def below(path: str, key: str) -> str:

@@ -1,0 +1,39 @@
+"""How messages say where something stands, what is wrong there, and what was likely meant."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+
+def place(file: object, line: int = 0, column: int = 0) -> str:
+    """file:line:column; a line or a column that is 0 is not known, and is left out."""
+    return ":".join(str(part) for part in (file, line, column) if part)
+
+
+def describe(problem: Mapping[str, Any]) -> str:
+    """A problem as the library lists it in one line.
+
+    That is file:line:column: error[code]: path: message, got X, allowed Y; hint.
+    """
+    got = f", got {problem['got']}" if problem["got"] else ""
+    allowed = f", allowed {problem['allowed']}" if problem["allowed"] else ""
+    hint = f"; {problem['hint']}" if problem["hint"] else ""
+    path = f"{problem['path']}: " if problem["path"] else ""
+    where = place(problem["file"], problem["line"], problem["column"])
+    line = f"{where}: error[{problem['code']}]: {path}{problem['message']}{got}{allowed}{hint}"
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
+
+
+def did_you_mean(word: str, words: Iterable[str]) -> str:
+    """A question with the word that is most like the given one; "" where none is like it."""
+    near = difflib.get_close_matches(word, list(words), n=1)
+    return f"did you mean {near[0]}?" if near else ""
+
+
+def no_column(name: object, names: Iterable[str]) -> KeyError:
+    """The error for a column that a table does not have."""
+    names = list(names)
+    hint = did_you_mean(str(name), names) or f"there are {', '.join(names)}"
+    return KeyError(f"no column {name!r}; {hint}")
