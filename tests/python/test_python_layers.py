@@ -29,7 +29,7 @@ ROOMS = [
 # Public names that a room below hands on: these imports point up, and they are done when the name is used.
 LATER = {("scenario", "batch"), ("plot", "animation")}
 
-MOST_MODULES = 16  # in a folder
+MAX_MODULES = 16  # in a folder
 
 PACKAGE = Path(arm3r.__file__).parent
 LEVEL = {room: level for level, line in enumerate(ROOMS) for room in line.split()}
@@ -119,7 +119,7 @@ def test_every_module_can_be_the_first(python: Any, module: str) -> None:
 
 @pytest.mark.parametrize("folder", sorted({path.parent for path in KNOWN.values()}), ids=lambda folder: folder.name)
 def test_a_folder_can_be_taken_in(folder: Path) -> None:
-    assert len(list(folder.glob("*.py"))) <= MOST_MODULES
+    assert len(list(folder.glob("*.py"))) <= MAX_MODULES
     text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
     assert text and len(text.splitlines()) >= 5, f"{folder.name}: its __init__.py says what comes in and what goes out"
 

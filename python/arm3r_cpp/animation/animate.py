@@ -10,7 +10,7 @@ from ..errors import UsageError
 from ..run import Run
 from .files import Film, Progress, check_target, write
 
-FASTEST = 120.0  # frames a second
+MAX_RATE = 120.0  # frames a second
 
 
 def animate(
@@ -54,9 +54,9 @@ def animate(
 
 
 def check(fps: float, speed: float, every: int | None) -> None:
-    if not 0 < fps <= FASTEST:
+    if not 0 < fps <= MAX_RATE:
         raise UsageError(
-            f"fps: more than 0 and at most {FASTEST:g} frames a second are possible, got {fps:g}", code="usage"
+            f"fps: more than 0 and at most {MAX_RATE:g} frames a second are possible, got {fps:g}", code="usage"
         )
     if not 0 < speed < math.inf:
         raise UsageError(f"speed: a positive number is needed, got {speed:g}", code="usage")

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .._files import check_folder, make_folder, replacing
 from ..errors import OutputError, UsageError
 
-FASTEST_GIF = 50.0  # frames a second: what viewers still show
+MAX_GIF_RATE = 50.0  # frames a second: what viewers still show
 
 Picture = NDArray[np.uint8]
 Progress = Callable[[int, int], None]
@@ -30,9 +30,9 @@ def check_target(path: Path, fps: float) -> None:
     """
     if path.suffix not in ("", ".gif", ".mp4"):
         raise UsageError(f"-o {path}: cannot write {path.suffix}; use .gif, .mp4, or a folder's name for PNG files")
-    if path.suffix == ".gif" and fps > FASTEST_GIF:
+    if path.suffix == ".gif" and fps > MAX_GIF_RATE:
         raise UsageError(
-            f"--fps {fps:g}: viewers show at most {FASTEST_GIF:g} frames a second of a GIF; use .mp4 or fewer"
+            f"--fps {fps:g}: viewers show at most {MAX_GIF_RATE:g} frames a second of a GIF; use .mp4 or fewer"
         )
     if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise UsageError(f"-o {path}: the program ffmpeg is needed and not on PATH; install it or write a .gif")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..run import Run
 
 SCENARIOS = (".yaml", ".yml")
-NARROWEST, WIDEST = 3.0, 12.0  # inches
+MIN_WIDTH, MAX_WIDTH = 3.0, 12.0  # inches
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -82,8 +82,8 @@ def parser() -> argparse.ArgumentParser:
 
 def inches(text: str) -> float:
     width = float(text)
-    if not NARROWEST <= width <= WIDEST:
-        raise argparse.ArgumentTypeError(f"{NARROWEST:g} to {WIDEST:g} inches are possible, got {text}")
+    if not MIN_WIDTH <= width <= MAX_WIDTH:
+        raise argparse.ArgumentTypeError(f"{MIN_WIDTH:g} to {MAX_WIDTH:g} inches are possible, got {text}")
     return width
 
 

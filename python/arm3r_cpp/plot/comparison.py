@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from .._native import Floats
     from .force_run import ForceRun
 
-MOST = len(LOOKS) - 1  # the last look is black: that of references
+MAX_RUNS = len(LOOKS) - 1  # the last look is black: that of references
 LINE, LABELS = 0.17, 1.35  # inches: a line of the table, and its first column
-NARROWEST, WIDEST = 0.62, 1.1  # inches: its other columns
+MIN_COLUMN, MAX_COLUMN = 0.62, 1.1  # inches: its other columns
 LETTER = 0.058  # inches: in its head
 MISSING = "–"
-LONGEST = 30  # letters of a name in a legend
+MAX_LETTERS = 30  # letters of a name in a legend
 SAME = ("wall.normal", "wall.size", "wall.rotation")  # what runs need to share for one face
 
 
@@ -73,8 +73,8 @@ def compare_figure(runs: Sequence[ForceRun], *, width: float) -> Figure:
 
 
 def check(runs: Sequence[ForceRun]) -> None:
-    if not 2 <= len(runs) <= MOST:
-        raise UsageError(f"--compare: 2 to {MOST} runs fit into one figure, got {len(runs)}", code="usage")
+    if not 2 <= len(runs) <= MAX_RUNS:
+        raise UsageError(f"--compare: 2 to {MAX_RUNS} runs fit into one figure, got {len(runs)}", code="usage")
     first = runs[0]
     for run in runs[1:]:
         for key in SAME:
@@ -110,7 +110,7 @@ def draw_forces(runs: Sequence[ForceRun], ax: Axes) -> None:
     wanted = [(run.run.t, run.reference) for run in runs if run.reference is not None]
     shared = len(wanted) > 0 and all(alike(wanted[0], other) for other in wanted[1:])
     for run, look in looks(runs):
-        ax.plot(*run.force_line, label=shortened(run.name, LONGEST), **look)
+        ax.plot(*run.force_line, label=shortened(run.name, MAX_LETTERS), **look)
         if run.reference is not None and not shared:
             ax.plot(run.run.t, run.reference, color=look["color"], ls=(0, (1, 2)), lw=1.0)
     if shared:
@@ -204,7 +204,7 @@ def face_panel(runs: Sequence[ForceRun]) -> list[Panel]:
 def tables(runs: Sequence[ForceRun], width: float) -> list[Panel]:
     """A column a run, a row a metric that some run has; one table under the other where the width needs it."""
     rows = [row for row in ROWS if any(cell(run, row) != MISSING for run in runs)]
-    fitting = max(1, int((width - LABELS) / NARROWEST))
+    fitting = max(1, int((width - LABELS) / MIN_COLUMN))
     columns = list(looks(runs))
     parts = [columns[i : i + fitting] for i in range(0, len(columns), fitting)]
     return [Panel(LINE * (len(rows) + 3), partial(draw_table, part, rows, width), legend=False) for part in parts]
@@ -212,7 +212,7 @@ def tables(runs: Sequence[ForceRun], width: float) -> list[Panel]:
 
 def draw_table(columns: Sequence[Any], rows: Sequence[Row], width: float, ax: Axes, _: float) -> None:
     """width: inches, of the figure. Units of the axes: inches, and lines of the table."""
-    each = min((width - LABELS - 0.1) / len(columns), WIDEST)
+    each = min((width - LABELS - 0.1) / len(columns), MAX_COLUMN)
     ax.axis("off")
     ax.set(xlim=(0, width), ylim=(len(rows) + 0.5, -2.5))
     ax.plot([0, LABELS + each * len(columns)], [0, 0], color=BLACK, lw=0.8)

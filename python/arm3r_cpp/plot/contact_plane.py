@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 OFF = "#999999"
 WHOLE_PLATE = 0.3  # of the plate's longer side: a path of that size is drawn on the whole of it
-LEAST = 1e-3  # m: a path is not magnified further
+MIN_EXTENT = 1e-3  # m: a path is not magnified further
 MILLIMETRES = 0.05  # m: below this size
 
 Line = tuple["ForceRun", dict[str, Any], str]
@@ -62,7 +62,7 @@ def extent(runs: Sequence[ForceRun]) -> tuple[Floats, float]:
     """Middle (2,) and size of what encloses all paths."""
     points = np.concatenate([in_sight(run) for run in runs])
     low, high = points.min(axis=0), points.max(axis=0)
-    return (low + high) / 2, max(float((high - low).max()), LEAST)
+    return (low + high) / 2, max(float((high - low).max()), MIN_EXTENT)
 
 
 def tip_on_plane(run: ForceRun) -> Floats:
@@ -82,7 +82,7 @@ def draw_reference(ax: Axes, run: ForceRun, scale: float) -> None:
     if reference is None:
         return
     label = "reference" if "reference" not in ax.get_legend_handles_labels()[1] else None
-    still = np.ptp(reference, axis=0).max() < LEAST
+    still = np.ptp(reference, axis=0).max() < MIN_EXTENT
     look: dict[str, Any] = {"marker": "+", "ms": 9, "mew": 1.4, "ls": ""} if still else {"ls": "--", "lw": 1.0}
     ax.plot(*(scale * (reference[-1:] if still else reference).T), color=BLACK, zorder=3, label=label, **look)
 

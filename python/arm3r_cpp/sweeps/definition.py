@@ -11,21 +11,19 @@ from typing import Any
 
 from .. import _native
 from .._files import regular
-from .._messages import did_you_mean
-from ..batch import AXIS_ERRORS, axis_of, same_places
+from ..batch import AXIS_ERRORS, axis_of
 from ..errors import Arm3rError, IncompatibleError, ScenarioError, UsageError
 from ..params import param_key, places
 from ..scenario import Scenario
 from ..scenario import flow as flow_of
-from .axes import DISTRIBUTIONS, MODES, SPACES, SweepAxis, values_of
+from .axes import MODES, SweepAxis, values_of
+from .axis_reader import MAX_RUNS, read_axes
 from .shard import STATISTICS, Statistic
 from .yaml_reader import Node, Reader, below, flow, position, quoted
 
 FORMAT = 1
-MOST_RUNS = 10**10
-MOST_COMBINATIONS_TRIED = 256
+MAX_COMBINATIONS_TRIED = 256
 KEYS = ("format", "scenario", "set", "axes", "mode", "runs", "seed", "metrics", "statistics", "shard")
-RULES = ("values", *SPACES, *DISTRIBUTIONS)
 
 
 class Sweep:
@@ -67,7 +65,7 @@ class Sweep:
         self.seed: int = _whole(reader, top, "seed", 1, 0, 2**53 - 1)
         self.mode: str = (reader.word(top["mode"], "mode", MODES) if "mode" in top else None) or MODES[0]
         self.metrics = _read_metrics(reader, top)
-        self.axes = _read_axes(reader, top, self.mode)
+        self.axes = read_axes(reader, top, self.mode)
         self.runs = _read_runs(reader, top, self.mode, self.axes)
         reader.finish()
         self.scenario = _read_scenario(reader, top, overrides)
@@ -134,16 +132,16 @@ def _read_runs(reader: Reader, top: dict[str, Node], mode: str, axes: Sequence[S
     if drawn and "runs" not in top:
         reader.problem(top.get("mode", top["axes"]), "sweep.missing_key", "runs", f"mode {mode} needs `runs`")
     elif drawn:
-        return _whole(reader, top, "runs", 1, 1, MOST_RUNS)
+        return _whole(reader, top, "runs", 1, 1, MAX_RUNS)
     elif "runs" in top:
         reader.problem(top["runs"], "sweep.runs", "runs", f"in mode {mode} the axes say how many; take it out")
     if mode == "list" and len(set(counts)) > 1:
         lengths = ", ".join(f"{axis.key} {count}" for axis, count in zip(axes, counts, strict=True))
         reader.problem(top["axes"], "sweep.length", "axes", "in mode list all have one length", got=lengths)
-    if mode == "grid" and math.prod(counts) > MOST_RUNS:
+    if mode == "grid" and math.prod(counts) > MAX_RUNS:
         steps = " x ".join(map(str, counts))
         reader.problem(top["axes"], "sweep.size", "axes", f"too many combinations: {steps} = {math.prod(counts)}",
-                       allowed=f"at most {MOST_RUNS}", hint="use mode random or latin_hypercube")  # fmt: skip
+                       allowed=f"at most {MAX_RUNS}", hint="use mode random or latin_hypercube")  # fmt: skip
     return math.prod(counts) if mode == "grid" else counts[0] if counts else 0
 
 
@@ -243,98 +241,7 @@ def _walk(node: Node, path: str) -> Iterator[Node]:
         yield node
 
 
-# ---- axes -----------------------------------------------------------------------------------------------------------
-
-
-def _read_axes(reader: Reader, top: dict[str, Node], mode: str) -> tuple[SweepAxis, ...]:
-    if "axes" not in top:
-        top["axes"] = {"line": 1, "column": 1, "list": []}
-        reader.problem(top["axes"], "sweep.missing_key", "axes", "there are none", hint=_EXAMPLE_AXIS)
-        return ()
-    axes: list[SweepAxis] = []
-    for i, node in enumerate(reader.list(top["axes"], "axes")):
-        axis = _read_axis(reader, node, f"axes[{i}]", mode)
-        if axis is None:
-            continue
-        for other in axes:
-            if twice := same_places(axis.key, other.key):
-                both = f"{twice[0]} varies twice, as {other.key} and as {axis.key}"
-                reader.problem(node, "sweep.duplicate", f"axes[{i}].key", both, hint="take one of the two out")
-        axes.append(axis)
-    return tuple(axes)
-
-
-_EXAMPLE_AXIS = "such as {key: wall.contact.stiffness, geomspace: [1e2, 1e6, 40]}"
-
-
-def _read_axis(reader: Reader, node: Node, path: str, mode: str) -> SweepAxis | None:
-    given = reader.map(node, path, ("key", *RULES))
-    rules = [rule for rule in RULES if rule in given]
-    if "map" in node and ("key" not in given or len(rules) != 1):
-        wrong = "`key` is missing" if "key" not in given else f"one rule is needed, got {', '.join(rules) or 'none'}"
-        reader.problem(node, "sweep.axis", path, wrong, allowed=f"one of {', '.join(RULES)}", hint=_EXAMPLE_AXIS)
-    if "key" not in given or len(rules) != 1:
-        return None
-    key, rule = reader.word(given["key"], below(path, "key")), rules[0]
-    if key is None:
-        return None
-    if key not in places():
-        reader.problem(given["key"], "sweep.unknown_key", below(path, "key"), "no number or choice has this key",
-                       got=key, hint=did_you_mean(key, places()))  # fmt: skip
-        return None
-    if rule in DISTRIBUTIONS and mode in ("grid", "list"):
-        reader.problem(given[rule], "sweep.mode", below(path, rule), f"mode {mode} does not draw numbers",
-                       hint="use linspace, geomspace or values, or mode random or latin_hypercube")  # fmt: skip
-        return None
-    read = _read_values if rule == "values" else _read_rule
-    items = read(reader, given[rule], below(path, rule), key, rule)
-    return SweepAxis(key, rule, tuple(items), param_key(places()[key][0]).unit) if items else None
-
-
-def _read_values(reader: Reader, node: Node, path: str, key: str, _: str) -> list[Any]:
-    kind = param_key(places()[key][0]).kind
-    items = [_read_value(reader, item, f"{path}[{i}]", kind) for i, item in enumerate(reader.list(node, path))]
-    shapes = {(type(item), len(item) if isinstance(item, list) else 0) for item in items}
-    if len(shapes) > 1 and None not in items:
-        reader.problem(
-            node, "sweep.shape", path, "all values of an axis are alike: numbers, words, or lists of a length"
-        )
-    return [] if len(shapes) != 1 or None in items else items
-
-
-def _read_value(reader: Reader, node: Node, path: str, kind: str) -> Any:
-    if "list" in node:
-        numbers = [_read_value(reader, item, f"{path}[{i}]", kind) for i, item in enumerate(reader.list(node, path))]
-        return None if None in numbers else numbers
-    if kind == "flag" and node.get("text") in ("true", "false") and not node["quoted"]:
-        return node["text"] == "true"
-    if kind in ("choice", "flag") or (node.get("text") == "infinite"):
-        return reader.word(node, path)
-    return reader.number(node, path, degrees=kind == "angle")
-
-
-def _read_rule(reader: Reader, node: Node, path: str, key: str, rule: str) -> list[float]:
-    kind = param_key(places()[key][0]).kind
-    nodes = reader.list(node, path)
-    if len(nodes) != (3 if rule in SPACES else 2):
-        if nodes:
-            form = "[mean, deviation]" if rule == "normal" else f"[from, to{', count' if rule in SPACES else ''}]"
-            reader.problem(node, "sweep.shape", path, f"{form} is needed", got=f"a list of {len(nodes)}")
-        return []
-    a, b = (reader.number(item, f"{path}[{i}]", degrees=kind == "angle") for i, item in enumerate(nodes[:2]))
-    counts = [reader.whole(item, f"{path}[2]", 1, MOST_RUNS) for item in nodes[2:]]
-    if a is None or b is None or None in counts:
-        return []
-    good, allowed = {
-        "linspace": (math.isfinite(b - a), "two finite numbers"),
-        "geomspace": (a > 0 and b > 0 and 0 < b / a < math.inf, "two numbers above 0"),
-        "uniform": (a < b and math.isfinite(b - a), "two numbers, the smaller one first"),
-        "log_uniform": (0 < a < b and b / a < math.inf, "two numbers above 0, the smaller one first"),
-        "normal": (b > 0 and math.isfinite(abs(a) + 10 * b), "a mean, and a deviation above 0"),
-    }[rule]
-    if not good:
-        reader.problem(node, "sweep.range", path, "out of range", got=flow(node), allowed=allowed)
-    return [a, b, *(count for count in counts if count)] if good else []
+# ---- axes in the scenario -------------------------------------------------------------------------------------------
 
 
 def _check_axes(reader: Reader, top: dict[str, Node], sweep: Sweep) -> None:
@@ -351,7 +258,7 @@ def _check_axes(reader: Reader, top: dict[str, Node], sweep: Sweep) -> None:
             reader.problem(nodes[axis.key], "sweep.axis", axis.key, str(error).removeprefix(f"{axis.key}: "))
     if reader.problems:
         return
-    for scenario in islice(_combinations(sweep, first), MOST_COMBINATIONS_TRIED):
+    for scenario in islice(_combinations(sweep, first), MAX_COMBINATIONS_TRIED):
         try:
             scenario.validate()
         except ScenarioError as error:

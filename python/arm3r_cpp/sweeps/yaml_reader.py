@@ -10,7 +10,7 @@ from .._messages import describe, did_you_mean, place
 from ..errors import ScenarioError
 
 Node = Mapping[str, Any]
-MOST_PROBLEMS = 20
+MAX_PROBLEMS = 20
 
 
 class Reader:
@@ -36,7 +36,7 @@ class Reader:
     def finish(self) -> None:
         """Raise ScenarioError when there were problems."""
         if self.problems:
-            shown = self.problems[:MOST_PROBLEMS]
+            shown = self.problems[:MAX_PROBLEMS]
             raise ScenarioError("\n".join(map(describe, shown)), code=shown[0]["code"], problems=shown)
 
     def map(self, node: Node, path: str, allowed: Iterable[str] | None = None) -> dict[str, Node]:
