@@ -121,12 +121,12 @@ def test_a_shard_stored_twice_stays(expected: bytes, tmp_path: Path, monkeypatch
     assert len((tmp_path / "out/ledger.jsonl").read_text().splitlines()) == 9
 
 
-def _of_another_version(job: sweep_shard.Job) -> sweep_shard.Done:
-    return sweep_shard.work(replace(job, version="9.9.9"))
+def _of_another_version(job: sweep_shard.ShardJob) -> sweep_shard.ShardResult:
+    return sweep_shard.run_shard(replace(job, version="9.9.9"))
 
 
 def test_workers_of_another_version_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sweep_run, "work", _of_another_version)
+    monkeypatch.setattr(sweep_run, "run_shard", _of_another_version)
     with ThreadPoolExecutor(1) as executor, pytest.raises(arm3r.IncompatibleError, match=r"9\.9\.9.*install the same"):
         run_on(executor, tmp_path / "out")
     assert not (tmp_path / "out/table.csv").exists()

@@ -37,15 +37,15 @@ class SweepFolder:
     """
 
     def __init__(self, path: Path, manifest: Mapping[str, Any]) -> None:
-        """`SweepFolder.held` makes folders."""
+        """`SweepFolder.open` makes folders."""
         self.path, self.manifest = path, manifest
-        self._seal = sha256(json.dumps(manifest).encode())
+        self._manifest_hash = sha256(json.dumps(manifest).encode())
         self.finished: dict[int, tuple[int, str]] = {}  # size and checksum of a shard
         self.runs_done = 0
 
     @classmethod
     @contextmanager
-    def held(cls, path: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iterator[SweepFolder]:
+    def open(cls, path: Path, manifest: Mapping[str, Any], *, resume: bool) -> Iterator[SweepFolder]:
         """The folder for a sweep, new or resumed.
 
         Raises:
@@ -59,7 +59,7 @@ class SweepFolder:
             lock = (path / LOCK).open("a+b", buffering=0)  # nothing is left for close() to write
         with lock:
             with writing(path):
-                _take(lock, path)
+                _lock(lock, path)
                 folder._begin(resume)
             yield folder
 
@@ -112,7 +112,7 @@ class SweepFolder:
         line = {"first": first, "count": count, "file": f"{SHARDS}/{file.name}", "size": len(data)}
         line |= {"sha256": sha256(data), "outcomes": dict(outcomes)}
         with writing(self.path), (self.path / LEDGER).open("ab") as ledger:
-            ledger.write(_sealed(line, self._seal))
+            ledger.write(_with_checksum(line, self._manifest_hash))
         self._acknowledge(number, line)
 
     def read(self, number: int) -> bytes:
@@ -140,7 +140,7 @@ class SweepFolder:
             regular(path)
         with path.open("rb") as ledger, replacing(path) as part, part.open("wb") as clean:
             for text in ledger:
-                line = _unsealed(text, self._seal)
+                line = _without_checksum(text, self._manifest_hash)
                 if line is None:
                     warnings.warn(f"{path}: a line is torn or of another sweep; its runs are done again", stacklevel=2)
                     continue
@@ -152,7 +152,7 @@ class SweepFolder:
                     warnings.warn(f"{line['file']}: {fault}; {runs} are done again", stacklevel=2)
                 else:
                     if number not in self.finished:
-                        clean.write(_sealed(line, self._seal))
+                        clean.write(_with_checksum(line, self._manifest_hash))
                         self._acknowledge(number, line)
 
 
@@ -182,8 +182,8 @@ def publish(path: Path, data: bytes) -> None:
         part.write_bytes(data)
 
 
-def _take(lock: FileIO, path: Path) -> None:
-    """The lock goes with the process, however that ends."""
+def _lock(lock: FileIO, path: Path) -> None:
+    """Lock the folder until this process ends, in whatever way it ends."""
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -212,17 +212,18 @@ def read_manifest(path: Path) -> dict[str, Any]:
     raise UsageError(f"{path}: {MANIFEST} is damaged; run the sweep in another folder", code="file")
 
 
-def _sealed(line: Mapping[str, Any], seal: str) -> bytes:
+def _with_checksum(line: Mapping[str, Any], manifest_hash: str) -> bytes:
     """A line of the ledger with a checksum of it and of the sweep that it belongs to."""
-    check = sha256(f"{seal} {json.dumps(line)}".encode())[:16]
+    check = sha256(f"{manifest_hash} {json.dumps(line)}".encode())[:16]
     return json.dumps({**line, "check": check}).encode() + b"\n"
 
 
-def _unsealed(text: bytes, seal: str) -> dict[str, Any] | None:
+def _without_checksum(text: bytes, manifest_hash: str) -> dict[str, Any] | None:
+    """A line of the ledger; None: it is damaged, or it belongs to another sweep."""
     try:
         line = json.loads(text)
         del line["check"]
-        return line if _sealed(line, seal).rstrip() == text.rstrip() else None
+        return line if _with_checksum(line, manifest_hash).rstrip() == text.rstrip() else None
     except (ValueError, RecursionError, KeyError, AttributeError, TypeError):
         return None
 

@@ -18,11 +18,11 @@ from .._files import replacing
 from ..errors import Arm3rError
 from .definition import Sweep
 from .folder import SweepFolder, sha256
-from .shard import Done, Job, columns_of, work
+from .shard import ShardJob, ShardResult, columns_of, run_shard
 from .table import SweepTable
 from .table_io import merge, pyarrow
 
-Submit = Callable[[Job], "Future[Done]"]
+Submit = Callable[[ShardJob], "Future[ShardResult]"]
 
 IN_FLIGHT = 64  # shards, of an executor that does not say how many workers it has
 
@@ -73,7 +73,7 @@ def sweep(
     jobs = None if jobs is None else index(jobs)
     plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
     job = _first_job(plan, "parquet" if parquet else "csv")
-    with SweepFolder.held(Path(out), _manifest(plan, job), resume=resume) as folder:
+    with SweepFolder.open(Path(out), _manifest(plan, job), resume=resume) as folder:
         with _submitting(executor, jobs) as (submit, at_a_time):
             _run(plan, job, folder, submit, at_a_time, progress)
         with replacing(folder.path / f"table.{job.table}") as part, part.open("wb") as file:
@@ -81,10 +81,10 @@ def sweep(
     return SweepTable(out)
 
 
-def _first_job(plan: Sweep, table: str) -> Job:
+def _first_job(plan: Sweep, table: str) -> ShardJob:
     scenario = plan.scenario.copy()
     scenario["checks"] = []
-    return Job(
+    return ShardJob(
         first=0,
         scenario=scenario.to_yaml(),
         file=plan.file,
@@ -97,7 +97,7 @@ def _first_job(plan: Sweep, table: str) -> Job:
     )
 
 
-def _manifest(plan: Sweep, job: Job) -> dict[str, Any]:
+def _manifest(plan: Sweep, job: ShardJob) -> dict[str, Any]:
     """What decides the table's bytes."""
     return {
         "version": job.version,
@@ -121,7 +121,7 @@ def _shards(plan: Sweep) -> int:
 
 def _run(
     plan: Sweep,
-    job: Job,
+    job: ShardJob,
     folder: SweepFolder,
     submit: Submit,
     at_a_time: int,
@@ -129,7 +129,7 @@ def _run(
 ) -> None:
     """Compute and store every shard that the folder does not have; at most `at_a_time` are on their way."""
     missing = (number for number in range(_shards(plan)) if number not in folder.finished)
-    pending: dict[Future[Done], tuple[int, int, int]] = {}
+    pending: dict[Future[ShardResult], tuple[int, int, int]] = {}
     try:
         while True:
             while len(pending) < at_a_time and (number := next(missing, None)) is not None:
@@ -157,7 +157,7 @@ def _run(
 def _submitting(executor: Executor | None, jobs: int | None) -> Iterator[tuple[Submit, int]]:
     """How a job is given away, and how many at a time."""
     if executor is not None:
-        yield lambda job: executor.submit(work, job), IN_FLIGHT if jobs is None else max(1, jobs)
+        yield lambda job: executor.submit(run_shard, job), IN_FLIGHT if jobs is None else max(1, jobs)
         return
     threads = _allowed(jobs)
     left = threading.Event()
@@ -170,7 +170,7 @@ def _submitting(executor: Executor | None, jobs: int | None) -> Iterator[tuple[S
         _of_daemons.add(left)
     with ThreadPoolExecutor(threads) as pool:
         try:
-            yield lambda job: pool.submit(work, job, go_on), 2 * threads
+            yield lambda job: pool.submit(run_shard, job, go_on), 2 * threads
         finally:
             left.set()
             _of_daemons.discard(left)

@@ -44,7 +44,7 @@ class Statistic(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Job:
+class ShardJob:
     """What a worker is sent: text and numbers alone."""
 
     first: int
@@ -58,14 +58,14 @@ class Job:
     abi: int
 
 
-class Done(NamedTuple):
+class ShardResult(NamedTuple):
     """What comes back."""
 
     data: bytes
     outcomes: dict[str, int]
 
 
-def work(job: Job, progress: Callable[[int, int], Any] | None = None) -> Done:
+def run_shard(job: ShardJob, progress: Callable[[int, int], Any] | None = None) -> ShardResult:
     """The rows of a job's runs, as bytes.
 
     Raises:
@@ -83,22 +83,22 @@ def work(job: Job, progress: Callable[[int, int], Any] | None = None) -> Done:
         raise BudgetError(message, code="budget.memory") from error
 
 
-def _computed(job: Job, progress: Callable[[int, int], Any] | None) -> Done:
+def _computed(job: ShardJob, progress: Callable[[int, int], Any] | None) -> ShardResult:
     batch = run_batch(Scenario(job.scenario, file=job.file), job.values, threads=1, progress=progress)
     outcomes = batch.outcomes
     columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
     columns |= {name: batch[name] for name in job.metrics}
     columns |= _statistics(job.statistics, batch, progress)
     data = encode(columns, job.table, lambda: progress and progress(len(batch), len(batch)))
-    return Done(data, dict(sorted(Counter(outcomes.tolist()).items())))
+    return ShardResult(data, dict(sorted(Counter(outcomes.tolist()).items())))
 
 
-def columns_of(job: Job) -> list[str]:
+def columns_of(job: ShardJob) -> list[str]:
     """The names of a table's columns, in order."""
     return ["run", *_axes(job), "outcome", *job.metrics, *(statistic.name for statistic in job.statistics)]
 
 
-def _preflight(job: Job) -> None:
+def _preflight(job: ShardJob) -> None:
     here, there = (_native.version, _native.lib.arm3r_abi_version()), (job.version, job.abi)
     if here != there:
         raise IncompatibleError(
@@ -108,7 +108,7 @@ def _preflight(job: Job) -> None:
         )
 
 
-def _axes(job: Job) -> dict[str, NDArray[Any]]:
+def _axes(job: ShardJob) -> dict[str, NDArray[Any]]:
     """The values that vary, a column a number."""
     columns: dict[str, NDArray[Any]] = {}
     for key, given in job.values.items():
