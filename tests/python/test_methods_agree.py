@@ -33,7 +33,7 @@ def rk4_gap(scenario: Keys, band: Band, rates: tuple[int, ...]) -> Gap | None:
     most = 0.9 * MAX_STEPS / scenario["time"]["stop"]
     solvers = [rk4(scenario, 1 / min(rate, most)) for rate in rates]
     runs = [run for solver in solvers if (run := run_of(scenario, solver)) is not None]
-    if not runs or len({solver["step"] for solver in solvers}) < len(rates):
+    if len(runs) < len(rates) or len({solver["step"] for solver in solvers}) < len(rates):
         return None
     if any(run.outcome != "ok" for run in runs):
         return Gap(np.inf, f"outcomes {[run.outcome for run in runs]}: {runs[-1].summary['message']}", runs[-1].t[-1])

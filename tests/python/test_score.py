@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -9,8 +10,10 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from force_scenarios import read
-from random_scenarios import random_scenario, sample_seed, yaml_of
+from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 from scipy.interpolate import make_interp_spline
+from scipy.optimize import brentq, minimize_scalar
+from scipy.spatial.transform import Rotation
 
 
 @pytest.mark.parametrize("solver", ["{}", "{method: rk4}", "{method: rodas4}"])
@@ -28,71 +31,210 @@ def test_the_path_error_of_a_law_in_joints_is_that_of_the_true_arm(solver: str) 
 # ---- the numbers of a summary against a dense log -------------------------------------------------------------------
 
 SCORED = ["b9a_hybrid", "b9d_hybrid_transpose", "b10a_parallel_moving_wall", "b10b_adaptive_reference", "b7a_stiffness",
-          "b8a_shaped_impedance", "b8c_admittance"]  # fmt: skip
+          "b8a_shaped_impedance", "b8c_admittance", "b5a_energy_ledger"]  # fmt: skip
 METHODS: dict[str, dict[str, Any]] = {
     "dopri5": {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13},
     "rodas4": {"method": "rodas4", "rtol": 1e-10, "atol": 1e-13},
-    "rk4": {"method": "rk4", "step": 1e-4},
+    "rk4": {"method": "rk4", "step": 2.5e-5},
 }
 STOP, ROWS = 0.6, 24000
+DENSER = {"b5a_energy_ledger": 4}
+"""times as many rows, where friction on the wall turns round within 50 us"""
+
+
+class Piece:
+    """What the rows tell between two instants at which something jumps or has a kink: splines through them."""
+
+    def __init__(self, a: float, b: float, t: np.ndarray, values: np.ndarray, touching: bool) -> None:
+        self.a, self.b, self.t, self.values, self.touching = a, b, t, values, touching
+        self.spline = make_interp_spline(t, values, k=DEGREES[min(len(t), 6)])
+
+    def integral(self, i: int) -> float:
+        return float(self.spline.integrate(self.a, self.b)[i])
+
+    def may_reach(self, i: int) -> float:
+        """More than the quantity can be between the rows."""
+        row = self.values[:, i]
+        return float(row.max() + 2 * np.abs(np.diff(row)).max(initial=0.0))
+
+    def peak(self, i: int) -> tuple[float, float]:
+        """The largest value and when, of the spline about its highest row and at both ends."""
+        row = int(np.argmax(self.values[:, i]))
+        near = self.t[row - 1] if row else self.a, self.t[row + 1] if row + 1 < len(self.t) else self.b
+        found = minimize_scalar(lambda t: -self.spline(t)[i], bounds=near, options={"xatol": 1e-13})
+        places = [found.x, self.a, self.b, self.t[row]]
+        values = [float(self.spline(t)[i]) for t in places]
+        return max(values), places[int(np.argmax(values))]
+
+
+DEGREES = {1: 0, 2: 1, 3: 1, 4: 3, 5: 3, 6: 5}
+"""of a spline through so many rows"""
+
+
+def turns_of_force(run: arm3r.Run) -> list[float]:
+    """When the force of a damped contact ends or begins again without a change of contact, from the rows beside it."""
+    t, force, turns = run.t, run["force"], []
+    for i in np.flatnonzero((force[1:] > 0) != (force[:-1] > 0)):
+        side = slice(i - 5, i + 1) if force[i] > 0 else slice(i + 1, i + 7)
+        if any(t[i] <= event.t <= t[i + 1] for event in run.events) or not 5 <= i < len(t) - 7:
+            continue
+        spline = make_interp_spline(t[side], force[side], k=5)
+        if spline(t[i]) * spline(t[i + 1]) < 0:
+            turns.append(brentq(lambda s, f=spline: float(f(s)), t[i], t[i + 1], xtol=1e-15))
+    return turns
+
+
+def is_touching(run: arm3r.Run, t: float) -> bool:
+    before = [event.type for event in run.events if event.t <= t]
+    return bool(before) and before[-1] == "make"
 
 
 class DenseLog:
-    """The same numbers from the rows alone: splines of degree five between contact's changes, parabolas at peaks."""
+    """Numbers of a run from its rows alone.
 
-    def __init__(self, run: arm3r.Run) -> None:
-        self.run, self.t = run, np.asarray(run.t)
-        ends = [0.0, *(event.t for event in run.events), float(run.t[-1])]
-        self.pieces = [(a, b) for a, b in pairwise(ends) if b - a > 8 * self.t[1]]
-        self.in_contact = [(a, b) for a, b in self.pieces if run["contact"][np.searchsorted(self.t, 0.5 * (a + b))] > 0]
+    Args:
+        quantities: one value a row each.
+        jumps: s, the instants beside contact events at which these or their derivatives jump.
+        samples: s, when the torque of a sampled controller changes: derivatives jump.
+    """
 
-    def integral(self, values: Any, pieces: list[tuple[float, float]]) -> float:
-        total = 0.0
-        for a, b in pieces:
-            inside = (self.t >= a) & (self.t <= b)
-            total += make_interp_spline(self.t[inside], values[inside], k=5).integrate(a, b)
-        return float(total)
+    def __init__(self, run: arm3r.Run, quantities: Mapping[str, Any], jumps: Any = (), samples: Any = ()) -> None:
+        t, self.names = np.asarray(run.t), list(quantities)
+        values = np.stack([np.asarray(quantity, float) for quantity in quantities.values()], axis=1)
+        firm = np.array([t[0], t[-1], *jumps, *(event.t for event in run.events)])
+        ends = np.unique([*firm, *samples])
+        ends = ends[(ends >= t[0]) & (ends <= t[-1]) & (np.diff(ends, prepend=-np.inf) > 1e-12)]
+        rows = np.searchsorted(t, ends - 1e-12)  # a row where two pieces meet shows what holds after it
+        rows[-1] = len(t) - any(abs(jump - t[-1]) < 1e-12 for jump in (*jumps, *samples))
+        self.pieces: list[Piece] = []
+        for (a, b), (i, j) in zip(pairwise(ends), pairwise(rows), strict=True):
+            touching = is_touching(run, 0.5 * (a + b))
+            if j - i >= 2:
+                self.pieces.append(Piece(a, b, t[i:j], values[i:j], touching))
+                continue
+            # Too few rows: values go on from the side where they do not jump.
+            i, j = (j, j + 6) if np.abs(firm - a).min() < 1e-12 else (max(0, i - 6), i)
+            at = np.linspace(a, b, 6)
+            self.pieces.append(Piece(a, b, at, make_interp_spline(t[i:j], values[i:j], k=3)(at), touching))
 
-    def peak(self, values: Any) -> tuple[float, float]:
-        """Place and height of the parabola through the highest row and its neighbours, or the row at an end."""
-        i = int(np.argmax(values))
-        if i in (0, len(values) - 1):
-            return float(self.t[i]), float(values[i])
-        (before, here, after), spacing = values[i - 1 : i + 2], self.t[1]
-        share = 0.5 * (before - after) / (before - 2 * here + after)
-        return float(self.t[i] + share * spacing), float(here - 0.25 * (before - after) * share)
+    def integral(self, name: str, *, in_contact: bool = False) -> float:
+        i = self.names.index(name)
+        return sum(piece.integral(i) for piece in self.pieces if piece.touching or not in_contact)
+
+    def peak(self, name: str, *, in_contact: bool = False) -> tuple[float, float]:
+        """The largest value and when; zero where there is no piece that counts."""
+        i, best = self.names.index(name), (0.0, 0.0)
+        pieces = [piece for piece in self.pieces if piece.touching or not in_contact]
+        for piece in sorted(pieces, key=lambda piece: -piece.may_reach(i)):
+            if piece.may_reach(i) < best[0]:
+                break
+            best = max(best, piece.peak(i))
+        return best
+
+
+def jumps_of(scenario: arm3r.Scenario, stop: float) -> list[float]:
+    """When something else than contact jumps, or has a kink, in a scenario that starts at 0."""
+
+    def get(path: str) -> Any:
+        return scenario[path] if path in scenario else 0.0  # noqa: SIM401
+
+    jumps = [*np.atleast_1d(get("wall.motion.t")), *np.atleast_1d(get("reference.t"))]
+    for section in ("push", "reference", "reference.force", "wall.motion"):
+        start = get(f"{section}.start")
+        jumps += [start, start + get(f"{section}.duration"), start + get(f"{section}.rise")]
+    jumps.append(get("reference.start") + get("reference.period") * get("reference.turns"))
+    if "estimator" in scenario and get("controller.adaptation") == "indirect":
+        jumps += np.arange(get("estimator.start"), stop, 1 / get("estimator.rate")).tolist()
+    return jumps
+
+
+def samples_of(scenario: arm3r.Scenario, stop: float) -> Any:
+    """When the torque of a sampled controller changes."""
+    if "sampling" not in scenario:
+        return np.array([])
+    rate, delay = scenario["sampling.rate"], scenario["sampling.delay"]
+    return np.unique([np.arange(0, stop * rate) / rate, (np.arange(0, stop * rate) + delay) / rate])
+
+
+def path_error_2(run: arm3r.Run, scenario: arm3r.Scenario) -> Any:
+    """The square of the tip's distance from its reference; across a wall of force control it does not count."""
+    wanted = run["tip_ref"] if "tip_ref" in run else scenario.arm.tip_position(run["q_ref"])
+    away = run["tip"] - wanted
+    across = np.zeros(len(run.t))
+    if "force_ref" in run:
+        across = run["force_phase"] * np.sum(away * normals(run, scenario), axis=1)
+    return np.sum(away**2, axis=1) - across**2
+
+
+def normals(run: arm3r.Run, scenario: arm3r.Scenario) -> Any:
+    """The wall's normal in each row."""
+    normal, turning = np.array(scenario["wall.normal"]), scenario["wall.rotation.type"]
+    angle = np.zeros(len(run.t))
+    if turning == "constant":
+        angle = scenario["wall.rotation.rate"] * run.t
+    elif turning == "sinusoid":
+        amplitude, phase = scenario["wall.rotation.amplitude"], scenario["wall.rotation.phase"]
+        angle = amplitude * (np.sin(2 * np.pi * scenario["wall.rotation.frequency"] * run.t + phase) - np.sin(phase))
+    axis = np.array(scenario["wall.rotation.axis"]) if turning != "none" else np.array([0.0, 0.0, 1.0])
+    turns = Rotation.from_rotvec(angle[:, None] * axis / np.linalg.norm(axis))
+    return turns.apply(normal / np.linalg.norm(normal))
 
 
 def numbers_of(run: arm3r.Run) -> dict[str, float]:
-    log, numbers = DenseLog(run), {}
-    for i in range(3):
-        numbers[f"work_{i + 1}"] = log.integral(run["tau"][:, i] * run["qd"][:, i], log.pieces)
-    numbers["impulse"] = log.integral(run["force"], log.in_contact)
-    numbers["contact_time"] = sum(b - a for a, b in log.in_contact)
-    numbers["peak_force_time"], numbers["peak_force"] = log.peak(run["force"])
+    """The numbers of a summary that its rows tell."""
+    scenario = arm3r.Scenario(run.summary["scenario"])
+    quantities = {"force": run["force"] if "force" in run else np.zeros(len(run.t))}
+    quantities |= {f"work_{i + 1}": run["tau"][:, i] * run["qd"][:, i] for i in range(3)}
     if "force_ref" in run:
-        miss = run["force_ref"] - run["force"]
-        numbers["force_error_rms"] = np.sqrt(log.integral(miss**2, log.in_contact) / numbers["contact_time"])
-        numbers["overshoot"] = max(0.0, log.peak(-miss)[1])
-    if "tip_ref" in run:
-        away = run["tip"] - run["tip_ref"]
-        across = away @ np.array(arm3r.Scenario(run.summary["scenario"])["wall.normal"])
-        error_2 = np.sum(away**2, axis=1) - (run["force_phase"] * across) ** 2 if "force_phase" in run else None
-        error_2 = np.sum(away**2, axis=1) if error_2 is None else error_2
-        numbers["tip_path_error_rms"] = np.sqrt(log.integral(error_2, log.pieces) / log.t[-1])
-        numbers["tip_path_error_max"] = np.sqrt(log.peak(error_2)[1])
+        quantities["excess"] = run["force"] - run["force_ref"]
+        quantities["miss_2"] = quantities["excess"] ** 2
+    if "tip_ref" in run or "q_ref" in run:
+        quantities["path_2"] = path_error_2(run, scenario)
+    jumps = jumps_of(scenario, float(run.t[-1])) + (turns_of_force(run) if "force" in run else [])
+    log = DenseLog(run, quantities, jumps, samples_of(scenario, float(run.t[-1])))
+    if "sampling" in scenario:  # a torque that is held from row to row
+        held = np.sum(run["tau"][:-1] * np.diff(run["q"], axis=0), axis=0)
+        numbers = {f"work_{i + 1}": float(held[i]) for i in range(3)}
+    else:
+        numbers = {f"work_{i + 1}": log.integral(f"work_{i + 1}") for i in range(3)}
+    numbers["contact_time"] = sum(piece.b - piece.a for piece in log.pieces if piece.touching)
+    if numbers["contact_time"] > 0:
+        numbers["impulse"] = log.integral("force", in_contact=True)
+        numbers["peak_force"], numbers["peak_force_time"] = log.peak("force", in_contact=True)
+        if "force_ref" in run:
+            miss_2 = log.integral("miss_2", in_contact=True) / numbers["contact_time"]
+            numbers["force_error_rms"] = np.sqrt(max(0.0, miss_2))
+            numbers["overshoot"] = log.peak("excess", in_contact=True)[0]
+    if "path_2" in quantities:
+        numbers["tip_path_error_rms"] = np.sqrt(max(0.0, log.integral("path_2") / (run.t[-1] - run.t[0])))
+        numbers["tip_path_error_max"] = np.sqrt(log.peak("path_2")[0])
     return numbers
+
+
+def wrong_numbers(run: arm3r.Run, rel: float) -> dict[str, float]:
+    """By how much numbers of the summary are off, relative to their size, where that is more than `rel`.
+
+    The instant of a peak is known to the root of the accuracy of its height only, and is held to 1e-6 s.
+    """
+    told = {**run.summary["metrics"], **{key: run.summary[key] for key in ("peak_force", "impulse", "contact_time")}}
+    largest_work = max(abs(told[f"work_{i}"]) for i in (1, 2, 3))
+    off = {}
+    for key, due in numbers_of(run).items():
+        of_force = told["peak_force"] if key in ("overshoot", "force_error_rms") else 0.0
+        scale = max(abs(due), largest_work if "work" in key else of_force, 1e-3)
+        off[key] = abs(told[key] - due) / (1e-6 / rel if key == "peak_force_time" else scale)
+    return {key: value for key, value in off.items() if not value <= rel}
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", SCORED)
 def test_a_dense_log_has_the_numbers_of_the_summary(name: str, method: str) -> None:
-    run = read(name, {"solver": METHODS[method], "time.stop": STOP, "time.log_every": STOP / ROWS}).run()
-    told = {**run.summary["metrics"], **{key: run.summary[key] for key in ("peak_force", "impulse", "contact_time")}}
-    for key, due in numbers_of(run).items():
-        scale = max(abs(due), 1e-3)
-        assert told[key] == pytest.approx(due, abs=1e-8 * scale if "time" not in key else 1e-6), key
+    run = read(
+        name, {"solver": METHODS[method], "time.stop": STOP, "time.log_every": STOP / ROWS / DENSER.get(name, 1)}
+    ).run()
+    assert not (wrong := wrong_numbers(run, 1e-8)), wrong
     if "force_ref" in run:
+        told = run.summary["metrics"]
         assert told["overshoot"] == max(0.0, told["peak_force"] - run["force_ref"][0]), "a constant reference"
 
 
@@ -106,48 +248,19 @@ def test_numbers_of_a_sampled_run_are_those_of_its_rows(method: str) -> None:
         "time.stop": 1.0, "time.log_every": 1e-4,
     }  # fmt: skip
     run = read("b9a_hybrid", changes).run()
-    told, log = run.summary["metrics"], DenseLog(run)
-    held = run["tau"][:-1] * np.diff(run["q"], axis=0)
-    assert [told[f"work_{i}"] for i in (1, 2, 3)] == pytest.approx(held.sum(axis=0).tolist(), abs=1e-9)
-    miss = run["force_ref"] - run["force"]
-    assert told["force_error_rms"] == pytest.approx(
-        np.sqrt(log.integral(miss**2, log.in_contact) / run.summary["contact_time"]), rel=1e-5
-    )
-    assert told["overshoot"] == pytest.approx(log.peak(-miss)[1], rel=1e-6)
+    assert not (wrong := wrong_numbers(run, 1e-8)), wrong
 
 
 # ---- random scenarios -----------------------------------------------------------------------------------------------
 
 
-def check_against_rows(run: arm3r.Run) -> None:
-    """What holds whatever jumps: works add up, peaks are those of rows and what may lie between, means agree."""
-    told, log = {**run.summary["metrics"], "peak_force": run.summary["peak_force"]}, DenseLog(run)
-    works = [told[f"work_{i}"] for i in (1, 2, 3)]
-    scale = max(1e-3, *np.abs(works), *np.abs(run["work_actuators"]))
-    assert sum(works) == pytest.approx(told["work_actuators"], abs=1e-7 * scale)
-
-    def check_peak(name: str, values: Any) -> None:
-        i, highest, top = int(np.argmax(values)), float(np.max(values)), log.peak(values)[1]
-        due = max(0.0, highest)
-        slack = 3 * abs(top - highest)
-        if 0 < i < len(values) - 1:  # a damped force is largest where contact begins, between two rows
-            slack += 2 * min(abs(values[i] - values[i - 1]), abs(values[i] - values[i + 1]))
-        assert told[name] >= due - 1e-9 * max(1.0, due), name
-        assert told[name] <= due + slack + 1e-4 * max(1.0, due), name
-
-    if run.events:
-        check_peak("peak_force", run["force"])
-    if "force_ref" in run and run.events:
-        touching = run["contact"] > 0
-        check_peak("overshoot", np.where(touching, run["force"] - run["force_ref"], 0.0))
-        miss_2 = np.where(touching, run["force_ref"] - run["force"], 0.0) ** 2
-        due = np.sqrt(np.trapezoid(miss_2, run.t) / run.summary["contact_time"])
-        assert told["force_error_rms"] == pytest.approx(due, rel=1e-2, abs=1e-3)
-    if "tip_ref" in run and "force_phase" not in run:
-        away = np.linalg.norm(run["tip"] - run["tip_ref"], axis=1)
-        check_peak("tip_path_error_max", away)
-        due = np.sqrt(np.trapezoid(away**2, run.t) / (run.t[-1] - run.t[0]))
-        assert told["tip_path_error_rms"] == pytest.approx(due, rel=1e-4, abs=1e-9)
+def densely_logged(keys: Keys) -> Keys:
+    """At 1/32000 of the run, for limits make kinks; where there are samples, about 1/4000, in parts of their period."""
+    every = keys["time"]["stop"] / 32000
+    if "sampling" in keys:  # a twentieth of the period holds the delays
+        every = 0.05 / keys["sampling"]["rate"] / max(1, round(0.05 / keys["sampling"]["rate"] / (8 * every)))
+    solver = {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13}
+    return {**keys, "solver": solver, "time": {**keys["time"], "log_every": every}}
 
 
 def check_random_scenarios(count: int) -> None:
@@ -155,17 +268,17 @@ def check_random_scenarios(count: int) -> None:
     print("seed", seed)
     rng = np.random.default_rng(seed)
     for number in range(count):
-        keys = random_scenario(rng, longest=0.5)
-        keys["solver"] = {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13}
-        keys["time"]["log_every"] = keys["time"]["stop"] / 4000
+        keys = densely_logged(random_scenario(rng, longest=0.5))
         try:
             run = arm3r.Scenario(yaml_of(keys)).run(time_limit=20)
         except (arm3r.NumericalError, arm3r.BudgetError):
             continue
-        try:
-            check_against_rows(run)
-        except AssertionError as error:
-            raise AssertionError(f"scenario {number} of seed {seed}:\n{yaml_of(keys)}") from error
+        works = [run.summary["metrics"][f"work_{i}"] for i in (1, 2, 3)]
+        assert sum(works) == pytest.approx(run["work_actuators"][-1], abs=1e-8 * max(1e-3, *np.abs(works)))
+        # The impulse of a force that begins as a broken power of the depth is summed by a rule for smooth ones.
+        rough = ("impulse",) if keys.get("wall", {}).get("contact", {}).get("law") == "hunt_crossley" else ()
+        wrong = {key: off for key, off in wrong_numbers(run, 2e-7).items() if key not in rough or off > 1e-5}
+        assert not wrong, f"scenario {number} of seed {seed}: {wrong}\n{yaml_of(keys)}"
 
 
 def test_numbers_of_random_runs_are_those_of_their_rows() -> None:
