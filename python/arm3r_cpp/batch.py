@@ -26,7 +26,7 @@ AXIS_ERRORS.add("number.syntax")
 
 
 class Axis(NamedTuple):
-    """What one key takes on."""
+    """The values of one key."""
 
     key: str
     indices: list[int]

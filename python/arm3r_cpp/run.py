@@ -43,7 +43,7 @@ class Run:
     def __init__(
         self, columns: Mapping[str, Floats], units: Mapping[str, str], summary: dict[str, Any], report: str | None
     ) -> None:
-        """Of data that was stored before; `Scenario.run` and `Run.load` make runs."""
+        """Make a run of data that was stored before; users call `Scenario.run` and `Run.load`."""
         self._columns = dict(columns)
         self._handle = None
         self.units = dict(units)
@@ -117,7 +117,7 @@ class Run:
         return with_numbers(json.loads(_native.text(lib.arm3r_run_summary, self._handle)))
 
     def report(self) -> str:
-        """The summary for people.
+        """The summary as text that people read.
 
         Raises:
             UsageError: the run was read from a CSV file, which has none.
@@ -154,7 +154,7 @@ class Run:
 
     @property
     def warnings(self) -> list[str]:
-        """Likely slips that were seen."""
+        """What is allowed in the scenario but probably a mistake."""
         return self.summary["warnings"]
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:

@@ -18,7 +18,7 @@ from .errors import UsageError
 
 
 class RunData(NamedTuple):
-    """What a run is made of."""
+    """The data of a run, as it is stored in a file."""
 
     columns: dict[str, Floats]
     units: dict[str, str]
@@ -141,7 +141,7 @@ def _fault(value: Any, shape: Any, place: str) -> str:
 
 
 def _verify(parts: RunData, path: Path) -> None:
-    """Refuse what is not, number by number, what the summary was written for."""
+    """Refuse columns that are not, number by number, those that the summary was written for."""
     for found, needed in zip_longest(parts.columns, parts.units):
         _compare(path, "column", found, needed)
     _compare(path, "rows", len(parts.columns["t"]), parts.summary.get("rows"))

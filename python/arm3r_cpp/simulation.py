@@ -1,4 +1,4 @@
-"""A run in your own hands: from sample to sample, with snapshots."""
+"""A simulation that the user steps from sample to sample, with snapshots."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .scenario import Scenario
 
 
 class Snapshot:
-    """All of a simulation at an instant. It does not change."""
+    """The whole state of a simulation at an instant. It does not change."""
 
     def __init__(self, handle: Any, t: float) -> None:
         self._handle = handle
@@ -25,7 +25,7 @@ class Snapshot:
 
 
 class Simulation:
-    """A simulation that stands at each sample of its controller until `step` gives it a torque.
+    """A simulation that waits at each sample of its controller until `step` gives it a torque.
 
     >>> simulation = Simulation(scenario)
     >>> while not simulation.is_over:
@@ -36,10 +36,10 @@ class Simulation:
     """
 
     def __init__(self, scenario: Scenario, *, rate: float | None = None) -> None:
-        """Of a copy of the scenario, whose own controller is set aside.
+        """Start a simulation of a copy of the scenario, whose own controller is not used.
 
         Args:
-            rate: of the samples, Hz; None: the scenario's sampling.rate, by default 1000.
+            rate: the rate of the samples, Hz; None: the scenario's sampling.rate, by default 1000.
 
         Raises:
             ScenarioError: the scenario is not valid, or its solver.method is rk4 or taylor.
@@ -62,7 +62,7 @@ class Simulation:
 
     @property
     def t(self) -> float:
-        """Of the present sample, s."""
+        """The time of the present sample, s."""
         return self._state.t
 
     @property
@@ -108,11 +108,11 @@ class Simulation:
         return Run._of(_native.create("run", lib.arm3r_simulation_run, self._handle))
 
     def snapshot(self) -> Snapshot:
-        """All of it as it is now, rows included: the cost grows with them."""
+        """The whole state at the present sample, rows included: the cost grows with their number."""
         return Snapshot(_native.create("simulation", lib.arm3r_simulation_copy, self._handle), self.t)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back to a snapshot, of this or of another simulation of the same scenario: the same bits follow.
+        """Go back to a snapshot of this or of another simulation of the same scenario. The same bits follow.
 
         Raises:
             UsageError: it is of another scenario.
@@ -121,7 +121,7 @@ class Simulation:
         self._look()
 
     def copy(self) -> Simulation:
-        """An independent simulation that stands where this one does."""
+        """An independent simulation at the same sample."""
         copy = Simulation.__new__(Simulation)
         copy._file = self._file
         copy._begin(_native.create("simulation", lib.arm3r_simulation_copy, self._handle))

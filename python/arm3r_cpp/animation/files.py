@@ -20,7 +20,7 @@ MAX_GIF_RATE = 50.0  # frames a second: what viewers still show
 
 Picture = NDArray[np.uint8]
 Progress = Callable[[int, int], None]
-"""Is told how many frames are done, and of how many."""
+"""Called with the number of finished frames and the number of all frames."""
 
 
 def check_target(path: Path, fps: float) -> None:
@@ -59,7 +59,7 @@ class Film(NamedTuple):
 
 
 def write(film: Film, path: Path) -> None:
-    """Into a file or folder; the same pictures are the same bytes.
+    """Write a film into a file or a folder. The same pictures give the same bytes.
 
     Raises:
         OutputError: it cannot be written; then nothing is.

@@ -51,7 +51,7 @@ def attempt(program: str, work: Callable[[], None]) -> int:
 
 
 def print_line(line: object) -> None:
-    """Print a line on stdout; where nobody reads it, end as a pipe's writer does.
+    """Print a line on stdout. If its reader has closed the pipe, end by SIGPIPE.
 
     Raises:
         OutputError: it cannot be written.
@@ -66,7 +66,7 @@ def print_line(line: object) -> None:
 
 
 def end_by_signal(number: signal.Signals) -> NoReturn:
-    """End by the signal itself, so that the caller sees what happened."""
+    """End the process by the signal itself, so that its caller sees the reason."""
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)
     raise SystemExit(128 + number)

@@ -138,7 +138,7 @@ def save(runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path,
 
 
 def figures(runs: dict[Path, Run], options: argparse.Namespace) -> dict[str, Figure]:
-    """By what their names end in."""
+    """The figures by the ends of their files' names."""
     from ..plot import compare, force, lecture, overview
 
     if options.compare:

@@ -1,4 +1,4 @@
-"""How far a long command is."""
+"""A bar that shows how far a long command is."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ BAR = 30  # characters
 
 
 class Bar:
-    """On stderr where that is a terminal and the work is long: rate, and time left."""
+    """Shows rate and time left on stderr, if that is a terminal and the work takes long."""
 
     def __init__(self, work: str, things: str) -> None:
         """work: what is done, in a word. things: what is counted."""

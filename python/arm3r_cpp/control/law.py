@@ -1,4 +1,4 @@
-"""Control laws of your own, as `Scenario.run` takes them."""
+"""Control laws that users write, as `Scenario.run` takes them."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class NativeLaw(NamedTuple):
     """
 
     address: int
-    """Of the function; the caller keeps it alive."""
+    """The address of the function; the caller keeps the function alive."""
     user: int = 0
-    """Handed to it."""
+    """The address that the function gets as its first argument."""
 
 
 def law_state_index() -> dict[str, int]:
@@ -70,7 +70,7 @@ class LawAdapter:
 
     @property
     def tick(self) -> int:
-        """The last one."""
+        """The number of the last tick."""
         return round((self.t - self._first) / self._period)
 
 

@@ -1,4 +1,4 @@
-"""What a control law of your own sees."""
+"""What a control law that a user writes sees at a sample."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ OVER: Any = _Over()  # what a state has after its tick
 
 
 def state_of(memory: _native.StateMemory) -> LawState:
-    """A state that sees what stands in a memory."""
+    """The state that reads its numbers from a memory."""
     state = LawState.__new__(LawState)
     state._now = memory
     return state
 
 
 class LawState:
-    """What the controller sees at a sample: what the scenario's sensors read, and what follows from it.
+    """What the controller sees at a sample: the readings of the scenario's sensors, and what is computed from them.
 
-    Without a sensors section that is the truth. Joint vectors are in the arm's convention, vectors in space in base
-    axes; arrays are copies, the caller's own.
+    Without a `sensors` section the readings are the true values. Joint vectors follow the arm's convention, and vectors
+    in space are in base axes. Every array is a copy that the caller may keep and change.
     """
 
     __slots__ = ("_now",)
@@ -36,17 +36,17 @@ class LawState:
 
     @property
     def tick(self) -> int:
-        """Samples before this one."""
+        """The number of samples before this one."""
         return int(self._now.struct.tick)
 
     @property
     def t(self) -> float:
-        """s"""
+        """The time of the sample, s."""
         return self._now.struct.t
 
     @property
     def period(self) -> float:
-        """From sample to sample, s."""
+        """The time from one sample to the next, s."""
         return self._now.struct.period
 
     @property
@@ -61,27 +61,27 @@ class LawState:
 
     @property
     def tip(self) -> Floats:
-        """Position of the tip at this q: (3,), m."""
+        """The position of the tip at this q: (3,), m."""
         return self._now.tip.copy()
 
     @property
     def tip_velocity(self) -> Floats:
-        """J qd: (3,), m/s."""
+        """The velocity of the tip, J qd: (3,), m/s."""
         return self._now.tip_velocity.copy()
 
     @property
     def jacobian(self) -> Floats:
-        """J at this q: (3, 3), m."""
+        """The Jacobian of the tip's position at this q: (3, 3), m."""
         return self._now.jacobian.copy()
 
     @property
     def tau_g(self) -> Floats:
-        """Torque that holds the arm at this q: (3,), N m."""
+        """The torque that holds the arm at this q: (3,), N m."""
         return self._now.tau_g.copy()
 
     @property
     def f_on_tip(self) -> Floats:
-        """Contact force on the tip: (3,), N."""
+        """The contact force on the tip: (3,), N."""
         return self._now.f_on_tip.copy()
 
     @property
@@ -91,7 +91,7 @@ class LawState:
 
     @property
     def wall_normal(self) -> Floats:
-        """From the wall towards the arm: (3,), unit; without a wall 0."""
+        """The unit vector from the wall towards the arm: (3,); without a wall 0."""
         return self._now.wall_normal.copy()
 
     @property
@@ -101,45 +101,45 @@ class LawState:
 
     @property
     def wall_velocity(self) -> Floats:
-        """Of the wall's frame: (3,), m/s; without a wall 0."""
+        """The velocity of the wall's frame: (3,), m/s; without a wall 0."""
         return self._now.wall_velocity.copy()
 
     @property
     def residual(self) -> Floats:
-        """External torque as the momentum observer has it: (3,), N m; without one 0."""
+        """The external torque that the momentum observer estimates: (3,), N m; without an observer 0."""
         return self._now.residual.copy()
 
     @property
     def collision(self) -> bool:
-        """Whether the observer takes a collision for going on."""
+        """Whether the observer reports a collision."""
         return self._now.struct.collision > 0
 
     @property
     def stiffness_estimate(self) -> float:
-        """Of the wall, by the estimator, N/m; 0 without one, or where it is not identifiable."""
+        """The stiffness of the wall that the estimator found, N/m; 0 without an estimator, or if not identifiable."""
         return self._now.struct.stiffness_estimate
 
     @property
     def wall_speed_estimate(self) -> float:
-        """Of the wall towards the arm, likewise, m/s."""
+        """The speed of the wall towards the arm that the estimator found, m/s; 0 where the stiffness is."""
         return self._now.struct.wall_speed_estimate
 
     @property
     def identifiable(self) -> bool:
-        """Whether the data tell the two apart."""
+        """Whether the data determine both stiffness and speed."""
         return self._now.struct.identifiable > 0
 
     @property
     def q_true(self) -> Floats:
-        """What q is, which no controller knows: (3,), rad."""
+        """The true joint angles, without sensor errors: (3,), rad."""
         return self._now.q_true.copy()
 
     @property
     def qd_true(self) -> Floats:
-        """What qd is: (3,), rad/s."""
+        """The true joint rates: (3,), rad/s."""
         return self._now.qd_true.copy()
 
     @property
     def f_on_tip_true(self) -> Floats:
-        """What f_on_tip is: (3,), N."""
+        """The true contact force on the tip: (3,), N."""
         return self._now.f_on_tip_true.copy()

@@ -1,4 +1,4 @@
-"""What the axes of a sweep take on in each run: a pure function of the sweep and the run's number."""
+"""The values of the axes of a sweep in each run: a pure function of the sweep and of the number of the run."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class SweepAxis:
 
 
 def values_of(axes: tuple[SweepAxis, ...], mode: str, seed: int, total: int, first: int, count: int) -> dict[str, Any]:
-    """What every key takes on in runs `first` to `first + count` of `total`."""
+    """The values of every key in runs `first` to `first + count` of `total`."""
     runs = np.arange(first, first + count, dtype=np.uint64)
     if mode == "list":
         return {axis.key: axis.take(runs) for axis in axes}
@@ -74,7 +74,7 @@ def values_of(axes: tuple[SweepAxis, ...], mode: str, seed: int, total: int, fir
 
 
 def _grid(axes: tuple[SweepAxis, ...], runs: Runs) -> dict[str, Any]:
-    """The last axis is the fastest."""
+    """The values on a grid, on which the last axis varies fastest."""
     values, left = {}, runs
     for axis in reversed(axes):
         left, place = np.divmod(left, np.uint64(axis.count or 1))

@@ -90,7 +90,7 @@ class Sweep:
         return f"<Sweep {self.file}: {self.runs} runs over {', '.join(axis.key for axis in self.axes)}>"
 
     def values(self, first: int = 0, count: int | None = None) -> dict[str, Any]:
-        """What every axis takes on in `count` runs from run `first`: arrays by key, a row a run."""
+        """The values of every axis in `count` runs from run `first`: arrays by key, a row a run."""
         count = self.runs - first if count is None else count
         return values_of(self.axes, self.mode, self.seed, self.runs, first, count)
 
@@ -245,7 +245,7 @@ def _walk(node: Node, path: str) -> Iterator[Node]:
 
 
 def _check_axes(reader: Reader, top: dict[str, Node], sweep: Sweep) -> None:
-    """That every axis means something in this scenario, with every combination of words."""
+    """Check that the scenario has the key of every axis, with every combination of words."""
     nodes = {axis.key: node for axis, node in zip(sweep.axes, top["axes"]["list"], strict=True)}
     first = sweep.values(0, 1)
     for axis in sweep.axes:

@@ -32,8 +32,8 @@ class _Damaged(Exception):
 class SweepFolder:
     """A folder that this process holds the lock of.
 
-    A shard counts as finished when the ledger has a whole line of it, and its file the size and checksum of that line;
-    nothing else is believed.
+    A shard counts as finished when the ledger has a whole line of it, and its file has the size and the checksum that
+    the line says.
     """
 
     def __init__(self, path: Path, manifest: Mapping[str, Any]) -> None:
@@ -94,7 +94,7 @@ class SweepFolder:
             )
 
     def _clear(self) -> None:
-        """Take away what a killed process left half written."""
+        """Remove the unfinished files of a process that was killed."""
         for part in [*self.path.glob("*.part"), *(self.path / SHARDS).glob("*.part")]:
             part.unlink()
 
@@ -104,7 +104,7 @@ class SweepFolder:
         return self.path / SHARDS / f"{number:06}.{self.manifest['table']}"
 
     def store(self, number: int, first: int, count: int, data: bytes, outcomes: Mapping[str, int]) -> None:
-        """Publish a finished shard, then acknowledge it. A shard that is stored already stays."""
+        """Write a finished shard, then its line of the ledger. A shard that is stored already stays as it is."""
         if number in self.finished:
             return
         file = self.shard(number)
@@ -133,7 +133,7 @@ class SweepFolder:
         self.runs_done += line["count"]
 
     def _read_ledger(self) -> None:
-        """Believe what can be checked, say what cannot, and keep the ledger clean of it."""
+        """Read the finished shards, warn about lines and files that are damaged, and write the ledger without them."""
         path = self.path / LEDGER
         path.touch()
         with writing(path):

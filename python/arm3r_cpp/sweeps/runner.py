@@ -98,7 +98,7 @@ def _first_job(plan: Sweep, table: str) -> ShardJob:
 
 
 def _manifest(plan: Sweep, job: ShardJob) -> dict[str, Any]:
-    """What decides the table's bytes."""
+    """Everything that decides the bytes of the table."""
     return {
         "version": job.version,
         "abi": job.abi,
@@ -155,7 +155,7 @@ def _run(
 
 @contextmanager
 def _submitting(executor: Executor | None, jobs: int | None) -> Iterator[tuple[Submit, int]]:
-    """How a job is given away, and how many at a time."""
+    """The function that submits a job, and how many jobs are submitted at a time."""
     if executor is not None:
         yield lambda job: executor.submit(run_shard, job), IN_FLIGHT if jobs is None else max(1, jobs)
         return

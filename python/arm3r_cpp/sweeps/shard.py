@@ -45,7 +45,7 @@ class Statistic(NamedTuple):
 
 @dataclass(frozen=True)
 class ShardJob:
-    """What a worker is sent: text and numbers alone."""
+    """What a worker receives: text and numbers only."""
 
     first: int
     scenario: str
@@ -59,7 +59,7 @@ class ShardJob:
 
 
 class ShardResult(NamedTuple):
-    """What comes back."""
+    """What a worker returns."""
 
     data: bytes
     outcomes: dict[str, int]
@@ -121,7 +121,7 @@ def _axes(job: ShardJob) -> dict[str, NDArray[Any]]:
 def _statistics(
     wanted: Sequence[Statistic], batch: Batch, progress: Callable[[int, int], Any] | None
 ) -> dict[str, Any]:
-    """Of every run once more, alone and with its rows."""
+    """The statistics of every run, which is run once more with its rows."""
     rows = []
     for i, outcome in enumerate(batch.outcomes if wanted else ()):
         if progress:

@@ -51,7 +51,7 @@ class SweepTable:
 
     @cached_property
     def _columns(self) -> dict[str, NDArray[Any]]:
-        """Raises UsageError: the table is damaged."""
+        """The columns by name. Raises UsageError: the table is damaged."""
         try:
             columns = decode(self.path, self._kind)
         except (OSError, ValueError, LookupError, StopIteration):

@@ -14,7 +14,7 @@ MAX_PROBLEMS = 20
 
 
 class Reader:
-    """Takes values out of nodes; what is wrong with them is listed, all of it, and raised at the end."""
+    """Takes values out of nodes. It lists every problem that it finds, and raises them together at the end."""
 
     def __init__(self, file: str) -> None:
         self.file = file
