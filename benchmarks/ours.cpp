@@ -2,10 +2,11 @@
 
 #include <random>
 
-#include "arm3r/eigen_traits.hpp"
 #include "arm3r/lanes.hpp"
-#include "schema.hpp"
-#include "simulation.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
+#include "batch/simulation.hpp"
+#include "record/run_data.hpp"
+#include "schema/schema.hpp"
 
 namespace bench {
 

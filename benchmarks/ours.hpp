@@ -5,8 +5,8 @@
 #include <tuple>
 #include <vector>
 
-#include "arm3r/eigen_traits.hpp"
-#include "setup.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
+#include "setup/setup.hpp"
 
 namespace bench {
 

@@ -1,7 +1,7 @@
 # The Taylor kernels: printed by a program of ours, compiled into the core.
 
-add_executable(derive_taylor cpp/src/derive_taylor.cpp)
-target_include_directories(derive_taylor PRIVATE cpp/include)
+add_executable(derive_taylor cpp/src/integrate/derive_taylor.cpp)
+target_include_directories(derive_taylor PRIVATE cpp/include cpp/src)
 target_link_libraries(derive_taylor PRIVATE arm3r_flags Eigen3::Eigen)
 target_compile_options(derive_taylor PRIVATE $<$<CONFIG:Release>:-O0>) # it runs for an instant
 
@@ -12,5 +12,5 @@ target_sources(arm3r_core PRIVATE ${_kernels})
 target_include_directories(arm3r_core PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/taylor)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # The kernels fill the registers as they are; vectorized loops over the orders would be slower.
-  set_source_files_properties(cpp/src/taylor.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
+  set_source_files_properties(cpp/src/integrate/taylor.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
 endif()

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "batch.hpp"
+#include "batch/batch.hpp"
 #include "fixtures.hpp"
-#include "summary.hpp"
+#include "record/metrics.hpp"
 
 namespace arm3r {
 

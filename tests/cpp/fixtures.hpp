@@ -9,11 +9,12 @@
 #include <random>
 #include <string_view>
 
-#include "arm3r/eigen_traits.hpp"
-#include "columns.hpp"
-#include "schema.hpp"
-#include "setup.hpp"
-#include "simulation.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
+#include "batch/simulation.hpp"
+#include "record/run_data.hpp"
+#include "schema/columns.hpp"
+#include "schema/schema.hpp"
+#include "setup/setup.hpp"
 
 namespace arm3r {
 

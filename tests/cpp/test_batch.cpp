@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 
+#include "base/error.hpp"
+#include "batch/worker.hpp"
 #include "batch_runs.hpp"
-#include "crew.hpp"
-#include "error.hpp"
 
 namespace arm3r {
 

@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/contact.hpp"
-#include "arm3r/dual.hpp"
+#include "arm3r/model/contact.hpp"
+#include "arm3r/numbers/dual.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <random>
 
-#include "arm3r/eigen_traits.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
 
 namespace arm3r {
 

@@ -1,9 +1,9 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/dynamics.hpp"
+#include "arm3r/model/dynamics.hpp"
+#include "arm3r/model/recursion.hpp"
 #include "arm3r/plant.hpp"
-#include "arm3r/recursion.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "arm3r/real.hpp"
+#include "arm3r/numbers/real.hpp"
 
 namespace arm3r {
 

@@ -2,7 +2,7 @@
 #include <boost/test/unit_test.hpp>
 #include <random>
 
-#include "arm3r/eigen_traits.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
 
 namespace arm3r {
 

@@ -1,11 +1,11 @@
-#include "arm3r/laws.hpp"
+#include "arm3r/control/laws.hpp"
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
 #include <boost/test/unit_test.hpp>
 
 #include "arm3r/lanes.hpp"
-#include "compiled_laws.hpp"
+#include "control/compiled_laws.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

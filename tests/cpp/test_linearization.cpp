@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/linearization.hpp"
+#include "arm3r/ode/linearization.hpp"
 #include "arm3r/plant.hpp"
 #include "fixtures.hpp"
 

@@ -1,9 +1,9 @@
 #include <boost/test/unit_test.hpp>
 #include <vector>
 
-#include "arm3r/recursion.hpp"
+#include "arm3r/model/recursion.hpp"
+#include "batch/model_batch.hpp"
 #include "fixtures.hpp"
-#include "model_batch.hpp"
 
 using namespace arm3r;
 

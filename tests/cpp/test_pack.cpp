@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "arm3r/eigen_traits.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
 
 namespace arm3r {
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "arm3r/pack.hpp"
-#include "arm3r/polynomial.hpp"
+#include "arm3r/numbers/pack.hpp"
+#include "arm3r/numbers/polynomial.hpp"
 
 namespace arm3r {
 

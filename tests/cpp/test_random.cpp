@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "arm3r/random.hpp"
+#include "arm3r/numbers/random.hpp"
 
 namespace arm3r {
 

@@ -1,8 +1,8 @@
 #include <boost/test/unit_test.hpp>
 #include <map>
 
-#include "arm3r/dynamics.hpp"
-#include "arm3r/recursion.hpp"
+#include "arm3r/model/dynamics.hpp"
+#include "arm3r/model/recursion.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

@@ -1,7 +1,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/rodas.hpp"
+#include "arm3r/ode/rodas.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

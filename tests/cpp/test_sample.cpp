@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "fixtures.hpp"
-#include "sample.hpp"
+#include "record/row.hpp"
 
 using namespace arm3r;
 

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <random>
 
-#include "error.hpp"
-#include "numbers.hpp"
-#include "schema.hpp"
-#include "text.hpp"
+#include "base/error.hpp"
+#include "base/number_text.hpp"
+#include "base/text.hpp"
+#include "schema/schema.hpp"
+#include "schema/suggest.hpp"
 
 BOOST_AUTO_TEST_SUITE(scenario)
 

@@ -1,4 +1,4 @@
-#include "arm3r/setpoint.hpp"
+#include "arm3r/control/reference.hpp"
 
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>

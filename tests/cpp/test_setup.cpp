@@ -1,7 +1,9 @@
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/dynamics.hpp"
+#include "arm3r/model/dynamics.hpp"
 #include "fixtures.hpp"
+#include "validate/rules.hpp"
+#include "validate/warnings.hpp"
 
 namespace arm3r {
 

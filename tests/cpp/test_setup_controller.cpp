@@ -2,12 +2,12 @@
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/dynamics.hpp"
 #include "arm3r/lanes.hpp"
+#include "arm3r/model/dynamics.hpp"
 #include "fixtures.hpp"
-#include "loop_limits.hpp"
-#include "setup_controller.hpp"
-#include "validate.hpp"
+#include "setup/make_controller.hpp"
+#include "validate/stability_limits.hpp"
+#include "validate/validate.hpp"
 
 namespace arm3r {
 

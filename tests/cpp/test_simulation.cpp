@@ -2,9 +2,9 @@
 #include <boost/test/unit_test.hpp>
 
 #include "arm3r/plant.hpp"
-#include "error.hpp"
+#include "base/error.hpp"
 #include "fixtures.hpp"
-#include "ledger.hpp"
+#include "record/energy_balance.hpp"
 
 namespace arm3r {
 

@@ -1,7 +1,7 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/small_lu.hpp"
+#include "arm3r/numbers/small_lu.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

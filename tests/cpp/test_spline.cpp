@@ -2,7 +2,7 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "spline.hpp"
+#include "base/spline.hpp"
 
 namespace arm3r {
 

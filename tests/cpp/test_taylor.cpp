@@ -1,4 +1,4 @@
-#include "taylor.hpp"
+#include "integrate/taylor.hpp"
 
 #include <boost/test/unit_test.hpp>
 #include <complex>

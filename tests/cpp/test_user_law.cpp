@@ -2,10 +2,12 @@
 #include <cmath>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "batch/simulation.hpp"
+#include "control/controller_view.hpp"
 #include "fixtures.hpp"
-#include "law_state.hpp"
-#include "stepwise.hpp"
+#include "run/adaptive_run.hpp"
+#include "run/interactive_run.hpp"
 
 namespace arm3r {
 

@@ -1,8 +1,8 @@
 #include <boost/test/unit_test.hpp>
 
-#include "at.hpp"
 #include "fixtures.hpp"
-#include "validate.hpp"
+#include "schema/param_access.hpp"
+#include "validate/validate.hpp"
 
 namespace arm3r {
 

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
-#include "arm3r/wall.hpp"
+#include "arm3r/model/wall.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "arm3r/real.hpp"
+#include "arm3r/numbers/real.hpp"
 
 using namespace arm3r;
 

@@ -3,11 +3,12 @@
 
 #include <limits>
 
-#include "arm3r/contact.hpp"
-#include "arm3r/digital.hpp"
-#include "arm3r/integrators.hpp"
-#include "arm3r/laws.hpp"
-#include "arm3r/observer.hpp"
+#include "arm3r/control/laws.hpp"
+#include "arm3r/control/observer.hpp"
+#include "arm3r/control/sampling.hpp"
+#include "arm3r/model/contact.hpp"
+#include "arm3r/ode/integrators.hpp"
+#include "schema/suggest.hpp"
 
 namespace arm3r {
 

@@ -1,0 +1,192 @@
+#pragma once
+// What a controller consists of: its law, its gains, its copy of the arm, possibly a wrong one, and what it wants. The laws
+// themselves: laws.hpp. Slide convention, base axes.
+
+#include <array>
+
+#include "arm3r/control/reference.hpp"
+#include "arm3r/model/dynamics.hpp"
+#include "arm3r/model/recursion.hpp"
+
+namespace arm3r {
+
+enum class Controls {
+    none,
+    constant,
+    gravity_compensation,
+    joint_pd,
+    computed_torque,
+    resolved_acceleration,
+    stiffness,
+    joint_stiffness,
+    impedance,
+    shaped_impedance,
+    operational_space,
+    hybrid,
+    parallel,
+    admittance,
+    adaptive_reference,
+    energy_tank,
+    virtual_wall,
+    user,
+};
+enum class Algorithm { closed_form, recursion };
+enum class Variant { dynamic, jacobian_transpose, projected, raibert_craig };
+enum class ForceTerm { cancelled, feedforward };
+enum class AntiWindup { none, conditional, back_calculation };
+enum class Switching { in_contact, latched, always };
+enum class Inner { exact, position, joint_pd };
+enum class Adaptation { integral, indirect };
+enum class Saturation { clamp, scale };
+
+// Whether the law is more than the torque of a formula without gains: it has a file of its own (laws.hpp).
+constexpr bool has_law(Controls type) { return type > Controls::gravity_compensation && type != Controls::user; }
+
+// Whether its first memory is the integral of the force error.
+constexpr bool integrates_force(Controls type) {
+    return type == Controls::operational_space || type == Controls::hybrid || type == Controls::parallel;
+}
+
+// How many numbers a law remembers; what each of them is, its formula says.
+enum : std::size_t { law_memory = 6 };  // at most
+constexpr std::size_t memory_size(Controls type) {
+    if (type == Controls::admittance) return law_memory;
+    return integrates_force(type) || type == Controls::adaptive_reference || type == Controls::energy_tank ? 1 : 0;
+}
+
+// What a law wants at all.
+constexpr bool wants_force(Controls type) { return integrates_force(type) || type == Controls::adaptive_reference; }
+constexpr bool wants_path(Controls type) { return has_law(type) && type != Controls::virtual_wall; }
+
+template <class P>
+struct Gains {
+    Vec3<P> joint_stiffness, joint_damping;             // N m/rad, N m s/rad
+    Vec3<P> position, velocity;                         // 1/s^2, 1/s
+    Vec3<P> mass, stiffness, damping;                   // kg, N/m, N s/m, along the base axes
+    P force_mass, force_damping;                        // kg, N s/m, along the normal
+    P force, force_integral;                            // 1, 1/s
+    P integral_limit, tracking_time;                    // N s, s
+    P contact_on, contact_off;                          // N
+    P inner_bandwidth, inner_damping_ratio;             // rad/s, 1
+    P reference;                                        // m/(N s)
+    P assumed_stiffness;                                // N/m
+    P stiffness_amplitude, stiffness_frequency;         // N/m, Hz
+    P tank_energy, tank_low, tank_high, tank_capacity;  // J
+    Vec3<P> plane_point, plane_normal;                  // m; unit
+};
+
+// What is the same in all lanes.
+struct ControllerChoices {
+    Controls type = Controls::none;
+    Algorithm algorithm = Algorithm::closed_form;  // for gravity_compensation
+    Variant variant = Variant::dynamic;
+    ForceTerm force_term = ForceTerm::cancelled;
+    AntiWindup anti_windup = AntiWindup::none;
+    Switching switching = Switching::in_contact;
+    Inner inner = Inner::exact;
+    Adaptation adaptation = Adaptation::integral;
+    Saturation saturation = Saturation::clamp;
+    bool compensates_gravity = false, cancels_force = false, ideal_cancellation = false, has_tank = false,
+         controls_passivity = false;
+
+    bool operator==(const ControllerChoices&) const = default;
+};
+
+// Whether it takes the wall's stiffness from an estimator, once that knows it.
+inline bool asks_estimator(const ControllerChoices& law) {
+    return law.type == Controls::adaptive_reference && law.adaptation == Adaptation::indirect;
+}
+
+template <class P>
+struct Controller : ControllerChoices {
+    Vec3<P> torque;  // N m, for constant
+    Gains<P> gains;
+    Setpoint<P> setpoint;
+    Arm<P> model;  // the controller's copy; its gravity is what it compensates
+};
+
+// ---- what a law is given and gives back
+
+// What a controller may know at an instant. With perfect sensors it is what is.
+template <class T>
+struct Sensed {
+    T t;                  // s
+    Vec3<T> q, qd;        // rad, rad/s
+    Pose<T> pose;         // of q
+    Vec3<T> f_on_tip;     // N, measured
+    Vec3<T> f_cancelled;  // N, what a law may cancel: the measured one, or the true one with ideal_cancellation
+    Vec3<T> n;            // unit, from the wall towards the arm; the pressing direction is -n
+    T face;               // m, n . (a point of the wall's face)
+    T contact;            // 1: the controller takes the tip to be in contact; else 0
+    T force_phase;        // 1: force is controlled along n; 0: the tip keeps to the reference there too
+};
+
+template <class T>
+struct Command {
+    Vec3<T> tau;                      // N m, before the limit
+    std::array<T, law_memory> rates;  // of the law's memory, 1/s each
+    Vec3<T> per_integral;             // N m/(N s), d tau/d memory[0]: what anti-windup turns back
+};
+
+template <class P, class T>
+using LawFunction = void (*)(const Controller<P>&, const Sensed<T>&, const std::array<T, law_memory>&, Command<T>&);
+
+// ---- the torques that need no law
+
+template <class P, class T>
+ARM3R_INLINE Vec3<T> control(const Controller<P>& controller, const Vec3<T>& q, const Pose<T>& p) {
+    if (controller.type == Controls::gravity_compensation)
+        return controller.algorithm == Algorithm::closed_form ? gravity_torque(controller.model, p)
+                                                              : recursion_gravity_torque(controller.model, q);
+    if (controller.type == Controls::constant) return lifted<T>(controller.torque);
+    return {T(0.0), T(0.0), T(0.0)};
+}
+
+// What the actuators can give of it: each joint for itself, or all by one factor.
+template <class P, class T>
+ARM3R_INLINE Vec3<T> limited(const Arm<P>& arm, const Vec3<T>& tau, Saturation saturation) {
+    if (!arm.has_torque_limit) return tau;
+    const auto clamped = [&](int i) ARM3R_INLINE_LAMBDA {
+        return T(max(min(tau[i], T(arm.torque_limit[i])), T(-arm.torque_limit[i])));
+    };
+    if (saturation == Saturation::clamp) return {clamped(0), clamped(1), clamped(2)};
+    Vec3<T> share;
+    for (int i = 0; i < 3; ++i) {
+        const T size = abs(tau[i]), limit(arm.torque_limit[i]);
+        share[i] = select(size > limit, T(limit / size), T(1.0));
+    }
+    const T factor = min(min(share[0], share[1]), share[2]);
+    const auto scaled = [&](int i)
+                            ARM3R_INLINE_LAMBDA { return select(share[i] == factor, clamped(i), T(factor * tau[i])); };
+    return {scaled(0), scaled(1), scaled(2)};
+}
+
+// The rate of an integral of the force error that stays within its limit (7.5).
+template <class P, class T>
+ARM3R_INLINE T within_limit(const Gains<P>& gains, const T& integral, const T& rate) {
+    const T o(0.0), limit(gains.integral_limit);
+    const auto full = (integral >= limit && rate > o) || (integral <= -limit && rate < o);
+    return select(full, o, rate);
+}
+
+// The torque that is put out: the computed one behind the limit of the actuators. The law's integral takes note of what
+// they could not give (7.5).
+template <class P, class T>
+ARM3R_INLINE Vec3<T> actuated(const Arm<P>& arm, const Controller<P>& controller, const T& integral,
+                              Command<T>& command) {
+    const Vec3<T> output = limited(arm, command.tau, controller.saturation);
+    if (controller.anti_windup == AntiWindup::none) return output;
+    const Vec3<T> lack = minus(output, command.tau);
+    const T turned_back = dot(command.per_integral, lack);
+    T& rate = command.rates[0];
+    if (controller.anti_windup == AntiWindup::conditional) {
+        rate = select(turned_back * rate < T(0.0), T(0.0), rate);
+    } else {
+        const T size = max(dot(command.per_integral, command.per_integral), T(1e-300));
+        rate =
+            within_limit(controller.gains, integral, T(rate + turned_back / (size * controller.gains.tracking_time)));
+    }
+    return output;
+}
+
+}  // namespace arm3r

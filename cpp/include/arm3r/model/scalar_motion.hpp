@@ -1,0 +1,85 @@
+#pragma once
+// How far something is along a line, or about an axis, as a function of time alone: swings, ramps, tables.
+
+#include <array>
+
+#include "arm3r/numbers/real.hpp"
+
+namespace arm3r {
+
+// A sin(2 pi f t + phase) - A sin(phase): m, or rad.
+template <class P>
+struct Swing {
+    P amplitude, frequency, phase;  // frequency: Hz; phase: rad
+};
+
+// From one rest to the next.
+template <class P>
+struct Ramp {
+    P distance, start, duration;  // m, s, s
+};
+
+inline constexpr int most_knots = 16;
+
+// A curve through points, with velocity and acceleration there; at rest outside.
+template <class P>
+struct Table {
+    int knots = 0;  // in use, the same number in all lanes
+    std::array<P, most_knots> t, s, v, a;
+};
+
+// With its first two derivatives by time.
+template <class T>
+struct Course {
+    T s, v, a;
+};
+
+inline constexpr double two_pi = 6.283185307179586;
+
+template <class P, class T>
+ARM3R_INLINE Course<T> course(const Swing<P>& swing, const T& t) {
+    const T cycles = swing.frequency * t;
+    const SinCos<T> now = sincos(T((cycles - nearest_integer(cycles)) * two_pi + swing.phase));
+    const P omega = two_pi * swing.frequency;
+    return {swing.amplitude * now.sin - swing.amplitude * sincos(swing.phase).sin, swing.amplitude * omega * now.cos,
+            -(swing.amplitude * omega * omega) * now.sin};
+}
+
+template <class P, class T>
+ARM3R_INLINE Course<T> course(const Ramp<P>& ramp, const T& t) {
+    const T x = min(max(T((t - ramp.start) / ramp.duration), T(0.0)), T(1.0)), rest = 1.0 - x;
+    const P speed = ramp.distance / ramp.duration;
+    return {ramp.distance * (x * x * x * (10.0 + x * (6.0 * x - 15.0))), speed * (30.0 * (x * x) * (rest * rest)),
+            speed / ramp.duration * (60.0 * x * rest * (rest - x))};
+}
+
+// The quintic of the piece that t lies in; at rest before the first knot and from the last one on.
+template <class P, class T>
+ARM3R_INLINE Course<T> course(const Table<P>& table, const T& t) {
+    struct Knot {
+        T t, s, v, a;
+    };
+    const auto knot = [&](int i) ARM3R_INLINE_LAMBDA {
+        return Knot{T(table.t[i]), T(table.s[i]), T(table.v[i]), T(table.a[i])};
+    };
+    const auto either = [](const auto& which, const Knot& x, const Knot& y) ARM3R_INLINE_LAMBDA {
+        return Knot{select(which, x.t, y.t), select(which, x.s, y.s), select(which, x.v, y.v), select(which, x.a, y.a)};
+    };
+    Knot from = knot(0), to = knot(1);
+    for (int i = 1; i + 1 < table.knots; ++i) {
+        const auto is_later = t >= T(table.t[i]);
+        from = either(is_later, knot(i), from);
+        to = either(is_later, knot(i + 1), to);
+    }
+    const T h = to.t - from.t, x = min(max(T((t - from.t) / h), T(0.0)), T(1.0));
+    const T v0 = h * from.v, a0 = 0.5 * (h * h) * from.a, v1 = h * to.v, a1 = 0.5 * (h * h) * to.a;
+    const T ds = to.s - from.s - v0 - a0, dv = v1 - v0 - 2.0 * a0, da = a1 - a0;
+    const T c3 = 10.0 * ds - 4.0 * dv + da, c4 = 7.0 * dv - 15.0 * ds - 2.0 * da, c5 = 6.0 * ds - 3.0 * dv + da;
+    const auto moves = t >= T(table.t[0]) && t < T(table.t[table.knots - 1]);
+    const T o(0.0);
+    return {from.s + x * (v0 + x * (a0 + x * (c3 + x * (c4 + x * c5)))),
+            select(moves, T((v0 + x * (2.0 * a0 + x * (3.0 * c3 + x * (4.0 * c4 + x * (5.0 * c5))))) / h), o),
+            select(moves, T((2.0 * a0 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5)))) / (h * h)), o)};
+}
+
+}  // namespace arm3r

@@ -1,0 +1,160 @@
+#pragma once
+// A plate that moves on its own account; docs/model.md, section 4. It knows nothing of the arm. Base axes.
+
+#include <memory>
+
+#include "arm3r/model/scalar_motion.hpp"
+#include "arm3r/numbers/vectors.hpp"
+
+namespace arm3r {
+
+enum class Motion { fixed, constant, sinusoid, ramp, table };
+enum class Rotation { none, constant, sinusoid };
+
+template <class P>
+struct Wall {
+    Vec3<P> point;      // m, origin of the plate's frame at t = 0
+    Vec3<P> n, e1, e2;  // unit, at t = 0: towards the arm, and along the plate's sides (4.1)
+    P half1, half2;     // m, half its sides; inf: half-space
+    bool has_outline;   // some lane's half is finite
+    P face_offset;      // m, of the contact face in front of the frame
+    Motion motion = Motion::fixed;
+    Vec3<P> velocity;   // m/s, for constant
+    Vec3<P> direction;  // unit, of every other motion
+    Swing<P> swing;
+    Ramp<P> ramp;
+    std::shared_ptr<Table<P>> table;
+    Rotation rotation = Rotation::none;
+    Vec3<P> axis;  // unit, through the origin of the frame
+    P turn_rate;   // rad/s, for constant
+    Swing<P> turn_swing;
+};
+
+template <class T>
+struct WallState {
+    Vec3<T> position, velocity, acceleration;  // of the frame's origin: m, m/s, m/s^2
+    SinCos<T> turned;                          // of the angle about the wall's axis since t = 0
+    T turn_rate;                               // rad/s
+};
+
+template <class T>
+ARM3R_INLINE WallState<T> no_wall() {
+    const T o(0.0);
+    const Vec3<T> zero(o, o, o);
+    return {zero, zero, zero, {o, T(1.0)}, o};
+}
+
+// About the wall's axis, rad.
+template <class P, class T>
+ARM3R_INLINE Course<T> turn(const Wall<P>& wall, const T& t) {
+    if (wall.rotation == Rotation::sinusoid) return course(wall.turn_swing, t);
+    const T turns = wall.turn_rate * (1 / two_pi) * t;
+    return {(turns - nearest_integer(turns)) * two_pi, T(wall.turn_rate), T(0.0)};
+}
+
+template <class P, class T>
+ARM3R_INLINE Vec3<T> rotated(const Vec3<P>& axis, const SinCos<T>& angle, const Vec3<P>& v) {  // Rodrigues
+    const Vec3<P> around = cross(axis, v);
+    const P along = dot(axis, v);
+    const T rest = 1.0 - angle.cos;
+    Vec3<T> out;
+    for (int i = 0; i < 3; ++i) out[i] = v[i] * angle.cos + around[i] * angle.sin + (axis[i] * along) * rest;
+    return out;
+}
+
+template <class P, class T>
+ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
+    WallState<T> state = no_wall<T>();
+    state.position = lifted<T>(wall.point);
+    if (wall.motion == Motion::constant) {
+        for (int i = 0; i < 3; ++i) {
+            state.position[i] = wall.point[i] + wall.velocity[i] * t;
+            state.velocity[i] = T(wall.velocity[i]);
+        }
+    } else if (wall.motion != Motion::fixed) {
+        const Course<T> along = wall.motion == Motion::sinusoid ? course(wall.swing, t)
+                                : wall.motion == Motion::ramp   ? course(wall.ramp, t)
+                                                                : course(*wall.table, t);
+        for (int i = 0; i < 3; ++i) {
+            state.position[i] = wall.point[i] + along.s * wall.direction[i];
+            state.velocity[i] = along.v * wall.direction[i];
+            state.acceleration[i] = along.a * wall.direction[i];
+        }
+    }
+    if (wall.rotation != Rotation::none) {
+        const Course<T> angle = turn(wall, t);
+        state.turned = sincos(angle.s);
+        state.turn_rate = angle.v;
+    }
+    return state;
+}
+
+// The plate's axes as they stand now.
+template <class T>
+struct Axes {
+    Vec3<T> n, e1, e2;
+};
+
+template <class P, class T>
+ARM3R_INLINE Axes<T> axes(const Wall<P>& wall, const WallState<T>& state) {
+    if (wall.rotation == Rotation::none) return {lifted<T>(wall.n), lifted<T>(wall.e1), lifted<T>(wall.e2)};
+    return {rotated(wall.axis, state.turned, wall.n), rotated(wall.axis, state.turned, wall.e1),
+            rotated(wall.axis, state.turned, wall.e2)};
+}
+
+template <class P, class T>
+ARM3R_INLINE Vec3<T> normal(const Wall<P>& wall, const WallState<T>& state) {
+    return axes(wall, state).n;
+}
+
+// Of the plate's own point at x, m/s.
+template <class P, class T>
+ARM3R_INLINE Vec3<T> velocity_at(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& x) {
+    if (wall.rotation == Rotation::none) return state.velocity;
+    const Vec3<T> spin(state.turn_rate * wall.axis[0], state.turn_rate * wall.axis[1], state.turn_rate * wall.axis[2]);
+    return plus(state.velocity, cross(spin, minus(x, state.position)));
+}
+
+// A point as the plate sees it: how deep it is, how fast it sinks in, and where on the plate it is.
+template <class T>
+struct Indentation {
+    T depth, rate;       // m, m/s; > 0 inside (4.3), deepening (4.4)
+    T across1, across2;  // m from the centre along e1, e2
+    T slip1, slip2;      // m/s relative to the plate's point there along e1, e2
+};
+
+// x and v: of the point from the frame's origin, and from the plate's own point there.
+template <class P, class A, class T>
+ARM3R_INLINE Indentation<T> indentation_along(const P& face_offset, const A& axes, const Vec3<T>& x, const Vec3<T>& v) {
+    const Vec3<T> n = lifted<T>(axes.n), e1 = lifted<T>(axes.e1), e2 = lifted<T>(axes.e2);
+    return {face_offset - dot(n, x), -dot(n, v), dot(e1, x), dot(e2, x), dot(e1, v), dot(e2, v)};
+}
+
+template <class P, class T>
+ARM3R_INLINE Indentation<T> indentation(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point,
+                                        const Vec3<T>& velocity) {
+    const Vec3<T> x = minus(point, state.position), v = minus(velocity, velocity_at(wall, state, point));
+    if (wall.rotation == Rotation::none) return indentation_along(wall.face_offset, wall, x, v);
+    return indentation_along(wall.face_offset, axes(wall, state), x, v);
+}
+
+// The same of a plate that does not turn, without the rates: quickly computed.
+template <class P, class T>
+ARM3R_INLINE Indentation<T> indentation_at_rest(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point) {
+    const Vec3<T> x = minus(point, state.position);
+    const T o(0.0);
+    Indentation<T> in{wall.face_offset - dot(lifted<T>(wall.n), x), o, o, o, o, o};
+    if (wall.has_outline) {
+        in.across1 = dot(lifted<T>(wall.e1), x);
+        in.across2 = dot(lifted<T>(wall.e2), x);
+    }
+    return in;
+}
+
+// Distance inside the outline, m: < 0 beside the plate (4.7).
+template <class P, class T>
+ARM3R_INLINE T inside_outline(const Wall<P>& wall, const Indentation<T>& in) {
+    return min(T(wall.half1 - abs(in.across1)), T(wall.half2 - abs(in.across2)));
+}
+
+}  // namespace arm3r

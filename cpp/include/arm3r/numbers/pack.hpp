@@ -1,0 +1,180 @@
+// N doubles that march in step, each lane as if it were alone: the compiler maps them to whatever registers the
+// calling function may use (its target attribute), with the same bits.
+#pragma once
+
+#include <array>
+
+#include "arm3r/numbers/real.hpp"
+
+namespace arm3r {
+
+template <class Element, int N>
+struct Register {
+    typedef Element type __attribute__((vector_size(sizeof(Element) * N)));
+};
+
+// One truth value per lane: all bits set, or none. g++ 12 breaks off with an internal error where one of 8 lanes goes into
+// a loop of unknown length from outside: such loops are to be written out.
+template <int N>
+struct PackMask {
+    using Vector = typename Register<std::int64_t, N>::type;
+    Vector v;
+
+    ARM3R_INLINE explicit PackMask(const Vector& lanes) : v(lanes) {}
+    ARM3R_INLINE PackMask(bool all_lanes) {
+        for (int lane = 0; lane < N; ++lane) v[lane] = -std::int64_t{all_lanes};
+    }
+    ARM3R_INLINE PackMask(const PackMask& other) : v(other.v) {}
+    ARM3R_INLINE PackMask& operator=(const PackMask& other) {
+        v = other.v;
+        return *this;
+    }
+    ARM3R_INLINE bool operator[](int lane) const { return v[lane] != 0; }
+
+    ARM3R_INLINE friend PackMask operator&&(const PackMask& a, const PackMask& b) { return PackMask(a.v & b.v); }
+    ARM3R_INLINE friend PackMask operator||(const PackMask& a, const PackMask& b) { return PackMask(a.v | b.v); }
+    ARM3R_INLINE friend PackMask operator!(const PackMask& a) { return PackMask(~a.v); }
+
+    ARM3R_INLINE friend bool any(const PackMask& a) {
+        if constexpr (N == 2) {
+            return (a.v[0] | a.v[1]) != 0;
+        } else if constexpr (N == 8) {
+            typename Register<std::int8_t, 8>::type narrow = __builtin_convertvector(a.v, decltype(narrow));
+            std::int64_t lanes;
+            __builtin_memcpy(&lanes, &narrow, sizeof lanes);
+            return lanes != 0;
+        } else {
+            typename PackMask<N / 2>::Vector half[2];
+            __builtin_memcpy(half, &a.v, sizeof half);
+            return any(PackMask<N / 2>(half[0] | half[1]));
+        }
+    }
+    ARM3R_INLINE friend bool all(const PackMask& a) { return !any(!a); }
+};
+
+// The copy constructor is written out so that a Pack travels by address wherever a call is not inlined: then callers
+// and callees built for different instruction sets agree.
+template <int N>
+struct Pack {
+    using Vector = typename Register<double, N>::type;
+    using Mask = PackMask<N>;
+    using BitVector = typename Mask::Vector;
+    Vector v;
+
+    Pack() = default;
+    ARM3R_INLINE explicit Pack(const Vector& lanes) : v(lanes) {}
+    // g++ 12 makes one instruction of this, sixteen of `all_lanes - Vector{}`.
+    ARM3R_INLINE Pack(double all_lanes) {
+        for (int lane = 0; lane < N; ++lane) v[lane] = all_lanes;
+    }
+    ARM3R_INLINE Pack(const Pack& other) : v(other.v) {}
+    ARM3R_INLINE Pack& operator=(const Pack& other) {
+        v = other.v;
+        return *this;
+    }
+
+    ARM3R_INLINE static Pack load(const double* from) {
+        Pack result;
+        __builtin_memcpy(&result.v, from, sizeof(Vector));
+        return result;
+    }
+    ARM3R_INLINE void store(double* to) const { __builtin_memcpy(to, &v, sizeof(Vector)); }
+    ARM3R_INLINE double operator[](int lane) const { return v[lane]; }
+    ARM3R_INLINE void set(int lane, double x) { v[lane] = x; }
+
+    ARM3R_INLINE friend Pack operator+(const Pack& a, const Pack& b) { return Pack(a.v + b.v); }
+    ARM3R_INLINE friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.v - b.v); }
+    ARM3R_INLINE friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.v * b.v); }
+    ARM3R_INLINE friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
+    ARM3R_INLINE friend Pack operator-(const Pack& a) { return Pack(-a.v); }
+    ARM3R_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }
+    ARM3R_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
+    ARM3R_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
+    ARM3R_INLINE Pack& operator/=(const Pack& b) { return *this = *this / b; }
+
+    ARM3R_INLINE friend Mask operator<(const Pack& a, const Pack& b) { return where(a.v < b.v); }
+    ARM3R_INLINE friend Mask operator>(const Pack& a, const Pack& b) { return where(a.v > b.v); }
+    ARM3R_INLINE friend Mask operator<=(const Pack& a, const Pack& b) { return where(a.v <= b.v); }
+    ARM3R_INLINE friend Mask operator>=(const Pack& a, const Pack& b) { return where(a.v >= b.v); }
+    ARM3R_INLINE friend Mask operator==(const Pack& a, const Pack& b) { return where(a.v == b.v); }
+    ARM3R_INLINE friend Mask operator!=(const Pack& a, const Pack& b) { return where(a.v != b.v); }
+
+    ARM3R_INLINE friend Pack select(const Mask& mask, const Pack& a, const Pack& b) { return Pack(mask.v ? a.v : b.v); }
+    ARM3R_INLINE friend Pack min(const Pack& a, const Pack& b) { return Pack(b.v < a.v ? b.v : a.v); }
+    ARM3R_INLINE friend Pack max(const Pack& a, const Pack& b) { return Pack(a.v < b.v ? b.v : a.v); }
+
+    template <class F>
+    ARM3R_INLINE friend Pack with_bits(const Pack& x, F f) {
+        auto i = (BitVector)x.v;
+        f(i);
+        return Pack((Vector)i);
+    }
+    ARM3R_INLINE friend Pack abs(const Pack& x) { return Pack((Vector)((BitVector)x.v & ~sign_bit)); }
+    ARM3R_INLINE friend Pack copysign(const Pack& magnitude, const Pack& sign) {
+        return Pack((Vector)(((BitVector)magnitude.v & ~sign_bit) | ((BitVector)sign.v & sign_bit)));
+    }
+    ARM3R_INLINE friend Pack sqrt(const Pack& x) {
+        Pack root;
+        for (int lane = 0; lane < N; ++lane) root.v[lane] = __builtin_sqrt(x.v[lane]);
+        return root;
+    }
+
+private:
+    static constexpr std::int64_t sign_bit = INT64_MIN;
+
+    // g++ 12 takes a bare comparison of packs of 8 apart into scalars, but not a choice between numbers.
+    template <class Comparison>
+    ARM3R_INLINE static Mask where(const Comparison& holds) {
+        if constexpr (N < 8) return Mask(holds);
+        const Vector all_bits = (Vector)(BitVector{} - std::int64_t{1});
+        return Mask((BitVector)(holds ? all_bits : Vector{}));
+    }
+};
+
+static_assert(Real<Pack<2>> && Real<Pack<8>>);
+
+ARM3R_INLINE Pack<2> side_by_side(double first, double second) { return Pack<2>(Pack<2>::Vector{first, second}); }
+
+ARM3R_INLINE std::array<SinCos<double>, 2> apart(const SinCos<Pack<2>>& both) {
+    return {SinCos<double>{both.sin[0], both.cos[0]}, SinCos<double>{both.sin[1], both.cos[1]}};
+}
+
+// sincos and sincos_near of two angles: for doubles in one register, in little more time than that of one angle.
+template <class T>
+ARM3R_INLINE std::array<SinCos<T>, 2> sincos_pair(const T& first, const T& second) {
+    return {sincos(first), sincos(second)};
+}
+
+ARM3R_INLINE std::array<SinCos<double>, 2> sincos_pair(double first, double second) {
+    return apart(sincos(side_by_side(first, second)));
+}
+
+template <class T>
+ARM3R_INLINE std::array<SinCos<T>, 2> sincos_near_pair(const T& first_base, const SinCos<T>& at_first, const T& first,
+                                                       const T& second_base, const SinCos<T>& at_second,
+                                                       const T& second) {
+    return {sincos_near(first_base, at_first, first), sincos_near(second_base, at_second, second)};
+}
+
+// One look decides for both.
+template <int N>
+ARM3R_INLINE std::array<SinCos<Pack<N>>, 2> sincos_near_pair(const Pack<N>& first_base, const SinCos<Pack<N>>& at_first,
+                                                             const Pack<N>& first, const Pack<N>& second_base,
+                                                             const SinCos<Pack<N>>& at_second, const Pack<N>& second) {
+    const Pack<N> first_delta = first - first_base, second_delta = second - second_base, reach(sincos_reach);
+    const PackMask<N> first_near = abs(first_delta) <= reach, second_near = abs(second_delta) <= reach;
+    const SinCos<Pack<N>> a = sincos_rotated(at_first, first_delta), b = sincos_rotated(at_second, second_delta);
+    if (all(first_near && second_near)) return {a, b};
+    const SinCos<Pack<N>> full_a = sincos(first), full_b = sincos(second);
+    return {SinCos<Pack<N>>{select(first_near, a.sin, full_a.sin), select(first_near, a.cos, full_a.cos)},
+            SinCos<Pack<N>>{select(second_near, b.sin, full_b.sin), select(second_near, b.cos, full_b.cos)}};
+}
+
+ARM3R_INLINE std::array<SinCos<double>, 2> sincos_near_pair(double first_base, const SinCos<double>& at_first,
+                                                            double first, double second_base,
+                                                            const SinCos<double>& at_second, double second) {
+    const SinCos<Pack<2>> bases{side_by_side(at_first.sin, at_second.sin), side_by_side(at_first.cos, at_second.cos)};
+    return apart(sincos_near(side_by_side(first_base, second_base), bases, side_by_side(first, second)));
+}
+
+}  // namespace arm3r

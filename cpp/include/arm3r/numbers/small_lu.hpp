@@ -1,0 +1,60 @@
+#pragma once
+// A few linear equations, how many is known when they are solved: LU with partial pivoting, sums in a fixed order.
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "arm3r/numbers/primitives.hpp"
+
+namespace arm3r {
+
+// Fill n and a, row by row, then factorise() it in place; after that solve() takes any number of right-hand sides.
+template <std::size_t Most>
+struct SmallLu {
+    std::size_t n = 0;
+    std::array<std::array<double, Most>, Most> a;
+
+    // False where the matrix is singular or not finite.
+    bool factorise() {
+        for (std::size_t k = 0; k < n; ++k) {
+            if (!raise_pivot(k)) return false;
+            a[k][k] = 1.0 / a[k][k];
+            for (std::size_t i = k + 1; i < n; ++i) {
+                const double l = a[i][k] * a[k][k];
+                a[i][k] = l;
+                for (std::size_t j = k + 1; j < n; ++j) a[i][j] -= l * a[k][j];
+            }
+        }
+        return true;
+    }
+
+    void solve(std::array<double, Most>& x) const {
+        for (std::size_t k = 0; k < n; ++k) std::swap(x[k], x[raised_[k]]);
+        for (std::size_t i = 1; i < n; ++i)
+            for (std::size_t j = 0; j < i; ++j) x[i] -= a[i][j] * x[j];
+        for (std::size_t i = n; i-- > 0;) {
+            for (std::size_t j = i + 1; j < n; ++j) x[i] -= a[i][j] * x[j];
+            x[i] *= a[i][i];  // the reciprocal of the pivot
+        }
+    }
+
+private:
+    // What is not a number loses every comparison, and spreads to a column in which nothing wins.
+    bool raise_pivot(std::size_t k) {
+        double largest = 0;
+        for (std::size_t i = k; i < n; ++i) {
+            if (!(abs(a[i][k]) > largest)) continue;
+            largest = abs(a[i][k]);
+            raised_[k] = i;
+        }
+        if (!(largest > 0 && largest < std::numeric_limits<double>::infinity())) return false;
+        std::swap(a[k], a[raised_[k]]);
+        return true;
+    }
+
+    std::array<std::size_t, Most> raised_;  // which row became the k-th
+};
+
+}  // namespace arm3r

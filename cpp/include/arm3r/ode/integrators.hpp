@@ -1,0 +1,175 @@
+#pragma once
+// Two ways to step y' = f(t, y), which know no physics; docs/model.md, section 5. A right-hand side offers
+//   void begin_step(const State&)                       called once before the stages of a step
+//   void operator()(const T& t, const State&, State&)   the derivative
+// Leading `Norm` components of the state count in the error norm; the rest, the books, ride along.
+
+#include <array>
+#include <cstddef>
+
+#include "arm3r/numbers/real.hpp"
+
+namespace arm3r {
+
+template <class T, std::size_t N>
+using State = std::array<T, N>;
+
+// Component i from the coefficients of an interpolant, at one instant or at several side by side.
+template <class Coefficients, class S>
+ARM3R_INLINE S interpolated(const Coefficients& c, std::size_t i, const S& theta) {
+    const S rest = 1.0 - theta;
+    return c[0][i] + theta * (c[1][i] + rest * (c[2][i] + theta * (c[3][i] + rest * c[4][i])));
+}
+
+// The solution within a step: y(theta), theta = (t - t0)/h in [0, 1], a polynomial of degree 4 (5.2) or 3 (5.1).
+template <class T, std::size_t N>
+struct Interpolant {
+    T t0, h;
+    std::array<State<T, N>, 5> c;
+
+    template <class S>
+    ARM3R_INLINE S component(std::size_t i, const S& theta) const {
+        return interpolated(c, i, theta);
+    }
+
+    State<T, N> operator()(const T& theta) const {
+        State<T, N> y;
+        for (std::size_t i = 0; i < N; ++i) y[i] = component(i, theta);
+        return y;
+    }
+};
+
+// Cubic Hermite from both ends of a step: the first four coefficients of either method.
+template <class T, std::size_t N>
+Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0, const State<T, N>& y1,
+                          const State<T, N>& f1) {
+    Interpolant<T, N> inside{t, h, {}};
+    for (std::size_t i = 0; i < N; ++i) {
+        const T difference = y1[i] - y0[i];
+        const T bow = h * f0[i] - difference;
+        inside.c[0][i] = y0[i];
+        inside.c[1][i] = difference;
+        inside.c[2][i] = bow;
+        inside.c[3][i] = difference - h * f1[i] - bow;
+        inside.c[4][i] = T(0.0);
+    }
+    return inside;
+}
+
+// One step of the classical method (5.1). f0 is the derivative at (t, y), with f.begin_step(y) done.
+template <class T, std::size_t N, class F>
+ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
+    State<T, N> stage, k2, k3, k4, y1;
+    const T half = 0.5 * h;
+    for (std::size_t i = 0; i < N; ++i) stage[i] = y[i] + half * f0[i];
+    f(t + half, stage, k2);
+    for (std::size_t i = 0; i < N; ++i) stage[i] = y[i] + half * k2[i];
+    f(t + half, stage, k3);
+    for (std::size_t i = 0; i < N; ++i) stage[i] = y[i] + h * k3[i];
+    f(t + h, stage, k4);
+    const T sixth = h / 6.0;
+    for (std::size_t i = 0; i < N; ++i) y1[i] = y[i] + sixth * ((f0[i] + k4[i]) + 2.0 * (k2[i] + k3[i]));
+    return y1;
+}
+
+// The same to the last bit, with f in it once: for those that are long.
+template <class T, std::size_t N, class F>
+ARM3R_INLINE State<T, N> rk4_step_in_a_loop(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0,
+                                            const T& h) {
+    State<T, N> stage, k[3], y1;
+    const T half = 0.5 * h;
+    const State<T, N>* before = &f0;
+#pragma GCC unroll 1
+    for (int i = 0; i < 3; ++i) {
+        const T reach = i < 2 ? half : h;
+        for (std::size_t j = 0; j < N; ++j) stage[j] = y[j] + reach * (*before)[j];
+        f(t + reach, stage, k[i]);
+        before = &k[i];
+    }
+    const T sixth = h / 6.0;
+    for (std::size_t i = 0; i < N; ++i) y1[i] = y[i] + sixth * ((f0[i] + k[2][i]) + 2.0 * (k[0][i] + k[1][i]));
+    return y1;
+}
+
+// Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step. The `Books` components behind the
+// first `Norm` ride along; what comes after them counts in the error norm again. The last `Parts` of the books are parts
+// of others among them, and never count.
+template <class T, std::size_t N, std::size_t Norm, std::size_t Books = N - Norm, std::size_t Parts = 0>
+struct Dopri5 {
+    State<T, N> y1, f1;            // the end of the step
+    std::array<State<T, N>, 6> k;  // k[0] = f0 .. k[5]
+
+    template <class F>
+    void step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
+        State<T, N> s;
+        k[0] = f0;
+        for (std::size_t i = 0; i < N; ++i) s[i] = y[i] + h * (1.0 / 5 * k[0][i]);
+        f(t + 1.0 / 5 * h, s, k[1]);
+        for (std::size_t i = 0; i < N; ++i) s[i] = y[i] + h * (3.0 / 40 * k[0][i] + 9.0 / 40 * k[1][i]);
+        f(t + 3.0 / 10 * h, s, k[2]);
+        for (std::size_t i = 0; i < N; ++i)
+            s[i] = y[i] + h * (44.0 / 45 * k[0][i] - 56.0 / 15 * k[1][i] + 32.0 / 9 * k[2][i]);
+        f(t + 4.0 / 5 * h, s, k[3]);
+        for (std::size_t i = 0; i < N; ++i)
+            s[i] = y[i] + h * (19372.0 / 6561 * k[0][i] - 25360.0 / 2187 * k[1][i] + 64448.0 / 6561 * k[2][i] -
+                               212.0 / 729 * k[3][i]);
+        f(t + 8.0 / 9 * h, s, k[4]);
+        for (std::size_t i = 0; i < N; ++i)
+            s[i] = y[i] + h * (9017.0 / 3168 * k[0][i] - 355.0 / 33 * k[1][i] + 46732.0 / 5247 * k[2][i] +
+                               49.0 / 176 * k[3][i] - 5103.0 / 18656 * k[4][i]);
+        f(t + h, s, k[5]);
+        for (std::size_t i = 0; i < N; ++i)
+            y1[i] = y[i] + h * (35.0 / 384 * k[0][i] + 500.0 / 1113 * k[2][i] + 125.0 / 192 * k[3][i] -
+                                2187.0 / 6784 * k[4][i] + 11.0 / 84 * k[5][i]);
+        f(t + h, y1, f1);
+    }
+
+    // The estimated error of component i over the step of h.
+    T error_of(std::size_t i, const T& h) const {
+        const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] -
+                         17253.0 / 339200 * k[4][i] + 22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
+        return abs(e);
+    }
+
+    // The largest error estimate, in units of its tolerance, of all but the books, or of these too. A step is good below 1.
+    // The largest, not a mean: a joint that stands still must not loosen the tolerance of one that moves.
+    T error(const State<T, N>& y, const T& h, double rtol, double atol, bool with_books = false) const {
+        T largest(0.0);
+        const std::size_t counted = with_books ? Norm + Books - Parts : Norm;
+        for (std::size_t i = 0; i < N; i = i + 1 == counted ? Norm + Books : i + 1)
+            largest = max(largest, T(error_of(i, h) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
+        return largest;
+    }
+
+    // h times the size of the eigenvalue that rules the difference between the last two stages, both at the end of the step
+    // of h: beyond 3.25 the stability of the method holds the step down, not its accuracy (5.7).
+    T stiffness() const {
+        T rate(0.0), way(0.0);
+        for (std::size_t i = 0; i < N; i = i + 1 == Norm ? i + 1 + Books : i + 1) {
+            const T d = (35.0 / 384 - 9017.0 / 3168) * k[0][i] + 355.0 / 33 * k[1][i] +
+                        (500.0 / 1113 - 46732.0 / 5247) * k[2][i] + (125.0 / 192 - 49.0 / 176) * k[3][i] +
+                        (5103.0 / 18656 - 2187.0 / 6784) * k[4][i] + 11.0 / 84 * k[5][i];
+            rate = rate + (f1[i] - k[5][i]) * (f1[i] - k[5][i]);
+            way = way + d * d;
+        }
+        return way > T(0.0) ? sqrt(T(rate / way)) : T(0.0);
+    }
+
+    Interpolant<T, N> interpolant(const T& t, const State<T, N>& y, const T& h) const {
+        Interpolant<T, N> inside = hermite(t, h, y, k[0], y1, f1);
+        for (std::size_t i = 0; i < N; ++i)
+            inside.c[4][i] = h * (-12715105075.0 / 11282082432 * k[0][i] + 87487479700.0 / 32700410799 * k[2][i] -
+                                  10690763975.0 / 1880347072 * k[3][i] + 701980252875.0 / 199316789632 * k[4][i] -
+                                  1453857185.0 / 822651844 * k[5][i] + 69997945.0 / 29380423 * f1[i]);
+        return inside;
+    }
+};
+
+// What to multiply the step with, so that the next error comes out a little below the tolerance (5.2).
+template <class T>
+T step_factor(const T& error) {
+    const T floored = max(error, T(1e-10));
+    return min(T(10.0), max(T(0.2), T(0.9 / fifth_root(floored))));
+}
+
+}  // namespace arm3r

@@ -1,0 +1,254 @@
+// The part of the C interface where the controller is the caller's: a law that is called, and a run stepped by hand.
+
+#include <atomic>
+#include <cmath>
+#include <memory>
+
+#include "api/c_api.hpp"
+#include "base/callback.hpp"
+#include "base/number_text.hpp"
+#include "batch/simulation.hpp"
+#include "control/controller_view.hpp"
+#include "run/adaptive_run.hpp"
+#include "run/interactive_run.hpp"
+#include "schema/schema.hpp"
+#include "setup/setup.hpp"
+#include "validate/validate.hpp"
+
+using namespace arm3r;
+
+namespace {
+
+struct Law {
+    arm3r_law function;
+    void* user;
+    LawView view;
+    arm3r_law_state state{};
+
+    Law(arm3r_law function, void* user, const Setup& setup) : function(function), user(user), view(setup) {
+        state.struct_size = sizeof state;
+    }
+
+    static int ask(void* self, double tick, const Truth& truth, const Sensed<double>& sensed,
+                   const Known<double>& known, Vec3<double>& tau) {
+        Law& law = *static_cast<Law*>(self);
+        law.view.look(tick, truth, sensed, known, law.state);
+        double answer[3] = {NAN, NAN, NAN};
+        const int32_t status = call_back(law.function, law.user, &law.state, answer);
+        tau = law.view.torque(answer);
+        return status;
+    }
+};
+
+void refuse_other_controllers(std::span<const double> params) {
+    if (choice_of(params, "controller.type") == "user") return;
+    throw Error(ARM3R_E_SCENARIO, {{.code = "scenario.other_choice",
+                                    .path = "controller.type",
+                                    .message = "a law of your own takes the place of no other controller",
+                                    .got = choice_of(params, "controller.type"),
+                                    .allowed = "user",
+                                    .hint = ""}});
+}
+
+Run controlled(std::span<const double> params, arm3r_law function, void* user, RunOptions options) {
+    std::vector<Problem> problems = validate(params);
+    if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
+    refuse_other_controllers(params);
+    const Setup setup = make_setup(params);
+    Law law(function, user, setup);
+    options.user_law = {Law::ask, &law, setup.simscape};
+    return simulate(params, options);
+}
+
+}  // namespace
+
+int32_t arm3r_params_control(const double* params, size_t count, arm3r_law law, void* user,
+                             const arm3r_run_options* options, arm3r_run** run) {
+    return guard([&] {
+        need(reinterpret_cast<const void*>(law), "law");
+        need(run, "run");
+        auto handle = std::make_unique<arm3r_run>();
+        handle->run = controlled(params_in(params, count), law, user, options_in(options));
+        *run = handle.release();
+    });
+}
+
+int32_t arm3r_scenario_control(const arm3r_scenario* scenario, arm3r_law law, void* user,
+                               const arm3r_run_options* options, arm3r_run** run) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(reinterpret_cast<const void*>(law), "law");
+        need(run, "run");
+        const RunOptions chosen = options_in(options);
+        const Resolved& resolved = scenario->resolved();
+        auto handle = std::make_unique<arm3r_run>();
+        handle->run = with_places(scenario->scenario, [&] { return controlled(resolved.params, law, user, chosen); });
+        describe(*handle, resolved);
+        *run = handle.release();
+    });
+}
+
+// ---- a run in the caller's hands
+
+struct arm3r_simulation {
+    std::shared_ptr<const Resolved> resolved;
+    std::shared_ptr<const std::string> yaml;
+    std::shared_ptr<const LawView> view;
+    std::unique_ptr<Stepwise> run;
+    arm3r_law_state last{};  // seen at the last sample that was answered
+    mutable std::atomic_flag busy{};
+
+    arm3r_simulation() { last.struct_size = sizeof last; }
+};
+
+namespace {
+
+class Hold {
+public:
+    explicit Hold(const arm3r_simulation* simulation) : flag_((need(simulation, "simulation"), simulation->busy)) {
+        if (flag_.test_and_set()) throw Error(ARM3R_E_BUSY, "the simulation is in use by another call");
+    }
+    ~Hold() { flag_.clear(); }
+    Hold(const Hold&) = delete;
+    Hold& operator=(const Hold&) = delete;
+
+private:
+    std::atomic_flag& flag_;
+};
+
+struct Answer {
+    const LawView& view;
+    arm3r_law_state& state;
+    Vec3<double> tau{0, 0, 0};
+
+    static int give(void* self, double tick, const Truth& truth, const Sensed<double>& sensed,
+                    const Known<double>& known, Vec3<double>& tau) {
+        Answer& answer = *static_cast<Answer*>(self);
+        answer.view.look(tick, truth, sensed, known, answer.state);
+        tau = answer.tau;
+        return 0;
+    }
+};
+
+arm3r_law_state seen(const arm3r_simulation& simulation) {
+    arm3r_law_state state = simulation.last;
+    if (simulation.run->is_over()) return state;
+    Answer nothing{*simulation.view, state};
+    simulation.run->show({Answer::give, &nothing});
+    return state;
+}
+
+void check_torque(const double* tau) {
+    for (int i = 0; i < 3; ++i)
+        if (!(std::abs(tau[i]) <= largest_torque))
+            throw Error(ARM3R_E_VALUE, {{.code = "argument.value",
+                                         .path = "tau[" + std::to_string(i) + "]",
+                                         .message = "not a torque that can be applied",
+                                         .got = shortest(tau[i]),
+                                         .allowed = "finite, at most 1e12 N m either way",
+                                         .hint = ""}});
+}
+
+std::unique_ptr<arm3r_simulation> copied(const arm3r_simulation& from) {
+    auto copy = std::make_unique<arm3r_simulation>();
+    copy->resolved = from.resolved;
+    copy->yaml = from.yaml;
+    copy->view = from.view;
+    copy->run = from.run->copy();
+    copy->last = from.last;
+    return copy;
+}
+
+void refuse_marching(const Setup& setup) {
+    if (!setup.solver.marches()) return;
+    throw Error(ARM3R_E_SCENARIO,
+                {{.code = "scenario.other_choice",
+                  .path = "solver.method",
+                  .message = "a simulation stands at its samples only by a method that chooses its steps",
+                  .got = setup.solver.method == Solver::rk4 ? "rk4" : "taylor",
+                  .allowed = "dopri5, rodas4 or auto",
+                  .hint = ""}});
+}
+
+}  // namespace
+
+int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation** simulation) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(simulation, "simulation");
+        auto handle = std::make_unique<arm3r_simulation>();
+        handle->resolved = std::make_shared<Resolved>(scenario->resolved());
+        handle->yaml = std::make_shared<std::string>(to_yaml(handle->resolved->tree, false));
+        with_places(scenario->scenario, [&] {
+            const std::span<const double> params = handle->resolved->params;
+            refuse_other_controllers(params);
+            const Setup setup = make_setup(params);
+            refuse_marching(setup);
+            handle->view = std::make_shared<LawView>(setup);
+            handle->run = begin_stepwise(params, {});
+        });
+        *simulation = handle.release();
+    });
+}
+
+void arm3r_simulation_free(arm3r_simulation* simulation) { delete simulation; }
+
+int32_t arm3r_simulation_is_over(const arm3r_simulation* simulation, int32_t* is_over) {
+    return guard([&] {
+        const Hold hold(simulation);
+        need(is_over, "is_over");
+        *is_over = simulation->run->is_over();
+    });
+}
+
+int32_t arm3r_simulation_state(const arm3r_simulation* simulation, arm3r_law_state* state) {
+    return guard([&] {
+        const Hold hold(simulation);
+        need(state, "state");
+        *state = seen(*simulation);
+    });
+}
+
+int32_t arm3r_simulation_step(arm3r_simulation* simulation, const double* tau) {
+    return guard([&] {
+        const Hold hold(simulation);
+        check_pointer(tau, "tau");
+        check_torque(tau);
+        if (simulation->run->is_over())
+            throw Error(ARM3R_E_OVER, "the simulation is over at t = " + shortest(simulation->last.t) + " s");
+        Answer answer{*simulation->view, simulation->last, simulation->view->torque(tau)};
+        simulation->run->use({Answer::give, &answer});
+        simulation->run->go_on();
+    });
+}
+
+int32_t arm3r_simulation_copy(const arm3r_simulation* simulation, arm3r_simulation** copy) {
+    return guard([&] {
+        const Hold hold(simulation);
+        need(copy, "copy");
+        *copy = copied(*simulation).release();
+    });
+}
+
+int32_t arm3r_simulation_restore(arm3r_simulation* simulation, const arm3r_simulation* from) {
+    return guard([&] {
+        const Hold hold(simulation);
+        need(from, "from");
+        if (from == simulation) return;
+        const Hold other(from);
+        if (*from->yaml != *simulation->yaml) throw Error(ARM3R_E_VALUE, "`from` is a simulation of another scenario");
+        simulation->run = from->run->copy();
+        simulation->last = from->last;
+    });
+}
+
+int32_t arm3r_simulation_run(const arm3r_simulation* simulation, arm3r_run** run) {
+    return guard([&] {
+        const Hold hold(simulation);
+        need(run, "run");
+        auto handle = std::make_unique<arm3r_run>();
+        handle->run = simulation->run->so_far();
+        describe(*handle, *simulation->resolved);
+        *run = handle.release();
+    });
+}

@@ -1,0 +1,284 @@
+// The text half of the C interface: scenarios, results, reference.
+
+#include <algorithm>
+#include <memory>
+
+#include "api/c_api.hpp"
+#include "base/callback.hpp"
+#include "base/number_text.hpp"
+#include "base/text.hpp"
+#include "batch/simulation.hpp"
+#include "files/input_file.hpp"
+#include "files/output_file.hpp"
+#include "files/yaml_json.hpp"
+#include "results/csv.hpp"
+#include "results/report.hpp"
+#include "scenario/reference_docs.hpp"
+#include "schema/schema.hpp"
+#include "setup/setup.hpp"
+#include "validate/size_limits.hpp"
+#include "validate/warnings.hpp"
+
+using namespace arm3r;
+
+namespace {
+
+constexpr std::size_t any_size = SIZE_MAX;     // the reader has its own limit, and its own words for it
+constexpr std::size_t enough = (1 << 20) + 1;  // of a text that is longer than the reader takes
+
+Results results_of(const arm3r_run& run) { return {run.run, run.name, run.scenario, run.checks}; }
+
+arm3r_scenario* new_scenario(Scenario scenario) {
+    auto handle = std::make_unique<arm3r_scenario>();
+    handle->scenario = std::move(scenario);
+    return handle.release();
+}
+
+void save(const arm3r_run& run, const std::string& path) {
+    OutputFile csv(path), summary(summary_path(path));
+    write_csv(run.run, [&](std::string_view piece) { return csv.write(piece), true; });
+    summary.write(summary_json(results_of(run)));
+    csv.close();
+    summary.close();
+    csv.publish();
+    summary.publish();
+}
+
+void set(arm3r_scenario* scenario, const std::string& path, const std::string& value, const std::string& origin) {
+    Scenario edited = scenario->scenario;
+    arm3r::set(edited, path, value, origin);
+    scenario->scenario = std::move(edited);
+    scenario->changed();
+}
+
+// A text that is made once for the whole process; "" where there is no memory for it.
+template <std::string (*make)()>
+const char* made_once() noexcept {
+    const char* text = "";
+    guard([&] {
+        static const std::string made = make();
+        text = made.c_str();
+    });
+    return text;
+}
+
+}  // namespace
+
+void arm3r::describe(arm3r_run& handle, const Resolved& resolved) {
+    handle.name = resolved.name;
+    handle.scenario = to_yaml(resolved.tree, false);
+    handle.run.warnings.insert(handle.run.warnings.begin(), resolved.warnings.begin(), resolved.warnings.end());
+    handle.checks = evaluate(resolved.checks, handle.run, resolved.params);
+}
+
+const Resolved& arm3r_scenario::resolved() const {
+    const std::lock_guard lock(mutex_);
+    if (!resolved_) resolved_ = resolve(scenario);
+    return *resolved_;
+}
+
+void arm3r_scenario::changed() {
+    resolved_.reset();
+    texts.clear();
+}
+
+// ---- scenarios
+
+int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* file, size_t file_size,
+                              arm3r_scenario** scenario) {
+    return guard([&] {
+        need(text, "text");
+        need(scenario, "scenario");
+        const std::string name = text_in(file, file_size, "file");
+        *scenario = new_scenario(read_scenario(std::string(text, std::min(text_size, enough)), name));
+    });
+}
+
+int32_t arm3r_scenario_load(const char* path, size_t path_size, arm3r_scenario** scenario) {
+    return guard([&] {
+        need(scenario, "scenario");
+        const std::string file = text_in(path, path_size, "path");
+        *scenario = new_scenario(read_scenario(read_input(file), file == "-" ? "<stdin>" : file));
+    });
+}
+
+void arm3r_scenario_free(arm3r_scenario* scenario) { delete scenario; }
+
+int32_t arm3r_scenario_copy(const arm3r_scenario* scenario, arm3r_scenario** copy) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(copy, "copy");
+        *copy = new_scenario(scenario->scenario);
+    });
+}
+
+int32_t arm3r_scenario_set(arm3r_scenario* scenario, const char* path, size_t path_size, const char* value,
+                           size_t value_size) {
+    return guard([&] {
+        need(scenario, "scenario");
+        set(scenario, text_in(path, path_size, "path"), text_in(value, value_size, "value", any_size), "set");
+    });
+}
+
+int32_t arm3r_scenario_set_from(arm3r_scenario* scenario, const char* path, size_t path_size, const char* value,
+                                size_t value_size, const char* file, size_t file_size) {
+    return guard([&] {
+        need(scenario, "scenario");
+        set(scenario, text_in(path, path_size, "path"), text_in(value, value_size, "value", any_size),
+            text_in(file, file_size, "file"));
+    });
+}
+
+int32_t arm3r_scenario_validate(const arm3r_scenario* scenario) {
+    return guard([&] {
+        need(scenario, "scenario");
+        const Setup setup = make_setup(scenario->resolved().params);
+        with_places(scenario->scenario, [&] { refuse_too_large(setup); });
+    });
+}
+
+int32_t arm3r_scenario_get(const arm3r_scenario* scenario, const char* path, size_t path_size, const char** json) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(json, "json");
+        const std::string at = text_in(path, path_size, "path");
+        const Resolved& resolved = scenario->resolved();
+        *json = scenario->texts.get("get " + at, [&] { return json_at(resolved, at); });
+    });
+}
+
+int32_t arm3r_scenario_name(const arm3r_scenario* scenario, const char** name) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(name, "name");
+        *name = scenario->resolved().name.c_str();
+    });
+}
+
+int32_t arm3r_scenario_yaml(const arm3r_scenario* scenario, int32_t annotate, const char** yaml) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(yaml, "yaml");
+        const Resolved& resolved = scenario->resolved();
+        *yaml =
+            scenario->texts.get(annotate ? "annotated" : "yaml", [&] { return to_yaml(resolved.tree, annotate != 0); });
+    });
+}
+
+int32_t arm3r_scenario_warnings(const arm3r_scenario* scenario, const char** text) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(text, "text");
+        const Resolved& resolved = scenario->resolved();
+        *text = scenario->texts.get("warnings", [&] {
+            const std::string place = visible(scenario->scenario.file, 4096) + ": warning: ";
+            std::string lines;
+            for (const std::string& slip : resolved.warnings) lines += place + slip + "\n";
+            for (const std::string& slip : likely_slips(resolved.params)) lines += place + slip + "\n";
+            return lines;
+        });
+    });
+}
+
+int32_t arm3r_scenario_params(const arm3r_scenario* scenario, double* params, size_t count) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(params, "params");
+        if (count != param_count())
+            throw Error(ARM3R_E_SIZE, "`count` is " + std::to_string(count) + ", there are " +
+                                          std::to_string(param_count()) + " parameters");
+        const Resolved& resolved = scenario->resolved();
+        std::copy(resolved.params.begin(), resolved.params.end(), params);
+    });
+}
+
+int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_options* options, arm3r_run** run) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(run, "run");
+        const RunOptions chosen = options_in(options);
+        const Resolved& resolved = scenario->resolved();
+        auto handle = std::make_unique<arm3r_run>();
+        handle->run = with_places(scenario->scenario, [&] { return simulate(resolved.params, chosen); });
+        describe(*handle, resolved);
+        *run = handle.release();
+    });
+}
+
+int32_t arm3r_yaml_json(const char* text, size_t text_size, const char* file, size_t file_size, const char** json) {
+    return guard([&] {
+        need(text, "text");
+        need(json, "json");
+        const std::string name = text_in(file, file_size, "file");
+        thread_local std::string last;
+        last = yaml_json(std::string(text, std::min(text_size, enough)), name);
+        *json = last.c_str();
+    });
+}
+
+// ---- results
+
+int32_t arm3r_run_summary(const arm3r_run* run, const char** json) {
+    return guard([&] {
+        need(run, "run");
+        need(json, "json");
+        *json = run->texts.get("summary", [&] { return summary_json(results_of(*run)); });
+    });
+}
+
+int32_t arm3r_run_report(const arm3r_run* run, const char** text) {
+    return guard([&] {
+        need(run, "run");
+        need(text, "text");
+        *text = run->texts.get("report", [&] { return report(results_of(*run)); });
+    });
+}
+
+int32_t arm3r_run_checks(const arm3r_run* run, size_t* count, size_t* failed) {
+    return guard([&] {
+        need(run, "run");
+        need(count, "count");
+        need(failed, "failed");
+        *count = run->checks.size();
+        *failed = 0;
+        for (const CheckResult& check : run->checks) *failed += !check.passed;
+    });
+}
+
+int32_t arm3r_run_csv(const arm3r_run* run, arm3r_sink sink, void* user) {
+    return guard([&] {
+        need(run, "run");
+        need(reinterpret_cast<const void*>(sink), "sink");
+        if (!write_csv(run->run,
+                       [&](std::string_view piece) { return call_back(sink, user, piece.data(), piece.size()) == 0; }))
+            throw Error(ARM3R_E_OUTPUT, "the sink did not take all of the CSV");
+    });
+}
+
+int32_t arm3r_run_save(const arm3r_run* run, const char* path, size_t path_size) {
+    return guard([&] {
+        need(run, "run");
+        save(*run, text_in(path, path_size, "path"));
+    });
+}
+
+int32_t arm3r_output_probe(const char* path, size_t path_size) {
+    return guard([&] { probe_output(text_in(path, path_size, "path")); });
+}
+
+int32_t arm3r_output_summary(const char* path, size_t path_size, const char** summary) {
+    return guard([&] {
+        need(summary, "summary");
+        thread_local std::string last;
+        last = summary_path(text_in(path, path_size, "path"));
+        *summary = last.c_str();
+    });
+}
+
+// ---- reference
+
+const char* arm3r_schema_json(void) { return made_once<schema_json>(); }
+const char* arm3r_schema_markdown(void) { return made_once<schema_markdown>(); }
+const char* arm3r_columns_text(void) { return made_once<columns_text>(); }
+const char* arm3r_columns_markdown(void) { return made_once<columns_markdown>(); }
+const char* arm3r_template(void) { return made_once<scenario_template>(); }

@@ -1,0 +1,43 @@
+#include "base/column_memory.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <utility>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace arm3r {
+
+void FreeRows::operator()(double* block) const { std::free(block); }
+
+RowMemory allocate_rows(std::size_t doubles) {
+    constexpr std::size_t large_page = std::size_t{1} << 21, cache_line = 64;
+    const std::size_t wanted = doubles * sizeof(double);
+    const std::size_t unit = wanted >= large_page / 2 ? large_page : cache_line;
+    const std::size_t bytes = (wanted + unit - 1) / unit * unit;
+    void* block = std::aligned_alloc(unit, bytes);
+    if (!block) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+    if (unit == large_page) madvise(block, bytes, MADV_HUGEPAGE);  // advice: nothing depends on it being taken
+#endif
+    return RowMemory(static_cast<double*>(block));
+}
+
+RowTable::RowTable(const RowTable& other) {
+    if (!other.data) return;
+    reserve(other.columns, other.capacity);
+    rows = other.rows;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        std::copy_n(other.data.get() + i * capacity, rows, data.get() + i * capacity);
+}
+
+void RowTable::reserve(std::vector<std::size_t> wanted, std::size_t most_rows) {
+    columns = std::move(wanted);
+    capacity = most_rows;
+    data = allocate_rows(capacity * columns.size());
+}
+
+}  // namespace arm3r

@@ -1,0 +1,26 @@
+#pragma once
+// One lane of a number: of a double, which has one, or of a pack.
+
+#include "arm3r/numbers/pack.hpp"
+
+namespace arm3r {
+
+template <class T>
+struct Lanes {
+    static constexpr int count = 1;
+    using Mask = bool;
+    static double get(const T& x, int) { return x; }
+    static void set(T& x, int, double value) { x = value; }
+    static bool is(bool mask, int) { return mask; }
+};
+
+template <int N>
+struct Lanes<Pack<N>> {
+    static constexpr int count = N;
+    using Mask = PackMask<N>;
+    static double get(const Pack<N>& x, int lane) { return x[lane]; }
+    static void set(Pack<N>& x, int lane, double value) { x.set(lane, value); }
+    static bool is(const Mask& mask, int lane) { return mask[lane]; }
+};
+
+}  // namespace arm3r

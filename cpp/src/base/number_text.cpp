@@ -1,0 +1,217 @@
+#include "base/number_text.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <charconv>
+#include <cmath>
+
+#include "base/text.hpp"
+
+namespace arm3r {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::size_t digits(std::string_view text, std::size_t at) {
+    while (at < text.size() && is_digit(text[at])) ++at;
+    return at;
+}
+
+// The parts of a number at the head of a text; `size` 0 where there is none.
+struct Parts {
+    std::size_t whole = 0, fraction = 0, exponent = 0, size = 0;  // first digit of each part; 0: no such part
+};
+
+Parts parts_of(std::string_view text) {
+    Parts parts;
+    std::size_t at = !text.empty() && (text[0] == '+' || text[0] == '-');
+    const auto is = [&](char c) { return at < text.size() && text[at] == c; };
+    const std::size_t end = digits(text, parts.whole = at);
+    const bool has_whole = end > at;
+    at = end;
+    if (is('.') && digits(text, at + 1) > at + 1) {
+        parts.fraction = at + 1;
+        at = digits(text, at + 1);
+    }
+    if (!has_whole && parts.fraction == 0) return {};
+    parts.size = at;
+    if (is('e')) {
+        std::size_t exponent = at + 1;
+        if (exponent < text.size() && (text[exponent] == '+' || text[exponent] == '-')) ++exponent;
+        if (digits(text, exponent) > exponent) {
+            parts.exponent = at + 1;
+            parts.size = digits(text, exponent);
+        }
+    }
+    return parts;
+}
+
+std::string_view without_plus(std::string_view text) { return text.substr(text.starts_with('+')); }
+
+bool has_nonzero_digit(std::string_view number) {
+    return number.substr(0, number.find('e')).find_first_of("123456789") != number.npos;
+}
+
+// Whether |number|, known not to fit a double, is too large rather than too small.
+bool is_large(std::string_view number, const Parts& parts) {
+    long exponent = 0;
+    if (parts.exponent) {
+        const std::string_view text = without_plus(number.substr(parts.exponent));
+        if (std::from_chars(text.data(), text.data() + text.size(), exponent).ec != std::errc()) return text[0] != '-';
+    }
+    const std::size_t first = number.find_first_of("123456789");
+    const std::size_t point = parts.fraction ? parts.fraction - 1 : digits(number, parts.whole);
+    return exponent + static_cast<long>(point) - static_cast<long>(first) > 0;
+}
+
+std::optional<double> convert(std::string_view number, const Parts& parts, NumberFault& fault) {
+    double value = 0;
+    const std::string_view plain = without_plus(number);
+    const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+    const bool out_of_range = error == std::errc::result_out_of_range;
+    if (!has_nonzero_digit(number)) return 0.0;
+    if ((out_of_range && is_large(number, parts)) || std::isinf(value)) {
+        fault = {"number.range", "out of double range", "the largest double is 1.7976931348623157e308"};
+        return {};
+    }
+    if (out_of_range || std::abs(value) < DBL_MIN) {
+        fault = {"number.range", "underflows: too small for a double", "write 0, or at least 2.2250738585072014e-308"};
+        return {};
+    }
+    return value;
+}
+
+struct Unit {
+    std::string_view name;
+    double divisor;
+    std::string_view si;
+};
+
+constexpr Unit units[] = {
+    {"mm", 1000, "m"},     {"cm", 100, "m"},      {"m", 1, "m"},           {"km", 1e-3, "m"},
+    {"g", 1000, "kg"},     {"kg", 1, "kg"},       {"t", 1e-3, "kg"},       {"us", 1e6, "s"},
+    {"ms", 1000, "s"},     {"s", 1, "s"},         {"sec", 1, "s"},         {"N", 1, "N"},
+    {"kN", 1e-3, "N"},     {"Nm", 1, "N m"},      {"N/m", 1, "N/m"},       {"N/mm", 1e-3, "N/m"},
+    {"kN/m", 1e-3, "N/m"}, {"Hz", 1, "Hz"},       {"kHz", 1e-3, "Hz"},     {"rad", 1, "rad"},
+    {"m/s", 1, "m/s"},     {"mm/s", 1000, "m/s"}, {"cm/s", 100, "m/s"},    {"km/h", 3.6, "m/s"},
+    {"rad/s", 1, "rad/s"}, {"m/s^2", 1, "m/s^2"}, {"kg/m^3", 1, "kg/m^3"}, {"g/cm^3", 1e-3, "kg/m^3"},
+};
+
+std::string_view trimmed(std::string_view text) {
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    return text;
+}
+
+bool is_degrees(std::string_view unit) {
+    return unit == "deg" || unit == "\u00b0" || unit == "degree" || unit == "degrees" || unit == "deg/s";
+}
+
+// What the writer of `number` followed by `unit` most likely wanted.
+std::string unit_hint(std::string_view number, std::string_view unit, const NumberRules& rules) {
+    if (is_degrees(unit)) {
+        if (rules.degrees) return "write " + std::string(number) + " deg";
+        return "only joint angles, joint rates and phases can be given in degrees";
+    }
+    for (const Unit& known : units) {
+        NumberFault ignored;
+        if (known.name != unit) continue;
+        const std::optional<double> value = convert(number, parts_of(number), ignored);
+        if (value)
+            return "numbers are plain SI: write " + shortest(*value / known.divisor) + " (" + std::string(known.si) +
+                   ")";
+    }
+    constexpr std::string_view no_word = "e+-.,:_0123456789";  // e: an exponent that was not finished
+    const bool is_word = !unit.empty() && no_word.find(unit[0]) == unit.npos;
+    return is_word ? "numbers are plain SI, without their unit" : "";
+}
+
+std::string based_hint(std::string_view text) {
+    const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-');
+    if (text.size() < sign + 3 || text[sign] != '0') return {};
+    const char letter = text[sign + 1];
+    const int base = letter == 'x' || letter == 'X'   ? 16
+                     : letter == 'o' || letter == 'O' ? 8
+                     : letter == 'b' || letter == 'B' ? 2
+                                                      : 0;
+    long long value = 0;
+    const char* end = text.data() + text.size();
+    if (base == 0 || std::from_chars(text.data() + sign + 2, end, value, base).ptr != end) return {};
+    return "only decimal numbers: this would be " + std::string(text.substr(0, sign)) + std::to_string(value);
+}
+
+std::string without(std::string_view text, char drop) {
+    std::string out;
+    for (const char c : text)
+        if (c != drop) out += c;
+    return out;
+}
+
+std::string likely_fix(std::string_view text, std::size_t good, const NumberRules& rules) {
+    const std::string_view rest = text.substr(good);
+    if (const std::string hint = based_hint(text); !hint.empty()) return hint;
+    if (text.find("\u2212") != text.npos) return "write the minus sign as -";
+    const std::string_view word =
+        text.substr(text.find_first_not_of("+-.") == text.npos ? 0 : text.find_first_not_of("+-."));
+    if (word == "inf" || word == "Inf" || word == "INF" || word == "nan" || word == "NaN" || word == "NAN" ||
+        word == "infinity")
+        return rules.infinity ? "write inf for no limit" : "the value must be finite";
+    if (good == 0) return {};
+    if (rest[0] == ',') return "use a point: " + std::string(text.substr(0, good)) + "." + std::string(rest.substr(1));
+    if (rest[0] == '_') return "no separators: write " + without(text, '_');
+    if (rest[0] == ':') return "no sexagesimal numbers";
+    if (rest == ".") return "write " + std::string(text.substr(0, good)) + " or " + std::string(text) + "0";
+    if (rest[0] == 'E') return "write the exponent with a small e";
+    return unit_hint(text.substr(0, good), trimmed(rest), rules);
+}
+
+std::optional<double> refuse(std::string_view text, std::size_t good, const NumberRules& rules, NumberFault& fault) {
+    fault.code = "number.syntax";
+    fault.message = rules.whole ? "not a whole number" : "not a number";
+    if (good > 0 && good < text.size()) {
+        std::size_t end = good;
+        next_code_point(text, end);
+        fault.message += ": unexpected '" + std::string(text.substr(good, end - good)) + "' at character " +
+                         std::to_string(count_characters(text.substr(0, good)) + 1);
+    }
+    fault.hint = likely_fix(text, good, rules);
+    return {};
+}
+
+}  // namespace
+
+std::optional<double> read_number(std::string_view text, const NumberRules& rules, NumberFault& fault) {
+    if (rules.infinity && (text == "inf" || text == "+inf" || text == "-inf"))
+        return text[0] == '-' ? -HUGE_VAL : HUGE_VAL;
+    const bool in_degrees = rules.degrees && text.ends_with(" deg");
+    const std::string_view number = in_degrees ? trimmed(text.substr(0, text.size() - 4)) : text;
+    const Parts parts = parts_of(number);
+    if (parts.size == 0 || parts.size < number.size()) return refuse(text, parts.size, rules, fault);
+    const std::size_t whole_end = digits(number, parts.whole);
+    if (whole_end > parts.whole + 1 && number[parts.whole] == '0') {
+        const std::size_t first = std::min(number.find_first_not_of('0', parts.whole), whole_end - 1);
+        fault = {"number.syntax", "a number must not start with 0",
+                 "write " + std::string(number.substr(0, parts.whole)) + std::string(number.substr(first))};
+        return {};
+    }
+    if (rules.whole && (parts.fraction || parts.exponent)) {
+        fault = {"number.whole", "must be a whole number", "write it without fraction and exponent"};
+        return {};
+    }
+    const std::optional<double> value = convert(number, parts, fault);
+    return value && in_degrees ? *value * pi / 180 : value;
+}
+
+char* write_shortest(char* begin, double value) {
+    return std::to_chars(begin, begin + 32, value == 0 ? 0.0 : value).ptr;
+}
+
+std::string shortest(double value) {
+    char text[32];
+    return {text, write_shortest(text, value)};
+}
+
+}  // namespace arm3r

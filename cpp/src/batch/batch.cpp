@@ -1,0 +1,137 @@
+#include "batch/batch.hpp"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "base/callback.hpp"
+#include "base/error.hpp"
+#include "batch/worker.hpp"
+#include "schema/schema.hpp"
+#include "validate/validate.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr std::size_t least_runs_per_thread = 64;
+constexpr std::chrono::milliseconds between_looks{5}, between_reports{20};
+using Clock = std::chrono::steady_clock;
+
+int allowed_threads() {
+    cpu_set_t cpus;
+    const int allowed = sched_getaffinity(0, sizeof cpus, &cpus) == 0 ? CPU_COUNT(&cpus) : 1;
+    return std::max(1, allowed);
+}
+
+void check_variation(const Variation& variation) {
+    std::vector<bool> seen(param_count());
+    for (const std::size_t number : variation.varied) {
+        if (number >= param_count())
+            throw Error(ARM3R_E_INDEX, "varied: there is no number " + std::to_string(number) + "; there are " +
+                                           std::to_string(param_count()));
+        if (seen[number]) throw Error(ARM3R_E_INDEX, "varied: " + param_name(number) + " is named twice");
+        seen[number] = true;
+        const Key& key = key_at(number);
+        if (key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section)
+            throw Error(ARM3R_E_INDEX, "varied: " + key.path + " is no number but a choice; make a batch for each");
+    }
+}
+
+// Asks the threads to stop before they are joined, whichever way the calling thread leaves: it may be ended in a callback.
+struct Ending {
+    std::atomic<bool>& stop;
+    ~Ending() { stop = true; }
+};
+
+class Batch {
+public:
+    Batch(const Variation& variation, const BatchOptions& options, double* results)
+        : options_(options),
+          work_{variation, Checker(variation.params, variation.varied), results,
+                options.lanes ? options.lanes : widest_lanes()} {}
+
+    void run() {
+        const std::size_t runs = work_.variation.runs;
+        const std::size_t wanted = options_.threads > 0 ? options_.threads : allowed_threads();
+        const std::size_t count = std::clamp<std::size_t>(runs / least_runs_per_thread, 1, wanted);
+        std::vector<std::jthread> threads;
+        const Ending ending{work_.stop};
+        threads.reserve(count);
+        try {
+            while (threads.size() < count) threads.emplace_back([this] { work(); });
+        } catch (const std::system_error&) {  // fewer will do
+            if (threads.empty()) throw;
+        }
+        while (!has_ended(threads.size())) watch();
+        threads.clear();
+        if (failure_) std::rethrow_exception(failure_);
+    }
+
+private:
+    void work() {
+        try {
+            Crew(work_).run();
+        } catch (...) {
+            fail(std::current_exception());
+        }
+        const std::lock_guard lock(mutex_);
+        ended_ += 1;
+        wake_.notify_one();
+    }
+
+    void fail(std::exception_ptr failure) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::move(failure);
+        work_.stop = true;
+    }
+
+    bool has_ended(std::size_t threads) {
+        std::unique_lock lock(mutex_);
+        return wake_.wait_for(lock, between_looks, [&] { return ended_ == threads; });
+    }
+
+    // The calling thread hands on the wish to stop, and reports.
+    void watch() {
+        if (options_.stop && *options_.stop) work_.stop = true;
+        if (!options_.progress || Clock::now() < next_report_) return;
+        next_report_ = Clock::now() + between_reports;
+        const std::int32_t answer = call_back(options_.progress, options_.user, std::int64_t(work_.done.load()),
+                                              std::int64_t(work_.variation.runs));
+        if (answer != 0) work_.stop = true;
+        if (answer < 0)
+            fail(std::make_exception_ptr(
+                Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer))));
+    }
+
+    const BatchOptions& options_;
+    Work work_;
+    std::mutex mutex_;
+    std::condition_variable wake_;
+    std::size_t ended_ = 0;
+    std::exception_ptr failure_;
+    Clock::time_point next_report_ = Clock::now() + between_reports;
+};
+
+}  // namespace
+
+void run_batch(const Variation& variation, const BatchOptions& options, double* results) {
+    check_variation(variation);
+    refuse_unknown_choices(variation.params);
+    if (options.lanes > widest_lanes())
+        throw Error(ARM3R_E_VALUE, "lanes: this processor has instructions for " + std::to_string(widest_lanes()) +
+                                       ", not for " + std::to_string(options.lanes));
+    if (variation.varied.empty()) {
+        std::vector<Problem> problems = validate(variation.params);
+        if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
+    }
+    Batch(variation, options, results).run();
+}
+
+}  // namespace arm3r

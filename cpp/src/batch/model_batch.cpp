@@ -1,0 +1,252 @@
+#include "batch/model_batch.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "arm3r/lanes.hpp"
+#include "arm3r/model/dynamics.hpp"
+#include "arm3r/model/recursion.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr std::size_t group = 8;
+constexpr std::size_t widest_row = 18;
+using Eight = Pack<group>;
+
+// Eight rows of three numbers, turned into three columns of eight.
+ARM3R_INLINE Vec3<Eight> load_columns(const double* rows) {
+    const Eight a = Eight::load(rows), b = Eight::load(rows + group), c = Eight::load(rows + 2 * group);
+    const Eight::Vector x = __builtin_shufflevector(a.v, b.v, 0, 3, 6, 9, 12, 15, -1, -1);
+    const Eight::Vector y = __builtin_shufflevector(a.v, b.v, 1, 4, 7, 10, 13, -1, -1, -1);
+    const Eight::Vector z = __builtin_shufflevector(a.v, b.v, 2, 5, 8, 11, 14, -1, -1, -1);
+    return {Eight(__builtin_shufflevector(x, c.v, 0, 1, 2, 3, 4, 5, 10, 13)),
+            Eight(__builtin_shufflevector(y, c.v, 0, 1, 2, 3, 4, 8, 11, 14)),
+            Eight(__builtin_shufflevector(z, c.v, 0, 1, 2, 3, 4, 9, 12, 15))};
+}
+
+ARM3R_INLINE void store_columns(const Vec3<Eight>& columns, double* rows) {
+    const Eight::Vector &x = columns[0].v, &y = columns[1].v, &z = columns[2].v;
+    const Eight::Vector a = __builtin_shufflevector(x, y, 0, 8, -1, 1, 9, -1, 2, 10);
+    const Eight::Vector b = __builtin_shufflevector(z, x, 2, 11, -1, 3, 12, -1, 4, 13);
+    const Eight::Vector c = __builtin_shufflevector(y, z, 5, 13, -1, 6, 14, -1, 7, 15);
+    Eight(__builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7)).store(rows);
+    Eight(__builtin_shufflevector(b, y, 0, 1, 11, 3, 4, 12, 6, 7)).store(rows + group);
+    Eight(__builtin_shufflevector(c, x, 0, 1, 14, 3, 4, 15, 6, 7)).store(rows + 2 * group);
+}
+
+// Eight states: their rows as the formulas take them, and the results as rows.
+struct Group {
+    const Rows& rows;
+    std::size_t index;
+    const Eight& flip;  // of joints 2 and 3, between slide and the convention of the rows
+
+    ARM3R_INLINE Vec3<Eight> vector(int argument) const {
+        const double* from = rows.in[argument];
+        if (!from) return {Eight(0.0), Eight(0.0), Eight(0.0)};
+        return load_columns(from + index * 3 * group);
+    }
+    ARM3R_INLINE Vec3<Eight> joints(int argument) const { return flipped(vector(argument)); }
+    ARM3R_INLINE Pose<Eight> pose() const { return arm3r::pose(joints(0)); }
+
+    // + 0.0: no negative zero
+    ARM3R_INLINE void put(const Eight& number, int result = 0) const { (number + 0.0).store(row(result)); }
+    ARM3R_INLINE void put(const Vec3<Eight>& v, int result = 0) const {
+        store_columns({v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}, row(result));
+    }
+    ARM3R_INLINE void put_joints(const Vec3<Eight>& v) const { put(flipped(v)); }
+
+    // Nine numbers of every row, from `offset` on.
+    ARM3R_INLINE void put(const Mat3<Eight>& m, std::size_t offset = 0) const {
+        alignas(64) double columns[9][group];
+        for (int k = 0; k < 9; ++k) (m.data()[k] + 0.0).store(columns[k]);
+        double* to = row(0) + offset;
+        for (std::size_t lane = 0; lane < group; ++lane, to += rows.out[0].width)
+            for (int k = 0; k < 9; ++k) to[k] = columns[k][lane];
+    }
+    // J D: rows in space, columns in joints. D M D: both in joints.
+    ARM3R_INLINE void put_in_joints(Mat3<Eight> J, std::size_t offset = 0) const {
+        for (int i = 0; i < 3; ++i)
+            for (int j = 1; j < 3; ++j) J(i, j) *= flip;
+        put(J, offset);
+    }
+    ARM3R_INLINE void put_joints(Mat3<Eight> M) const {
+        for (int i = 1; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) M(i, j) *= flip;
+        put_in_joints(M);
+    }
+
+private:
+    ARM3R_INLINE double* row(int result) const {
+        return rows.out[result].data + index * group * rows.out[result].width;
+    }
+    ARM3R_INLINE Vec3<Eight> flipped(const Vec3<Eight>& v) const { return {v[0], v[1] * flip, v[2] * flip}; }
+};
+
+// The parameters in all lanes, so that no formula has to spread them.
+ARM3R_INLINE Arm<Eight> lifted_arm(const Arm<double>& from) {
+    Arm<Eight> arm;
+    each_arm_number([](Eight& to, const double& number) ARM3R_INLINE_LAMBDA { to = number; }, arm, from);
+    copy_arm_choices(from, arm);
+    return arm;
+}
+
+template <class Formula>
+ARM3R_INLINE void each(const Model& model, std::size_t groups, const Rows& rows, Formula formula) {
+    const Arm<Eight> arm = lifted_arm(model.arm);
+    const Eight flip = model.simscape ? -1.0 : 1.0;
+    for (std::size_t i = 0; i < groups; ++i) formula(Group{rows, i, flip}, arm);
+}
+
+// The mass along a direction of any length; 0 where it has none.
+ARM3R_INLINE Eight mass_along(const Arm<Eight>& arm, const Pose<Eight>& p, const Vec3<Eight>& direction) {
+    const Eight length = sqrt(dot(direction, direction));
+    const Vec3<Eight> n(direction[0] / length, direction[1] / length, direction[2] / length);
+    return select(length > Eight(least_length), effective_mass(arm, p, n), Eight(0.0));
+}
+
+}  // namespace
+
+namespace in_groups {
+
+using Parameters = const Arm<Eight>&;
+using Here = const Group&;
+
+ARM3R_WIDEST void tip_position(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::tip_position(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void elbow_position(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::elbow_position(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void centres(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::centres(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void jacobian(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put_in_joints(arm3r::jacobian(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void geometric_jacobian(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        const Pose<Eight> p = g.pose();
+        g.put_in_joints(arm3r::jacobian(arm, p));
+        g.put_in_joints(angular_jacobian(p), 9);
+    });
+}
+
+ARM3R_WIDEST void jacobian_dot(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        g.put_in_joints(arm3r::jacobian_dot(arm, g.pose(), g.joints(1)));
+    });
+}
+
+ARM3R_WIDEST void mass_matrix(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put_joints(arm3r::mass_matrix(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void coriolis_matrix(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        g.put_joints(arm3r::coriolis_matrix(arm, g.pose(), g.joints(1)));
+    });
+}
+
+ARM3R_WIDEST void velocity_product(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        g.put_joints(arm3r::velocity_product(arm, g.pose(), g.joints(1)));
+    });
+}
+
+ARM3R_WIDEST void gravity_torque(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put_joints(arm3r::gravity_torque(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void operational_space_inertia(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::operational_space_inertia(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void effective_mass(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(mass_along(arm, g.pose(), g.vector(1))); });
+}
+
+ARM3R_WIDEST void manipulability(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::manipulability(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void energy(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        const Pose<Eight> p = g.pose();
+        g.put(kinetic_energy(arm, p, g.joints(1)), 0);
+        g.put(potential_energy(arm, p), 1);
+    });
+}
+
+ARM3R_WIDEST void forward_dynamics(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        g.put_joints(arm3r::forward_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
+    });
+}
+
+ARM3R_WIDEST void inverse_dynamics(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        g.put_joints(arm3r::inverse_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
+    });
+}
+
+ARM3R_WIDEST void tip_sensor(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        const TipSensor<Eight> sensor = arm3r::tip_sensor(arm, g.joints(0), g.joints(1));
+        g.put(sensor.position, 0);
+        g.put(sensor.velocity, 1);
+    });
+}
+
+ARM3R_WIDEST void singularity(const Model& model, std::size_t groups, const Rows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        const Pose<Eight> p = g.pose();
+        g.put(abs(Eight(p.S23 * p.C2 - p.C23 * p.S2)), 0);
+        g.put(abs(radius(arm, p)), 1);
+    });
+}
+
+}  // namespace in_groups
+
+// What is left over fills a group up with states of zeros.
+void evaluate(GroupFunction& function, const Model& model, std::size_t n, const Rows& rows) {
+    const std::size_t left = n % group, done = n - left;
+    if (done > 0) function(model, done / group, rows);
+    if (left == 0) return;
+
+    double in[std::tuple_size_v<decltype(Rows::in)>][3 * group] = {};
+    double out[std::tuple_size_v<decltype(Rows::out)>][widest_row * group];
+    Rows rest = rows;
+    for (std::size_t k = 0; k < rows.in.size(); ++k) {
+        if (!rows.in[k]) continue;
+        std::copy_n(rows.in[k] + 3 * done, 3 * left, in[k]);
+        rest.in[k] = in[k];
+    }
+    for (std::size_t k = 0; k < rows.out.size(); ++k) rest.out[k].data = out[k];
+    function(model, 1, rest);
+    for (std::size_t k = 0; k < rows.out.size(); ++k)
+        if (const auto [data, width] = rows.out[k]; data) std::copy_n(out[k], left * width, data + done * width);
+}
+
+// Numbers without their sign are ordered as their bits are, with those that are not numbers above all.
+ARM3R_WIDEST bool all_within(const double* data, std::size_t count, double limit) {
+    const auto most = std::bit_cast<std::int64_t>(limit);
+    std::int64_t room = 0;  // negative where any was beyond
+    for (std::size_t i = 0; i < count; ++i) room |= most - (std::bit_cast<std::int64_t>(data[i]) & INT64_MAX);
+    return room >= 0;
+}
+
+}  // namespace arm3r

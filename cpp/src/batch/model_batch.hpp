@@ -1,0 +1,47 @@
+#pragma once
+// The model functions on many states, eight side by side; each state gets the bits of its formula in double.
+
+#include <array>
+#include <cstddef>
+
+#include "arm3r/model/arm.hpp"
+
+namespace arm3r {
+
+struct Model {
+    Arm<double> arm;
+    bool simscape;  // the convention of the joint vectors in the rows
+};
+
+// Arrays of one row a state: rows of 3 in, where an absent one is null and stands for zeros, and rows of `width` out.
+struct Rows {
+    struct Out {
+        double* data;
+        std::size_t width;
+    };
+    std::array<const double*, 4> in;
+    std::array<Out, 2> out;
+};
+
+// Of a direction, for effective_mass: below it the mass is 0.
+inline constexpr double least_length = 1e-100;
+
+// One function of the model on whole groups of eight states; in and out as in arm3r.h.
+using GroupFunction = void(const Model& model, std::size_t groups, const Rows& rows);
+
+namespace in_groups {
+GroupFunction tip_position, elbow_position, centres, jacobian, geometric_jacobian, jacobian_dot, mass_matrix,
+    coriolis_matrix, velocity_product, gravity_torque, operational_space_inertia, effective_mass, manipulability,
+    energy, forward_dynamics, inverse_dynamics, tip_sensor;
+
+// |sin q3|, and the tip's distance from the joint-1 axis: the pose is singular where either vanishes.
+GroupFunction singularity;
+}  // namespace in_groups
+
+// Any number of states.
+void evaluate(GroupFunction& function, const Model& model, std::size_t n, const Rows& rows);
+
+// No number is beyond the limit or not a number.
+bool all_within(const double* data, std::size_t count, double limit);
+
+}  // namespace arm3r

@@ -1,0 +1,318 @@
+// The executable. It knows the library only by its C interface.
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "arm3r/arm3r.h"
+#include "cli/arguments.hpp"
+#include "cli/terminal.hpp"
+
+namespace cli {
+
+namespace {
+
+using ScenarioHandle = std::unique_ptr<arm3r_scenario, decltype(&arm3r_scenario_free)>;
+using RunHandle = std::unique_ptr<arm3r_run, decltype(&arm3r_run_free)>;
+
+int exit_code(int32_t status) {
+    switch (status) {
+        case ARM3R_OK: return exit_ok;
+        case ARM3R_E_VALUE:  // a word of the command line that is no text
+        case ARM3R_E_SIZE:
+        case ARM3R_E_FILE: return exit_usage;
+        case ARM3R_E_SIZE_CAP:
+        case ARM3R_E_MEMORY: return exit_budget;
+        case ARM3R_E_OUTPUT: return exit_output;
+        case ARM3R_E_CALLBACK: return exit_callback;
+        case ARM3R_E_ABI:
+        case ARM3R_E_FORMAT: return exit_incompatible;
+        case ARM3R_E_INTERNAL: return exit_internal;
+        default: return exit_scenario;
+    }
+}
+
+int exit_code_of_outcome(int32_t outcome) {
+    if (outcome == ARM3R_RUN_OK) return exit_ok;
+    if (outcome == ARM3R_RUN_CONTROLLER) return exit_callback;
+    return outcome == ARM3R_RUN_BUDGET || outcome == ARM3R_RUN_STOPPED ? exit_budget : exit_numeric;
+}
+
+void require(int32_t status) {
+    if (status != ARM3R_OK) throw Exit{exit_code(status), arm3r_error_message()};
+}
+
+// ---- scenarios
+
+ScenarioHandle load(const std::string& path) {
+    arm3r_scenario* scenario = nullptr;
+    require(arm3r_scenario_load(path.data(), path.size(), &scenario));
+    return {scenario, arm3r_scenario_free};
+}
+
+ScenarioHandle load(const std::string& path, const Arguments& arguments) {
+    ScenarioHandle scenario = load(path);
+    for (const auto& [at, value] : arguments.edits)
+        require(arm3r_scenario_set_from(scenario.get(), at.data(), at.size(), value.data(), value.size(), "--set", 5));
+    require(arm3r_scenario_validate(scenario.get()));
+    return scenario;
+}
+
+// All of them, or the problems of all of them.
+std::vector<ScenarioHandle> load_all(const Arguments& arguments) {
+    std::vector<ScenarioHandle> scenarios;
+    Exit failed{exit_ok, ""};
+    for (const std::string& file : arguments.files) {
+        try {
+            scenarios.push_back(load(file, arguments));
+        } catch (const Exit& exit) {
+            if (failed.code == exit_ok) failed.code = exit.code;
+            failed.message += (failed.message.empty() ? "" : "\n") + exit.message;
+        }
+    }
+    if (failed.code != exit_ok) throw failed;
+    return scenarios;
+}
+
+std::string name_of(const ScenarioHandle& scenario) {
+    const char* name = nullptr;
+    require(arm3r_scenario_name(scenario.get(), &name));
+    return name;
+}
+
+// ---- where the results go
+
+bool is_directory(const std::string& path) {
+    struct stat about{};
+    return stat(path.c_str(), &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+// With those above it.
+void make_directory(const std::string& path) {
+    for (std::size_t end = 0; end != path.npos;) {
+        end = path.find('/', end + 1);
+        mkdir(path.substr(0, end).c_str(), 0777);
+    }
+    if (!is_directory(path))
+        throw Exit{exit_output, path + ": error[output]: cannot be made; for several scenarios -o names a directory"};
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+    struct stat one{}, other{};
+    return stat(a.c_str(), &one) == 0 && stat(b.c_str(), &other) == 0 && one.st_dev == other.st_dev &&
+           one.st_ino == other.st_ino;
+}
+
+void spare_scenarios(const std::vector<std::string>& files, const std::string& path) {
+    for (const std::string& file : files)
+        if (is_same_file(file, path))
+            throw Exit{exit_usage, path + ": error[usage]: this would overwrite a scenario; give -o another name"};
+}
+
+std::string summary_beside(const std::string& path) {
+    const char* summary = nullptr;
+    require(arm3r_output_summary(path.data(), path.size(), &summary));
+    return summary;
+}
+
+// A file for each scenario, checked before the first run; "-" is standard output, "" nowhere.
+std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vector<ScenarioHandle>& scenarios) {
+    const std::string& output = arguments.output;
+    if (output.empty() || output == "-") {
+        if (output == "-" && scenarios.size() > 1)
+            throw Exit{exit_usage, "arm3r: error[usage]: -o - takes one scenario"};
+        return std::vector<std::string>(scenarios.size(), output);
+    }
+    if (scenarios.size() > 1) make_directory(output);
+    const bool directory = is_directory(output);
+    std::vector<std::string> paths;
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+        const std::string path =
+            directory ? output + (output.ends_with('/') ? "" : "/") + name_of(scenarios[i]) + ".csv" : output;
+        if (!seen.insert(path).second)
+            throw Exit{exit_usage, path + ": error[usage]: two scenarios would write this file; give them names"};
+        spare_scenarios(arguments.files, path);
+        spare_scenarios(arguments.files, summary_beside(path));
+        require(arm3r_output_probe(path.data(), path.size()));
+        paths.push_back(path);
+    }
+    return paths;
+}
+
+int32_t print_piece(void* failure, const char* data, size_t size) {
+    try {
+        print({data, size});
+        return 0;
+    } catch (const Exit& exit) {
+        *static_cast<Exit*>(failure) = exit;
+        return 1;
+    }
+}
+
+void print_csv(const arm3r_run* run) {
+    Exit failure{exit_ok, ""};
+    const int32_t status = arm3r_run_csv(run, print_piece, &failure);
+    if (failure.code != exit_ok) throw failure;
+    require(status);
+}
+
+void write_results(const arm3r_run* run, const std::string& path) {
+    if (path == "-") print_csv(run);
+    else if (!path.empty()) require(arm3r_run_save(run, path.data(), path.size()));
+}
+
+// ---- calls
+
+RunHandle simulate(const ScenarioHandle& scenario, double time_limit) {
+    Progress progress(name_of(scenario));
+    arm3r_run_options options{};
+    options.struct_size = sizeof options;
+    options.stop = stop_flag();
+    options.progress = Progress::callback;
+    options.user = &progress;
+    options.time_limit = time_limit;
+    arm3r_run* run = nullptr;
+    require(arm3r_scenario_run(scenario.get(), &options, &run));
+    return {run, arm3r_run_free};
+}
+
+int code_of(const arm3r_run* run) {
+    int32_t outcome = 0;
+    std::size_t checks = 0, failed = 0;
+    require(arm3r_run_outcome(run, &outcome));
+    require(arm3r_run_checks(run, &checks, &failed));
+    return outcome != ARM3R_RUN_OK ? exit_code_of_outcome(outcome) : failed ? exit_check : exit_ok;
+}
+
+std::string summary_of(const arm3r_run* run, bool json) {
+    const char* text = nullptr;
+    require(json ? arm3r_run_summary(run, &text) : arm3r_run_report(run, &text));
+    return text;
+}
+
+// The codes of runs are in order of severity, but for ok.
+int worse(int a, int b) { return a == exit_ok ? b : b == exit_ok ? a : std::min(a, b); }
+
+int call_run(const Arguments& arguments) {
+    const std::vector<ScenarioHandle> scenarios = load_all(arguments);
+    catch_signals();
+    const std::vector<std::string> outputs = plan_outputs(arguments, scenarios);
+    const bool several = scenarios.size() > 1;
+    const auto say = [&](const std::string& text) { arguments.output == "-" ? complain(text) : print(text); };
+    int code = exit_ok;
+    std::size_t not_ok = 0;
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+        const RunHandle run = simulate(scenarios[i], arguments.time_limit);
+        if (stop_requested()) return exit_ok;
+        write_results(run.get(), outputs[i]);
+        const int this_code = code_of(run.get());
+        code = worse(code, this_code);
+        not_ok += this_code != exit_ok;
+        if (several) say(arguments.json ? i ? ",\n" : "[\n" : i ? "\n" : "");
+        say(summary_of(run.get(), arguments.json));
+    }
+    if (several && arguments.json) say("]\n");
+    if (several && !arguments.json)
+        say("\n" + std::to_string(scenarios.size()) + " runs, " + std::to_string(not_ok) + " not ok\n");
+    return code;
+}
+
+int call_check(const Arguments& arguments) {
+    const ScenarioHandle scenario = load(arguments.files[0], arguments);
+    const char *warnings = nullptr, *yaml = nullptr;
+    require(arm3r_scenario_warnings(scenario.get(), &warnings));
+    require(arm3r_scenario_yaml(scenario.get(), 1, &yaml));
+    complain(warnings);
+    print(yaml);
+    return exit_ok;
+}
+
+int call(const Arguments& arguments) {
+    const bool markdown = arguments.format == "md";
+    if (arguments.call == "run") return call_run(arguments);
+    if (arguments.call == "check") return call_check(arguments);
+    if (arguments.call == "schema") print(markdown ? arm3r_schema_markdown() : arm3r_schema_json());
+    if (arguments.call == "columns") print(markdown ? arm3r_columns_markdown() : arm3r_columns_text());
+    if (arguments.call == "template") print(arm3r_template());
+    return exit_ok;
+}
+
+// ---- arm3r NAME: another program
+
+std::vector<std::string> search_path() {
+    std::vector<std::string> directories;
+    const char* path = std::getenv("PATH");
+    std::string rest = path ? path : "";
+    while (!rest.empty()) {
+        const std::size_t colon = std::min(rest.find(':'), rest.size());
+        if (colon > 0) directories.push_back(rest.substr(0, colon));
+        rest.erase(0, colon + 1);
+    }
+    return directories;
+}
+
+std::string directory_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
+
+// Where the called program lies: as it was called, then behind its links.
+std::vector<std::string> own_directories(const std::string& called) {
+    std::string path = called;
+    if (called.find('/') == called.npos)
+        for (const std::string& directory : search_path())
+            if (path == called && access((directory + "/" + called).c_str(), X_OK) == 0)
+                path = directory + "/" + called;
+    if (path.find('/') == path.npos) return {};
+    std::vector<std::string> directories = {directory_of(path)};
+    const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr), std::free);
+    if (real) directories.push_back(directory_of(real.get()));
+    return directories;
+}
+
+[[noreturn]] void become(const std::string& name, char** words) {
+    std::vector<std::string> directories = own_directories(words[0]);
+    for (const std::string& directory : search_path()) directories.push_back(directory);
+    for (const std::string& directory : directories) {
+        const std::string program = directory + "/arm3r-" + name;
+        if (name.find('/') != name.npos || access(program.c_str(), X_OK) != 0 || is_directory(program)) continue;
+        words[1] = const_cast<char*>(program.c_str());
+        execv(program.c_str(), words + 1);
+    }
+    throw Exit{exit_usage, "arm3r: error[usage]: " + unknown_call(name)};
+}
+
+int main(int count, char** words) {
+    if (count > 1 && words[1][0] != '-' && !is_call(words[1])) become(words[1], words);
+    const Arguments arguments = read_arguments({words + std::min(count, 1), words + count});
+    if (arguments.help) return print(help(arguments.call)), exit_ok;
+    if (arguments.version)
+        return print("arm3r " + std::string(arm3r_version()) + "\n" + arm3r_build_info() + "\n"), exit_ok;
+    return call(arguments);
+}
+
+}  // namespace
+
+}  // namespace cli
+
+int main(int count, char** words) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit then returns an error
+    std::signal(SIGPIPE, SIG_DFL);  // also where the caller ignores it: a reader that has gone ends the program quietly
+    int code = cli::exit_internal;
+    try {
+        code = cli::main(count, words);
+    } catch (const cli::Exit& exit) {
+        cli::complain(exit.message + "\n");
+        code = exit.code;
+    } catch (const std::bad_alloc&) {
+        cli::complain("arm3r: error[memory]: there is not enough memory\n");
+        code = cli::exit_budget;
+    }
+    if (cli::stop_requested()) cli::die_by_signal();
+    return code;
+}

@@ -1,0 +1,36 @@
+#pragma once
+// What a law of the user's own sees, and what it answers, in the arm's convention.
+
+#include "arm3r/arm3r.h"
+#include "control/sampled_controller.hpp"
+#include "setup/setup.hpp"
+
+namespace arm3r {
+
+class LawView {
+public:
+    explicit LawView(const Setup& setup)
+        : arm_(setup.plant.arm),
+          wall_(setup.plant.wall),
+          has_wall_(setup.plant.has_wall),
+          observes_(setup.observes()),
+          estimates_(setup.estimation.on),
+          simscape_(setup.simscape),
+          period_(setup.digital.sampling.period) {}
+
+    // Into a state of zeros, or one that was looked at before.
+    void look(double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>& known,
+              arm3r_law_state& state) const;
+
+    Vec3<double> torque(const double* tau) const;  // slide
+
+private:
+    void put_joints(const Vec3<double>& v, double* out) const;
+
+    Arm<double> arm_;
+    Wall<double> wall_;
+    bool has_wall_, observes_, estimates_, simscape_;
+    double period_;
+};
+
+}  // namespace arm3r

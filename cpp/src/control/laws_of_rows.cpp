@@ -1,0 +1,36 @@
+// One controller at several instants, rows side by side: the laws of the lanes, with it in every lane.
+
+#include "arm3r/lanes.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
+#include "control/compiled_laws.hpp"
+
+namespace arm3r {
+namespace {
+
+template <class T>
+void of_rows(const Controller<double>& controller, const Sensed<T>& sensed, const std::array<T, law_memory>& memory,
+             Command<T>& command) {
+    Controller<T> in_every_lane;
+    copy_controller_choices(controller, in_every_lane);
+    const auto copy = [](T& to, double from) { to = T(from); };
+    each_law_number(copy, in_every_lane, controller);
+    each_arm_number(copy, in_every_lane.model, controller.model);
+    for (int i = 0; i < 3; ++i) copy(in_every_lane.torque[i], controller.torque[i]);
+    compiled_law<T, T>()(in_every_lane, sensed, memory, command);
+}
+
+}  // namespace
+
+template <>
+LawFunction<double, Pack<2>> compiled_law() {
+    return of_rows;
+}
+
+#if ARM3R_WIDE_PACKS
+template <>
+LawFunction<double, Pack<4>> compiled_law() {
+    return of_rows;
+}
+#endif
+
+}  // namespace arm3r

@@ -1,0 +1,282 @@
+#include "control/sampled_controller.hpp"
+
+#include <cmath>
+
+#include "arm3r/numbers/eigen_traits.hpp"
+#include "base/number_text.hpp"
+#include "control/compiled_laws.hpp"
+
+namespace arm3r {
+namespace {
+
+template <class F, class A, class B>
+void each_digital_number(F f, A& a, B& b) {
+    f(a.sampling.start, b.sampling.start), f(a.sampling.period, b.sampling.period);
+    f(a.sampling.delay, b.sampling.delay), f(a.sampling.seed, b.sampling.seed);
+    each_sensor_number(f, a.sensors, b.sensors);
+    each_observer_number(f, a.observer, b.observer);
+    for (int i = 0; i < 3; ++i) f(a.controller.torque[i], b.controller.torque[i]);
+    each_arm_number(f, a.controller.model, b.controller.model);
+    each_law_number(f, a.controller, b.controller);
+}
+
+template <class A, class B>
+void copy_digital_choices(const Digital<A>& from, Digital<B>& to) {
+    static_cast<SamplingChoices&>(to.sampling) = from.sampling;
+    static_cast<SensorChoices&>(to.sensors) = from.sensors;
+    static_cast<ObserverChoices&>(to.observer) = from.observer;
+    copy_controller_choices(from.controller, to.controller);
+}
+
+}  // namespace
+
+template <class T>
+void ControlLoop<T>::put(int lane, const Digital<double>& from, const Estimation<double>& estimation) {
+    const auto set = [&](T& x, double value) { Lanes<T>::set(x, lane, value); };
+    law_function = compiled_law<T, T>();
+    copy_digital_choices(from, digital_);
+    if (from.sampling.on) each_digital_number(set, digital_, from);
+    static_cast<EstimationChoices&>(estimation_) = estimation;
+    set(estimation_.period, estimation.period), set(estimation_.start, estimation.start);
+    set(estimation_.forgetting, estimation.forgetting);
+    set(estimation_.largest_condition, estimation.largest_condition);
+    set(next_estimate_, estimation.on ? estimation.start : never);
+    estimator_.forget(estimation.wall_moves, [&](T& x) { set(x, 0.0); });
+    for (T* zero : {&count_, &outputs_done_, &known_.contact, &known_.force_phase, &known_.collision, &known_.stiffness,
+                    &known_.wall_speed, &known_.identifiable, &quiet_since_, &reacts_, &last_potential_, &early_share_,
+                    &estimates_, &samples_in_, &pressing_.counts})
+        set(*zero, 0.0);
+    for (Vec3<T>* zeros : {&known_.q, &known_.qd, &known_.f_on_tip, &known_.residual, &filtered_, &expected_,
+                           &kept_pose_, &last_q_, &last_qd_, &last_wanted_, &early_torque_})
+        for (int i = 0; i < 3; ++i) set((*zeros)[i], 0.0);
+    for (T& number : known_.memory) set(number, 0.0);
+    set(next_sample_, from.sampling.on ? from.sampling.start : never);
+    set(next_output_, never);
+    set(early_share_, from.sampling.delay - std::floor(from.sampling.delay));
+    has_output_delay_ = from.sampling.has_delay;
+    has_failed_ = false;
+    user_status_ = 0;
+}
+
+template <class T>
+void ControlLoop<T>::add_noise(const Mask& due, Vec3<T>& f) const {
+    for (int lane = 0; lane < Lanes<T>::count; ++lane) {
+        if (!Lanes<T>::is(due, lane)) continue;
+        const auto seed = static_cast<std::uint64_t>(Lanes<T>::get(digital_.sampling.seed, lane));
+        const auto counter = static_cast<std::uint64_t>(Lanes<T>::get(count_, lane));
+        const double deviation = Lanes<T>::get(digital_.sensors.noise, lane);
+        for (std::uint32_t axis = 0; axis < 3; ++axis)
+            Lanes<T>::set(f[axis], lane,
+                          Lanes<T>::get(f[axis], lane) + deviation * standard_normal(seed, axis, counter));
+    }
+}
+
+template <class T>
+Vec3<T> ControlLoop<T>::delayed_force(const Mask& due, const Vec3<T>& f) {
+    Vec3<T> seen = f;
+    constexpr std::size_t size = most_force_delay + 2;
+    for (int lane = 0; lane < Lanes<T>::count; ++lane) {
+        if (!Lanes<T>::is(due, lane)) continue;
+        const double now = Lanes<T>::get(count_, lane), delay = Lanes<T>::get(digital_.sensors.force_delay, lane);
+        const double place = std::max(0.0, now - delay), before = std::floor(place), share = place - before;
+        auto& ring = forces_[lane];
+        const auto at = [&](double sample) -> Vec3<double>& { return ring[std::size_t(sample) % size]; };
+        for (int i = 0; i < 3; ++i) at(now)[i] = Lanes<T>::get(f[i], lane);
+        const Vec3<double>&a = at(before), &b = at(std::min(now, before + 1));
+        for (int i = 0; i < 3; ++i) Lanes<T>::set(seen[i], lane, a[i] + share * (b[i] - a[i]));
+    }
+    return seen;
+}
+
+// The torque put out at the last sample but the delay acts until the next sample, the one before it for the fraction of a
+// delay that is not whole: their mean is what an integral over the period sees.
+template <class T>
+void ControlLoop<T>::queue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
+    for (int lane = 0; lane < Lanes<T>::count; ++lane) {
+        if (!Lanes<T>::is(due, lane)) continue;
+        auto& ring = outputs_[lane];
+        const double now = Lanes<T>::get(count_, lane), delay = Lanes<T>::get(digital_.sampling.delay, lane);
+        const double whole = std::floor(delay), share = delay - whole;
+        const auto of = [&](double sample) -> Vec3<double>& {
+            return ring[std::size_t(std::max(0.0, sample)) % ring.size()];
+        };
+        for (int i = 0; i < 3; ++i) of(now)[i] = Lanes<T>::get(output[i], lane);
+        const Vec3<double>&before = of(now - whole - 1), &after = of(now - whole);
+        for (int i = 0; i < 3; ++i) {
+            const double early = before[i] - after[i];
+            Lanes<T>::set(early_torque_[i], lane, early);
+            Lanes<T>::set(mean_acting_[i], lane, after[i] + share * early);
+            if (now == 0) Lanes<T>::set(acting[i], lane, after[i]);
+        }
+        if (now == 0) Lanes<T>::set(next_output_, lane, due_time(lane, 0));
+    }
+}
+
+template <class T>
+void ControlLoop<T>::put_out(const Mask& due, Vec3<T>& acting) {
+    for (int lane = 0; lane < Lanes<T>::count; ++lane) {
+        if (!Lanes<T>::is(due, lane)) continue;
+        const double done = Lanes<T>::get(outputs_done_, lane);
+        const Vec3<double>& tau = outputs_[lane][std::size_t(done) % outputs_[lane].size()];
+        for (int i = 0; i < 3; ++i) Lanes<T>::set(acting[i], lane, tau[i]);
+        Lanes<T>::set(outputs_done_, lane, done + 1);
+        Lanes<T>::set(next_output_, lane, due_time(lane, done + 1));
+    }
+}
+
+// When the torque of a sample comes through, s.
+template <class T>
+double ControlLoop<T>::due_time(int lane, double sample) const {
+    const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
+    const Sampling<T>& sampling = digital_.sampling;
+    return get(sampling.start) + (sample + get(sampling.delay)) * get(sampling.period);
+}
+
+template <class T>
+void ControlLoop<T>::ask_user(const Sensed<T>& sensed, Vec3<T>& tau) {
+    tau = {T(0.0), T(0.0), T(0.0)};
+    if constexpr (Lanes<T>::count == 1) {
+        if (has_failed_) return;
+        user_status_ = user.function(user.user, count_, truth_, sensed, known_, user_torque_);
+        has_failed_ = user_status_ != 0;
+        for (int i = 0; i < 3; ++i) has_failed_ = has_failed_ || !(std::abs(user_torque_[i]) <= largest_torque);
+        if (!has_failed_) tau = user_torque_;
+    }
+}
+
+template <class T>
+std::string ControlLoop<T>::complaint() const {
+    const double tick = Lanes<T>::get(count_, 0) - 1;
+    const double t = Lanes<T>::get(digital_.sampling.start, 0) + tick * Lanes<T>::get(digital_.sampling.period, 0);
+    const std::string place = " at tick " + shortest(tick) + ", t = " + shortest(t) + " s";
+    if (user_status_ != 0) return "the controller asked to stop with " + std::to_string(user_status_) + place;
+    const Vec3<double> tau = user.simscape ? flipped(user_torque_) : user_torque_;
+    return "the controller gave the torque [" + shortest(tau[0]) + ", " + shortest(tau[1]) + ", " + shortest(tau[2]) +
+           "] N m" + place + "; three finite numbers are needed, at most 1e12 either way";
+}
+
+// What the law has given out since the last sample: the work of the torques that acted, less what has changed in the
+// potential of which the law is the gradient, less what the motion of its reference has brought in. Exact but for the two
+// torques of a delay that is no whole number of samples, where the accelerations are taken for constant.
+template <class T>
+void ControlLoop<T>::settle(const Mask& due, const Sensed<T>& sensed) {
+    const Controller<T>& controller = digital_.controller;
+    const Vec3<T> wanted = wanted_tip(sensed), way = minus(sensed.q, last_q_);
+    const T potential = law_potential(controller, sensed.pose, wanted);
+    T given = dot(mean_acting_, way) - (potential - last_potential_);
+    if (has_output_delay_) {
+        const T share = 0.5 * early_share_ * (1.0 - early_share_) * digital_.sampling.period;
+        given = given - share * dot(early_torque_, minus(sensed.qd, last_qd_));
+    }
+    if (wants_path(controller.type)) given = given - work_of_reference(wanted);
+    T reserve = known_.memory[0] - given;
+    if (controller.type == Controls::energy_tank) reserve = min(reserve, controller.gains.tank_capacity);
+    known_.memory[0] = select(due && count_ > T(0.0), reserve, known_.memory[0]);
+    keep(due, sensed.q, last_q_);
+    keep(due, sensed.qd, last_qd_);
+    keep(due, wanted, last_wanted_);
+    last_potential_ = select(due, potential, last_potential_);
+}
+
+// J, by the force at the tip that the torque stood for, which a singular pose does not tell.
+template <class T>
+T ControlLoop<T>::work_of_reference(const Vec3<T>& wanted) const {
+    const Arm<T>& model = digital_.controller.model;
+    const Pose<T> before = pose(last_q_);
+    const Vec3<T> force = force_from(model, before, minus(mean_acting_, gravity_torque(model, before)));
+    const Vec3<T> moved = minus(wanted, last_wanted_);
+    const Mask stands = dot(moved, moved) == T(0.0) || distance_to_singular(model, before) < T(1e-3);
+    return select(stands, T(0.0), T(dot(force, moved)));
+}
+
+// The torque that acts `still` periods before that of this sample does, and for which share of a period.
+template <class T>
+T ControlLoop<T>::pending(const Mask& due, double still, Vec3<T>& acting) const {
+    T share(0.0);
+    for (int lane = 0; lane < Lanes<T>::count; ++lane) {
+        const double whole = std::floor(Lanes<T>::get(digital_.sampling.delay, lane));
+        if (!Lanes<T>::is(due, lane) || still > whole) continue;
+        Lanes<T>::set(share, lane, still < whole ? 1.0 : Lanes<T>::get(early_share_, lane));
+        const double now = Lanes<T>::get(count_, lane), sample = std::max(0.0, now - still - 1);
+        if (now == 0) continue;  // the torque of this sample acts from the start
+        for (int i = 0; i < 3; ++i)
+            Lanes<T>::set(acting[i], lane, outputs_[lane][std::size_t(sample) % outputs_[lane].size()][i]);
+    }
+    return share;
+}
+
+// Where the arm will be when the torque of this sample begins to act, and what will be left of the reserve by then.
+template <class T>
+Prospect<T> ControlLoop<T>::when_it_acts(const Mask& due, const Sensed<T>& sensed, const Vec3<T>& output) const {
+    Prospect<T> ahead{sensed.q, sensed.qd, sensed.pose, last_potential_, known_.memory[0]};
+    if (!has_output_delay_) return ahead;
+    const Sampling<T>& sampling = digital_.sampling;
+    double longest = 0;
+    for (int lane = 0; lane < Lanes<T>::count; ++lane)
+        if (Lanes<T>::is(due, lane)) longest = std::max(longest, std::floor(Lanes<T>::get(sampling.delay, lane)));
+    for (double still = longest; still >= 0; --still) {
+        Vec3<T> acting = output;
+        const T time = sampling.period * pending(due, still, acting);
+        advance(digital_.controller, last_wanted_, acting, time, ahead);
+    }
+    return ahead;
+}
+
+// The brake works beside any torque, and outside a virtual wall too.
+template <class T>
+void ControlLoop<T>::keep_passive(const Mask& due, const Arm<T>& arm, const Sensed<T>& sensed, Command<T>& command) {
+    const Controller<T>& controller = digital_.controller;
+    const Vec3<T> output = limited(arm, command.tau, controller.saturation);
+    const Prospect<T> ahead = when_it_acts(due, sensed, output);
+    command.tau = plus(command.tau, brake(controller, last_wanted_, output, digital_.sampling.period, ahead));
+}
+
+// What was measured counts once, and in contact only. The answer is the assumed stiffness of a law that asks for it.
+template <class T>
+void ControlLoop<T>::estimate(const Mask& due) {
+    const T o(0.0), l(1.0);
+    const Mask counts = due && pressing_.counts > o;
+    const Mask first = counts && samples_in_ == o;
+    first_place_ = select(first, pressing_.place, first_place_);
+    first_time_ = select(first, pressing_.time, first_time_);
+    estimator_.add_where(counts, T(pressing_.place - first_place_), T(pressing_.time - first_time_), pressing_.force,
+                         estimation_.forgetting);
+    pressing_.counts = select(due, o, pressing_.counts);
+    samples_in_ = samples_in_ + select(counts, l, o);
+    const WallEstimate<T> answer = estimator_.answer();
+    const Mask told = samples_in_ >= T(8.0) && answer.condition < estimation_.largest_condition;
+    known_.identifiable = select(due, select(told, l, o), known_.identifiable);
+    known_.stiffness = select(due, select(told, answer.stiffness, o), known_.stiffness);
+    known_.wall_speed = select(due, select(told, answer.speed, o), known_.wall_speed);
+    if (digital_.sampling.on && asks_estimator(digital_.controller)) {
+        T& assumed = digital_.controller.gains.assumed_stiffness;
+        assumed = select(due && told, answer.stiffness, assumed);
+    }
+    estimates_ = estimates_ + select(due, l, o);
+    next_estimate_ = select(due, T(estimation_.start + estimates_ * estimation_.period), next_estimate_);
+}
+
+// By name: `template class` would also build, for no caller, what is inlined everywhere (ARM3R_INLINE).
+#define ARM3R_CONTROL_LOOP(...)                                                                                \
+    template void ControlLoop<__VA_ARGS__>::put(int, const Digital<double>&, const Estimation<double>&);       \
+    template void ControlLoop<__VA_ARGS__>::add_noise(const Mask&, Vec3<__VA_ARGS__>&) const;                  \
+    template Vec3<__VA_ARGS__> ControlLoop<__VA_ARGS__>::delayed_force(const Mask&, const Vec3<__VA_ARGS__>&); \
+    template void ControlLoop<__VA_ARGS__>::queue(const Mask&, const Vec3<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);  \
+    template void ControlLoop<__VA_ARGS__>::put_out(const Mask&, Vec3<__VA_ARGS__>&);                          \
+    template void ControlLoop<__VA_ARGS__>::ask_user(const Sensed<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);          \
+    template std::string ControlLoop<__VA_ARGS__>::complaint() const;                                          \
+    template void ControlLoop<__VA_ARGS__>::settle(const Mask&, const Sensed<__VA_ARGS__>&);                   \
+    template void ControlLoop<__VA_ARGS__>::keep_passive(const Mask&, const Arm<__VA_ARGS__>&,                 \
+                                                         const Sensed<__VA_ARGS__>&, Command<__VA_ARGS__>&);   \
+    template void ControlLoop<__VA_ARGS__>::estimate(const Mask&);
+
+ARM3R_CONTROL_LOOP(double)
+#if !ARM3R_ONE_LANE
+ARM3R_CONTROL_LOOP(Pack<2>)
+#endif
+#if ARM3R_WIDE_PACKS
+ARM3R_CONTROL_LOOP(Pack<4>)
+ARM3R_CONTROL_LOOP(Pack<8>)
+#endif
+
+}  // namespace arm3r

@@ -1,0 +1,62 @@
+#pragma once
+// YAML text as a tree of plain structs with marks, built from the parser's events. What a scenario must not use
+// (anchors, aliases, tags, merge keys, duplicate keys) is listed beside the tree.
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace arm3r {
+
+// A value that was set by path.
+struct Edit {
+    std::string origin, place;  // "--set", "--set time.stop=5"
+};
+
+struct Mark {
+    int line = 0, column = 0;               // from 1; in an edit only the column, of its value
+    std::shared_ptr<const Edit> edit = {};  // null: in the file
+};
+
+struct Node {
+    enum Type {
+        nothing,  // a null
+        scalar,
+        list,
+        map,
+        hole,  // says nothing: an item left open by an edit, or something already refused
+    };
+    Type type = nothing;
+    std::string key;   // in a map: its key
+    std::string text;  // of a scalar
+    bool quoted = false;
+    Mark key_mark, mark;
+    std::vector<Node> children;
+    std::string note;  // printed as a comment
+
+    const Node* find(std::string_view name) const;
+    Node* find(std::string_view name);
+    const Mark& start() const { return key_mark.column ? key_mark : mark; }
+};
+
+struct Document {
+    Node root;
+    std::vector<Problem> problems;
+};
+
+// The problem with its place: in `file`, or in an edit.
+Problem located(Problem problem, const Mark& at, const std::string& file);
+
+// As messages show it: "a list of 3", "a map", "0.5" (as written), "nothing"
+std::string shape_of(const Node& node);
+
+// Throws Error ARM3R_E_SCENARIO where the text cannot be read any further. The document may be empty (nothing).
+Document parse_yaml(const std::string& text, const std::string& file);
+
+// At most 1 MiB of UTF-8 without control characters; CR only before LF. A leading byte order mark is taken off.
+std::string checked_text(std::string text, const std::string& file);
+
+}  // namespace arm3r

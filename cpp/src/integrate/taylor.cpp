@@ -1,0 +1,127 @@
+#include "integrate/taylor.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "arm3r/lanes.hpp"
+#include "arm3r/numbers/eigen_traits.hpp"
+
+namespace arm3r {
+namespace {
+
+#include <taylor_kernels.hpp>  // made by derive_taylor
+
+// The squared angular frequency of the wall, 1/s^2.
+template <class T>
+ARM3R_INLINE T frequency_2(const Wall<T>& wall) {
+    const T omega = two_pi * wall.swing.frequency;
+    return wall.motion == Motion::sinusoid ? T(omega * omega) : T(0.0);
+}
+
+template <class T>
+using Expand = void (*)(const Plant<T>&, const T&, const State<T, state_size>&, int, T (*)[quantities]);
+
+template <std::size_t recipe, class T>
+ARM3R_INLINE void expand_here(const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
+                              T (*c)[quantities]) {
+    alignas(64) T given[9 + state_size];
+    if constexpr (recipes[recipe].signals) {
+        const WallState<T> wall = wall_at(plant.wall, t);
+        for (int i = 0; i < 3; ++i) {
+            given[i] = wall.position[i];
+            given[3 + i] = wall.velocity[i];
+            given[6 + i] = wall.acceleration[i];
+        }
+    }
+    for (std::size_t i = 0; i < state_size; ++i) given[9 + i] = y[i];
+    Recurrence<recipe, T>::expand(plant, frequency_2(plant.wall), given, order, c);
+}
+
+template <std::size_t recipe>
+ARM3R_WIDEST_SCALARS void expand_by(const Plant<double>& plant, const double& t, const State<double, state_size>& y,
+                                    int order, double (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
+
+template <std::size_t recipe>
+void expand_by(const Plant<Pack<2>>& plant, const Pack<2>& t, const State<Pack<2>, state_size>& y, int order,
+               Pack<2> (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
+
+#if ARM3R_WIDE_PACKS
+template <std::size_t recipe>
+ARM3R_FOR_FOUR void expand_by(const Plant<Pack<4>>& plant, const Pack<4>& t, const State<Pack<4>, state_size>& y,
+                              int order, Pack<4> (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
+
+template <std::size_t recipe>
+ARM3R_FOR_EIGHT void expand_by(const Plant<Pack<8>>& plant, const Pack<8>& t, const State<Pack<8>, state_size>& y,
+                               int order, Pack<8> (*c)[quantities]) {
+    expand_here<recipe>(plant, t, y, order, c);
+}
+#endif
+
+template <class T>
+Expand<T> expand_of(Kernel kernel) {
+    static constexpr auto table = []<std::size_t... i>(std::index_sequence<i...>) {
+        return std::array<Expand<T>, sizeof...(i)>{static_cast<Expand<T>>(expand_by<i>)...};
+    }(std::make_index_sequence<recipes.size()>());
+    return table[static_cast<std::size_t>(kernel)];
+}
+
+Recipe needs(const Plant<double>& plant, bool pressed) {
+    const Arm<double>& arm = plant.arm;
+    const Controller<double>& controller = plant.controller;
+    const bool compensates = controller.type == Controls::gravity_compensation;
+    return {.control = controller.type,
+            .damping = arm.has_damping,
+            .azimuth = !arm.gravity_is_vertical || (compensates && !controller.model.gravity_is_vertical),
+            .signals = plant.has_wall,
+            .force = pressed,
+            .friction = arm.has_dry_friction};
+}
+
+bool covers(const Recipe& recipe, const Recipe& needed) {
+    const bool controls =
+        recipe.control == needed.control || (needed.control == Controls::none && recipe.control == Controls::constant);
+    return controls && recipe.damping >= needed.damping && recipe.azimuth >= needed.azimuth &&
+           recipe.signals >= needed.signals && recipe.force >= needed.force && recipe.friction >= needed.friction;
+}
+
+}  // namespace
+
+Kernel kernel_of(const Plant<double>& plant, bool pressed) {
+    const auto fits = [needed = needs(plant, pressed)](const Recipe& recipe) { return covers(recipe, needed); };
+    return Kernel(std::find_if(recipes.begin(), recipes.end(), fits) - recipes.begin());
+}
+
+template <class T>
+void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
+            Expansion<T>& expansion) {
+    expansion.order = order;
+    expand_of<T>(kernel)(plant, t, y, order, expansion.c);
+}
+
+template void expand(Kernel, const Plant<double>&, const double&, const State<double, state_size>&, int,
+                     Expansion<double>&);
+#if !ARM3R_ONE_LANE
+template void expand(Kernel, const Plant<Pack<2>>&, const Pack<2>&, const State<Pack<2>, state_size>&, int,
+                     Expansion<Pack<2>>&);
+#endif
+#if ARM3R_WIDE_PACKS
+template void expand(Kernel, const Plant<Pack<4>>&, const Pack<4>&, const State<Pack<4>, state_size>&, int,
+                     Expansion<Pack<4>>&);
+template void expand(Kernel, const Plant<Pack<8>>&, const Pack<8>&, const State<Pack<8>, state_size>&, int,
+                     Expansion<Pack<8>>&);
+#endif
+
+int order_of(double tol) {
+    constexpr double each_order = 0x1.152aaa3bf81ccp-3;  // exp(-2)
+    int order = 1;
+    for (double reached = 1; reached > tol && order < most_degree; reached *= each_order) ++order;
+    return std::max(order, 2);
+}
+
+}  // namespace arm3r

@@ -1,0 +1,50 @@
+#include "lanes/lane_run_members.hpp"
+#include "validate/rules.hpp"
+
+namespace arm3r {
+namespace {
+
+// Whether the determinant of joints 2 and 3 can fall to rounding in some pose.
+bool may_be_ill_conditioned(const Arm<double>& arm) {
+    const Lumped<double>& l = arm.lumped;
+    const double largest = (l.B2 + l.B3 + 2 * std::abs(l.B)) * (l.B3 + l.J3);
+    return !(smallest_lower_determinant(l).value > 64 * std::numeric_limits<double>::epsilon() * largest);
+}
+
+}  // namespace
+
+Structure structure_of(const Setup& setup) {
+    const Plant<double>& plant = setup.plant;
+    const Arm<double>&arm = plant.arm, &model = plant.controller.model;
+    return {setup.solver.method,
+            setup.solver.method == Solver::taylor ? order_of(setup.solver.tol) : 0,
+            plant.has_wall,
+            plant.acts_on_arm,
+            plant.wall.has_outline,
+            may_be_ill_conditioned(arm),
+            plant.wall.motion,
+            plant.wall.table ? plant.wall.table->knots : 0,
+            plant.wall.rotation,
+            plant.contact.law,
+            plant.contact.has_friction,
+            setup.law(),
+            setup.law().setpoint,
+            setup.digital.sampling,
+            setup.digital.sensors,
+            setup.digital.observer,
+            setup.estimation,
+            plant.load.on,
+            {arm.gravity_is_vertical, arm.has_damping, arm.has_dry_friction, arm.has_torque_limit,
+             model.gravity_is_vertical, model.has_damping, model.has_dry_friction, model.has_torque_limit}};
+}
+
+ARM3R_MARCH(double)
+#if !ARM3R_ONE_LANE
+ARM3R_MARCH(Pack<2>)
+#endif
+#if ARM3R_WIDE_PACKS
+ARM3R_MARCH(Pack<4>)
+ARM3R_MARCH(Pack<8>)
+#endif
+
+}  // namespace arm3r

@@ -1,0 +1,262 @@
+#pragma once
+// Runs that march by Taylor series (5.5): each lane by steps of its own, which end where its contact changes.
+
+#include "integrate/taylor.hpp"
+#include "lanes/lane_run.hpp"
+
+namespace arm3r {
+
+template <class T>
+class TaylorMarch : public March<T> {
+    using Base = March<T>;
+    using Mask = typename Base::Mask;
+
+public:
+    explicit TaylorMarch(const Setup& any_lane)
+        : Base(any_lane),
+          order_(order_of(any_lane.solver.tol)),
+          free_kernel_(kernel_of(any_lane.plant, false)),
+          pressed_kernel_(kernel_of(any_lane.plant, true)) {
+        this->needs_derivative_ = false;
+        this->only_contact_is_felt_ = true;
+    }
+
+    void put(int lane, const Setup& setup) {
+        Base::put(lane, setup);
+        Lanes<T>::set(tol_, lane, setup.solver.tol);
+        Lanes<T>::set(max_step_, lane, setup.solver.max_step);
+        Lanes<T>::set(this->slack_, lane, setup.clock_rounding());
+    }
+
+    // changed(lane, change) is told of each change of contact, before it is made.
+    template <class Changed>
+    ARM3R_INLINE void step(Changed changed) {
+        t0_ = this->t_;
+        if (this->is_scored_) Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_passage(); });
+        const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
+        expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
+        T wanted = min(step_of(series_, tol_), max_step_);
+        if (this->plant_.arm.has_dry_friction) slow_before_friction(wanted);
+        const T until = this->next_instant(), rest = until - t0_;
+        is_last_ = wanted >= rest;
+        this->h_ = select(is_last_, rest, wanted);
+        const Mask finite = is_finite(), stands = !is_last_ && this->h_ < smallest_step(t0_);
+        const Mask moved = this->alive_ && finite && !stands;
+        if (any(this->alive_ && !moved)) give_up(finite, stands);
+
+        crosses_ = false;
+        theta_ = T(1.0);
+        if (this->plant_.has_wall) watch(moved);
+        T h = this->h_, t1 = select(is_last_, until, T(t0_ + h));
+        if (crosses_) {
+            h = select(theta_ < T(1.0), T(theta_ * h), h);
+            t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
+        }
+        State<T, state_size> y1;
+        for (std::size_t i = 0; i < state_size; ++i) y1[i] = value(series_, i, h);
+        this->accept(moved, t1, y1);
+        this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
+        this->observe();
+        if (crosses_) cross(changed);
+        this->close_books();
+        if (this->is_scored_) this->looks_.motion() ? score(lobatto, moved, h) : score(trapezoid, moved, h);
+        this->judge_lanes();
+    }
+
+    // The solution within the last step.
+    Inside solution(int lane) const {
+        Inside inside;
+        inside.t0 = Lanes<T>::get(t0_, lane);
+        inside.h = this->h(lane);
+        inside.order = order_;
+        for (int i = 0; i <= order_; ++i)
+            for (std::size_t j = 0; j < state_size; ++j) inside.c[i][j] = Lanes<T>::get(series_.c[i][j], lane);
+        return inside;
+    }
+    double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
+    // Whether a sample may have changed something at the end of the last step.
+    bool turns() const { return this->is_controlled_ && any(is_last_); }
+
+private:
+    enum Signal : std::size_t { depth = state_size, across1, across2, work1 };
+
+    ARM3R_INLINE static T smallest_step(const T& t) {
+        return 16 * std::numeric_limits<double>::epsilon() * max(abs(t), T(1e-3));
+    }
+
+    ARM3R_INLINE Mask is_finite() const {
+        T zero(0.0);
+        for (std::size_t j = 0; j < works_at; ++j) zero = zero + series_.c[order_][j] * 0.0;
+        return zero == T(0.0);
+    }
+
+    // Far from rest dry friction looks constant, and no coefficient tells how suddenly it turns over where a joint stops:
+    // no step lets a rate change by more than half of it and the rate at which friction sets in (5.5).
+    ARM3R_INLINE void slow_before_friction(T& h) const {
+        constexpr int halvings = 64;
+        for (int n = 0; n < halvings; ++n) {
+            Mask is_long = false;
+            for (std::size_t i = 3; i < motion_size; ++i) {
+                T power(1.0), change(0.0);
+                for (int k = 1; k <= order_; ++k) {
+                    power = power * h;
+                    change = change + abs(series_.c[k][i]) * power;
+                }
+                is_long = is_long || change > 0.5 * abs(series_.c[0][i]) + this->plant_.arm.friction_velocity;
+            }
+            if (!any(is_long)) return;
+            h = select(is_long, T(0.5 * h), h);
+        }
+    }
+
+    [[gnu::noinline]] void give_up(const Mask& finite, const Mask& stands) {
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            if (!this->is_running(lane)) continue;
+            if (!Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);
+            else if (Lanes<T>::is(stands, lane)) this->stop_lane(lane, ARM3R_RUN_STEP_COLLAPSE);
+        }
+    }
+
+    // ---- contact
+
+    ARM3R_INLINE void watch(const Mask& moved) {
+        Polynomial<T> over_step{order_, {}};
+        T power(1.0), low(0.0), high(0.0), end(0.0), mean(0.0);
+        for (int i = 0; i <= order_; ++i, power = power * this->h_) {
+            const T term = series_.c[i][depth] * power;
+            over_step.c[i] = term;
+            low = low + (i == 0 ? term : min(term, T(0.0)));
+            high = high + (i == 0 ? term : max(term, T(0.0)));
+            end = end + term;
+            mean = mean + reciprocals[i + 1] * term;
+        }
+        Mask special = moved && is_eventful(low, high, high, end);
+        if (any(special)) special = special && looks_eventful(over_step);
+        if (this->any_touching_) {
+            if (this->plant_.wall.has_outline) special = special || (moved && this->touching_ && comes_near_edge());
+            const Mask plainly = this->touching_ && !special && moved;
+            this->reach(plainly, end, T(t0_ + this->h_), this->deepest_);
+            this->depth_time_ = this->depth_time_ + select(plainly, T(this->h_ * mean), T(0.0));
+        }
+        if (any(special)) settle(special);
+    }
+
+    // Whether a depth between low and high, below `before_end` but for its end, may change the contact or its maximum.
+    ARM3R_INLINE Mask is_eventful(const T& low, const T& high, const T& before_end, const T& end) const {
+        const T o(0.0);
+        const Mask crosses = Base::select_mask(this->touching_ || this->embedded_, low <= o, high > o);
+        return crosses || (this->touching_ && before_end > max(this->deepest_, end));
+    }
+
+    // The same seen more sharply, by Bernstein coefficients.
+    ARM3R_INLINE Mask looks_eventful(const Polynomial<T>& p) const {
+        const Coefficients<T> b = bernstein(p);
+        T low = min(b[0], b[order_]), before_end = b[0];
+        for (int i = 1; i < order_; ++i) {
+            low = min(low, b[i]);
+            before_end = max(before_end, b[i]);
+        }
+        return is_eventful(low, max(before_end, b[order_]), before_end, b[order_]);
+    }
+
+    ARM3R_INLINE Mask comes_near_edge() const {
+        return reach_of(across1) >= this->plant_.wall.half1 || reach_of(across2) >= this->plant_.wall.half2;
+    }
+
+    ARM3R_INLINE T reach_of(Signal signal) const {
+        T power(1.0), most = abs(series_.c[0][signal]);
+        for (int i = 1; i <= order_; ++i) {
+            power = power * this->h_;
+            most = most + abs(series_.c[i][signal]) * power;
+        }
+        return most;
+    }
+
+    [[gnu::noinline]] void settle(const Mask& special) {
+        for (int lane = 0; lane < Base::lanes; ++lane)
+            if (this->is_running(lane) && Lanes<T>::is(special, lane)) settle_lane(lane);
+    }
+
+    void settle_lane(int lane) {
+        const ContactSignals<double> signals{polynomial(lane, depth), polynomial(lane, across1),
+                                             polynomial(lane, across2)};
+        const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane), t = t0 + h;
+        const auto crossing =
+            next_crossing(this->setup(lane).plant.wall, signals, 0, this->mode(lane), event_resolution(t, h));
+        this->pass(lane, signals.depth, t0, 0, crossing ? crossing->theta : 1);
+        if (!crossing) return;
+        crosses_ = true;
+        Lanes<T>::set(theta_, lane, crossing->theta);
+        crossings_[lane] = {true, this->change_of(lane, signals, crossing->theta, t, crossing->next)};
+    }
+
+    Polynomial<double> polynomial(int lane, Signal signal) const {
+        Polynomial<double> p{order_, {}};
+        double power = 1;
+        for (int i = 0; i <= order_; ++i, power *= this->h(lane))
+            p.c[i] = Lanes<T>::get(series_.c[i][signal], lane) * power;
+        return p;
+    }
+
+    template <class Changed>
+    [[gnu::noinline]] void cross(Changed& changed) {
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            auto& [is_due, change] = crossings_[lane];
+            if (!is_due) continue;
+            is_due = false;
+            change.t = this->t(lane);
+            changed(lane, change);
+            this->change_mode(lane, change);
+        }
+    }
+
+    // ---- the score: a step is a passage of h seconds, which ends where contact changes
+
+    template <std::size_t n>
+    ARM3R_INLINE void score(const Rule<n>& rule, const Mask& moved, const T& h) {
+        Mask closer = false;
+        Apart<T>::run([&]() ARM3R_INLINE_LAMBDA {
+            for (std::size_t j = 1; j + 1 < n; ++j) see_at(T(rule.place[j] * h), this->passage_.sights[j]);
+            this->end_passage(rule, h);
+            if (!this->holds_torque())
+                for (int i = 0; i < 3; ++i) this->passage_.work[i] = value(series_, work1 + i, h);
+            closer = add_passage(this->looks_, rule, moved, this->passage_, this->tally_);
+        });
+        if (any(closer)) look_closer(rule, closer);
+    }
+
+    ARM3R_INLINE void see_at(const T& seconds, Sight<T>& sight) const {
+        Vec3<T> q, qd;
+        for (std::size_t i = 0; i < 3; ++i) q[i] = value(series_, i, seconds), qd[i] = value(series_, 3 + i, seconds);
+        const T t = t0_ + seconds;
+        const Pose<T> p = pose(q);
+        WallState<T> wall = no_wall<T>();
+        Indentation<T> in{};
+        if (this->plant_.has_wall) {
+            wall = wall_at(this->plant_.wall, t);
+            in = tip_indentation(this->plant_, wall, p, qd);
+        }
+        this->see(t, p, wall, in, this->tau_before_, qd, sight);
+    }
+
+    template <std::size_t n>
+    [[gnu::noinline]] void look_closer(const Rule<n>& rule, const Mask& closer) {
+        for (int lane = 0; lane < Base::lanes; ++lane)
+            if (Lanes<T>::is(closer, lane)) this->score_closely(lane, rule, solution(lane), theta(lane));
+    }
+
+    struct Due {
+        bool is_due = false;
+        Change change{};
+    };
+
+    const int order_;
+    const Kernel free_kernel_, pressed_kernel_;
+    T tol_{1e-9}, max_step_{1.0}, t0_{0.0}, theta_{1.0};
+    Mask is_last_ = false;
+    bool crosses_ = false;
+    std::array<Due, Base::lanes> crossings_{};
+    Expansion<T> series_;
+};
+
+}  // namespace arm3r

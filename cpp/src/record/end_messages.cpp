@@ -1,0 +1,14 @@
+#include "record/end_messages.hpp"
+
+#include "base/number_text.hpp"
+
+namespace arm3r {
+
+std::string steps_used_up(double t) {
+    return "solver.max_steps is used up at t = " + shortest(t) +
+           " s; stiff friction or contact, or a tolerance too tight?";
+}
+
+std::string event_storm(double t) { return "more than 4096 contact events, the last at t = " + shortest(t) + " s"; }
+
+}  // namespace arm3r

@@ -1,0 +1,28 @@
+#pragma once
+// The summary of a run: as JSON, and as text for people.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "record/run_data.hpp"
+#include "results/checks.hpp"
+
+namespace arm3r {
+
+// What a summary is made of.
+struct Results {
+    const Run& run;
+    const std::string& name;
+    const std::string& scenario;  // YAML; "" where the run came from bare parameters
+    const std::vector<CheckResult>& checks;
+};
+
+std::string summary_json(const Results& results);
+std::string report(const Results& results);
+
+// The numbers of a summary that a check can name: "peak_force", "steps.accepted", ...
+std::vector<std::string> summary_number_names();
+double summary_number(const Run& run, std::string_view name);
+
+}  // namespace arm3r

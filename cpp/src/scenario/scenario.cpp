@@ -1,0 +1,492 @@
+#include "scenario/scenario.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "base/number_text.hpp"
+#include "base/text.hpp"
+#include "files/paths.hpp"
+#include "scenario/meant_key.hpp"
+#include "schema/columns.hpp"
+#include "schema/schema.hpp"
+#include "validate/size_limits.hpp"
+#include "validate/validate.hpp"
+#include "validate/warnings.hpp"
+
+namespace arm3r {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr int format = 1;
+constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
+std::string last_name(std::string_view path) { return std::string(path.substr(path.rfind('.') + 1)); }
+
+std::string with_unit(std::string value, const Key& key) { return key.unit.empty() ? value : value + " " + key.unit; }
+
+// How a key is written, for messages: "a number (m)", "a list of 3 numbers (N m)".
+std::string expected(const Key& key, std::span<const double> params) {
+    const std::string unit = key.unit.empty() ? "" : " (" + key.unit + ")";
+    const std::string list = "a list of " + list_sizes(key) + " numbers" + unit;
+    switch (key.kind) {
+        case Kind::flag: return "true or false";
+        case Kind::choice: return "one of " + listed(key.choices);
+        case Kind::section: return "a map";
+        case Kind::integer: return "a whole number" + unit;
+        default: break;
+    }
+    switch (key.form) {
+        case Form::number_or_vector: return "a number" + unit + " or " + list;
+        case Form::vector_or_word: return list + " or " + key.word;
+        case Form::by_choice: return takes_list(key, params) ? list : "a number" + unit;
+        default: return key.size == 1 ? "a number" + unit : list;
+    }
+}
+
+// Text as a file name: what cannot stand in one becomes _.
+std::string as_name(std::string_view file) {
+    std::string_view stem = file.substr(file.rfind('/') + 1);
+    if (const std::size_t dot = stem.rfind('.'); dot != stem.npos && dot > 0) stem = stem.substr(0, dot);
+    std::string name;
+    for (std::size_t at = 0; at < stem.size();) {
+        const std::size_t begin = at;
+        const std::int32_t c = next_code_point(stem, at);
+        if (c < 0) ++at;
+        name += c < 0 || is_control(c) || is_bidi_control(c) ? "_" : std::string(stem.substr(begin, at - begin));
+    }
+    const bool usable =
+        !name.empty() && name.size() <= 200 && std::string_view(".-<").find(name[0]) == std::string_view::npos;
+    return usable ? name : "scenario";
+}
+
+class Resolver {
+public:
+    explicit Resolver(const Scenario& scenario)
+        : scenario_(scenario),
+          root_(scenario.document.root),
+          problems_(scenario.document.problems),
+          origin_(schema().size()) {}
+
+    Resolved resolve() {
+        if (root_.type == Node::nothing)
+            refuse(ARM3R_E_SCENARIO, {"scenario.empty", "", "the scenario is empty", "", "",
+                                      "`arm3r template` prints one to start from"});
+        if (root_.type == Node::map) {
+            read_format();
+            read_name();
+            read_choices();
+            read_section(root_, "");
+            add_broken_rules();
+            if (const Node* checks = root_.find("checks"))
+                result_.checks = read_checks(*checks, result_.params, columns(), scenario_.file, problems_);
+        } else if (root_.type != Node::hole) {
+            problem(root_.mark, {"scenario.type", "", "a scenario is a map of keys", shape_of(root_), "",
+                                 "start with `format: 1`"});
+        }
+        finish();
+        add_warnings();
+        build_tree();
+        return std::move(result_);
+    }
+
+private:
+    void problem(const Mark& at, Problem problem) {
+        problems_.push_back(arm3r::located(std::move(problem), at, scenario_.file));
+    }
+
+    [[noreturn]] void refuse(arm3r_status status, Problem problem) const {
+        throw Error(status, std::vector{arm3r::located(std::move(problem), root_.mark, scenario_.file)});
+    }
+
+    void finish() {
+        if (problems_.empty()) return;
+        const auto place = [](const Problem& p) { return std::tuple(p.line == 0, p.line, p.column); };
+        std::stable_sort(problems_.begin(), problems_.end(),
+                         [&](const Problem& a, const Problem& b) { return place(a) < place(b); });
+        throw Error(ARM3R_E_SCENARIO, problems_);
+    }
+
+    // ---- the reader's own keys
+
+    void read_format() {
+        const Node* node = root_.find("format");
+        if (!node)
+            return problem(root_.mark, {"scenario.format", "format", "the version of the format is missing", "", "",
+                                        "write `format: 1` as the first line"});
+        NumberFault fault;
+        const auto value = node->type == Node::scalar && !node->quoted ? read_number(node->text, {.whole = true}, fault)
+                                                                       : std::nullopt;
+        if (!value)
+            problem(node->mark, {"scenario.format", "format", "expects a whole number", shape_of(*node), "1", ""});
+        else if (*value != format)
+            throw Error(
+                ARM3R_E_FORMAT,
+                {arm3r::located(
+                    {"scenario.format", "format",
+                     "written for format " + shortest(*value) + ", this is " + std::to_string(format), "", "", ""},
+                    node->mark, scenario_.file)});
+    }
+
+    void read_name() {
+        const Node* node = root_.find("name");
+        result_.name = as_name(scenario_.file);
+        if (!node || node->type == Node::hole) return;
+        const std::string& text = node->text;
+        const bool usable = node->type == Node::scalar && !text.empty() && text.size() <= 200 &&
+                            text.find('/') == text.npos && text[0] != '.' && text[0] != '-' &&
+                            visible(text, 200) == text;
+        if (usable) result_.name = text;
+        else
+            problem(node->mark, {"scenario.name", "name", "a name must serve as a file name", shape_of(*node),
+                                 "1 to 200 characters without / and control characters, not starting with . or -", ""});
+    }
+
+    // ---- choices first: they say which keys there are, and which defaults
+
+    void read_choices() {
+        result_.params.assign(param_count(), 0.0);
+        for (const Key& key : schema()) {
+            const std::vector<double> fallback = default_of(key, result_.params);
+            std::copy(fallback.begin(), fallback.end(), at(key));
+            const Node* node = find(root_, parse_path(key.path));
+            if (node && key.kind == Kind::choice) read_word(key, *node);
+            if (node && key.kind == Kind::section && (node->type == Node::map || node->type == Node::hole)) {
+                *at(key) = 1;
+                set_origin(key, *node);
+            }
+        }
+    }
+
+    void read_word(const Key& key, const Node& node) {
+        if (node.type == Node::hole) return;
+        const auto word = std::find(key.choices.begin(), key.choices.end(), node.text);
+        if (node.type == Node::scalar && word != key.choices.end()) {
+            *at(key) = static_cast<double>(word - key.choices.begin());
+            return set_origin(key, node);
+        }
+        unknown_choices_.insert(key.path);
+        problem(node.mark, {"scenario.unknown_word", key.path, "must be one of the words", shape_of(node),
+                            listed(key.choices), did_you_mean(node.text, key.choices)});
+    }
+
+    // ---- the file, key by key
+
+    void read_section(const Node& map, const std::string& section) {
+        for (const Node& node : map.children) {
+            const std::string path = join(section, node.key);
+            const Key* key = find_key(path);
+            if (key && key->kind != Kind::section) read_value(*key, node);
+            else if (key && !key_exists(*key, result_.params)) not_here(*key, node);
+            else if (node.key.find_first_of(".[") == std::string::npos && is_section(path)) read_subsection(node, path);
+            else if (path != "format" && path != "name" && path != "checks") unknown_key(map, node, section);
+        }
+    }
+
+    void read_subsection(const Node& node, const std::string& path) {
+        if (node.type == Node::map) return read_section(node, path);
+        if (node.type == Node::hole) return;
+        std::string hint = node.type == Node::nothing ? "write `" + node.key + ": {}`, or leave it out" : "";
+        if (const Key* choice = node.type == Node::scalar ? choice_with(path, node.text) : nullptr)
+            hint = "write `" + node.key + ": {" + last_name(choice->path) + ": " + node.text + "}`";
+        problem(node.type == Node::nothing ? node.key_mark : node.mark,
+                {"scenario.type", path, "expects a map", shape_of(node), "keys " + listed(names_here(path)), hint});
+    }
+
+    void unknown_key(const Node& map, const Node& node, const std::string& section) {
+        problem(node.key_mark, {"scenario.unknown_key", join(section, node.key),
+                                section.empty() ? "no such key" : "no such key in " + section, "",
+                                listed(names_here(section)), meant_key(map, node, section, result_.params)});
+    }
+
+    // All that there are where a choice is not known.
+    Words names_here(const std::string& section) const {
+        return unknown_choices_.empty() ? names_there(section, result_.params) : names_below(section);
+    }
+
+    // The choice of this section whose word stands there alone: `controller: joint_pd`.
+    static const Key* choice_with(const std::string& section, const std::string& word) {
+        const auto found = std::find_if(schema().begin(), schema().end(), [&](const Key& key) {
+            return key.path == join(section, last_name(key.path)) && key.kind == Kind::choice &&
+                   std::find(key.choices.begin(), key.choices.end(), word) != key.choices.end();
+        });
+        return found == schema().end() ? nullptr : &*found;
+    }
+
+    void read_value(const Key& key, const Node& node) {
+        if (node.type == Node::hole || unknown_choices_.contains(key.path)) return;
+        if (!key_exists(key, result_.params)) return not_here(key, node);
+        if (key.kind == Kind::choice) return;
+        if (key.kind == Kind::flag) return read_flag(key, node);
+        if (is_number_here(key, node)) return read_single(key, node);
+        if (key.form == Form::vector_or_word && node.type == Node::scalar && node.text == key.word) {
+            std::fill_n(at(key), key.size, std::numeric_limits<double>::infinity());
+            return set_origin(key, node);
+        }
+        const std::size_t fewest = key.form == Form::list ? key.fewest : key.size;
+        if (is_list_here(key) && node.type == Node::list && node.children.size() >= fewest &&
+            node.children.size() <= key.size)
+            return read_list(key, node);
+        wrong_shape(key, node);
+    }
+
+    // A key of another choice: "`section` belongs to shape brick; here the shape is cylinder".
+    void not_here(const Key& key, const Node& node) {
+        const Key* missing = &key;
+        while (std::find(missing->when.begin(), missing->when.end(), choice_of(result_.params, missing->when_key)) !=
+               missing->when.end())
+            missing = find_key(missing->when_key);
+        if (unknown_choices_.contains(missing->when_key)) return;
+        const std::string choice = last_name(missing->when_key), name = "`" + last_name(key.path) + "`";
+        const std::string& here = choice_of(result_.params, missing->when_key);
+        const std::string words = listed(missing->when, " or ");
+        if (missing->when_key == "controller.type" && here == "none" && key.path.starts_with("reference."))
+            return problem(node.key_mark, {"scenario.other_choice", key.path,
+                                           "`" + key.path.substr(0, key.path.find('.')) +
+                                               "` is followed by a control law, and controller.type is none",
+                                           "", "", "add controller: {type: ...}, one of " + words});
+        const bool is_of_most = words_without(*missing).size() < missing->when.size();
+        problem(node.key_mark,
+                {"scenario.other_choice", key.path,
+                 is_of_most ? name + " does not go with " + choice + " " + here
+                            : name + " belongs to " + choice + " " + words + "; here the " + choice + " is " + here,
+                 "", "",
+                 is_of_most ? "take it out, or choose another " + missing->when_key
+                            : "take it out, or set " + missing->when_key + " to " + words});
+    }
+
+    void wrong_shape(const Key& key, const Node& node) {
+        std::string hint;
+        if (node.type == Node::nothing) hint = "leave the key out for its default";
+        if (key.form == Form::by_choice)
+            hint = last_name(key.when_key) + " is " + choice_of(result_.params, key.when_key);
+        if (key.form == Form::vector_or_word && node.type == Node::scalar)
+            hint = is_infinity(node) ? "write " + key.word : did_you_mean(node.text, {key.word});
+        if (is_list_here(key) && node.type == Node::list && node.children.size() > key.size)
+            hint = "a comma parts the items; in a number use a point";
+        problem(node.mark,
+                {"scenario.type", key.path, "expects " + expected(key, result_.params), shape_of(node), "", hint});
+    }
+
+    bool is_number_here(const Key& key, const Node& node) const {
+        if (node.type != Node::scalar) return false;
+        if (key.form == Form::by_choice) return !takes_list(key, result_.params);
+        return key.form == Form::number_or_vector || (key.size == 1 && key.form != Form::list);
+    }
+
+    bool is_list_here(const Key& key) const {
+        if (key.form == Form::by_choice) return takes_list(key, result_.params);
+        return key.size > 1 || key.form == Form::list;
+    }
+
+    static bool is_infinity(const Node& node) {
+        return node.text.ends_with("inf") || node.text.ends_with("Inf") || node.text.ends_with("INF");
+    }
+
+    void read_flag(const Key& key, const Node& node) {
+        const bool is_true = node.text == "true";
+        if (node.type != Node::scalar || node.quoted || (!is_true && node.text != "false"))
+            return problem(node.mark, {"scenario.type", key.path, "expects true or false", shape_of(node), "",
+                                       flag_hint(node.text)});
+        *at(key) = is_true;
+        set_origin(key, node);
+    }
+
+    static std::string flag_hint(std::string text) {
+        std::transform(text.begin(), text.end(), text.begin(),
+                       [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+        const Words yes = {"yes", "y", "on", "1", "true"}, no = {"no", "n", "off", "0", "false"};
+        if (std::find(yes.begin(), yes.end(), text) != yes.end()) return "write true";
+        return std::find(no.begin(), no.end(), text) != no.end() ? "write false" : "";
+    }
+
+    void read_single(const Key& key, const Node& node) {
+        if (!read_number_into(key, node, key.path, *at(key))) return;
+        std::fill_n(at(key) + 1, key.size - 1, unset);
+        set_origin(key, node);
+    }
+
+    void read_list(const Key& key, const Node& node) {
+        if (key.form == Form::list) std::fill_n(at(key), key.size, unset);
+        for (std::size_t i = 0; i < node.children.size(); ++i)
+            if (node.children[i].type != Node::hole)
+                read_number_into(key, node.children[i], item(key.path, i), at(key)[static_cast<long>(i)]);
+        set_origin(key, node);
+    }
+
+    bool read_number_into(const Key& key, const Node& node, const std::string& path, double& value) {
+        NumberFault fault{"scenario.type", "expects " + with_unit("a number", key), ""};
+        if (node.type == Node::scalar && node.quoted) {
+            fault = {"number.quoted", "a number has no quotes", "write " + node.text};
+        } else if (node.type == Node::scalar) {
+            const NumberRules rules{
+                .degrees = key.kind == Kind::angle, .infinity = key.allow_infinity, .whole = key.kind == Kind::integer};
+            if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
+        }
+        if (key.form == Form::vector_or_word && is_infinity(node)) fault.hint = "write " + key.word + ", not a list";
+        problem(node.mark, {fault.code, path, fault.message, shape_of(node), "", fault.hint});
+        return false;
+    }
+
+    // ---- rules of the schema
+
+    void add_broken_rules() {
+        const std::vector<Problem> broken = validate(result_.params);
+        keeps_rules_ = broken.empty();
+        for (const Problem& rule : broken)
+            if (!already_refused(rule.path)) problem(place(rule.path), rule);
+    }
+
+    void add_warnings() {
+        if (find(root_, parse_path("controller.gravity"))) return;
+        if (const auto slip = slip_of_default_gravity(result_.params)) result_.warnings.push_back(*slip);
+    }
+
+    // Of the run; all that there are where it cannot be known, because something else is wrong.
+    std::vector<std::size_t> columns() const {
+        if (keeps_rules_ && unknown_choices_.empty()) return columns_of(make_setup(result_.params));
+        std::vector<std::size_t> all(column_table().size());
+        std::iota(all.begin(), all.end(), 0);
+        return all;
+    }
+
+    bool already_refused(std::string_view path) const {
+        return std::any_of(problems_.begin(), problems_.end(), [&](const Problem& known) {
+            return !known.path.empty() && path.starts_with(known.path) &&
+                   (path.size() == known.path.size() || path[known.path.size()] == '.' ||
+                    path[known.path.size()] == '[');
+        });
+    }
+
+    Mark place(const std::string& path) const { return path.empty() ? root_.mark : locate(root_, parse_path(path)); }
+
+    // ---- origins, and the tree of everything
+
+    std::vector<double>::iterator at(const Key& key) {
+        return result_.params.begin() + static_cast<std::ptrdiff_t>(key.offset);
+    }
+
+    std::string& origin(const Key& key) { return origin_[static_cast<std::size_t>(&key - schema().data())]; }
+
+    void set_origin(const Key& key, const Node& node) {
+        if (node.mark.edit) return void(origin(key) = visible(node.mark.edit->origin));
+        origin(key) = visible(scenario_.file, 200) + ":" + std::to_string(node.start().line);
+        const auto edited = std::find_if(node.children.begin(), node.children.end(),
+                                         [](const Node& child) { return child.mark.edit != nullptr; });
+        if (edited != node.children.end() && key.kind != Kind::section)
+            origin(key) += ", " + visible(edited->mark.edit->origin);
+    }
+
+    // Whether the key has a place in the resolved scenario.
+    bool is_there(const Key& key) {
+        for (const Key& section : schema())
+            if (section.kind == Kind::section && key.path.starts_with(section.path + ".") && *at(section) == 0)
+                return false;
+        if (key.kind == Kind::section) return *at(key) != 0;
+        return key_exists(key, result_.params) && !(std::isnan(*at(key)) && is_copy_of_nothing(key));
+    }
+
+    // A key of the controller's copy of the arm that, for the plant's own shapes, the plant does not have.
+    bool is_copy_of_nothing(const Key& key) const {
+        constexpr std::string_view model = "controller.model.";
+        return key.path.starts_with(model) &&
+               !key_exists(*find_key("arm." + key.path.substr(model.size())), result_.params);
+    }
+
+    void build_tree() {
+        Node& tree = result_.tree;
+        tree.type = Node::map;
+        tree.children.push_back(leaf("format", std::to_string(format), "file"));
+        tree.children.push_back(leaf("name", result_.name, root_.find("name") ? "file" : "the file's name"));
+        tree.children.back().quoted = true;
+        for (const Key& key : schema())
+            if (is_there(key)) insert(tree, key);
+        if (const Node* checks = root_.find("checks"); checks && checks->type == Node::list)
+            tree.children.push_back(*checks);
+    }
+
+    static Node leaf(std::string key, std::string text, std::string note) {
+        Node node;
+        node.type = Node::scalar;
+        node.key = std::move(key);
+        node.text = std::move(text);
+        node.note = std::move(note);
+        return node;
+    }
+
+    void insert(Node& tree, const Key& key) {
+        const std::vector<Step> steps = parse_path(key.path);
+        Node* section = &tree;
+        for (std::size_t i = 0; i + (key.kind != Kind::section) < steps.size(); ++i) {
+            if (!section->find(steps[i].key)) {
+                section->children.push_back(leaf(steps[i].key, "", ""));
+                section->children.back().type = Node::map;
+            }
+            section = section->find(steps[i].key);
+        }
+        if (key.kind != Kind::section) section->children.push_back(value_of(key));
+    }
+
+    Node value_of(const Key& key) {
+        const auto number = [&](std::size_t i) { return leaf("", text_of(key, at(key)[static_cast<long>(i)]), ""); };
+        Node node = number(0);
+        node.key = last_name(key.path);
+        node.note = origin(key).empty() ? source_name(static_cast<int>(key.source)) : origin(key);
+        if (std::isnan(*at(key))) {
+            node.type = Node::nothing;
+            node.note = key.unset;
+        } else if (key.form == Form::vector_or_word && std::isinf(*at(key))) {
+            node.text = key.word;
+        } else if (key.form == Form::list || (key.size > 1 && !std::isnan(at(key)[1]))) {
+            node.type = Node::list;
+            for (std::size_t i = 0; i < key.size && !std::isnan(at(key)[static_cast<long>(i)]); ++i)
+                node.children.push_back(number(i));
+        }
+        return node;
+    }
+
+    static std::string text_of(const Key& key, double value) {
+        if (std::isnan(value)) return {};
+        if (key.kind == Kind::choice) return key.choices[static_cast<std::size_t>(value)];
+        if (key.kind == Kind::flag) return value != 0 ? "true" : "false";
+        return key.kind == Kind::integer ? std::to_string(static_cast<long long>(value)) : shortest(value);
+    }
+
+    const Scenario& scenario_;
+    const Node& root_;
+    std::vector<Problem> problems_;
+    std::vector<std::string> origin_;
+    std::set<std::string> unknown_choices_;
+    bool keeps_rules_ = false;
+    Resolved result_;
+};
+
+}  // namespace
+
+Scenario read_scenario(std::string text, std::string file) {
+    const std::string checked = checked_text(std::move(text), file);
+    return {parse_yaml(checked, file), std::move(file)};
+}
+
+Resolved resolve(const Scenario& scenario) { return Resolver(scenario).resolve(); }
+
+std::vector<Problem> located(std::vector<Problem> problems, const Scenario& scenario) {
+    for (Problem& problem : problems)
+        if (!problem.path.empty())
+            problem = located(problem, locate(scenario.document.root, parse_path(problem.path)), scenario.file);
+    return problems;
+}
+
+std::string source_name(int source) {
+    switch (static_cast<Source>(source)) {
+        case Source::lecture: return "lecture";
+        case Source::inferred: return "inferred";
+        default: return "our choice";
+    }
+}
+
+}  // namespace arm3r

@@ -1,0 +1,121 @@
+#include "schema/columns.hpp"
+
+namespace arm3r {
+
+const std::vector<Column>& column_table() {
+    static const std::vector<Column> table = {
+        {"t", "s", "time"},
+        {"q1", "rad", "joint angle 1"},
+        {"q2", "rad", "joint angle 2"},
+        {"q3", "rad", "joint angle 3"},
+        {"qd1", "rad/s", "joint rate 1"},
+        {"qd2", "rad/s", "joint rate 2"},
+        {"qd3", "rad/s", "joint rate 3"},
+        {"qdd1", "rad/s^2", "joint acceleration 1"},
+        {"qdd2", "rad/s^2", "joint acceleration 2"},
+        {"qdd3", "rad/s^2", "joint acceleration 3"},
+        {"tau1", "N m", "applied torque 1, after the limit"},
+        {"tau2", "N m", "applied torque 2, after the limit"},
+        {"tau3", "N m", "applied torque 3, after the limit"},
+        {"tau_g1", "N m", "torque 1 that holds the true arm"},
+        {"tau_g2", "N m", "torque 2 that holds the true arm"},
+        {"tau_g3", "N m", "torque 3 that holds the true arm"},
+        {"tip_x", "m", "tip position along base x, by the transform sensor (independent recursion)"},
+        {"tip_y", "m", "tip position along base y, by the transform sensor"},
+        {"tip_z", "m", "tip position along base z, by the transform sensor"},
+        {"tip_vx", "m/s", "tip velocity along base x, by the transform sensor"},
+        {"tip_vy", "m/s", "tip velocity along base y, by the transform sensor"},
+        {"tip_vz", "m/s", "tip velocity along base z, by the transform sensor"},
+        {"tip_jvx", "m/s", "tip velocity along base x, as J times qd"},
+        {"tip_jvy", "m/s", "tip velocity along base y, as J times qd"},
+        {"tip_jvz", "m/s", "tip velocity along base z, as J times qd"},
+        {"tip_dvx", "m/s", "tip velocity along base x, position differentiated numerically along the trajectory"},
+        {"tip_dvy", "m/s", "tip velocity along base y, position differentiated numerically along the trajectory"},
+        {"tip_dvz", "m/s", "tip velocity along base z, position differentiated numerically along the trajectory"},
+        {"wall_x", "m", "origin of the plate's frame along base x", Need::wall},
+        {"wall_y", "m", "origin of the plate's frame along base y", Need::wall},
+        {"wall_z", "m", "origin of the plate's frame along base z", Need::wall},
+        {"depth", "m", "how far the tip is behind the contact face; > 0 inside", Need::wall},
+        {"contact", "1", "1 in contact, 0 not"},
+        {"f_on_tip_x", "N", "contact force on the tip along base x"},
+        {"f_on_tip_y", "N", "contact force on the tip along base y"},
+        {"f_on_tip_z", "N", "contact force on the tip along base z"},
+        {"f_on_wall_x", "N", "contact force on the wall along base x: the opposite"},
+        {"f_on_wall_y", "N", "contact force on the wall along base y"},
+        {"f_on_wall_z", "N", "contact force on the wall along base z"},
+        {"energy_kinetic", "J", "kinetic energy of the arm"},
+        {"energy_potential", "J", "potential energy of the arm, zero at the base origin"},
+        {"energy_contact", "J", "elastic energy of the contact; 0 when the wall does not act on the arm"},
+        {"work_actuators", "J", "work of the applied torques since the start"},
+        {"work_wall", "J",
+         "work of the wall's drive on the arm since the start; 0 when the wall does not act on the arm"},
+        {"energy_dissipated", "J", "energy lost to friction, damping and contact since the start"},
+        {"energy_residual", "J", "what the balance of the six before leaves over: the error of the run"},
+        {"force", "N", "normal contact force, > 0 when pressing", Need::wall},
+        {"force_measured", "N", "the same as the controller reads it, or would", Need::wall},
+        {"force_ref", "N", "the pressing force that is wanted", Need::force_reference},
+        {"force_phase", "1", "1 while force is controlled along the normal, 0 while position is",
+         Need::force_reference},
+        {"tip_ref_x", "m", "wanted tip position along base x", Need::path},
+        {"tip_ref_y", "m", "wanted tip position along base y", Need::path},
+        {"tip_ref_z", "m", "wanted tip position along base z", Need::path},
+        {"q_ref1", "rad", "wanted joint angle 1", Need::joint_path},
+        {"q_ref2", "rad", "wanted joint angle 2", Need::joint_path},
+        {"q_ref3", "rad", "wanted joint angle 3", Need::joint_path},
+        {"residual1", "N m", "external torque 1 as the momentum observer has it", Need::observer},
+        {"residual2", "N m", "external torque 2 as the momentum observer has it", Need::observer},
+        {"residual3", "N m", "external torque 3 as the momentum observer has it", Need::observer},
+        {"f_estimate_x", "N", "force at the tip along base x that explains the residual; 0 near a singular pose",
+         Need::observer},
+        {"f_estimate_y", "N", "force at the tip along base y that explains the residual", Need::observer},
+        {"f_estimate_z", "N", "force at the tip along base z that explains the residual", Need::observer},
+        {"collision", "1", "1 while a collision is taken for going on; a sampled observer only", Need::observer},
+        {"stiffness_estimate", "N/m", "the wall's stiffness by least squares; 0 where it is not identifiable",
+         Need::estimator},
+        {"wall_speed_estimate", "m/s", "the wall's speed towards the arm by least squares; 0 likewise",
+         Need::estimator},
+        {"identifiable", "1", "1 where the data tell stiffness and speed apart", Need::estimator},
+        {"tank_energy", "J", "what is in the energy tank", Need::tank},
+        {"saturated", "1", "1 where a torque is at its limit", Need::limits},
+        {"energy_dissipated_joints", "J", "the part of energy_dissipated lost to damping and friction of the joints",
+         Need::loss},
+        {"energy_dissipated_contact", "J",
+         "the part lost in the contact: by damping along its normal, and by springs along the plate that let go",
+         Need::loss},
+        {"energy_dissipated_friction", "J", "the part lost to friction along the wall", Need::loss},
+        {"energy_dissipated_edges", "J", "the part lost where the tip left the plate across an edge", Need::loss},
+    };
+    return table;
+}
+
+std::string_view need_text(Need need) {
+    switch (need) {
+        case Need::nothing: return "";
+        case Need::wall: return "only with a wall";
+        case Need::force_reference: return "only with a law that wants a force";
+        case Need::path: return "only with a law that wants tip positions";
+        case Need::joint_path: return "only with a law that wants joint angles";
+        case Need::observer: return "only with an observer";
+        case Need::estimator: return "only with an estimator";
+        case Need::tank: return "only with an energy tank";
+        case Need::loss: return "only where energy can be lost: in the joints, or at a wall that acts on the arm";
+        default: return "only with torque limits and a control law";
+    }
+}
+
+std::string_view need_hint(Need need) {
+    switch (need) {
+        case Need::nothing: return "";
+        case Need::wall: return "add `wall: {}`";
+        case Need::force_reference: return "choose a controller.type that controls a force, such as hybrid";
+        case Need::path: return "choose a controller.type that follows the tip, such as impedance, and a reference";
+        case Need::joint_path: return "choose controller.type joint_pd or computed_torque, and a reference";
+        case Need::observer: return "add `observer: {}`";
+        case Need::estimator: return "add `estimator: {}`";
+        case Need::tank: return "choose controller.type energy_tank";
+        case Need::loss: return "give arm.joint_damping or arm.dry_friction, or a wall that acts on the arm and damps";
+        default: return "give arm.torque_limit, and choose a controller.type";
+    }
+}
+
+}  // namespace arm3r

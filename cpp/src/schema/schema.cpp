@@ -1,0 +1,911 @@
+#include "schema/schema.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "schema/stiffness_presets.hpp"
+#include "schema/suggest.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+using std::numbers::pi;
+
+constexpr Bounds any_position{-1e6, 1e6};
+constexpr Bounds not_negative{0, 1e12};
+constexpr Bounds a_length{1e-6, 1e6};
+constexpr Bounds a_mass{1e-9, 1e9};
+constexpr Bounds a_density{1e-3, 1e6};
+constexpr Bounds an_instant{-1e9, 1e9};
+constexpr Bounds no_bounds{-1e300, 1e300};
+constexpr std::size_t table_size = 16;  // as most_knots (course.hpp)
+
+Key number(std::string path, std::vector<double> fallback, Source source, Bounds bounds, std::string unit,
+           std::string doc) {
+    const std::size_t size = fallback.size();
+    return {.path = std::move(path),
+            .kind = Kind::number,
+            .size = size,
+            .form = Form::fixed,
+            .fallback = std::move(fallback),
+            .source = source,
+            .bounds = bounds,
+            .unit = std::move(unit),
+            .doc = std::move(doc)};
+}
+
+Key choice(std::string path, std::vector<std::string> words, Source source, std::string doc) {
+    return {.path = std::move(path),
+            .kind = Kind::choice,
+            .size = 1,
+            .form = Form::fixed,
+            .fallback = {0},
+            .source = source,
+            .bounds = no_bounds,
+            .unit = "",
+            .doc = std::move(doc),
+            .choices = std::move(words)};
+}
+
+Key of_kind(Kind kind, Key key) {
+    key.kind = kind;
+    return key;
+}
+
+Key with_form(Form form, Key key, std::string word = {}) {
+    key.form = form;
+    key.word = std::move(word);
+    return key;
+}
+
+Key list_of(std::size_t fewest, std::size_t most, Key key) {
+    key.form = Form::list;
+    key.size = most;
+    key.fewest = fewest;
+    key.fallback.assign(most, unset);
+    return key;
+}
+
+Key where(std::string when_key, std::vector<std::string> when, Key key) {
+    key.when_key = std::move(when_key);
+    key.when = std::move(when);
+    return key;
+}
+
+Key needed(Key key) {
+    key.required = true;
+    return key;
+}
+
+Key derived(std::string unset_means, Key key) {
+    key.unset = std::move(unset_means);
+    return key;
+}
+
+Key or_infinite(Key key) {
+    key.allow_infinity = true;
+    return key;
+}
+
+// The keys that a shape takes, for any link. The shape itself stands before them.
+void append_shape(std::vector<Key>& keys, const std::string& link) {
+    const std::string shape = link + ".shape";
+    keys.push_back(where(shape, {"brick"},
+                         number(link + ".section", {0.01, 0.01}, Source::inferred, a_length, "m",
+                                "Brick: height along y, width along z of the link's axes.")));
+    keys.push_back(where(shape, {"cylinder"},
+                         needed(number(link + ".radius", {unset}, Source::ours, a_length, "m", "Cylinder: radius."))));
+    keys.push_back(where(shape, {"brick", "cylinder"},
+                         number(link + ".density", {7850}, Source::inferred, a_density, "kg/m^3",
+                                "Density; not used when the mass is given.")));
+}
+
+void append_link1(std::vector<Key>& keys, const std::string& link) {
+    keys.push_back(choice(
+        link + ".shape", {"explicit", "brick", "cylinder", "slender"}, Source::ours,
+        "Shape of the column on joint 1, its length along z; explicit: mass, com and inertia_axial as they stand."));
+    keys.push_back(
+        where(link + ".shape", {"brick", "cylinder", "slender"},
+              number(link + ".length", {1}, Source::inferred, a_length, "m", "Length along the joint-1 axis.")));
+    append_shape(keys, link);
+    keys.push_back(derived("from the shape", number(link + ".mass", {0.785}, Source::lecture, a_mass, "kg", "Mass.")));
+    keys.push_back(derived("length/2", number(link + ".com", {0}, Source::inferred, any_position, "m",
+                                              "Height of the centre of mass on the joint-1 axis.")));
+    keys.push_back(derived("from the shape", number(link + ".inertia_axial", {1.3083333333333334e-5}, Source::inferred,
+                                                    not_negative, "kg m^2", "Inertia about the joint-1 axis.")));
+}
+
+void append_link(std::vector<Key>& keys, const std::string& link) {
+    keys.push_back(choice(link + ".shape", {"brick", "cylinder", "slender"}, Source::inferred,
+                          "Gives mass, centre of mass and inertia; each of these given beside it replaces that one."));
+    keys.push_back(
+        number(link + ".length", {1}, Source::lecture, a_length, "m", "Length, from joint to joint (or tip)."));
+    append_shape(keys, link);
+    keys.push_back(derived("from the shape", number(link + ".mass", {unset}, Source::lecture, a_mass, "kg",
+                                                    "Mass; the inertia of the shape scales with it.")));
+    keys.push_back(derived("length/2", number(link + ".com", {unset}, Source::lecture, any_position, "m",
+                                              "Centre of mass, along the link from its joint.")));
+    keys.push_back(derived(
+        "from the shape",
+        number(
+            link + ".inertia", {unset, unset, unset}, Source::inferred, not_negative, "kg m^2",
+            "Principal inertias [Ix, Iy, Iz] about the centre of mass; x along the link, y in the arm's vertical plane, z along the joint.")));
+}
+
+void append_arm(std::vector<Key>& keys, const std::string& arm) {
+    keys.push_back(number(arm + ".base_height", {0}, Source::inferred, any_position, "m",
+                          "Height of joint 2 above the base frame."));
+    append_link1(keys, arm + ".link1");
+    append_link(keys, arm + ".link2");
+    append_link(keys, arm + ".link3");
+    keys.push_back(number(arm + ".armature", {0, 0, 0}, Source::lecture, not_negative, "kg m^2",
+                          "Rotor inertia seen at each joint."));
+    keys.push_back(number(arm + ".damping", {0, 0, 0}, Source::lecture, not_negative, "N m s/rad",
+                          "Viscous friction of each joint."));
+    keys.push_back(number(arm + ".friction", {0, 0, 0}, Source::lecture, not_negative, "N m",
+                          "Dry friction of each joint: friction*tanh(qd/friction_velocity)."));
+    keys.push_back(number(arm + ".friction_velocity", {1e-3}, Source::ours, {1e-12, 1e6}, "rad/s",
+                          "Rate at which dry friction sets in."));
+    keys.push_back(or_infinite(number(arm + ".torque_limit", {infinite, infinite, infinite}, Source::lecture,
+                                      not_negative, "N m", "Largest torque of each actuator, either way.")));
+    keys.push_back(number(arm + ".payload.mass", {0}, Source::lecture, {0, 1e9}, "kg", "Point mass at the tip."));
+}
+
+// The motions of the wall that follow a curve given in points.
+void append_paths(std::vector<Key>& keys) {
+    const std::string type = "wall.motion.type";
+    keys.push_back(where(
+        type, {"ramp"},
+        needed(number("wall.motion.distance", {unset}, Source::ours, {-1e3, 1e3}, "m", "How far the ramp goes."))));
+    keys.push_back(where(type, {"ramp"},
+                         number("wall.motion.start", {0}, Source::ours, an_instant, "s", "When the ramp begins.")));
+    keys.push_back(
+        where(type, {"ramp"},
+              needed(number(
+                  "wall.motion.duration", {unset}, Source::ours, {1e-6, 1e9}, "s",
+                  "How long the ramp takes: a quintic without a jump of acceleration; the wall stays at its end."))));
+    keys.push_back(where(type, {"table"},
+                         needed(list_of(2, table_size,
+                                        number("wall.motion.t", {}, Source::ours, an_instant, "s",
+                                               "Instants of the table, increasing; before and after them the wall "
+                                               "stands still.")))));
+    keys.push_back(where(type, {"table"},
+                         needed(list_of(2, table_size,
+                                        number("wall.motion.s", {}, Source::ours, {-1e3, 1e3}, "m",
+                                               "Where the wall is at these instants; in between quintics.")))));
+    keys.push_back(where(type, {"table"},
+                         needed(list_of(2, table_size,
+                                        number("wall.motion.v", {}, Source::ours, {-1e4, 1e4}, "m/s",
+                                               "Its velocity at these instants.")))));
+    keys.push_back(where(type, {"table"},
+                         needed(list_of(2, table_size,
+                                        number("wall.motion.a", {}, Source::ours, {-1e6, 1e6}, "m/s^2",
+                                               "Its acceleration at these instants.")))));
+    keys.push_back(where(
+        type, {"sinusoid", "ramp", "table"},
+        derived("the normal", number("wall.motion.direction", {unset, unset, unset}, Source::ours, any_position, "",
+                                     "Which way the wall moves, in base axes; normalised on "
+                                     "reading. Along the plate it slides under the tip."))));
+}
+
+void append_rotation(std::vector<Key>& keys) {
+    const std::string type = "wall.rotation.type";
+    keys.push_back(choice(type, {"none", "constant", "sinusoid"}, Source::ours,
+                          "How the plate turns about the origin of its frame; at t = 0 it stands as `normal` says."));
+    keys.push_back(where(type, {"constant", "sinusoid"},
+                         needed(number("wall.rotation.axis", {unset, unset, unset}, Source::ours, any_position, "",
+                                       "About what it turns, in base axes; normalised on reading."))));
+    keys.push_back(where(type, {"constant"},
+                         needed(of_kind(Kind::angle, number("wall.rotation.rate", {unset}, Source::ours, {-1e4, 1e4},
+                                                            "rad/s", "How fast it turns; 10 deg means 10 deg/s.")))));
+    keys.push_back(
+        where(type, {"sinusoid"},
+              needed(of_kind(Kind::angle, number("wall.rotation.amplitude", {unset}, Source::ours, {-100, 100}, "rad",
+                                                 "Amplitude A of the angle A sin(2 pi f t + phase) - A "
+                                                 "sin(phase).")))));
+    keys.push_back(
+        where(type, {"sinusoid"},
+              needed(number("wall.rotation.frequency", {unset}, Source::ours, {0, 1e4, true}, "Hz", "Frequency f."))));
+    keys.push_back(where(
+        type, {"sinusoid"},
+        of_kind(Kind::angle, number("wall.rotation.phase", {0}, Source::ours, {-1e4, 1e4}, "rad", "Phase at t = 0."))));
+}
+
+void append_contact(std::vector<Key>& keys) {
+    const std::string law = "wall.contact.law";
+    keys.push_back(
+        choice(law, {"spring", "diagonal", "kelvin_voigt", "hunt_crossley"}, Source::lecture,
+               "The normal force at depth d: spring: k d; diagonal: a spring, and two more that tie the tip "
+               "sideways to the plate's centre; kelvin_voigt: k d + c d'; hunt_crossley: k d^p (1 + beta d')."));
+    std::vector<std::string> words = {"none"};
+    for (const StiffnessPreset& preset : stiffness_presets) words.emplace_back(preset.name);
+    keys.push_back(where(law, {"spring", "kelvin_voigt"},
+                         choice("wall.contact.preset", words, Source::ours,
+                                "A part of the body whose stiffness is the default of `stiffness`.")));
+    keys.push_back(
+        where(law, {"spring", "diagonal", "kelvin_voigt", "hunt_crossley"},
+              needed(with_form(Form::by_choice,
+                               number("wall.contact.stiffness", {1000, unset, unset}, Source::ours, {0, 1e15}, "N/m",
+                                      "K_E: one number k, in N/m^p for hunt_crossley, or [kn, k1, k2] for diagonal."),
+                               "diagonal"))));
+    keys.push_back(where(law, {"kelvin_voigt"},
+                         derived("from restitution", number("wall.contact.damping", {unset}, Source::ours, not_negative,
+                                                            "N s/m", "c: force per rate of depth."))));
+    keys.push_back(where(law, {"hunt_crossley"},
+                         number("wall.contact.exponent", {1.5}, Source::ours, {1, 3}, "",
+                                "p: 1.5 is a sphere on a half-space (Hertz).")));
+    keys.push_back(where(law, {"hunt_crossley"},
+                         derived("from restitution", number("wall.contact.dissipation", {unset}, Source::ours, {0, 1e6},
+                                                            "s/m", "beta: damping per stiffness."))));
+    keys.push_back(where(
+        law, {"kelvin_voigt", "hunt_crossley"},
+        derived("not asked for", number("wall.contact.restitution", {unset}, Source::ours, {0, 1, true}, "",
+                                        "Instead of damping or dissipation: speed after over speed before an impact "
+                                        "of the mass that the arm shows along the normal at the start."))));
+    keys.push_back(
+        where(law, {"hunt_crossley"},
+              derived("not asked for", number("wall.contact.impact_speed", {unset}, Source::ours, {0, 1e4, true}, "m/s",
+                                              "The speed at which `restitution` holds."))));
+    keys.push_back(number("wall.contact.friction.coefficient", {0}, Source::lecture, {0, 1e3}, "",
+                          "mu: friction along the plate is -mu f_n v_t/sqrt(v_t^2 + slip_velocity^2)."));
+    keys.push_back(number("wall.contact.friction.slip_velocity", {1e-3}, Source::ours, {1e-9, 1e4}, "m/s",
+                          "Speed at which that friction sets in."));
+}
+
+void append_wall(std::vector<Key>& keys) {
+    keys.push_back(of_kind(Kind::section, number("wall", {0}, Source::lecture, no_bounds, "",
+                                                 "The moving plate. Absent: no wall; `wall: {}` is the lecture's.")));
+    keys.push_back(number("wall.point", {2, 0, 0}, Source::lecture, any_position, "m",
+                          "Origin of the plate's frame, its centre, at t = 0."));
+    keys.push_back(number("wall.normal", {-1, 0, 0}, Source::lecture, any_position, "",
+                          "From the wall towards the arm; normalised on reading."));
+    keys.push_back(
+        with_form(Form::vector_or_word,
+                  number("wall.size", {1, 1}, Source::lecture, a_length, "m", "Extent along e1 and e2, or infinite."),
+                  "infinite"));
+    keys.push_back(number("wall.face_offset", {0}, Source::lecture, any_position, "m",
+                          "How far the contact face lies in front of the frame."));
+    keys.push_back(choice("wall.motion.type", {"constant", "fixed", "sinusoid", "ramp", "table"}, Source::lecture,
+                          "How the wall moves: its point is wall.point + s(t) direction, but for constant."));
+    keys.push_back(
+        where("wall.motion.type", {"constant"},
+              with_form(Form::number_or_vector,
+                        number("wall.motion.velocity", {0.05, unset, unset}, Source::lecture, {-1e4, 1e4}, "m/s",
+                               "Along the normal, positive towards the arm; or a vector in base axes."))));
+    keys.push_back(where("wall.motion.type", {"sinusoid"},
+                         needed(number("wall.motion.amplitude", {unset}, Source::ours, {-1e3, 1e3}, "m",
+                                       "Amplitude A of s = A sin(2 pi f t + phase) - A sin(phase)."))));
+    keys.push_back(
+        where("wall.motion.type", {"sinusoid"},
+              needed(number("wall.motion.frequency", {unset}, Source::ours, {0, 1e4, true}, "Hz", "Frequency f."))));
+    keys.push_back(where(
+        "wall.motion.type", {"sinusoid"},
+        of_kind(Kind::angle, number("wall.motion.phase", {0}, Source::ours, {-1e4, 1e4}, "rad", "Phase at t = 0."))));
+    append_paths(keys);
+    append_rotation(keys);
+    append_contact(keys);
+    keys.push_back(of_kind(
+        Kind::flag, number("wall.acts_on_arm", {0}, Source::lecture, no_bounds, "",
+                           "false: the force is only measured, as in the lecture; true: the arm feels f_on_tip.")));
+}
+
+// ---- controllers: which law takes which gain. The laws themselves: docs/model.md, section 7.
+
+const std::vector<std::string> laws = {"none",
+                                       "constant",
+                                       "gravity_compensation",
+                                       "joint_pd",
+                                       "computed_torque",
+                                       "resolved_acceleration",
+                                       "stiffness",
+                                       "joint_stiffness",
+                                       "impedance",
+                                       "shaped_impedance",
+                                       "operational_space",
+                                       "hybrid",
+                                       "parallel",
+                                       "admittance",
+                                       "adaptive_reference",
+                                       "energy_tank",
+                                       "virtual_wall",
+                                       "user"};
+const std::vector<std::string> with_a_model(laws.begin() + 2, laws.end() - 1);
+const std::vector<std::string> guided(laws.begin() + 3, laws.end() - 2);
+const std::vector<std::string> with_a_sensor(laws.begin() + 2, laws.end());
+const std::vector<std::string> of_force = {"operational_space", "hybrid", "parallel", "adaptive_reference",
+                                           "admittance"};
+
+Key for_laws(std::vector<std::string> which, Key key) {
+    return where("controller.type", std::move(which), std::move(key));
+}
+
+// Keys that depend on nothing else exist for these laws only.
+void append_for_laws(std::vector<Key>& keys, const std::vector<std::string>& which, std::vector<Key> some) {
+    for (Key& key : some) keys.push_back(key.when_key.empty() ? for_laws(which, std::move(key)) : std::move(key));
+}
+
+// A default of its own for some laws.
+Key but(std::map<std::string, std::vector<double>> fallback_for, Key key) {
+    key.fallback_for = std::move(fallback_for);
+    return key;
+}
+
+// A gain of each axis, or one for all three.
+Key gain(const std::string& name, double fallback, std::string unit, std::string doc) {
+    return with_form(Form::number_or_vector, number("controller." + name, {fallback, unset, unset}, Source::ours,
+                                                    not_negative, std::move(unit), std::move(doc)));
+}
+
+Key one_gain(const std::string& name, double fallback, Bounds bounds, std::string unit, std::string doc) {
+    return number("controller." + name, {fallback}, Source::ours, bounds, std::move(unit), std::move(doc));
+}
+
+Key flag(std::string path, bool fallback, std::string doc) {
+    return of_kind(Kind::flag,
+                   number(std::move(path), {double(fallback)}, Source::ours, no_bounds, "", std::move(doc)));
+}
+
+// The controller's copy of the arm: the same keys, each "as the plant" unless given.
+void append_model(std::vector<Key>& keys) {
+    const std::string prefix = "controller.model";
+    std::vector<Key> copy;
+    append_arm(copy, prefix);
+    for (Key& key : copy) {
+        std::fill(key.fallback.begin(), key.fallback.end(), unset);
+        key.source = Source::ours;
+        key.required = false;
+        key.unset = "as the plant";
+        if (key.when_key.empty()) key = for_laws(with_a_model, key);
+        keys.push_back(std::move(key));
+    }
+}
+
+void append_joint_gains(std::vector<Key>& keys) {
+    const std::vector<std::string> in_joints = {"joint_pd", "hybrid", "admittance"};
+    keys.push_back(
+        for_laws(in_joints, number("controller.joint_stiffness", {200, 200, 100}, Source::ours, not_negative, "N m/rad",
+                                   "Kp of each joint; in hybrid of raibert_craig and projected.")));
+    keys.push_back(
+        for_laws(in_joints, number("controller.joint_damping", {30, 30, 10}, Source::ours, not_negative, "N m s/rad",
+                                   "Kd of each joint; in hybrid of raibert_craig and projected.")));
+    keys.push_back(for_laws({"joint_pd"}, flag("controller.compensate_gravity", true,
+                                               "Whether the torque that holds the model is added.")));
+}
+
+void append_motion_gains(std::vector<Key>& keys) {
+    const std::vector<std::string> accelerations = {"computed_torque", "resolved_acceleration", "operational_space",
+                                                    "hybrid"};
+    keys.push_back(
+        for_laws(accelerations, but({{"operational_space", {400, unset, unset}}, {"hybrid", {400, unset, unset}}},
+                                    gain("position_gain", 100, "1/s^2",
+                                         "Acceleration per error of position, of each joint or base axis: w^2."))));
+    keys.push_back(for_laws(accelerations,
+                            but({{"operational_space", {40, unset, unset}}, {"hybrid", {40, unset, unset}}},
+                                gain("velocity_gain", 20, "1/s",
+                                     "Acceleration per error of velocity, of each joint or base axis: 2 zeta w."))));
+}
+
+void append_impedances(std::vector<Key>& keys) {
+    keys.push_back(
+        for_laws({"shaped_impedance", "admittance", "adaptive_reference"},
+                 with_form(Form::number_or_vector, number("controller.mass", {2, unset, unset}, Source::ours,
+                                                          {1e-6, 1e9}, "kg", "Apparent mass along the base axes."))));
+    keys.push_back(for_laws({"stiffness", "joint_stiffness", "impedance", "shaped_impedance", "hybrid", "parallel",
+                             "admittance", "adaptive_reference", "energy_tank", "virtual_wall"},
+                            but({{"shaped_impedance", {200, unset, unset}},
+                                 {"parallel", {100, unset, unset}},
+                                 {"admittance", {200, unset, unset}},
+                                 {"adaptive_reference", {200, unset, unset}},
+                                 {"energy_tank", {200, unset, unset}},
+                                 {"virtual_wall", {5000, unset, unset}}},
+                                gain("stiffness", 500, "N/m",
+                                     "Force per displacement along the base axes; in hybrid of jacobian_transpose."))));
+    keys.push_back(for_laws({"stiffness", "joint_stiffness", "impedance", "shaped_impedance", "hybrid", "parallel",
+                             "admittance", "adaptive_reference", "energy_tank", "virtual_wall"},
+                            but({{"shaped_impedance", {40, unset, unset}},
+                                 {"parallel", {80, unset, unset}},
+                                 {"admittance", {40, unset, unset}},
+                                 {"adaptive_reference", {80, unset, unset}},
+                                 {"energy_tank", {0.3, unset, unset}},
+                                 {"virtual_wall", {0, unset, unset}}},
+                                gain("damping", 100, "N s/m",
+                                     "Force per velocity along the base axes; in hybrid of jacobian_transpose."))));
+}
+
+void append_force_loop(std::vector<Key>& keys) {
+    keys.push_back(for_laws(
+        {"hybrid"},
+        choice("controller.variant", {"dynamic", "jacobian_transpose", "projected", "raibert_craig"}, Source::ours,
+               "How motion and force are joined; raibert_craig is unstable in part of the workspace.")));
+    keys.push_back(
+        for_laws({"operational_space"},
+                 choice("controller.force_term", {"cancelled", "feedforward"}, Source::ours,
+                        "What becomes of the contact force: cancelled as measured, or the reference fed forward.")));
+    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
+                            one_gain("force_mass", 1, {1e-6, 1e9}, "kg", "Apparent mass along the normal.")));
+    keys.push_back(for_laws({"operational_space", "hybrid"},
+                            one_gain("force_damping", 70, not_negative, "N s/m", "Damping along the normal.")));
+    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
+                            one_gain("force_gain", 0.5, not_negative, "", "Of the force error.")));
+    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
+                            but({{"parallel", {6}}}, one_gain("force_integral_gain", 5, not_negative, "1/s",
+                                                              "Of the integral of the force error."))));
+    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
+                            or_infinite(one_gain("integral_limit", infinite, not_negative, "N s",
+                                                 "The integral of the force error stays within it, either way."))));
+    keys.push_back(
+        for_laws({"operational_space", "hybrid", "parallel"},
+                 choice("controller.anti_windup", {"none", "conditional", "back_calculation"}, Source::ours,
+                        "What the integral does while a torque is at its limit: goes on, waits, or runs back.")));
+    keys.push_back(where("controller.anti_windup", {"back_calculation"},
+                         one_gain("tracking_time", 0.1, {1e-6, 1e6}, "s", "How fast the integral runs back.")));
+    keys.push_back(for_laws(
+        {"operational_space", "hybrid", "parallel", "adaptive_reference"},
+        choice(
+            "controller.switching", {"in_contact", "latched", "always"}, Source::ours,
+            "When force is controlled: while there is contact, from the first contact on, or from the start; else the tip keeps to the reference in all directions.")));
+    keys.push_back(where("controller.switching", {"in_contact", "latched"},
+                         one_gain("contact_on", 1, not_negative, "N",
+                                  "A sampled controller takes the contact for made above this measured force.")));
+    keys.push_back(where("controller.switching", {"in_contact", "latched"},
+                         one_gain("contact_off", 0.5, not_negative, "N", "And for lost below this one.")));
+}
+
+void append_special_laws(std::vector<Key>& keys) {
+    keys.push_back(
+        for_laws({"admittance"},
+                 choice("controller.inner", {"exact", "position", "joint_pd"}, Source::ours,
+                        "Inner loop: exact tracking with feedforward, position tracking without, or joint PD.")));
+    keys.push_back(where("controller.inner", {"position"},
+                         one_gain("inner_bandwidth", 50, {1e-6, 1e6}, "rad/s", "w of the inner position loop.")));
+    keys.push_back(where("controller.inner", {"position"},
+                         one_gain("inner_damping_ratio", 1, not_negative, "", "z of the inner position loop.")));
+    keys.push_back(for_laws({"adaptive_reference"},
+                            choice("controller.adaptation", {"integral", "indirect"}, Source::ours,
+                                   "The reference integrates the force error, or is computed from a wall stiffness.")));
+    keys.push_back(where("controller.adaptation", {"integral"},
+                         one_gain("reference_gain", 0.02, not_negative, "m/(N s)", "k_r of the integral.")));
+    keys.push_back(
+        where("controller.adaptation", {"indirect"},
+              needed(one_gain("assumed_stiffness", unset, {1e-3, 1e12}, "N/m",
+                              "The wall stiffness that the reference is computed from; an estimator replaces it."))));
+    keys.push_back(for_laws({"energy_tank"}, one_gain("stiffness_amplitude", 120, not_negative, "N/m",
+                                                      "Of the stiffness that varies as a sine.")));
+    keys.push_back(
+        for_laws({"energy_tank"}, one_gain("stiffness_frequency", 6.25, not_negative, "Hz", "Of that sine.")));
+    keys.push_back(
+        for_laws({"energy_tank"}, flag("controller.tank", true, "Whether the tank pays for the variation.")));
+    const std::pair<const char*, std::pair<double, const char*>> levels[] = {
+        {"tank_energy", {0.05, "In the tank at the start."}},
+        {"tank_low", {0.01, "Nothing is paid below it."}},
+        {"tank_high", {0.03, "Everything is paid above it."}},
+        {"tank_capacity", {5, "The tank takes no more."}}};
+    for (const auto& [name, level] : levels)
+        keys.push_back(for_laws({"energy_tank"}, one_gain(name, level.first, not_negative, "J", level.second)));
+    keys.push_back(for_laws({"virtual_wall"}, number("controller.plane_point", {1.75, 0, 0}, Source::ours, any_position,
+                                                     "m", "A point of the virtual wall's face.")));
+    keys.push_back(for_laws({"virtual_wall"}, number("controller.plane_normal", {-1, 0, 0}, Source::ours, any_position,
+                                                     "", "From the virtual wall towards the arm.")));
+    keys.push_back(for_laws({"virtual_wall"}, flag("controller.passivity_control", false,
+                                                   "Whether a brake takes the energy that samples and delay would "
+                                                   "create. It acts outside the wall too, where it pulls.")));
+}
+
+void append_controller(std::vector<Key>& keys) {
+    keys.push_back(choice("controller.type", laws, Source::ours, "The control law."));
+    keys.push_back(
+        for_laws({"constant"}, needed(number("controller.torque", {unset, unset, unset}, Source::ours, {-1e12, 1e12},
+                                             "N m", "The torque, in the arm's convention."))));
+    keys.push_back(for_laws(
+        with_a_model,
+        with_form(
+            Form::number_or_vector,
+            number(
+                "controller.gravity", {9.80665, unset, unset}, Source::lecture, {-1e4, 1e4}, "m/s^2",
+                "The gravity that is compensated, whatever the plant feels: a number along -z, or a vector in base axes."))));
+    keys.push_back(
+        for_laws({"gravity_compensation"},
+                 choice("controller.algorithm", {"closed_form", "recursion"}, Source::lecture,
+                        "How the torque is computed: by the lecture's formula or by the Newton-Euler recursion.")));
+    append_joint_gains(keys);
+    append_motion_gains(keys);
+    append_impedances(keys);
+    append_force_loop(keys);
+    append_special_laws(keys);
+    keys.push_back(
+        for_laws({"computed_torque", "resolved_acceleration"},
+                 but({{"resolved_acceleration", {1}}},
+                     flag("controller.cancel_force", false, "Whether the measured contact force is cancelled."))));
+    keys.push_back(
+        for_laws({"resolved_acceleration", "shaped_impedance", "operational_space", "hybrid", "parallel", "admittance",
+                  "adaptive_reference"},
+                 flag("controller.ideal_cancellation", false,
+                      "The force that is cancelled is the true one; only the force error suffers from the sensor.")));
+    keys.push_back(for_laws(
+        {laws.begin() + 1, laws.end()},
+        choice("controller.saturation", {"clamp", "scale"}, Source::ours,
+               "At arm.torque_limit: each joint for itself, or all by one factor, which keeps the direction.")));
+    append_model(keys);
+}
+
+std::vector<Key> reference_keys() {
+    std::vector<Key> keys;
+    const auto in = [](std::vector<std::string> types, Key key) {
+        return where("reference.type", std::move(types), std::move(key));
+    };
+    keys.push_back(choice("reference.type", {"hold", "point", "line", "minimum_jerk", "circle", "sinusoid", "table"},
+                          Source::ours, "Where the controller wants the arm: hold keeps the start."));
+    keys.push_back(in({"point", "line", "minimum_jerk"},
+                      derived("not given", number("reference.tip", {unset, unset, unset}, Source::ours, any_position,
+                                                  "m", "Where the tip is wanted, base axes, at the end of a line."))));
+    keys.push_back(
+        in({"point", "line", "minimum_jerk"},
+           derived("not given",
+                   of_kind(Kind::angle, number("reference.q", {unset, unset, unset}, Source::ours, {-1e5, 1e5}, "rad",
+                                               "The joint angles that are wanted, in place of tip.")))));
+    keys.push_back(in({"line", "minimum_jerk", "circle", "sinusoid"},
+                      number("reference.start", {0}, Source::ours, an_instant, "s", "When the motion begins.")));
+    keys.push_back(in({"line", "minimum_jerk"},
+                      number("reference.duration", {1}, Source::ours, {1e-9, 1e9}, "s", "How long the motion takes.")));
+    keys.push_back(in({"circle"}, number("reference.radius", {0.1}, Source::ours, {0, 1e6}, "m",
+                                         "Of a circle on the wall's face through the tip's start.")));
+    keys.push_back(
+        in({"circle"}, number("reference.period", {4}, Source::ours, {1e-9, 1e9}, "s", "Time of one turn.")));
+    keys.push_back(in({"circle"}, number("reference.turns", {1}, Source::ours, {1e-3, 1e6}, "",
+                                         "How many turns, begun and ended at rest by a minimum-jerk law.")));
+    keys.push_back(
+        in({"sinusoid"}, derived("not given", number("reference.tip_amplitude", {unset, unset, unset}, Source::ours,
+                                                     any_position, "m", "Of the tip about its start."))));
+    keys.push_back(in(
+        {"sinusoid"},
+        derived("not given",
+                of_kind(Kind::angle, number("reference.q_amplitude", {unset, unset, unset}, Source::ours, {-1e5, 1e5},
+                                            "rad", "Of the joints about their start, in place of it.")))));
+    keys.push_back(
+        in({"sinusoid"}, number("reference.frequency", {0.5}, Source::ours, {0, 1e4}, "Hz", "Of the sine.")));
+    const auto column = [&](const char* path, Bounds bounds, const char* unit, const char* doc) {
+        keys.push_back(
+            in({"table"}, needed(list_of(2, table_size, number(path, {}, Source::ours, bounds, unit, doc)))));
+    };
+    column("reference.t", an_instant, "s",
+           "Instants of the table, increasing; before and after them the tip is to stay.");
+    column("reference.x", any_position, "m",
+           "Where the tip is wanted at these instants, base axes; in between it moves with as little jerk as can be.");
+    column("reference.y", any_position, "m", "Likewise.");
+    column("reference.z", any_position, "m", "Likewise.");
+    return keys;
+}
+
+std::vector<Key> force_reference_keys() {
+    std::vector<Key> keys;
+    const auto in = [](std::vector<std::string> types, Key key) {
+        return where("reference.force.type", std::move(types), std::move(key));
+    };
+    keys.push_back(choice("reference.force.type", {"constant", "step", "ramp", "sinusoid"}, Source::ours,
+                          "The pressing force that is wanted, along the wall's normal."));
+    keys.push_back(
+        for_laws(of_force, but({{"admittance", {0}}},
+                               number("reference.force.value", {20}, Source::ours, {-1e9, 1e9}, "N",
+                                      "The force; of a step or ramp the one at the end, of a sinusoid the mean."))));
+    keys.push_back(in({"step", "ramp"},
+                      number("reference.force.initial", {0}, Source::ours, {-1e9, 1e9}, "N", "The force before.")));
+    keys.push_back(
+        in({"step", "ramp"}, number("reference.force.start", {1}, Source::ours, an_instant, "s", "When it changes.")));
+    keys.push_back(
+        in({"ramp"}, number("reference.force.duration", {1}, Source::ours, {1e-9, 1e9}, "s", "How long it changes.")));
+    keys.push_back(
+        in({"sinusoid"}, number("reference.force.amplitude", {2}, Source::ours, {-1e9, 1e9}, "N", "About the mean.")));
+    keys.push_back(
+        in({"sinusoid"}, number("reference.force.frequency", {2}, Source::ours, {0, 1e4}, "Hz", "Of the sine.")));
+    return keys;
+}
+
+std::vector<Key> sampling_keys() {
+    std::vector<Key> keys;
+    keys.push_back(of_kind(Kind::section, number("sampling", {0}, Source::ours, no_bounds, "",
+                                                 "A digital controller. Absent: it computes continuously.")));
+    keys.push_back(number("sampling.rate", {1000}, Source::ours, {1e-3, 1e6}, "Hz",
+                          "How often it computes; its torque is held in between."));
+    keys.push_back(number("sampling.delay", {0}, Source::ours, {0, 64}, "samples",
+                          "From reading the sensors to the torque, whole and fractional samples."));
+    keys.push_back(of_kind(Kind::integer, number("sampling.seed", {1}, Source::ours, {0, 9007199254740991}, "",
+                                                 "Of the sensors' noise: the same seed gives the same bits.")));
+    keys.push_back(of_kind(Kind::section, number("sensors", {0}, Source::ours, no_bounds, "",
+                                                 "What the controller reads is not what is. Absent: it is.")));
+    keys.push_back(of_kind(Kind::integer, number("sensors.encoder.counts", {0}, Source::ours, {0, 1e9}, "",
+                                                 "Counts of a turn that each joint's encoder rounds to; 0: exact.")));
+    keys.push_back(choice("sensors.velocity.estimate", {"exact", "difference", "filtered"}, Source::ours,
+                          "Joint rates: known, the difference of two samples, or that difference behind a low-pass."));
+    keys.push_back(
+        where("sensors.velocity.estimate", {"filtered"},
+              number("sensors.velocity.cutoff", {50}, Source::ours, {1e-6, 1e6}, "Hz", "Of that low-pass.")));
+    keys.push_back(number("sensors.force.noise", {0}, Source::ours, not_negative, "N",
+                          "Standard deviation of each component in each sample."));
+    keys.push_back(number("sensors.force.bias", {0, 0, 0}, Source::ours, {-1e9, 1e9}, "N",
+                          "Added to the force on the tip, base axes."));
+    keys.push_back(number("sensors.force.resolution", {0}, Source::ours, not_negative, "N",
+                          "Each component is rounded to a multiple of it; 0: exact."));
+    keys.push_back(derived("no filter", number("sensors.force.analog_cutoff", {unset}, Source::ours, {1e-6, 1e6}, "Hz",
+                                               "First-order low-pass before sampling.")));
+    keys.push_back(derived("no filter", number("sensors.force.cutoff", {unset}, Source::ours, {1e-6, 1e6}, "Hz",
+                                               "First-order digital low-pass on the samples.")));
+    keys.push_back(number("sensors.force.delay", {0}, Source::ours, {0, 256}, "samples",
+                          "Of the force's samples, whole and fractional."));
+    keys.push_back(number("sensors.force.tool_mass", {0}, Source::ours, {0, 1e9}, "kg",
+                          "Of a tool beyond the sensor, whose weight it reads too."));
+    return keys;
+}
+
+void append_observer(std::vector<Key>& keys) {
+    const auto vector = [](Key key) { return with_form(Form::number_or_vector, std::move(key)); };
+    keys.push_back(of_kind(Kind::section, number("observer", {0}, Source::ours, no_bounds, "",
+                                                 "Momentum observer of the external torque. Absent: none.")));
+    keys.push_back(vector(number("observer.gain", {50, unset, unset}, Source::ours, {0, 1e6, true}, "1/s",
+                                 "K_O: the pole of the first-order filter.")));
+    keys.push_back(vector(number("observer.threshold", {0.5, unset, unset}, Source::ours, not_negative, "N m",
+                                 "A collision is where a residual exceeds it.")));
+    keys.push_back(number("observer.hold", {0.02}, Source::ours, {0, 1e6}, "s",
+                          "How long all residuals must stay below half of it for the collision to be over."));
+    keys.push_back(choice(
+        "observer.reaction", {"ignore", "stop", "float", "reflex", "retreat"}, Source::ours,
+        "From a collision on: nothing, hold the pose, compensate gravity alone, push with the residual, or retreat."));
+    keys.push_back(
+        where("observer.reaction", {"reflex"},
+              number("observer.reflex_gain", {1}, Source::ours, not_negative, "", "K_R of tau = tau_g + K_R r.")));
+    keys.push_back(where("observer.reaction", {"retreat"},
+                         number("observer.retreat_gain", {0.1}, Source::ours, not_negative, "rad/(N m s)",
+                                "K_Q: rate of the joint reference per residual.")));
+    keys.push_back(where("observer.reaction", {"stop", "retreat"},
+                         number("observer.joint_stiffness", {200, 200, 100}, Source::ours, not_negative, "N m/rad",
+                                "Kp of the PD that holds the pose.")));
+    keys.push_back(where("observer.reaction", {"stop", "retreat"},
+                         number("observer.joint_damping", {30, 30, 10}, Source::ours, not_negative, "N m s/rad",
+                                "Kd of the PD that holds the pose.")));
+    keys.push_back(
+        of_kind(Kind::section, number("estimator", {0}, Source::ours, no_bounds, "",
+                                      "Recursive least squares of the wall's stiffness and speed. Absent: none.")));
+    keys.push_back(number(
+        "estimator.rate", {500}, Source::ours, {1e-3, 1e6}, "Hz",
+        "How often it takes a sample; beside a controller without `sampling`, rk4 needs a whole number of steps in between."));
+    keys.push_back(
+        number("estimator.forgetting", {0.995}, Source::ours, {0.5, 1}, "", "Weight of a sample per later one."));
+    keys.push_back(
+        choice("estimator.wall", {"moving", "fixed"}, Source::ours, "Whether the wall's speed is estimated too."));
+    keys.push_back(number("estimator.start", {0}, Source::ours, an_instant, "s", "When the first sample is taken."));
+    keys.push_back(number("estimator.largest_condition", {1e8}, Source::ours, {1, 1e15}, "",
+                          "Condition number above which the answer is: not identifiable."));
+}
+
+void append_push(std::vector<Key>& keys) {
+    keys.push_back(of_kind(
+        Kind::section,
+        number("push", {0}, Source::ours, no_bounds, "",
+               "A force on the tip from outside, beside the wall's; a force sensor reads it too. Absent: none.")));
+    keys.push_back(number("push.force", {0, 0, 0}, Source::ours, {-1e9, 1e9}, "N", "On the tip, base axes."));
+    keys.push_back(number("push.start", {0}, Source::ours, an_instant, "s", "When it begins."));
+    keys.push_back(number("push.rise", {0}, Source::ours, {0, 1e9}, "s", "How long it grows, in proportion to time."));
+    keys.push_back(or_infinite(number("push.duration", {infinite}, Source::ours, {0, 1e9}, "s", "How long it lasts.")));
+}
+
+void append_solver(std::vector<Key>& keys) {
+    keys.push_back(choice(
+        "solver.method", {"dopri5", "rk4", "taylor", "rodas4", "auto"}, Source::ours,
+        "dopri5: Dormand-Prince 5(4), adaptive; rk4: classical Runge-Kutta, fixed step; taylor: power series, adaptive; rodas4: Rosenbrock 4(3) for stiff contact, adaptive; auto: dopri5, and rodas4 where the motion is stiff."));
+    keys.push_back(where("solver.method", {"dopri5", "rodas4", "auto"},
+                         number("solver.rtol", {1e-9}, Source::ours, {2.220446049250313e-14, 0.1}, "",
+                                "Relative tolerance of a step; not below 100 times the rounding unit.")));
+    keys.push_back(
+        where("solver.method", {"dopri5", "rodas4", "auto"},
+              number("solver.atol", {1e-12}, Source::ours, {1e-20, 1}, "rad, rad/s", "Absolute tolerance of a step.")));
+    keys.push_back(where("solver.method", {"taylor"},
+                         number("solver.tol", {1e-9}, Source::ours, {1e-15, 1e-2}, "rad, rad/s",
+                                "Tolerance of a step: absolute below 1, relative above.")));
+    keys.push_back(where(
+        "solver.method", {"dopri5", "taylor", "rodas4", "auto"},
+        derived("no limit", number("solver.max_step", {unset}, Source::ours, {1e-12, 1e9}, "s", "Largest step."))));
+    keys.push_back(
+        where("solver.method", {"rk4"}, number("solver.step", {1e-3}, Source::ours, {1e-12, 1e9}, "s", "The step.")));
+    keys.push_back(of_kind(Kind::integer, number("solver.max_steps", {1e7}, Source::ours, {1, 1e9}, "",
+                                                 "Accepted and rejected steps after which the run ends as `budget`.")));
+}
+
+// Three numbers, and those of another unit, must be given.
+double default_stiffness(std::span<const double> params, double otherwise) {
+    const std::string& law = choice_of(params, "wall.contact.law");
+    if (law == "diagonal" || law == "hunt_crossley") return unset;
+    const auto preset = static_cast<std::size_t>(param(params, "wall.contact.preset"));
+    return preset == 0 ? otherwise : stiffness_presets[preset - 1].stiffness;
+}
+
+const Key* known_among(const std::vector<Key>& keys, const std::string& path) {
+    const auto found = std::ranges::find(keys, path, &Key::path);
+    if (found == keys.end()) throw Error(ARM3R_E_INTERNAL, "no key '" + path + "' in the schema");
+    return &*found;
+}
+
+void connect(std::vector<Key>& keys) {
+    constexpr std::string_view model = "controller.model.";
+    std::size_t offset = 0;
+    for (Key& key : keys) {
+        key.offset = offset;
+        offset += key.size;
+        if (!key.when_key.empty()) key.decided_by = known_among(keys, key.when_key);
+        if (key.path.starts_with(model)) key.plant = known_among(keys, "arm." + key.path.substr(model.size()));
+    }
+}
+
+std::vector<Key> make_schema() {
+    std::vector<Key> keys;
+    keys.push_back(choice(
+        "arm.convention", {"simscape", "slide"}, Source::lecture,
+        "Sign of joints 2 and 3. simscape: positive angles lower the arm (axes +y); slide: they raise it (axes -y)."));
+    keys.push_back(number("arm.gravity", {0, 0, -9.80665}, Source::lecture, {-1e4, 1e4}, "m/s^2",
+                          "What the plant feels, in the base frame."));
+    append_arm(keys, "arm");
+    keys.push_back(of_kind(
+        Kind::angle,
+        number(
+            "initial.q", {0, -30 * pi / 180, 60 * pi / 180}, Source::lecture, {-1e5, 1e5}, "rad",
+            "Joint angles at the start. The default is the lecture's pose: [0, -30 deg, 60 deg], or [0, 30 deg, -60 deg] in the slide convention.")));
+    keys.push_back(of_kind(Kind::angle, number("initial.qd", {0, 0, 0}, Source::lecture, {-1e6, 1e6}, "rad/s",
+                                               "Joint rates at the start; 10 deg means 10 deg/s.")));
+    append_wall(keys);
+    append_controller(keys);
+    append_for_laws(keys, guided, reference_keys());
+    append_for_laws(keys, of_force, force_reference_keys());
+    append_for_laws(keys, with_a_sensor, sampling_keys());
+    append_observer(keys);
+    append_push(keys);
+    append_solver(keys);
+    keys.push_back(
+        number("time.stop", {10}, Source::ours, an_instant, "s", "End of the run; one at time.start gives one row."));
+    keys.push_back(
+        number("time.log_every", {0.01}, Source::ours, {1e-12, 1e9}, "s",
+               "Time between rows; the start and the end are always rows, and the log never changes the steps."));
+    keys.push_back(number("time.start", {0}, Source::ours, an_instant, "s",
+                          "Start of the run: rows, samples and fixed steps count from it, and `initial` holds there. "
+                          "wall.point stays the place at t = 0, and no other key is shifted."));
+    connect(keys);
+    return keys;
+}
+
+const std::map<std::string, const Key*, std::less<>>& by_path() {
+    static const auto index = [] {
+        std::map<std::string, const Key*, std::less<>> paths;
+        for (const Key& key : schema()) paths[key.path] = &key;
+        return paths;
+    }();
+    return index;
+}
+
+}  // namespace
+
+const std::vector<Key>& schema() {
+    static const std::vector<Key> keys = make_schema();
+    return keys;
+}
+
+const Key* find_key(std::string_view path) {
+    const auto found = by_path().find(path);
+    return found == by_path().end() ? nullptr : found->second;
+}
+
+const Key& known_key(std::string_view path) {
+    const Key* key = find_key(path);
+    if (!key) throw Error(ARM3R_E_INTERNAL, "no key '" + std::string(path) + "' in the schema");
+    return *key;
+}
+
+const char* kind_name(Kind kind) {
+    constexpr const char* names[] = {"number", "angle", "integer", "flag", "choice", "section"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+const Key& key_at(std::size_t index) {
+    for (const Key& key : schema())
+        if (index < key.offset + key.size) return key;
+    throw Error(ARM3R_E_INDEX,
+                "there is no parameter " + std::to_string(index) + "; there are " + std::to_string(param_count()));
+}
+
+std::size_t param_count() {
+    const Key& last = schema().back();
+    return last.offset + last.size;
+}
+
+std::string param_name(std::size_t index) {
+    const Key& key = key_at(index);
+    return key.size == 1 ? key.path : key.path + "[" + std::to_string(index - key.offset) + "]";
+}
+
+std::size_t param_index(std::string_view name) {
+    const std::size_t bracket = name.find('[');
+    const Key* key = find_key(name.substr(0, bracket));
+    if (key && bracket == name.npos && (key->size == 1 || key->form != Form::fixed)) return key->offset;
+    if (key && bracket != name.npos) {
+        std::size_t item = key->size;
+        const char* end = name.data() + name.size();
+        const auto [stop, error] = std::from_chars(name.data() + bracket + 1, end, item);
+        if (error == std::errc() && stop + 1 == end && *stop == ']' && item < key->size) return key->offset + item;
+    }
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < param_count(); ++i) names.push_back(param_name(i));
+    const std::string near = key ? param_name(key->offset) : nearest(name, names);
+    throw Error(ARM3R_E_INDEX, {{.code = "argument.parameter",
+                                 .path = std::string(name),
+                                 .message = "no parameter has this name",
+                                 .got = "",
+                                 .allowed = "",
+                                 .hint = near.empty() ? "" : "did you mean " + near + "?"}});
+}
+
+std::string list_sizes(const Key& key) {
+    return (key.form == Form::list ? std::to_string(key.fewest) + " to " : "") + std::to_string(key.size);
+}
+
+bool takes_list(const Key& key, std::span<const double> params) { return choice_of(params, key.when_key) == key.word; }
+
+std::vector<double> default_of(const Key& key, std::span<const double> params) {
+    std::vector<double> value = key.fallback;
+    if (!key.fallback_for.empty())
+        if (const auto other = key.fallback_for.find(choice_of(params, *key.decided_by));
+            other != key.fallback_for.end())
+            return other->second;
+    const bool link1_by_shape =
+        key.path.starts_with("arm.link1.") && !key.unset.empty() && choice_of(params, "arm.link1.shape") != "explicit";
+    if (link1_by_shape) std::fill(value.begin(), value.end(), unset);
+    if (key.path == "wall.contact.stiffness") value[0] = default_stiffness(params, value[0]);
+    if (key.path == "initial.q" && choice_of(params, "arm.convention") == "slide")
+        value = {value[0], -value[1], -value[2]};
+    return value;
+}
+
+std::vector<double> param_defaults() {
+    std::vector<double> params(param_count(), 0.0);
+    for (const Key& key : schema()) {
+        const std::vector<double> value = default_of(key, params);
+        std::copy(value.begin(), value.end(), params.begin() + static_cast<std::ptrdiff_t>(key.offset));
+    }
+    return params;
+}
+
+double param(std::span<const double> params, std::string_view path, std::size_t item) {
+    return params[known_key(path).offset + item];
+}
+
+const std::string& choice_of(std::span<const double> params, const Key& key) {
+    const double stored = params[key.offset];
+    if (std::isnan(stored) && key.plant) return choice_of(params, *key.plant);
+    return key.choices.at(static_cast<std::size_t>(stored));
+}
+
+const std::string& choice_of(std::span<const double> params, std::string_view path) {
+    return choice_of(params, known_key(path));
+}
+
+double choice_index(const Key& key, std::string_view word) {
+    const auto found = std::ranges::find(key.choices, word);
+    if (found == key.choices.end())
+        throw Error(ARM3R_E_INTERNAL, "no choice '" + std::string(word) + "' at '" + key.path + "' in the schema");
+    return static_cast<double>(found - key.choices.begin());
+}
+
+bool key_exists(const Key& key, std::span<const double> params) {
+    if (!key.decided_by) return true;
+    const std::string& chosen = choice_of(params, *key.decided_by);
+    return std::ranges::find(key.when, chosen) != key.when.end() && key_exists(*key.decided_by, params);
+}
+
+std::vector<std::string> words_without(const Key& key) {
+    std::vector<std::string> words = key.decided_by->choices;
+    std::erase_if(words, [&](const std::string& word) { return std::ranges::find(key.when, word) != key.when.end(); });
+    return words;
+}
+
+}  // namespace arm3r

@@ -1,0 +1,100 @@
+#pragma once
+// The one table of everything a scenario can say. Parsing, defaults, provenance, validation, suggestions, parameter
+// indices, JSON Schema and the reference page are all read from it. It knows neither YAML nor files.
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace arm3r {
+
+enum class Kind {
+    number,   // a real number
+    angle,    // a real number, rad; `VALUE deg` allowed
+    integer,  // a whole number
+    flag,     // true | false
+    choice,   // one word of `choices`
+    section,  // a map that may be absent; the parameter is 1 where it is present (only `wall`)
+};
+
+const char* kind_name(Kind kind);
+
+enum class Source { lecture, inferred, ours };  // where a default comes from
+
+// How the `size` numbers of a key may be written.
+enum class Form {
+    fixed,             // size 1: a number; size > 1: a list of exactly `size`
+    number_or_vector,  // one number, stored as (x, NaN, NaN), or a list of 3
+    vector_or_word,    // a list of `size`, or `word`, which stores +inf in every place
+    by_choice,         // stored like number_or_vector; the choice at when_key decides: `word` takes a list of 3, any
+                       // other one number
+    list,              // a list of `fewest` to `size`, with NaN after its end
+};
+
+struct Bounds {
+    double low, high;
+    bool open_low = false, open_high = false;
+};
+
+struct Key {
+    std::string path;  // dotted, "arm.link2.mass"
+    Kind kind;
+    std::size_t size;  // doubles it takes in the flat array
+    Form form;
+    std::vector<double> fallback;  // default; NaN: not given (derived, or as `unset` says)
+    Source source;
+    Bounds bounds;  // of each number; inf as a value only with allow_infinity
+    bool allow_infinity = false;
+    std::string unit;  // "m", "N m s/rad"; "" for none
+    std::string doc;   // one sentence
+    std::vector<std::string> choices = {};
+    std::map<std::string, std::vector<double>> fallback_for = {};  // by the choice at when_key, where it differs
+    std::string word = {};               // for vector_or_word: "infinite"; for by_choice: that which takes a list
+    std::size_t fewest = 0;              // for list
+    std::string when_key = {};           // the key exists only where the choice at this path ...
+    std::vector<std::string> when = {};  // ... is one of these words
+    bool required = false;               // must be given (where it exists at all)
+    std::string unset = {};              // what NaN means: "length/2", "as the plant"
+    std::size_t offset = 0;              // first index in the flat array; this and the next two: filled by schema()
+    const Key* decided_by = nullptr;     // the key at when_key
+    const Key* plant = nullptr;          // of a key of controller.model: the plant's
+};
+
+// Every key, in the order of the reference page. `name` (text), `format` and `checks` are the reader's own.
+const std::vector<Key>& schema();
+const Key* find_key(std::string_view path);
+const Key& known_key(std::string_view path);  // for paths that stand in the code
+std::size_t param_count();
+const Key& key_at(std::size_t index);            // whose number stands there in the flat array
+std::string param_name(std::size_t index);       // "initial.q[1]"
+std::size_t param_index(std::string_view name);  // throws Error ARM3R_E_INDEX, with the nearest right name
+std::vector<double> param_defaults();
+
+// The default of one key, given the choices that stand in `params` (keys are in such an order that a choice precedes
+// what depends on it). Beside fallback_for three defaults depend on choices: initial.q on arm.convention, link1 on its
+// shape, the wall's stiffness on its law and preset.
+std::vector<double> default_of(const Key& key, std::span<const double> params);
+
+double param(std::span<const double> params, std::string_view path, std::size_t item = 0);
+
+// The word stored for a choice (one that is not given in controller.model is the plant's), the number that stands for a
+// word, and whether the key exists for the choices made in `params`.
+const std::string& choice_of(std::span<const double> params, const Key& key);
+const std::string& choice_of(std::span<const double> params, std::string_view path);
+double choice_index(const Key& key, std::string_view word);
+bool key_exists(const Key& key, std::span<const double> params);
+
+// How many numbers its list may have: "3", or "2 to 16" for a list of any length; and whether the choices made in
+// `params` let a by_choice key take a list.
+std::string list_sizes(const Key& key);
+bool takes_list(const Key& key, std::span<const double> params);
+
+// The words of the choice that decides on a key for which there is no such key.
+std::vector<std::string> words_without(const Key& key);
+
+}  // namespace arm3r

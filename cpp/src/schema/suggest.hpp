@@ -1,0 +1,13 @@
+#pragma once
+// Did you mean ...?
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace arm3r {
+
+// Levenshtein distance with transpositions; the nearest of `words` within 2 (or a third of the length), or "".
+std::string nearest(std::string_view word, const std::vector<std::string>& words);
+
+}  // namespace arm3r

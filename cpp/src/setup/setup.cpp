@@ -1,0 +1,309 @@
+#include "setup/setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "arm3r/model/restitution.hpp"
+#include "schema/param_access.hpp"
+#include "setup/make_controller.hpp"
+#include "setup/make_reference.hpp"
+#include "setup/make_sampling.hpp"
+#include "setup/time_instants.hpp"
+
+namespace arm3r {
+namespace {
+
+using std::numbers::pi;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// One number x stands for (x along `axis`), three for themselves.
+template <Name path>
+Vec3<double> vector_along(std::span<const double> params, const Vec3<double>& axis) {
+    const Vec3<double> given = vector_at<path>(params);
+    return std::isnan(given[1]) ? Vec3<double>(given[0] * axis[0], given[0] * axis[1], given[0] * axis[2]) : given;
+}
+
+double given_or(double given, double otherwise) { return std::isnan(given) ? otherwise : given; }
+
+// What a shape says of mass and inertia, with `mass` in place of density*volume where it is given.
+struct Solid {
+    double mass;
+    Vec3<double> inertia;  // x along the length
+};
+
+template <Name link>
+Solid solid_of(std::span<const double> params, double length) {
+    const double given = at<link + ".mass">(params);
+    if (is<link + ".shape", "brick">(params)) {
+        const double h = at<link + ".section">(params, 0), w = at<link + ".section">(params, 1);
+        const double m = given_or(given, at<link + ".density">(params) * length * h * w);
+        return {m, {m * (w * w + h * h) / 12, m * (length * length + w * w) / 12, m * (length * length + h * h) / 12}};
+    }
+    if (is<link + ".shape", "cylinder">(params)) {
+        const double R = at<link + ".radius">(params);
+        const double m = given_or(given, at<link + ".density">(params) * length * pi * R * R);
+        const double across = m * (3 * R * R + length * length) / 12;
+        return {m, {m * R * R / 2, across, across}};
+    }
+    const double across = given * length * length / 12;  // slender
+    return {given, {0, across, across}};
+}
+
+Turret<double> turret_of(std::span<const double> params) {
+    const Turret<double> given{at<"arm.link1.mass">(params), at<"arm.link1.com">(params),
+                               at<"arm.link1.inertia_axial">(params)};
+    if (is<"arm.link1.shape", "explicit">(params)) return given;
+    const double length = at<"arm.link1.length">(params);
+    const Solid solid = solid_of<"arm.link1">(params, length);
+    return {solid.mass, given_or(given.com, length / 2), given_or(given.inertia_axial, solid.inertia[0])};
+}
+
+template <Name link>
+Link<double> link_of(std::span<const double> params) {
+    const double length = at<link + ".length">(params);
+    const Solid solid = solid_of<link>(params, length);
+    const Vec3<double> given = vector_at<link + ".inertia">(params);
+    return {length, solid.mass, given_or(at<link + ".com">(params), length / 2),
+            std::isnan(given[0]) ? solid.inertia : given};
+}
+
+bool any_above_zero(const Vec3<double>& v) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
+
+void finish(Arm<double>& arm) {
+    arm.lumped = lump(arm);
+    arm.gravity_is_vertical = arm.gravity[0] == 0 && arm.gravity[1] == 0;
+    arm.has_damping = any_above_zero(arm.damping);
+    arm.has_dry_friction = any_above_zero(arm.friction);
+    arm.has_torque_limit =
+        std::isfinite(arm.torque_limit[0]) || std::isfinite(arm.torque_limit[1]) || std::isfinite(arm.torque_limit[2]);
+}
+
+// The controller's copy, with the gravity that it compensates.
+void set_model(std::span<const double> params, const Arm<double>& plant_arm, Arm<double>& model) {
+    model = model_differs(params) ? make_arm(with_model(params)) : plant_arm;
+    if (!has_model(controls_of(params))) return;
+    model.gravity = vector_along<"controller.gravity">(params, {0, 0, -1});
+    finish(model);
+}
+
+Motion motion_of(std::span<const double> params) {
+    if (is<"wall.motion.type", "constant">(params)) return Motion::constant;
+    if (is<"wall.motion.type", "sinusoid">(params)) return Motion::sinusoid;
+    if (is<"wall.motion.type", "ramp">(params)) return Motion::ramp;
+    if (is<"wall.motion.type", "table">(params)) return Motion::table;
+    return Motion::fixed;
+}
+
+Rotation rotation_of(std::span<const double> params) {
+    if (is<"wall.rotation.type", "constant">(params)) return Rotation::constant;
+    if (is<"wall.rotation.type", "sinusoid">(params)) return Rotation::sinusoid;
+    return Rotation::none;
+}
+
+Vec3<double> normalised(const Vec3<double>& v) {
+    const double length = std::sqrt(dot(v, v));
+    return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+template <Name section>
+Swing<double> swing_of(std::span<const double> params) {
+    return {at<section + ".amplitude">(params), at<section + ".frequency">(params), at<section + ".phase">(params)};
+}
+
+Table<double> table_of(std::span<const double> params) {
+    Table<double> table;
+    for (int i = 0; i < most_knots; ++i) {
+        const auto item = static_cast<std::size_t>(i);
+        table.t[i] = at<"wall.motion.t">(params, item);
+        table.s[i] = at<"wall.motion.s">(params, item);
+        table.v[i] = at<"wall.motion.v">(params, item);
+        table.a[i] = at<"wall.motion.a">(params, item);
+        if (!std::isnan(table.t[i])) table.knots = i + 1;
+    }
+    return table;
+}
+
+void set_motion(Wall<double>& wall, std::span<const double> params) {
+    wall.motion = motion_of(params);
+    wall.velocity = {0, 0, 0};
+    if (wall.motion == Motion::constant) wall.velocity = vector_along<"wall.motion.velocity">(params, wall.n);
+    const Vec3<double> direction = vector_at<"wall.motion.direction">(params);
+    wall.direction = std::isnan(direction[0]) ? wall.n : normalised(direction);
+    if (wall.motion == Motion::sinusoid) wall.swing = swing_of<"wall.motion">(params);
+    if (wall.motion == Motion::ramp)
+        wall.ramp = {at<"wall.motion.distance">(params), at<"wall.motion.start">(params),
+                     at<"wall.motion.duration">(params)};
+    if (wall.motion == Motion::table) wall.table = std::make_shared<Table<double>>(table_of(params));
+}
+
+void set_rotation(Wall<double>& wall, std::span<const double> params) {
+    wall.rotation = rotation_of(params);
+    wall.axis = {0, 0, 0};
+    if (wall.rotation != Rotation::none) wall.axis = normalised(vector_at<"wall.rotation.axis">(params));
+    if (wall.rotation == Rotation::constant) wall.turn_rate = at<"wall.rotation.rate">(params);
+    if (wall.rotation == Rotation::sinusoid) wall.turn_swing = swing_of<"wall.rotation">(params);
+}
+
+Wall<double> make_wall(std::span<const double> params) {
+    Wall<double> wall{};
+    wall.point = vector_at<"wall.point">(params);
+    wall.n = normalised(vector_at<"wall.normal">(params));
+    const Vec3<double> sideways = cross(wall.n, Vec3<double>(0, 0, 1));
+    const double level = std::sqrt(dot(sideways, sideways));
+    if (level < 1e-12) wall.e1 = {0, 1, 0};  // (4.1)
+    else wall.e1 = {sideways[0] / level, sideways[1] / level, sideways[2] / level};
+    wall.e2 = cross(wall.e1, wall.n);
+    wall.half1 = at<"wall.size">(params, 0) / 2;
+    wall.half2 = at<"wall.size">(params, 1) / 2;
+    wall.has_outline = std::isfinite(wall.half1) || std::isfinite(wall.half2);
+    wall.face_offset = at<"wall.face_offset">(params);
+    set_motion(wall, params);
+    set_rotation(wall, params);
+    return wall;
+}
+
+Law law_of(std::span<const double> params) {
+    if (is<"wall.contact.law", "diagonal">(params)) return Law::diagonal;
+    if (is<"wall.contact.law", "kelvin_voigt">(params)) return Law::kelvin_voigt;
+    if (is<"wall.contact.law", "hunt_crossley">(params)) return Law::hunt_crossley;
+    return Law::spring;
+}
+
+// The mass that the tip shows to the wall at the start, kg.
+double mass_at_start(const Setup& setup) {
+    const Wall<double>& wall = setup.plant.wall;
+    return effective_mass(setup.plant.arm, pose(setup.q), normal(wall, wall_at(wall, setup.start)));
+}
+
+double damping_of(std::span<const double> params, double stiffness, double mass) {
+    const double restitution = at<"wall.contact.restitution">(params);
+    if (std::isnan(restitution)) return at<"wall.contact.damping">(params);
+    return 2 * damping_ratio_for(restitution) * std::sqrt(stiffness * mass);
+}
+
+double dissipation_of(std::span<const double> params) {
+    const double restitution = at<"wall.contact.restitution">(params);
+    if (std::isnan(restitution)) return at<"wall.contact.dissipation">(params);
+    return hunt_crossley_number_for(restitution) / at<"wall.contact.impact_speed">(params);
+}
+
+Contact<double> make_contact(std::span<const double> params, double mass) {
+    const Vec3<double> k = vector_at<"wall.contact.stiffness">(params);
+    Contact<double> contact{};
+    contact.law = law_of(params);
+    contact.stiffness = contact.law == Law::diagonal ? k : Vec3<double>(k[0], 0, 0);
+    if (contact.law == Law::kelvin_voigt) contact.damping = damping_of(params, k[0], mass);
+    if (contact.law == Law::hunt_crossley) {
+        contact.exponent = at<"wall.contact.exponent">(params);
+        contact.dissipation = dissipation_of(params);
+    }
+    contact.friction = at<"wall.contact.friction.coefficient">(params);
+    contact.slip_velocity = at<"wall.contact.friction.slip_velocity">(params);
+    contact.has_friction = contact.friction > 0;
+    return contact;
+}
+
+Solver::Method method_of(std::span<const double> params) {
+    if (is<"solver.method", "rk4">(params)) return Solver::rk4;
+    if (is<"solver.method", "taylor">(params)) return Solver::taylor;
+    if (is<"solver.method", "rodas4">(params)) return Solver::rodas4;
+    if (is<"solver.method", "auto">(params)) return Solver::automatic;
+    return Solver::dopri5;
+}
+
+Solver make_solver(std::span<const double> params) {
+    return {.method = method_of(params),
+            .rtol = at<"solver.rtol">(params),
+            .atol = at<"solver.atol">(params),
+            .tol = at<"solver.tol">(params),
+            .max_step = given_or(at<"solver.max_step">(params), infinite),
+            .step = at<"solver.step">(params),
+            .max_steps = at<"solver.max_steps">(params)};
+}
+
+}  // namespace
+
+const std::vector<Replacement>& model_numbers() {
+    static const auto numbers = [] {
+        std::vector<Replacement> all;
+        for (const Key& key : schema())
+            for (std::size_t i = 0; key.plant && i < key.size; ++i)
+                all.push_back({key.offset + i, key.plant->offset + i});
+        return all;
+    }();
+    return numbers;
+}
+
+bool model_differs(std::span<const double> params) {
+    return std::ranges::any_of(model_numbers(), [&](const Replacement& r) { return !std::isnan(params[r.from]); });
+}
+
+std::vector<double> with_model(std::span<const double> params) {
+    std::vector<double> merged(params.begin(), params.end());
+    for (const auto [from, to] : model_numbers()) merged[to] = given_or(params[from], merged[to]);
+    return merged;
+}
+
+Arm<double> make_arm(std::span<const double> params) {
+    Arm<double> arm;
+    arm.base_height = at<"arm.base_height">(params);
+    arm.link1 = turret_of(params);
+    arm.link2 = link_of<"arm.link2">(params);
+    arm.link3 = link_of<"arm.link3">(params);
+    arm.payload = at<"arm.payload.mass">(params);
+    arm.gravity = vector_at<"arm.gravity">(params);
+    arm.armature = vector_at<"arm.armature">(params);
+    arm.damping = vector_at<"arm.damping">(params);
+    arm.friction = vector_at<"arm.friction">(params);
+    arm.friction_velocity = at<"arm.friction_velocity">(params);
+    arm.torque_limit = vector_at<"arm.torque_limit">(params);
+    finish(arm);
+    return arm;
+}
+
+// What stands between controller and arm. Of a digital controller the plant sees but a torque that changes now and then.
+static void put_between(std::span<const double> params, Setup& setup) {
+    Plant<double>& plant = setup.plant;
+    Digital<double>& digital = setup.digital;
+    if (at<"sensors">(params) != 0) plant.sensors = digital.sensors = make_sensors(params);
+    if (at<"observer">(params) != 0) digital.observer = make_observer(params);
+    if (at<"sampling">(params) != 0 || plant.controller.type == Controls::user) {  // which computes sample by sample
+        digital.sampling = make_sampling(params);
+        digital.controller = plant.controller;
+        static_cast<ControllerChoices&>(plant.controller) = {.type = Controls::constant};
+        plant.controller.torque = {0, 0, 0};
+        plant.controller.model = plant.arm;
+    } else {
+        plant.observer = digital.observer;
+    }
+    plant.needs_azimuth = setup.law().type > Controls::gravity_compensation || setup.digital.sampling.on ||
+                          setup.observes() || setup.estimation.on || plant.load.on;
+}
+
+Setup make_setup(std::span<const double> params) {
+    Setup setup;
+    setup.simscape = is_simscape(params);
+    setup.start = at<"time.start">(params);
+    setup.plant.arm = make_arm(params);
+    set_controller(params, setup.plant.controller);
+    set_model(params, setup.plant.arm, setup.plant.controller.model);
+    setup.plant.has_wall = at<"wall">(params) != 0;
+    setup.plant.wall = make_wall(params);
+    setup.q = to_slide(params, vector_at<"initial.q">(params));
+    setup.plant.contact = make_contact(params, mass_at_start(setup));
+    setup.plant.acts_on_arm = setup.plant.has_wall && at<"wall.acts_on_arm">(params) != 0;
+    setup.qd = to_slide(params, vector_at<"initial.qd">(params));
+    if (has_law(setup.plant.controller.type)) set_setpoint(params, setup, setup.plant.controller.setpoint);
+    setup.solver = make_solver(params);
+    setup.stop = at<"time.stop">(params);
+    setup.log_every = at<"time.log_every">(params);
+    if (at<"push">(params) != 0) setup.plant.load = make_load(params);
+    if (at<"estimator">(params) != 0) setup.estimation = make_estimation(params);
+    put_between(params, setup);
+    set_jumps_on_clock(setup);
+    return setup;
+}
+
+}  // namespace arm3r

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "arm3r/numbers/primitives.hpp"
+#include "setup/time_instants.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+template <class Load, class Visit>
+void each_jump_of_load(Load& load, Visit visit) {
+    if (!load.on) return;
+    if (!(load.rise > 0)) visit(load.start);
+    visit(load.end);
+}
+
+template <class W, class Visit>
+void each_jump_of_wall(W& wall, Visit visit) {
+    if (wall.motion != Motion::table) return;
+    Table<double>& table = *wall.table;
+    for (const int end : {0, table.knots - 1})
+        if (table.v[end] != 0) visit(table.t[end]);
+}
+
+template <class S, class Visit>
+void each_jump_of_setpoint(S& setpoint, Visit visit) {
+    if (setpoint.path == Path::line || setpoint.path == Path::sinusoid) visit(setpoint.start);
+    if (setpoint.path == Path::line) visit(setpoint.end);
+    if (setpoint.pressing == Pressing::step) visit(setpoint.force_start);
+}
+
+}  // namespace
+
+double next_knot(const Wall<double>& wall, double t) {
+    double next = infinite;
+    const auto consider = [&](double knot) {
+        if (knot > t) next = std::min(next, knot);
+    };
+    if (wall.motion == Motion::ramp) {
+        consider(wall.ramp.start);
+        consider(wall.ramp.start + wall.ramp.duration);
+    }
+    if (wall.motion == Motion::table)
+        for (int i = 0; i < wall.table->knots; ++i) consider(wall.table->t[i]);
+    return next;
+}
+
+double next_knot(const Setup& setup, double t) {
+    const Plant<double>& plant = setup.plant;
+    double next = plant.has_wall ? next_knot(plant.wall, t) : infinite;
+    const auto consider = [&](double knot) {
+        if (knot > t) next = std::min(next, knot);
+    };
+    if (plant.load.on) {
+        const TipLoad<double>& load = plant.load;
+        for (const double knot : {load.start, load.start + load.rise, load.end}) consider(knot);
+    }
+    if (!has_law(plant.controller.type)) return next;
+    const Setpoint<double>& setpoint = plant.controller.setpoint;
+    if (setpoint.path > Path::point) consider(setpoint.start), consider(setpoint.end);
+    for (int i = 0; i < setpoint.knots; ++i) consider((*setpoint.table)[0].t[std::size_t(i)]);
+    if (setpoint.pressing == Pressing::step || setpoint.pressing == Pressing::ramp)
+        consider(setpoint.force_start), consider(setpoint.force_start + setpoint.force_duration);
+    return next;
+}
+
+double next_jump(const Setup& setup, double t) {
+    const Plant<double>& plant = setup.plant;
+    double next = infinite;
+    const auto consider = [&](double jump) {
+        if (jump > t) next = std::min(next, jump);
+    };
+    each_jump_of_load(plant.load, consider);
+    if (plant.has_wall) each_jump_of_wall(plant.wall, consider);
+    if (has_law(plant.controller.type)) each_jump_of_setpoint(plant.controller.setpoint, consider);
+    return next;
+}
+
+double just_before(double t) {
+    if (t == 0) return -std::numeric_limits<double>::denorm_min();
+    return with_bits(t, [t](auto& bits) { bits += t > 0 ? -1 : 1; });
+}
+
+double Setup::clock_rounding() const {
+    return 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(start), std::abs(stop));
+}
+
+void set_jumps_on_clock(Setup& setup) {
+    const bool has_grid = setup.solver.method == Solver::rk4, has_samples = setup.digital.sampling.on;
+    const double period = has_grid ? setup.solver.step : has_samples ? setup.digital.sampling.period : infinite;
+    const auto settle = [&](double& jump) {
+        const double count = nearest_integer((jump - setup.start) / period);
+        for (const double instant : {setup.start + (count > 0 ? count * period : 0), setup.stop})
+            if (std::abs(jump - instant) <= setup.clock_rounding()) jump = instant;
+    };
+    each_jump_of_load(setup.plant.load, settle);
+    if (setup.plant.has_wall) each_jump_of_wall(setup.plant.wall, settle);
+    Controller<double>& law = has_samples ? setup.digital.controller : setup.plant.controller;
+    each_jump_of_setpoint(law.setpoint, settle);
+}
+
+}  // namespace arm3r

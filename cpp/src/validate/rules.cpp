@@ -1,0 +1,242 @@
+// The rules between the keys of a scenario that concern the arm, the wall and the start as they come out of it.
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/number_text.hpp"
+#include "schema/param_access.hpp"
+#include "setup/setup.hpp"
+#include "validate/rules.hpp"
+
+namespace arm3r {
+namespace {
+
+using std::numbers::pi;
+constexpr double deepest_start = 0.1;      // m
+constexpr double smallest_inertia = 1e-9;  // kg m^2
+constexpr double shortest_period = 1e-14;  // of time.start: 45 to 90 units in its last place
+
+std::string degrees(double angle) { return shortest(std::round(angle * 180 / pi * 100) / 100) + " deg"; }
+
+std::string at_pose(const WorstPose& pose) {
+    return "at q2 = " + degrees(pose.q2) + ", q3 = " + degrees(pose.q3) + ", any q1";
+}
+
+void check_mass_matrix(const Arm<double>& arm, Findings& findings) {
+    const WorstPose M11 = smallest_M11(arm.lumped);
+    if (M11.value < smallest_inertia)
+        findings.add([&] {
+            return Problem{
+                .code = "scenario.singular_mass_matrix",
+                .path = "arm.link1.inertia_axial",
+                .message = "the mass matrix is nearly singular: M11 falls to " + shortest(M11.value) + " kg m^2 " +
+                           at_pose(M11),
+                .got = shortest(arm.link1.inertia_axial),
+                .allowed = "min M11 >= 1e-9 kg m^2",
+                .hint =
+                    "give arm.link1.inertia_axial or arm.armature[0]; slender links have no inertia about their own axis"};
+        });
+    const WorstPose lower = smallest_lower_determinant(arm.lumped);
+    if (lower.value <= 0)
+        findings.add([&] {
+            return Problem{.code = "scenario.singular_mass_matrix",
+                           .path = "arm.link3.inertia",
+                           .message = "the mass matrix is singular: the determinant of joints 2 and 3 falls to " +
+                                      shortest(lower.value) + " " + at_pose(lower),
+                           .got = "",
+                           .allowed = "determinant > 0",
+                           .hint = "give arm.link3.inertia, or armature for joints 2 and 3"};
+        });
+}
+
+void check_start(const Setup& setup, Findings& findings) {
+    const Plant<double>& plant = setup.plant;
+    const Pose<double> p = pose(setup.q);
+    const Indentation<double> in = tip_indentation(plant, wall_at(plant.wall, setup.start), p, setup.qd);
+    if (in.depth > deepest_start && inside_outline(plant.wall, in) >= 0)
+        findings.add([&] {
+            return Problem{.code = "scenario.starts_inside_wall",
+                           .path = "wall.point",
+                           .message = "the tip starts deep inside the wall",
+                           .got = shortest(in.depth) + " m deep",
+                           .allowed = "at most 0.1 m",
+                           .hint = "move wall.point back or change initial.q; does wall.normal point towards the arm?"};
+        });
+}
+
+void check_time(std::span<const double> params, Findings& findings) {
+    const double start = at<"time.start">(params), stop = at<"time.stop">(params);
+    if (stop < start)
+        findings.add([&] {
+            return Problem{.code = "scenario.range",
+                           .path = "time.stop",
+                           .message = "the run ends before it starts",
+                           .got = shortest(stop),
+                           .allowed = "at least time.start = " + shortest(start),
+                           .hint = "time.stop is an instant, not a duration"};
+        });
+}
+
+// A period that is to be counted from an instant must be longer than the spacing of the doubles about it.
+void check_spacing(const char* path, double period, double start, Findings& findings) {
+    const double least = shortest_period * std::abs(start);
+    if (period < least)
+        findings.add([&] {
+            return Problem{.code = "scenario.clock",
+                           .path = path,
+                           .message = "time.start is too late for so short a period",
+                           .got = shortest(period) + " s",
+                           .allowed = "at least 1e-14 |time.start| = " + shortest(least) + " s",
+                           .hint = "move the scenario towards t = 0, with all instants and phases in it"};
+        });
+}
+
+void check_clock(const Setup& setup, Findings& findings) {
+    check_spacing("time.log_every", setup.log_every, setup.start, findings);
+    if (setup.solver.method == Solver::rk4) check_spacing("solver.step", setup.solver.step, setup.start, findings);
+    if (setup.digital.sampling.on) check_spacing("sampling.rate", setup.digital.sampling.period, setup.start, findings);
+}
+
+// A damped law takes one number that says how much it damps, or a restitution to find it from.
+void check_damping(const std::string& name, double given, bool has_restitution, Findings& findings) {
+    if (std::isnan(given) != has_restitution)
+        findings.add([&] {
+            return Problem{.code = has_restitution ? "scenario.conflict" : "scenario.missing_key",
+                           .path = "wall.contact." + name,
+                           .message = has_restitution ? "restitution says already how much the contact damps"
+                                                      : "this law damps, but nothing says how much",
+                           .got = has_restitution ? shortest(given) : "",
+                           .allowed = "either " + name + " or restitution",
+                           .hint = has_restitution ? "take one of the two out" : "give one of the two"};
+        });
+}
+
+void check_law(std::span<const double> params, Findings& findings) {
+    const bool has_restitution = !std::isnan(at<"wall.contact.restitution">(params));
+    if (is<"wall.contact.law", "kelvin_voigt">(params))
+        check_damping("damping", at<"wall.contact.damping">(params), has_restitution, findings);
+    if (!is<"wall.contact.law", "hunt_crossley">(params)) return;
+    check_damping("dissipation", at<"wall.contact.dissipation">(params), has_restitution, findings);
+    const bool has_speed = !std::isnan(at<"wall.contact.impact_speed">(params));
+    if (has_speed != has_restitution)
+        findings.add([&] {
+            return Problem{.code = has_speed ? "scenario.conflict" : "scenario.missing_key",
+                           .path = "wall.contact.impact_speed",
+                           .message = has_speed ? "this is the speed of a restitution, and none is given"
+                                                : "the restitution of hunt_crossley depends on the speed of the impact",
+                           .got = "",
+                           .allowed = "restitution and impact_speed together",
+                           .hint = has_speed ? "give wall.contact.restitution, or take impact_speed out"
+                                             : "give the speed at which the restitution is to hold"};
+        });
+}
+
+// A power series cannot pass the corner at which a changing torque meets its limit.
+void check_corners(const Setup& setup, Findings& findings) {
+    if (setup.solver.method == Solver::taylor && setup.plant.arm.has_torque_limit && !setup.digital.sampling.on &&
+        setup.law().type == Controls::gravity_compensation)
+        findings.add([] {
+            return Problem{.code = "scenario.corner",
+                           .path = "solver.method",
+                           .message =
+                               "taylor needs a law without corners, and arm.torque_limit puts corners into "
+                               "controller.type gravity_compensation",
+                           .got = "taylor",
+                           .allowed = "taylor with arm.torque_limit: [inf, inf, inf]",
+                           .hint = "use method: dopri5"};
+        });
+}
+
+// Its recurrences are those of the closed form.
+void check_algorithm(const Setup& setup, Findings& findings) {
+    const Controller<double>& controller = setup.law();
+    if (setup.solver.method == Solver::taylor && controller.type == Controls::gravity_compensation &&
+        controller.algorithm == Algorithm::recursion && !setup.digital.sampling.on)
+        findings.add([] {
+            return Problem{.code = "scenario.no_series",
+                           .path = "controller.algorithm",
+                           .message = "taylor has no series of the Newton-Euler recursion",
+                           .got = "recursion",
+                           .allowed = "closed_form with solver.method: taylor",
+                           .hint = "use algorithm: closed_form, or method: dopri5"};
+        });
+}
+
+// Why the recurrences of the wall do not hold: they are those of a wall that slides evenly or swings, and of a spring.
+struct NoSeries {
+    const char *path, *of, *allowed;
+};
+
+std::optional<NoSeries> without_series(const Plant<double>& plant) {
+    const Wall<double>& wall = plant.wall;
+    if (wall.motion == Motion::ramp || wall.motion == Motion::table)
+        return NoSeries{"wall.motion.type", "this motion", "fixed, constant or sinusoid with solver.method: taylor"};
+    if (wall.rotation != Rotation::none)
+        return NoSeries{"wall.rotation.type", "a wall that turns", "none with solver.method: taylor"};
+    if (is_damped(plant.contact.law))
+        return NoSeries{"wall.contact.law", "a damped contact", "spring or diagonal with solver.method: taylor"};
+    if (plant.acts_on_arm && plant.contact.law == Law::diagonal)
+        return NoSeries{"wall.contact.law", "springs along the plate", "spring where the wall acts on the arm"};
+    if (plant.acts_on_arm && plant.contact.has_friction)
+        return NoSeries{"wall.contact.friction.coefficient", "friction on the wall",
+                        "0 where the wall acts on the arm"};
+    return std::nullopt;
+}
+
+void check_series(const Setup& setup, Findings& findings) {
+    if (setup.solver.method != Solver::taylor || !setup.plant.has_wall) return;
+    if (const std::optional<NoSeries> reason = without_series(setup.plant))
+        findings.add([&] {
+            return Problem{.code = "scenario.no_series",
+                           .path = reason->path,
+                           .message = std::string("taylor has no series of ") + reason->of,
+                           .got = "",
+                           .allowed = reason->allowed,
+                           .hint = "use method: dopri5"};
+        });
+}
+
+}  // namespace
+
+WorstPose smallest_M11(const Lumped<double>& l) {  // (3.10)
+    const double B = std::abs(l.B), toward = l.B > 0 ? -1 : 1;
+    WorstPose worst{l.A1, pi / 2, 0};
+    const auto consider = [&](double form, double C2, double C23) {
+        if (l.A1 + form < worst.value) worst = {l.A1 + form, acos(C2), acos(C23) - acos(C2)};
+    };
+    consider(l.A2 + l.A3 - 2 * B, 1, toward);
+    if (l.A3 > B) consider(l.A2 - B * B / l.A3, 1, toward * B / l.A3);
+    if (l.A2 > B) consider(l.A3 - B * B / l.A2, toward * B / l.A2, 1);
+    return worst;
+}
+
+WorstPose smallest_lower_determinant(const Lumped<double>& l) {  // (3.10)
+    const double coupling = std::abs(l.B) + l.J3;
+    return {(l.B2 + l.J3) * (l.B3 + l.J3) - coupling * coupling, 0, l.B > 0 ? pi : 0};
+}
+
+void check_setup(std::span<const double> params, Findings& findings) {
+    check_time(params, findings);
+    check_direction<"wall.normal">(params, findings);
+    check_direction<"wall.motion.direction">(params, findings);
+    check_direction<"wall.rotation.axis">(params, findings);
+    if (is<"wall.motion.type", "table">(params))
+        check_table<"wall.motion.t", "wall.motion.s", "wall.motion.v", "wall.motion.a">(
+            params, "give position, velocity and acceleration at every instant", findings);
+    check_controller_keys(params, findings);
+    check_sampling_keys(params, findings);
+    if (at<"wall">(params) != 0) check_law(params, findings);
+    if (!findings.none()) return;
+    const Setup setup = make_setup(params);
+    check_clock(setup, findings);
+    check_corners(setup, findings);
+    check_algorithm(setup, findings);
+    check_series(setup, findings);
+    check_controller(params, setup, findings);
+    check_sampling(params, setup, findings);
+    check_mass_matrix(setup.plant.arm, findings);
+    if (findings.none() && setup.plant.has_wall) check_start(setup, findings);
+}
+
+}  // namespace arm3r

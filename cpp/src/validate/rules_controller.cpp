@@ -1,0 +1,244 @@
+// The rules between the keys of a controller, its reference, and the arm and wall it works with.
+
+#include "base/number_text.hpp"
+#include "setup/make_controller.hpp"
+#include "setup/make_reference.hpp"
+#include "validate/rules.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr double smallest_sine = 1e-3;  // of the elbow angle, and of r/(a2 + a3), at the start of a law that inverts J
+
+bool is_given(const Vec3<double>& v) { return !std::isnan(v[0]); }
+
+std::string type_of(std::span<const double> params) { return choice_of(params, "controller.type"); }
+
+// ---- what is wanted
+
+// Of two keys that say the same thing in two ways, exactly one.
+void need_one_of(const char* path, bool has_it, const char* other, bool has_other, const std::string& of,
+                 Findings& findings) {
+    if (has_it != has_other) return;
+    findings.add([&] {
+        return Problem{.code = has_it ? "scenario.conflict" : "scenario.missing_key",
+                       .path = path,
+                       .message = has_it ? std::string(other) + " says it already" : of + " needs a target",
+                       .got = "",
+                       .allowed = std::string("either ") + path + " or " + other,
+                       .hint = has_it ? "take one of the two out" : "give one of the two"};
+    });
+}
+
+void check_aim(std::span<const double> params, const std::string& reference, Findings& findings) {
+    if (reference == "point" || reference == "line" || reference == "minimum_jerk")
+        need_one_of("reference.tip", is_given(vector_at<"reference.tip">(params)), "reference.q",
+                    is_given(vector_at<"reference.q">(params)), "reference.type " + reference, findings);
+}
+
+// A sinusoid swings in the law's own space, and each of the two amplitudes is of one space.
+void check_amplitude(std::span<const double> params, const std::string& reference, bool in_joints, Findings& findings) {
+    if (reference != "sinusoid") return;
+    const char *right = "reference.tip_amplitude", *wrong = "reference.q_amplitude";
+    if (in_joints) std::swap(right, wrong);
+    const bool has_tip = is_given(vector_at<"reference.tip_amplitude">(params));
+    const bool has_q = is_given(vector_at<"reference.q_amplitude">(params));
+    const std::string space = in_joints ? "joint angles" : "positions of the tip";
+    if (in_joints ? has_tip : has_q)
+        findings.add([&] {
+            return Problem{.code = "scenario.conflict",
+                           .path = wrong,
+                           .message = "controller.type " + type_of(params) + " works in " + space,
+                           .got = "",
+                           .allowed = right,
+                           .hint = std::string("give ") + right + " in its place"};
+        });
+    else if (in_joints ? !has_q : !has_tip)
+        findings.add([&] {
+            return Problem{.code = "scenario.missing_key",
+                           .path = right,
+                           .message = "a sinusoid in " + space + " needs its amplitude",
+                           .got = "",
+                           .allowed = in_joints ? "a list of 3 numbers, rad" : "a list of 3 numbers, m",
+                           .hint = ""};
+        });
+}
+
+void check_path_of_tip(std::span<const double> params, const std::string& reference, bool in_joints,
+                       Findings& findings) {
+    const bool is_of_tip = reference == "circle" || reference == "table";
+    if (in_joints && is_of_tip)
+        findings.add([&] {
+            return Problem{.code = "scenario.conflict",
+                           .path = "reference.type",
+                           .message = "a " + reference + " is a path of the tip, and controller.type " +
+                                      type_of(params) + " works in joint angles",
+                           .got = reference,
+                           .allowed = "hold, point, line, minimum_jerk or sinusoid",
+                           .hint = "use controller.type resolved_acceleration or stiffness"};
+        });
+}
+
+void check_target(std::span<const double> params, const Setup& setup, Findings& findings) {
+    const Controller<double>& controller = setup.law();
+    const Vec3<double> tip = vector_at<"reference.tip">(params);
+    const Path path = controller.setpoint.path;
+    const bool is_aimed = path == Path::point || path == Path::line || path == Path::minimum_jerk;
+    if (!controller.setpoint.in_joints || !is_aimed || !is_given(tip)) return;
+    const Arm<double>& model = controller.model;
+    const double a2 = model.link2.length, a3 = model.link3.length, up = tip[2] - model.base_height;
+    const double aside = hypot2(tip[0], tip[1]), distance = hypot2(aside, up);
+    if (std::abs(joints_at(model, tip, setup.q).cos_q3) > 1 + 1e-12)
+        findings.add([&] {
+            return Problem{.code = "scenario.out_of_reach",
+                           .path = "reference.tip",
+                           .message = "no joint angles bring the tip there",
+                           .got = shortest(distance) + " m from joint 2",
+                           .allowed = shortest(std::abs(a2 - a3)) + " to " + shortest(a2 + a3) + " m",
+                           .hint = "move the target, or give reference.q"};
+        });
+    else if (aside < 1e-9 * (a2 + a3))
+        findings.add([&] {
+            return Problem{.code = "scenario.singular",
+                           .path = "reference.tip",
+                           .message = "above or below joint 1 every angle of it brings the tip to the same place",
+                           .got = shortest(aside) + " m from the axis of joint 1",
+                           .allowed = "a target off that axis",
+                           .hint = "give reference.q"};
+        });
+}
+
+// ---- where the law can work
+
+void check_pose(std::span<const double> params, const Setup& setup, Findings& findings) {
+    if (!inverts_jacobian(setup.law())) return;
+    const Arm<double>& model = setup.law().model;
+    const Pose<double> p = pose(setup.q);
+    const double S3 = p.S23 * p.C2 - p.C23 * p.S2, r = radius(model, p);
+    const double smallest_r = smallest_sine * (model.link2.length + model.link3.length);
+    const auto refuse = [&](const std::string& message, const std::string& got, const std::string& allowed) {
+        findings.add([&] {
+            return Problem{.code = "scenario.singular",
+                           .path = "initial.q",
+                           .message = "controller.type " + type_of(params) + " inverts the Jacobian, which is " +
+                                      "singular where " + message,
+                           .got = got,
+                           .allowed = allowed,
+                           .hint = "start from another pose, or use a law without an inverse, such as stiffness"};
+        });
+    };
+    if (std::abs(S3) < smallest_sine)
+        refuse("the elbow is straight or folded", "sin(q3) = " + shortest(S3),
+               "|sin(q3)| >= " + shortest(smallest_sine));
+    if (std::abs(r) < smallest_r)
+        refuse("the tip stands on the axis of joint 1", shortest(std::abs(r)) + " m from the axis",
+               "at least " + shortest(smallest_r) + " m");
+}
+
+void check_wall(std::span<const double> params, const Setup& setup, Findings& findings) {
+    if (setup.plant.has_wall) return;
+    const auto refuse = [&](const char* path, const std::string& who) {
+        findings.add([&] {
+            return Problem{.code = "scenario.needs_wall",
+                           .path = path,
+                           .message = who + ", and there is no wall",
+                           .got = "",
+                           .allowed = "",
+                           .hint = "add a wall section; `wall: {}` is the lecture's"};
+        });
+    };
+    switch (setup.law().type) {
+        case Controls::operational_space:
+        case Controls::hybrid:
+        case Controls::parallel:
+        case Controls::adaptive_reference:
+            refuse("controller.type", type_of(params) + " controls the force on a wall");
+            break;
+        default: break;
+    }
+    if (setup.law().type == Controls::admittance && setup.law().setpoint.force != 0)
+        refuse("reference.force.value", "this is a force on the wall");
+    if (setup.estimation.on) refuse("estimator", "it estimates the stiffness of the wall");
+}
+
+// ---- gains
+
+void check_order(const char* path, double low, const char* other, double high, bool may_be_equal, const char* unit,
+                 Findings& findings) {
+    if (may_be_equal ? low <= high : low < high) return;
+    findings.add([&] {
+        return Problem{.code = "scenario.order",
+                       .path = path,
+                       .message = std::string("must lie ") + (may_be_equal ? "not above " : "below ") + other,
+                       .got = shortest(low) + " " + unit,
+                       .allowed = (may_be_equal ? "at most " : "less than ") + shortest(high) + " " + unit,
+                       .hint = ""};
+    });
+}
+
+void check_levels(const Controller<double>& controller, Findings& findings) {
+    const Gains<double>& gains = controller.gains;
+    if (controller.type == Controls::energy_tank && controller.has_tank) {
+        check_order("controller.tank_low", gains.tank_low, "controller.tank_high", gains.tank_high, false, "J",
+                    findings);
+        check_order("controller.tank_high", gains.tank_high, "controller.tank_capacity", gains.tank_capacity, true, "J",
+                    findings);
+        check_order("controller.tank_energy", gains.tank_energy, "controller.tank_capacity", gains.tank_capacity, true,
+                    "J", findings);
+    }
+    const bool switches = controller.type == Controls::operational_space || controller.type == Controls::hybrid ||
+                          controller.type == Controls::parallel || controller.type == Controls::adaptive_reference;
+    if (switches && controller.switching != Switching::always)
+        check_order("controller.contact_off", gains.contact_off, "controller.contact_on", gains.contact_on, true, "N",
+                    findings);
+}
+
+// An indirect reference is shifted until the spring presses with the wanted force: where the spring is to press, it needs
+// a stiffness (7.18).
+void check_compliance(const Setup& setup, Findings& findings) {
+    const Controller<double>& law = setup.law();
+    if (law.type != Controls::adaptive_reference || law.adaptation != Adaptation::indirect) return;
+    const Wall<double>& wall = setup.plant.wall;
+    for (int i = 0; i < 3; ++i) {
+        const bool presses = wall.rotation != Rotation::none || wall.n[i] != 0;
+        if (!presses || law.gains.stiffness[i] > 0) continue;
+        findings.add([&] {
+            return Problem{.code = "scenario.needs_stiffness",
+                           .path = "controller.stiffness",
+                           .message =
+                               "adaptation indirect shifts the reference until the spring presses on the wall, and "
+                               "along " +
+                               std::string(1, "xyz"[i]) + " there is no spring",
+                           .got = shortest(law.gains.stiffness[i]) + " N/m along " + "xyz"[i],
+                           .allowed = "above 0 along each axis of which the wall's normal has a part",
+                           .hint = "give a stiffness, or take adaptation: integral"};
+        });
+        return;
+    }
+}
+
+}  // namespace
+
+void check_controller_keys(std::span<const double> params, Findings& findings) {
+    const Controls type = controls_of(params);
+    if (type == Controls::virtual_wall) check_direction<"controller.plane_normal">(params, findings);
+    if (!wants_path(type)) return;
+    const std::string& reference = choice_of(params, "reference.type");
+    check_aim(params, reference, findings);
+    check_amplitude(params, reference, is_in_joints(type), findings);
+    check_path_of_tip(params, reference, is_in_joints(type), findings);
+    if (reference == "table")
+        check_table<"reference.t", "reference.x", "reference.y", "reference.z">(
+            params, "give all three coordinates at every instant", findings);
+}
+
+void check_controller(std::span<const double> params, const Setup& setup, Findings& findings) {
+    check_wall(params, setup, findings);
+    if (!has_law(setup.law().type)) return;
+    check_target(params, setup, findings);
+    check_pose(params, setup, findings);
+    check_levels(setup.law(), findings);
+    check_compliance(setup, findings);
+}
+
+}  // namespace arm3r

@@ -1,0 +1,160 @@
+// The rules of what stands between the arm and its controller: samples, sensors, observer, and a push from outside.
+
+#include "base/number_text.hpp"
+#include "setup/make_controller.hpp"
+#include "validate/rules.hpp"
+
+namespace arm3r {
+namespace {
+
+// A section that goes with controllers that compute.
+template <Name section>
+void need_computing(std::span<const double> params, Findings& findings) {
+    if (at<section>(params) == 0 || key_exists(known_key(section), params)) return;
+    findings.add([&] {
+        return Problem{.code = "scenario.other_choice",
+                       .path = std::string(section),
+                       .message = "controller.type " + choice_of(params, "controller.type") +
+                                  " computes nothing and reads nothing",
+                       .got = "",
+                       .allowed = "",
+                       .hint = "take the section out, or choose a controller"};
+    });
+}
+
+// What there is only sample by sample.
+void need_samples(bool has_it, const char* path, const char* what, Findings& findings) {
+    if (!has_it) return;
+    findings.add([&] {
+        return Problem{.code = "scenario.needs_sampling",
+                       .path = path,
+                       .message = std::string(what) + " exists sample by sample only",
+                       .got = "a controller that computes continuously",
+                       .allowed = "",
+                       .hint = "add a sampling section, such as `sampling: {rate: 1000}`"};
+    });
+}
+
+void check_digital(const Setup& setup, Findings& findings) {
+    if (setup.digital.sampling.on) return;
+    const Controller<double>& controller = setup.law();
+    need_samples(controller.type == Controls::virtual_wall && controller.controls_passivity,
+                 "controller.passivity_control", "the energy that sampling creates", findings);
+    need_samples(setup.observes() && setup.digital.observer.reaction != Reaction::ignore, "observer.reaction",
+                 "a reaction to a collision", findings);
+    const Sensors<double>& sensors = setup.digital.sensors;
+    need_samples(sensors.has_encoder, "sensors.encoder.counts", "a reading of an encoder", findings);
+    need_samples(sensors.velocity != VelocityEstimate::exact, "sensors.velocity.estimate",
+                 "a rate from differences of angles", findings);
+    need_samples(sensors.has_noise, "sensors.force.noise", "noise", findings);
+    need_samples(sensors.has_resolution, "sensors.force.resolution", "rounding to a resolution", findings);
+    need_samples(sensors.has_filter, "sensors.force.cutoff", "a digital filter", findings);
+    need_samples(sensors.has_delay, "sensors.force.delay", "a delay of samples", findings);
+    need_samples(sensors.has_tool, "sensors.force.tool_mass",
+                 "the weight of a tool, which gravity adds to the reading,", findings);
+}
+
+// ---- rk4: a sample, and a torque that comes later, fall on steps
+
+bool is_whole(double x) { return std::abs(x - nearest_integer(x)) <= 1e-9 * std::max(1.0, std::abs(x)); }
+
+// Of the steps that part the period, and the delay too, the one nearest to `step`; 0 where none is near.
+double nearest_working_step(const Sampling<double>& sampling, double step) {
+    constexpr double farthest = 1000;
+    const double parts = std::floor(sampling.period / step);
+    const auto works = [&](double n) { return n >= 1 && is_whole(n * sampling.delay); };
+    double longer = parts, shorter = parts + 1;
+    while (longer >= 1 && parts - longer < farthest && !works(longer)) --longer;
+    while (shorter - parts < farthest && !works(shorter)) ++shorter;
+    const double above = works(longer) ? sampling.period / longer : 0,
+                 below = works(shorter) ? sampling.period / shorter : 0;
+    return above > 0 && (below == 0 || above - step < step - below) ? above : below;
+}
+
+void check_grid(const Setup& setup, Findings& findings) {
+    const Sampling<double>& sampling = setup.digital.sampling;
+    const double step = setup.solver.step, parts = sampling.period / step, later = sampling.delay * parts;
+    if (setup.solver.method != Solver::rk4 || !sampling.on) return;
+    const bool fits = parts > 0.5 && is_whole(parts);
+    if (fits && is_whole(later)) return;
+    findings.add([&] {
+        const double works = nearest_working_step(sampling, step);
+        const std::string period = shortest(sampling.period) + " s";
+        return Problem{
+            .code = "scenario.grid",
+            .path = "solver.step",
+            .message = fits ? "the delay of the torque, " + shortest(sampling.delay) + " of " + period +
+                                  ", is no whole number of steps"
+                            : "the period of sampling.rate, " + period + ", is no whole number of steps",
+            .got = shortest(step) + " s",
+            .allowed = "a step that parts " + std::string(fits ? "the delay and " : "") + "the period evenly",
+            .hint =
+                works > 0 ? "the nearest is " + shortest(works) + " s" : "let sampling.delay be a simpler fraction"};
+    });
+}
+
+// Beside a sampled controller the estimator takes the samples of that one; else it samples itself, at the ends of steps.
+void check_estimates(const Setup& setup, Findings& findings) {
+    const Estimation<double>& estimation = setup.estimation;
+    if (setup.solver.method != Solver::rk4 || !estimation.on || setup.digital.sampling.on) return;
+    const double step = setup.solver.step, later = estimation.start - setup.start;
+    const double parts = estimation.period / step, nearest = std::max(1.0, nearest_integer(parts));
+    const bool fits = is_whole(parts) && parts > 0.5;
+    if (fits && is_whole(later / step)) return;
+    findings.add([&] {
+        const std::string period = shortest(estimation.period) + " s", begin = shortest(later) + " s";
+        return Problem{
+            .code = "scenario.grid",
+            .path = fits ? "estimator.start" : "solver.step",
+            .message = fits ? "the time from the start of the run to the estimator's first sample, " + begin +
+                                  ", is no whole number of steps"
+                            : "the period of estimator.rate, " + period + ", is no whole number of steps",
+            .got = fits ? shortest(estimation.start) + " s" : shortest(step) + " s",
+            .allowed = fits ? "a whole number of steps of " + shortest(step) + " s after the start"
+                            : "a step that parts the period evenly",
+            .hint = "the nearest is " +
+                    shortest(fits ? setup.start + nearest_integer(later / step) * step : estimation.period / nearest) +
+                    " s"};
+    });
+}
+
+// ---- taylor: between the samples everything must be a series
+
+void check_series(std::span<const double> params, const Setup& setup, Findings& findings) {
+    if (setup.solver.method != Solver::taylor) return;
+    const auto refuse = [&](const char* path, const std::string& of, const std::string& hint) {
+        findings.add([&] {
+            return Problem{.code = "scenario.no_series",
+                           .path = path,
+                           .message = "taylor has no series of " + of,
+                           .got = "",
+                           .allowed = "",
+                           .hint = hint};
+        });
+    };
+    const std::string samples = "add a sampling section, such as `sampling: {rate: 1000}`, or use method: dopri5";
+    if (has_law(setup.law().type) && !setup.digital.sampling.on)
+        refuse("solver.method",
+               "a law that computes continuously, controller.type " + choice_of(params, "controller.type"), samples);
+    if (setup.observes() && !setup.digital.sampling.on)
+        refuse("observer", "an observer that computes continuously", samples);
+    if (setup.plant.load.on) refuse("push", "a push from outside", "use method: dopri5");
+    if (setup.digital.sensors.has_analog_filter)
+        refuse("sensors.force.analog_cutoff", "a filter before the samples", "use method: dopri5");
+}
+
+}  // namespace
+
+void check_sampling_keys(std::span<const double> params, Findings& findings) {
+    need_computing<"sampling">(params, findings);
+    need_computing<"sensors">(params, findings);
+}
+
+void check_sampling(std::span<const double> params, const Setup& setup, Findings& findings) {
+    check_digital(setup, findings);
+    check_grid(setup, findings);
+    check_estimates(setup, findings);
+    check_series(params, setup, findings);
+}
+
+}  // namespace arm3r

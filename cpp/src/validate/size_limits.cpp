@@ -1,0 +1,90 @@
+#include "validate/size_limits.hpp"
+
+#include <algorithm>
+
+#include "base/number_text.hpp"
+#include "schema/columns.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr double most_bytes = 2e9;
+constexpr double most_fixed_steps = 1e9;
+constexpr double most_ticks = 1e8;
+
+double rounded(double count) { return count < 1e15 ? nearest_integer(count) : count; }
+
+void refuse_above(double needed, double most, Problem problem) {
+    if (needed <= most) return;
+    problem.got = "about " + shortest(rounded(needed));
+    problem.allowed = "at most " + shortest(rounded(most));
+    throw Error(ARM3R_E_SIZE_CAP, {std::move(problem)});
+}
+
+double duration(const Setup& setup) { return setup.stop - setup.start; }
+
+double ticks_of(const Setup& setup) {
+    return setup.digital.sampling.on ? duration(setup) / setup.digital.sampling.period : 0;
+}
+
+double fixed_steps_allowed(const Solver& solver) { return std::min(most_fixed_steps, solver.max_steps); }
+
+}  // namespace
+
+bool has_too_many_steps(const Setup& setup) {
+    const bool is_fixed = setup.solver.method == Solver::rk4;
+    return ticks_of(setup) > most_ticks ||
+           (is_fixed && duration(setup) / setup.solver.step > fixed_steps_allowed(setup.solver));
+}
+
+void refuse_too_large(const Setup& setup, bool rows) {
+    if (rows)
+        refuse_above(duration(setup) / setup.log_every, most_bytes / double(columns_of(setup).size() * sizeof(double)),
+                     {.code = "budget.rows",
+                      .path = "time.log_every",
+                      .message = "the run would need too many rows",
+                      .got = "",
+                      .allowed = "",
+                      .hint = "log less often"});
+    refuse_above(ticks_of(setup), most_ticks,
+                 {.code = "budget.ticks",
+                  .path = "sampling.rate",
+                  .message = "the controller would have to compute too often",
+                  .got = "",
+                  .allowed = "",
+                  .hint = "sample less often"});
+    if (has_too_many_steps(setup))
+        refuse_above(duration(setup) / setup.solver.step, fixed_steps_allowed(setup.solver),
+                     {.code = "budget.steps",
+                      .path = "solver.step",
+                      .message = "the run would need too many steps",
+                      .got = "",
+                      .allowed = "",
+                      .hint = "take a larger step, or raise solver.max_steps"});
+}
+
+std::vector<std::size_t> columns_of(const Setup& setup) {
+    const Plant<double>& plant = setup.plant;
+    const Controller<double>& law = setup.law();
+    const bool has_path = wants_path(law.type);
+    const auto is_there = [&](Need need) {
+        switch (need) {
+            case Need::nothing: return true;
+            case Need::wall: return plant.has_wall;
+            case Need::force_reference: return wants_force(law.type);
+            case Need::path: return has_path && !law.setpoint.in_joints;
+            case Need::joint_path: return has_path && law.setpoint.in_joints;
+            case Need::observer: return setup.observes();
+            case Need::estimator: return setup.estimation.on;
+            case Need::tank: return law.type == Controls::energy_tank;
+            case Need::loss: return can_lose_energy(plant);
+            default: return plant.arm.has_torque_limit && law.type != Controls::none;
+        }
+    };
+    std::vector<std::size_t> columns;
+    for (std::size_t i = 0; i < column_table().size(); ++i)
+        if (is_there(column_table()[i].need)) columns.push_back(i);
+    return columns;
+}
+
+}  // namespace arm3r

@@ -1,0 +1,37 @@
+#pragma once
+// The rules that parameters must keep, with messages; and for many arrays that differ in a few numbers without.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/problem_list.hpp"
+#include "schema/schema.hpp"
+
+namespace arm3r {
+
+// Every rule that one key alone can break (range, shape, word), and those between keys. Empty when all is well.
+std::vector<Problem> validate(std::span<const double> params);
+
+// Keys whose numbers are to be looked at: those of the plant's arm, all others, and those of the controller's copy of the
+// arm, which are the first again as with_model() (setup.hpp) puts them.
+struct NumberKeys {
+    std::vector<const Key*> arm, others, model;
+};
+
+// Throws Error ARM3R_E_SCENARIO where a number that stands for a choice is none of its words.
+void refuse_unknown_choices(std::span<const double> params);
+
+class Checker {
+public:
+    // The arrays will differ from `params` in the numbers `varied` only, none of them a choice, a flag or a section.
+    Checker(std::span<const double> params, std::span<const std::size_t> varied);
+
+    bool operator()(std::span<const double> params) const;
+
+private:
+    bool readable_;    // the choices are words
+    NumberKeys keys_;  // what varies, and what is wrong in all
+};
+
+}  // namespace arm3r

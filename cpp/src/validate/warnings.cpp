@@ -1,0 +1,160 @@
+// What is allowed but probably a slip.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/number_text.hpp"
+#include "schema/param_access.hpp"
+#include "setup/make_controller.hpp"
+#include "setup/setup.hpp"
+#include "setup/time_instants.hpp"
+#include "validate/warnings.hpp"
+
+namespace arm3r {
+namespace {
+
+using std::numbers::pi;
+
+double norm(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
+
+std::string vector_text(const Vec3<double>& v) {
+    return "[" + shortest(v[0] + 0.0) + ", " + shortest(v[1] + 0.0) + ", " + shortest(v[2] + 0.0) + "]";
+}
+
+bool uses_gravity(const Controller<double>& controller) {
+    return has_model(controller.type) && (controller.type != Controls::joint_pd || controller.compensates_gravity);
+}
+
+// What the plant feels and what the controller compensates differ, but by so little that a slip of typing is likely.
+bool is_nearly_equal(const Vec3<double>& feels, const Vec3<double>& compensates) {
+    const double apart = norm(minus(feels, compensates));
+    return apart > 0 && apart < 0.01 * norm(feels);
+}
+
+void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
+    const Controller<double>& controller = setup.law();
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = controller.model.gravity;
+    if (uses_gravity(controller) && is_nearly_equal(feels, compensates))
+        slips.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
+                        shortest(norm(compensates)) +
+                        ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
+}
+
+void slip_of_angles(std::span<const double> params, std::vector<std::string>& slips) {
+    for (int i = 0; i < 3; ++i) {
+        const double angle = at<"initial.q">(params, std::size_t(i)), in_degrees = angle * 180 / pi;
+        const bool was_degrees = std::abs(in_degrees - std::round(in_degrees)) < 1e-9 * std::abs(in_degrees);
+        if (std::abs(angle) > 2 * pi && !was_degrees)
+            slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " + shortest(angle) +
+                            " rad; plain numbers are radians: write `" + shortest(angle) +
+                            " deg` if degrees were meant");
+    }
+}
+
+void slip_of_links(const Arm<double>& arm, std::vector<std::string>& slips) {
+    const Link<double>* links[] = {&arm.link2, &arm.link3};
+    for (int i = 0; i < 2; ++i) {
+        if (links[i]->com < 0 || links[i]->com > links[i]->length)
+            slips.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " +
+                            shortest(links[i]->com) + " m of " + shortest(links[i]->length) + " m");
+    }
+}
+
+// Units that are off by powers of ten show in the proportions of a link.
+void slip_of_units(const Arm<double>& arm, std::vector<std::string>& slips) {
+    constexpr double a_long_link = 50;  // m
+    const Link<double>* links[] = {&arm.link2, &arm.link3};
+    for (int i = 0; i < 2; ++i) {
+        const Link<double>& link = *links[i];
+        const std::string name = "arm.link" + std::to_string(i + 2);
+        const double largest = std::max({link.inertia[0], link.inertia[1], link.inertia[2]});
+        const double whole_mass_at_the_end = link.mass * link.length * link.length;
+        if (link.length > a_long_link)
+            slips.push_back(name + ".length is " + shortest(link.length) + " m; was it given in millimetres?");
+        if (largest > whole_mass_at_the_end)
+            slips.push_back(name + ".inertia has " + shortest(largest) +
+                            " kg m^2, more than mass*length^2 = " + shortest(whole_mass_at_the_end) +
+                            ": no body within the link has as much; was it given in g cm^2 (1e-7 kg m^2)?");
+    }
+}
+
+// How far the wall's plane comes past joint 2 at the worst moment of the run, m; < 0 when it never does.
+double past_shoulder(const Setup& setup) {
+    const Wall<double>& wall = setup.plant.wall;
+    const Vec3<double> shoulder(0, 0, setup.plant.arm.base_height);
+    double deepest = -std::numeric_limits<double>::infinity();
+    const auto look = [&](double t) {
+        const Indentation<double> in = indentation(wall, wall_at(wall, t), shoulder, {0, 0, 0});
+        if (inside_outline(wall, in) >= 0) deepest = std::max(deepest, in.depth);
+    };
+    constexpr int looks = 1000;
+    for (int i = 0; i <= looks; ++i) look(setup.start + (setup.stop - setup.start) * i / looks);
+    return deepest;
+}
+
+// A fixed step against the frequency and the decay of the contact.
+void slip_of_contact_step(const Setup& setup, std::vector<std::string>& slips) {
+    const Contact<double>& contact = setup.plant.contact;
+    const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
+    const auto check = [&](const char* name, double product, double half, const char* limit) {
+        if (product > half)
+            slips.push_back(std::string(name) + " is " + shortest(product) + ", more than half of what rk4 bears (" +
+                            limit + "): the contact will not be resolved; take a smaller solver.step");
+    };
+    if (contact.law != Law::hunt_crossley)
+        check("step*sqrt(K_E/m_n)", setup.solver.step * std::sqrt(contact.stiffness[0] / m_n), 1.414, "2.828");
+    if (contact.law == Law::kelvin_voigt)
+        check("step*damping/m_n", setup.solver.step * contact.damping / m_n, 1.3925, "2.785");
+}
+
+// A fixed step keeps its order where a jump lies on its grid only (5.8).
+void slip_of_jump(const Setup& setup, std::vector<std::string>& slips) {
+    if (setup.solver.method != Solver::rk4) return;
+    const double step = setup.solver.step;
+    for (double t = next_jump(setup, setup.start); t < setup.stop; t = next_jump(setup, t)) {
+        if (t == setup.start + nearest_integer((t - setup.start) / step) * step) continue;
+        slips.push_back("a push, the reference or the wall's table jumps at t = " + shortest(t) +
+                        " s, within a step of rk4, which is of first order there; take a solver.step that reaches this "
+                        "instant in whole steps, or method: dopri5");
+        return;
+    }
+}
+
+void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
+    if (!setup.plant.has_wall) return;
+    const double past = past_shoulder(setup);
+    if (past > 0)
+        slips.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
+                        " m at the most; the arm's base is then behind it");
+    if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) slip_of_contact_step(setup, slips);
+}
+
+}  // namespace
+
+std::optional<std::string> slip_of_default_gravity(std::span<const double> params) {
+    const Setup setup = make_setup(params);
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.law().model.gravity;
+    const bool differ = norm(minus(feels, compensates)) > 0 && !is_nearly_equal(feels, compensates);
+    if (!differ || !uses_gravity(setup.law())) return {};
+    return "the plant feels the gravity " + vector_text(feels) + " m/s^2 and the controller compensates " +
+           vector_text(compensates) +
+           " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
+           ", or what it shall believe instead";
+}
+
+std::vector<std::string> likely_slips(std::span<const double> params) {
+    const Setup setup = make_setup(params);
+    std::vector<std::string> slips;
+    slip_of_gravity(setup, slips);
+    slip_of_angles(params, slips);
+    slip_of_links(setup.plant.arm, slips);
+    slip_of_units(setup.plant.arm, slips);
+    slip_of_wall(setup, slips);
+    slip_of_jump(setup, slips);
+    add_controller_slips(setup, slips);
+    return slips;
+}
+
+}  // namespace arm3r
