@@ -1,4 +1,4 @@
-"""The parts of the C++ sources know only what lies below them."""
+"""The C++ sources stand in rooms, one folder for each concern, and know only the rooms below their own."""
 
 from __future__ import annotations
 
@@ -6,99 +6,111 @@ import os
 import re
 import subprocess
 import sysconfig
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
-SETUP = (
-    "setup setup_controller setup_instants setup_rules setup_rules_controller setup_rules_sampling setup_sampling "
-    "setup_setpoint setup_slips setup_slips_controller"
-)
+# From the bottom up: a file includes files of its own room and of rooms that stand before it.
+ROOMS = """
+include/arm3r/numbers  include/arm3r/model  include/arm3r/ode  include/arm3r/control  include/arm3r
+src/base  src/schema  src/setup  src/validate
+src/control  src/integrate  src/contact
+src/record  src/run  src/lanes  src/batch
+src/files  src/results  src/scenario
+src/api  src/cli
+""".split()
+MOST_FILES = 16  # with a name of their own: X.hpp and X.cpp are one
 
-RUNS = (
-    "simulation ledger diagnosis row_log recorder runs adaptive_run stepwise marching_run march march_members "
-    "march_with_memory fixed_march taylor_march score"
-)
-
-# From the bottom up. The parts of one line do not know each other; the files of one part do.
-LAYERS = [
-    ["arm3r", "primitives", "row_memory", "presets", "fp_environment"],
-    ["elementary", "numbers text"],
-    ["real", "error", "rough_root", "random"],
-    ["dual", "expr", "pack", "schema suggest", "columns", "findings", "callback"],
-    ["eigen_traits", "lane_access", "apart"],
-    ["course", "vectors", "integrators", "polynomial", "restitution", "small_lu", "spline"],
-    ["arm", "wall", "at", "linearization", "estimator"],
-    ["kinematics", "recursion", "contact", "rodas"],
-    ["dynamics"],
-    ["setpoint", "loop_limits"],
-    ["controllers"],
-    ["task_space", "digital", "observer", "user_law", "loop_limits"],
-    ["motion_laws impedance_laws force_loop force_laws adaptive_reference admittance energy_tank virtual_wall"],
-    ["energy_reserve"],
-    ["laws"],
-    ["plant", "compiled_laws"],
-    ["lanes", "taylor_recipes", "step_limits"],
-    ["laws_of_lanes laws_of_numbers laws_of_rows laws_of_slopes"],
-    ["control_loop", SETUP, "model_batch", "derive_taylor", "taylor"],
-    ["sample sample_into sample_together", "law_state"],
-    ["validate", "contact_step", "size_cap", "stepper"],
-    ["events"],
-    [RUNS],
-    ["summary"],
-    ["batch crew lineup lineup_memory lineup_rk4 lineup_taylor"],
-    ["yaml_events", "input", "output"],
-    ["paths", "yaml_json"],
-    ["checks results csv", "meant_key"],
-    ["scenario scenario_set scenario_text"],
-    ["reference"],
-    ["c_api c_api_batch c_api_error c_api_law c_api_numbers c_api_text"],
-    ["cli"],
-]
-HEIGHT = {stem: height for height, layer in enumerate(LAYERS) for part in layer for stem in part.split()}
-PART = {stem: part for layer in LAYERS for part in layer for stem in part.split()}
-
-# What only these parts may include.
+# What only these files may include.
 RESERVED = {
-    r"yaml-cpp/.*": {"yaml_events"},
+    r"yaml-cpp/.*": {"yaml_tree"},
     r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {
-        "input",
-        "output",
-        "cli",
-        "row_memory",
+        "input_file",
+        "output_file",
+        "main",
+        "arguments",
+        "terminal",
+        "launcher",
+        "column_memory",
         "derive_taylor",
     },
-    r"iostream": {"cli"},
+    r"iostream": {"main", "arguments", "terminal"},
 }
 
 
 def _sources(root: Path) -> list[Path]:
-    return [path for path in sorted((root / "cpp").rglob("*")) if path.suffix in (".h", ".hpp", ".cpp")]
+    return [path for path in sorted((root / "cpp").rglob("*")) if path.suffix in (".c", ".h", ".hpp", ".cpp")]
 
 
 def _includes(path: Path) -> list[tuple[str, str]]:
     return re.findall(r'^#include ([<"])(.*)[>"]', path.read_text(), re.M)
 
 
-def _stem(name: str) -> str:
-    stem = Path(name).stem
-    return "cli" if stem.startswith("cli") else stem
+def _room(root: Path, path: Path) -> str:
+    return path.parent.relative_to(root / "cpp").as_posix()
 
 
-def test_every_file_has_a_place_and_every_place_a_file(root: Path) -> None:
-    assert {_stem(path.name) for path in _sources(root)} == HEIGHT.keys()
+def _room_of_include(name: str) -> str:
+    folder = Path(name).parent.as_posix()
+    return f"include/{folder}" if name.startswith("arm3r/") else f"src/{folder}"
+
+
+def test_every_room_is_in_the_order_and_has_a_page(root: Path) -> None:
+    found = {_room(root, path) for path in _sources(root)}
+    assert found == set(ROOMS)
+    pages = {room for room in ROOMS if (root / "cpp" / room / "README.md").is_file()}
+    assert pages == set(ROOMS)
 
 
 def test_no_include_points_up(root: Path) -> None:
+    height = {room: place for place, room in enumerate(ROOMS)}
+    generated = {"taylor_kernels.hpp"}
     upward = [
-        f"{path.name} includes {name}"
+        f"{_room(root, path)}/{path.name} includes {name}"
         for path in _sources(root)
         for kind, name in _includes(path)
-        if kind == '"'
-        and PART[_stem(name)] != PART[_stem(path.name)]
-        and HEIGHT[_stem(name)] >= HEIGHT[_stem(path.name)]
+        if kind == '"' and name not in generated and height[_room_of_include(name)] > height[_room(root, path)]
     ]
     assert upward == []
+
+
+def test_no_room_is_too_large(root: Path) -> None:
+    names = {(_room(root, path), path.stem) for path in _sources(root)}
+    assert {room: count for room, count in Counter(room for room, _ in names).items() if count > MOST_FILES} == {}
+
+
+def _declared_functions(path: Path) -> set[str]:
+    """The names of the functions that a header declares for other files and does not define itself."""
+    text = re.sub(r"//[^\n]*|#[^\n]*", "", path.read_text())
+    found: set[str] = set()
+    around: list[bool] = []  # of each open pair of braces: whether it is a namespace
+    start = 0
+    for end in re.finditer(r"[{};]", text):
+        head = " ".join(text[start : end.start()].split())
+        start = end.end()
+        if end[0] == "{":
+            around.append(re.search(r"\bnamespace\b", head) is not None)
+        elif end[0] == "}":
+            around.pop()
+        elif all(around) and not re.match(r"(template|inline|using|static|struct|class|enum|constexpr|ARM3R)\b", head):
+            name = re.match(r"(?:\[\[\w+\]\] )?[\w:<>,&* ]+?[ &*](\w+)\(", head)
+            found |= {name[1]} if name else set()
+    return found
+
+
+def test_a_function_is_defined_in_the_file_that_declares_it(root: Path) -> None:
+    """Declared in X.hpp, a function is defined in X.cpp, or in X_something.cpp beside it."""
+    elsewhere = []
+    for header in (root / "cpp/src").rglob("*.hpp"):
+        own = [path.read_text() for path in header.parent.glob("*.cpp") if path.stem.startswith(header.stem)]
+        for name in sorted(_declared_functions(header)):
+            definition = re.compile(
+                rf"^(?!\s|return|using)[^\n;=]*\b{name}\([^;{{}}]*\)(?: const)?(?: noexcept)? ?\{{", re.M
+            )
+            if not any(definition.search(text) for text in own):
+                elsewhere.append(f"{_room(root, header)}/{header.name} declares {name}")
+    assert elsewhere == []
 
 
 def test_files_and_yaml_stay_where_they_belong(root: Path) -> None:
@@ -106,17 +118,20 @@ def test_files_and_yaml_stay_where_they_belong(root: Path) -> None:
         f"{path.name} includes {name}"
         for path in _sources(root)
         for kind, name in _includes(path)
-        for reserved, parts in RESERVED.items()
-        if kind == "<" and re.fullmatch(reserved, name) and _stem(path.name) not in parts
+        for reserved, files in RESERVED.items()
+        if kind == "<" and re.fullmatch(reserved, name) and path.stem not in files
     ]
     assert misplaced == []
 
 
 def test_the_executable_knows_only_the_c_interface(root: Path) -> None:
-    for path in _sources(root):
-        if _stem(path.name) == "cli":
-            own = [name for kind, name in _includes(path) if kind == '"' and not name.startswith("cli")]
-            assert own == ["arm3r/arm3r.h"] or own == [], path.name
+    for path in (root / "cpp/src/cli").iterdir():
+        own = (
+            [name for kind, name in _includes(path) if kind == '"' and not name.startswith("cli/")]
+            if path.suffix != ".md"
+            else []
+        )
+        assert own in ([], ["arm3r/arm3r.h"]), path.name
 
 
 KIND = r"(?:struct|class|enum class|enum)"
@@ -148,7 +163,7 @@ def test_one_name_is_one_type(root: Path) -> None:
     places: dict[str, set[str]] = {}
     for path in _sources(root):
         for name in _types(path):
-            places.setdefault(name, set()).add(path.name)
+            places.setdefault(name, set()).add(path.as_posix())
     assert places.keys() >= {"arm3r::Plant", "arm3r::TapeNode", "arm3r::Node", "arm3r::Rows", "arm3r::Controls"}
     assert {name: files for name, files in places.items() if len(files) > 1} == {}
 

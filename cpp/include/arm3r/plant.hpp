@@ -8,7 +8,6 @@
 #include "arm3r/control/sampling.hpp"
 #include "arm3r/model/contact.hpp"
 #include "arm3r/ode/integrators.hpp"
-#include "schema/suggest.hpp"
 
 namespace arm3r {
 

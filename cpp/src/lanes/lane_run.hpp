@@ -13,7 +13,7 @@
 #include "contact/contact_change.hpp"
 #include "control/sampled_controller.hpp"
 #include "record/energy_balance.hpp"
-#include "record/performance.hpp"
+#include "run/performance.hpp"
 
 namespace arm3r {
 

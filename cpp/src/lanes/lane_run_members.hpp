@@ -7,7 +7,7 @@
 #include "control/compiled_laws.hpp"
 #include "integrate/taylor.hpp"
 #include "lanes/lane_run.hpp"
-#include "record/run_recorder.hpp"
+#include "run/run_recorder.hpp"
 
 namespace arm3r {
 

@@ -5,7 +5,7 @@
 #include "lanes/lane_rk4.hpp"
 #include "lanes/lane_taylor.hpp"
 #include "record/end_messages.hpp"
-#include "record/run_recorder.hpp"
+#include "run/run_recorder.hpp"
 #include "schema/param_access.hpp"
 
 namespace arm3r {

@@ -1,4 +1,4 @@
-#include "record/run_recorder.hpp"
+#include "run/run_recorder.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "record/performance.hpp"
+#include "run/performance.hpp"
 
 #include <algorithm>
 #include <cmath>
