@@ -12,10 +12,10 @@
 #include "integrate/stepper.hpp"
 #include "record/end_messages.hpp"
 #include "record/energy_balance.hpp"
-#include "run/performance.hpp"
-#include "run/run_recorder.hpp"
 #include "run/adaptive_run.hpp"
 #include "run/interactive_run.hpp"
+#include "run/performance.hpp"
+#include "run/run_recorder.hpp"
 #include "setup/time_instants.hpp"
 
 namespace arm3r {
