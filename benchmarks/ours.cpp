@@ -7,6 +7,7 @@
 #include "batch/simulation.hpp"
 #include "record/run_data.hpp"
 #include "schema/schema.hpp"
+#include "validate/validate.hpp"
 
 namespace bench {
 
@@ -155,7 +156,7 @@ void run_fixed_steps(const std::vector<double>& params, int steps) {
     run[param_index("solver.method")] = Solver::rk4;
     run[param_index("solver.step")] = step;
     run[param_index("time.stop")] = run[param_index("time.log_every")] = steps * step;
-    simulate(run, {});
+    simulate(valid_setup(run), {});
 }
 
 }  // namespace bench

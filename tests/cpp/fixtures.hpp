@@ -15,6 +15,7 @@
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
 #include "setup/setup.hpp"
+#include "validate/validate.hpp"
 
 namespace arm3r {
 
@@ -54,11 +55,13 @@ public:
     }
     operator std::span<const double>() const { return numbers_; }
     Arm<double> arm() const { return make_arm(numbers_); }
-    Run run() const { return simulate(numbers_, {}); }
+    Run run(const RunOptions& options = {}) const { return simulate(valid_setup(numbers_), options); }
 
 private:
     std::vector<double> numbers_ = param_defaults();
 };
+
+inline std::vector<Problem> problems_of(std::span<const double> params) { return validate(params).problems; }
 
 // A link whose every number differs from that of any other.
 inline void randomise_link(Params& params, const std::string& link, Random& random) {

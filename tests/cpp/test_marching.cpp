@@ -32,7 +32,7 @@ static Params any_contact(Random& random) {
     return params.set("time.stop", 0.8).set("time.log_every", 0.05);
 }
 
-static bool is_valid(const Params& params) { return validate(params).empty(); }
+static bool is_valid(const Params& params) { return problems_of(params).empty(); }
 
 BOOST_AUTO_TEST_CASE(series_find_the_contacts_forces_and_rows_that_dopri5_finds) {
     Random random(41);

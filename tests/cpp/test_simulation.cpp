@@ -431,7 +431,7 @@ BOOST_AUTO_TEST_CASE(the_steps_are_a_budget) {
 
 BOOST_AUTO_TEST_CASE(the_clock_is_a_budget) {
     const Params params = falling().choose("solver.method", "rk4").set("solver.step", 1e-6).set("time.stop", 9);
-    const Run run = simulate(params, {.time_limit = 0.02});
+    const Run run = params.run({.time_limit = 0.02});
     BOOST_TEST(run.outcome == ARM3R_RUN_BUDGET);
     BOOST_TEST(run.elapsed_s < 1);
 }
@@ -456,7 +456,7 @@ BOOST_AUTO_TEST_CASE(a_run_too_large_is_refused_before_it_starts) {
 
 BOOST_AUTO_TEST_CASE(the_stop_flag_ends_a_run_before_its_first_step) {
     const std::int32_t stop = 1;
-    const Run run = simulate(falling(), {.stop = &stop});
+    const Run run = falling().run({.stop = &stop});
     BOOST_TEST(run.outcome == ARM3R_RUN_STOPPED);
     BOOST_TEST(run.t_end == 0);
 }
@@ -475,11 +475,11 @@ struct Reports {
 
 BOOST_AUTO_TEST_CASE(the_progress_function_is_told_and_may_end_the_run) {
     Reports on{.answer = 0}, enough{.answer = 1}, failing{.answer = -1};
-    BOOST_TEST(simulate(falling(), {.progress = Reports::note, .user = &on}).outcome == ARM3R_RUN_OK);
-    BOOST_TEST(simulate(juggled(), {.progress = Reports::note, .user = &enough}).outcome == ARM3R_RUN_STOPPED);
+    BOOST_TEST(falling().run({.progress = Reports::note, .user = &on}).outcome == ARM3R_RUN_OK);
+    BOOST_TEST(juggled().run({.progress = Reports::note, .user = &enough}).outcome == ARM3R_RUN_STOPPED);
     BOOST_TEST(enough.count == 1);
     BOOST_TEST(enough.stop == 3);
-    BOOST_CHECK_THROW(simulate(juggled(), {.progress = Reports::note, .user = &failing}), Error);
+    BOOST_CHECK_THROW(juggled().run({.progress = Reports::note, .user = &failing}), Error);
 }
 
 // Asked to report from amid the rows of a long step, it raises the stop flag.
@@ -491,7 +491,7 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_amid_its_rows_has_come_as_far_as_they_have) {
     };
     Params params = unequal_params().set("arm.gravity", {0, 0, 0}).set("initial.q", {0, 0, 0});
     params.set("initial.qd", {1e-3, 0, 0}).set("time.stop", 10).set("time.log_every", 1e-4);
-    const Run run = simulate(params, {.stop = &stop, .progress = raise, .user = &stop});
+    const Run run = params.run({.stop = &stop, .progress = raise, .user = &stop});
     BOOST_TEST(run.outcome == ARM3R_RUN_STOPPED);
     BOOST_TEST(run.rows >= 2u);
     BOOST_TEST(run.rows < 1e5);
@@ -500,7 +500,7 @@ BOOST_AUTO_TEST_CASE(a_run_stopped_amid_its_rows_has_come_as_far_as_they_have) {
 
 BOOST_AUTO_TEST_CASE(a_wrong_parameter_is_refused) {
     BOOST_CHECK_THROW(falling().set("arm.link2.length", -1).run(), Error);
-    BOOST_CHECK_THROW(simulate(std::vector<double>(3), {}), Error);
+    BOOST_CHECK_THROW(valid_setup(std::vector<double>(3)), Error);
 }
 
 // ---- warnings

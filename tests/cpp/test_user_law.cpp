@@ -40,7 +40,7 @@ struct Pushing {
     Run run(const Params& params) {
         RunOptions options;
         options.user_law = {ask, this};
-        return simulate(params, options);
+        return params.run(options);
     }
 };
 
@@ -85,13 +85,13 @@ BOOST_AUTO_TEST_CASE(its_failure_ends_the_run_at_that_tick) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(there_is_no_run_without_it) { BOOST_CHECK_THROW(simulate(controlled("dopri5"), {}), Error); }
+BOOST_AUTO_TEST_CASE(there_is_no_run_without_it) { BOOST_CHECK_THROW(controlled("dopri5").run(), Error); }
 
 BOOST_AUTO_TEST_CASE(a_copy_goes_on_as_the_original) {
     Pushing law, again;
     const Params params = controlled("dopri5");
     const Run whole = law.run(params);
-    const std::unique_ptr<Stepwise> run = begin_stepwise(params, {});
+    const std::unique_ptr<Stepwise> run = begin_stepwise(valid_setup(params), {});
     run->use({Pushing::ask, &again});
     for (int i = 0; i < 30; ++i) run->go_on();
     const std::unique_ptr<Stepwise> copy = run->copy();
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(a_rehearsal_changes_nothing) {
     Pushing law, shown;
     const Params params = controlled("auto");
     const Run whole = law.run(params);
-    const std::unique_ptr<Stepwise> run = begin_stepwise(params, {});
+    const std::unique_ptr<Stepwise> run = begin_stepwise(valid_setup(params), {});
     run->use({Pushing::ask, &law});
     while (!run->is_over()) {
         run->show({Pushing::ask, &shown});

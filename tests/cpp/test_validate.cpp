@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(the_quick_verdict_is_that_of_validate_for_any_numbers) {
                 Numbers params = numbers_of(base);
                 for (const Varied& v : varied)
                     if (random.in(0, 1) < 0.4) params[v.number] = hostile(*v.key, random);
-                const std::vector<Problem> problems = validate(params);
+                const std::vector<Problem> problems = problems_of(params);
                 (problems.empty() ? valid : invalid) += 1;
                 BOOST_REQUIRE_MESSAGE(is_valid(params) == problems.empty(),
                                       (problems.empty() ? "valid, yet refused" : describe(problems.front())));
@@ -165,9 +165,9 @@ BOOST_AUTO_TEST_CASE(each_rule_is_seen_through_the_number_that_breaks_it) {
             Numbers fine = numbers_of(breach.base), broken = fine;
             fine[breach.number] = breach.fine;
             broken[breach.number] = breach.broken;
-            BOOST_TEST(validate(fine).empty());
-            BOOST_REQUIRE(!validate(broken).empty());
-            BOOST_TEST(validate(broken).front().code == breach.code);
+            BOOST_TEST(problems_of(fine).empty());
+            BOOST_REQUIRE(!problems_of(broken).empty());
+            BOOST_TEST(problems_of(broken).front().code == breach.code);
             for (const Numbers& base : {fine, broken}) {
                 const Checker is_valid(base, std::array{breach.number});
                 BOOST_TEST(is_valid(fine));

@@ -50,14 +50,11 @@ void refuse_other_controllers(std::span<const double> params) {
                                     .hint = ""}});
 }
 
-Run controlled(std::span<const double> params, arm3r_law function, void* user, RunOptions options) {
-    std::vector<Problem> problems = validate(params);
-    if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
+Run controlled(std::span<const double> params, const Setup& setup, arm3r_law function, void* user, RunOptions options) {
     refuse_other_controllers(params);
-    const Setup setup = make_setup(params);
     Law law(function, user, setup);
     options.user_law = {Law::ask, &law, setup.simscape};
-    return simulate(params, options);
+    return simulate(setup, options);
 }
 
 }  // namespace
@@ -68,7 +65,8 @@ int32_t arm3r_params_control(const double* params, size_t count, arm3r_law law, 
         need(reinterpret_cast<const void*>(law), "law");
         need(run, "run");
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = controlled(params_in(params, count), law, user, options_in(options));
+        const std::span<const double> numbers = params_in(params, count);
+        handle->run = controlled(numbers, valid_setup(numbers), law, user, options_in(options));
         *run = handle.release();
     });
 }
@@ -82,7 +80,8 @@ int32_t arm3r_scenario_control(const arm3r_scenario* scenario, arm3r_law law, vo
         const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = with_places(scenario->scenario, [&] { return controlled(resolved.params, law, user, chosen); });
+        handle->run = with_places(scenario->scenario,
+                                  [&] { return controlled(resolved.params, resolved.setup, law, user, chosen); });
         describe(*handle, resolved);
         *run = handle.release();
     });
@@ -180,12 +179,11 @@ int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation
         handle->resolved = std::make_shared<Resolved>(scenario->resolved());
         handle->yaml = std::make_shared<std::string>(to_yaml(handle->resolved->tree, false));
         with_places(scenario->scenario, [&] {
-            const std::span<const double> params = handle->resolved->params;
-            refuse_other_controllers(params);
-            const Setup setup = make_setup(params);
+            refuse_other_controllers(handle->resolved->params);
+            const Setup& setup = handle->resolved->setup;
             refuse_marching(setup);
             handle->view = std::make_shared<LawView>(setup);
-            handle->run = begin_stepwise(params, {});
+            handle->run = begin_stepwise(setup, {});
         });
         *simulation = handle.release();
     });

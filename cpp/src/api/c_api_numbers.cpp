@@ -173,11 +173,6 @@ int32_t by_recursion(const arm3r_arm* arm, std::size_t n, const double* q, const
     });
 }
 
-void refuse_invalid(std::span<const double> params) {
-    std::vector<Problem> problems = validate(params);
-    if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
-}
-
 const std::vector<std::string>& param_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
@@ -248,7 +243,7 @@ int32_t arm3r_arm_create(const double* params, size_t count, arm3r_arm** arm) {
     return guard([&] {
         need(arm, "arm");
         const std::span<const double> all = params_in(params, count);
-        refuse_invalid(all);
+        valid_setup(all);
         *arm = new arm3r_arm{{make_arm(all), choice_of(all, "arm.convention") == "simscape"}};
     });
 }
@@ -396,7 +391,7 @@ int32_t arm3r_params_run(const double* params, size_t count, const arm3r_run_opt
     return guard([&] {
         need(run, "run");
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = simulate(params_in(params, count), options_in(options));
+        handle->run = simulate(valid_setup(params_in(params, count)), options_in(options));
         *run = handle.release();
     });
 }

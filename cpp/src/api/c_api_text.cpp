@@ -132,7 +132,7 @@ int32_t arm3r_scenario_set_from(arm3r_scenario* scenario, const char* path, size
 int32_t arm3r_scenario_validate(const arm3r_scenario* scenario) {
     return guard([&] {
         need(scenario, "scenario");
-        const Setup setup = make_setup(scenario->resolved().params);
+        const Setup& setup = scenario->resolved().setup;
         with_places(scenario->scenario, [&] { refuse_too_large(setup); });
     });
 }
@@ -199,7 +199,7 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = with_places(scenario->scenario, [&] { return simulate(resolved.params, chosen); });
+        handle->run = with_places(scenario->scenario, [&] { return simulate(resolved.setup, chosen); });
         describe(*handle, resolved);
         *run = handle.release();
     });

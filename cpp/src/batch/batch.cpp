@@ -127,10 +127,7 @@ void run_batch(const Variation& variation, const BatchOptions& options, double* 
     if (options.lanes > widest_lanes())
         throw Error(ARM3R_E_VALUE, "lanes: this processor has instructions for " + std::to_string(widest_lanes()) +
                                        ", not for " + std::to_string(options.lanes));
-    if (variation.varied.empty()) {
-        std::vector<Problem> problems = validate(variation.params);
-        if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
-    }
+    if (variation.varied.empty()) valid_setup(variation.params);  // throws what is wrong in all runs alike
     Batch(variation, options, results).run();
 }
 

@@ -1,12 +1,8 @@
 #include "batch/simulation.hpp"
 
 #include "base/error.hpp"
-#include "base/number_text.hpp"
 #include "lanes/single_lane_run.hpp"
 #include "run/adaptive_run.hpp"
-#include "schema/param_access.hpp"
-#include "schema/schema.hpp"
-#include "validate/validate.hpp"
 
 namespace arm3r {
 
@@ -21,12 +17,9 @@ void refuse_missing_law() {
           .hint = "in Python scenario.run(controller=f), in C arm3r_scenario_control; or choose another type"}});
 }
 
-Run simulate(std::span<const double> params, const RunOptions& options) {
-    std::vector<Problem> problems = validate(params);
-    if (!problems.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problems));
-    if (is<"controller.type", "user">(params) && !options.user_law.function) refuse_missing_law();
-    const bool marches = is<"solver.method", "rk4">(params) || is<"solver.method", "taylor">(params);
-    return marches ? run_marching(params, options) : run_adaptively(params, options);
+Run simulate(const Setup& setup, const RunOptions& options) {
+    if (setup.law().type == Controls::user && !options.user_law.function) refuse_missing_law();
+    return setup.solver.marches() ? run_marching(setup, options) : run_adaptively(setup, options);
 }
 
 }  // namespace arm3r

@@ -2,11 +2,12 @@
 // A run: a pure function of its parameters, ending in exactly one outcome.
 
 #include "record/run_data.hpp"
+#include "setup/setup.hpp"
 
 namespace arm3r {
 
-// params: a valid flat parameter array (schema.hpp). Throws Error when it is not, or when the run is too large.
-Run simulate(std::span<const double> params, const RunOptions& options);
+// The run of a setup that keeps every rule (validate.hpp). Throws Error where it is too large, or has no law of the user's.
+Run simulate(const Setup& setup, const RunOptions& options);
 
 [[noreturn]] void refuse_missing_law();
 

@@ -31,7 +31,7 @@ void Crew::run() {
 
 void Crew::march(const Setup& first, std::size_t run) {
     if (!first.solver.marches()) {
-        store(run, run_adaptively(params_, {.should_stop = &work_.stop, .rows = false}));
+        store(run, run_adaptively(first, {.should_stop = &work_.stop, .rows = false}));
     } else {
         lineups_of(first)(work_.lanes, *this, first, run);
         again_.insert(again_.end(), aside_.begin(), aside_.end());
@@ -70,8 +70,9 @@ bool Crew::prepare(std::size_t run, Setup& setup) {
     for (std::size_t j = 0; j < variation.varied.size(); ++j)
         params_[variation.varied[j]] = variation.values[j * variation.runs + run];
     if (is_stopped()) return refuse(run, ARM3R_RUN_STOPPED), false;
-    if (!work_.is_valid(params_)) return refuse(run, ARM3R_RUN_INVALID), false;
-    setup = make_setup(params_);
+    const std::optional<Setup> valid = work_.check(params_);
+    if (!valid) return refuse(run, ARM3R_RUN_INVALID), false;
+    setup = *valid;
     if (has_too_many_steps(setup)) return refuse(run, ARM3R_RUN_BUDGET), false;
     return true;
 }

@@ -14,7 +14,7 @@ namespace arm3r {
 // What the threads of a batch share. The rows are each written by one thread.
 struct Work {
     const Variation& variation;
-    const Checker is_valid;
+    const Checker check;
     double* const results;
     const int lanes;  // as BatchOptions::lanes
     std::atomic<std::size_t> next = 0, done = 0;

@@ -6,7 +6,6 @@
 #include "lanes/lane_taylor.hpp"
 #include "record/end_messages.hpp"
 #include "run/run_recorder.hpp"
-#include "schema/param_access.hpp"
 
 namespace arm3r {
 namespace {
@@ -29,8 +28,7 @@ FullState straight_on(const FullState& y) { return {y[3], y[4], y[5]}; }
 template <class Marching>
 class MarchingRun : Recorder {
 public:
-    MarchingRun(std::span<const double> params, const RunOptions& options)
-        : Recorder(params, options), march_(setup_) {}
+    MarchingRun(const Setup& setup, const RunOptions& options) : Recorder(setup, options), march_(setup_) {}
 
     Run run() {
         march_.use(options_.user_law);
@@ -116,10 +114,10 @@ private:
 
 }  // namespace
 
-Run run_marching(std::span<const double> params, const RunOptions& options) {
-    if (is<"solver.method", "taylor">(params)) return MarchingRun<TaylorMarch<double>>(params, options).run();
-    if (has_memory(make_setup(params).plant)) return MarchingRun<FixedMarch<double, full_size>>(params, options).run();
-    return MarchingRun<FixedMarch<double>>(params, options).run();
+Run run_marching(const Setup& setup, const RunOptions& options) {
+    if (setup.solver.method == Solver::taylor) return MarchingRun<TaylorMarch<double>>(setup, options).run();
+    if (has_memory(setup.plant)) return MarchingRun<FixedMarch<double, full_size>>(setup, options).run();
+    return MarchingRun<FixedMarch<double>>(setup, options).run();
 }
 
 }  // namespace arm3r

@@ -5,7 +5,6 @@
 
 namespace arm3r {
 
-// params: valid.
-Run run_marching(std::span<const double> params, const RunOptions& options);
+Run run_marching(const Setup& setup, const RunOptions& options);
 
 }  // namespace arm3r

@@ -72,8 +72,8 @@ class AdaptiveRun : public Stepwise, Recorder, Progress {
     using Y = State<double, N>;
 
 public:
-    AdaptiveRun(std::span<const double> params, const RunOptions& options)
-        : Recorder(params, options), Progress(setup_), stepper_(setup_), watch_(setup_.plant, looks_per_step) {
+    AdaptiveRun(const Setup& setup, const RunOptions& options)
+        : Recorder(setup, options), Progress(setup_), stepper_(setup_), watch_(setup_.plant, looks_per_step) {
         mode_ = watch_.mode_at_start(setup_.start, now_.y);
         ledger_ = Ledger(setup_.plant, setup_.start, now_.y, mode_);
         loop_.put(0, setup_.digital, setup_.estimation);
@@ -468,13 +468,13 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Stepwise> begin_stepwise(std::span<const double> params, const RunOptions& options) {
-    if (has_memory(make_setup(params).plant)) return std::make_unique<AdaptiveRun<full_size>>(params, options);
-    return std::make_unique<AdaptiveRun<state_size>>(params, options);
+std::unique_ptr<Stepwise> begin_stepwise(const Setup& setup, const RunOptions& options) {
+    if (has_memory(setup.plant)) return std::make_unique<AdaptiveRun<full_size>>(setup, options);
+    return std::make_unique<AdaptiveRun<state_size>>(setup, options);
 }
 
-Run run_adaptively(std::span<const double> params, const RunOptions& options) {
-    const std::unique_ptr<Stepwise> run = begin_stepwise(params, options);
+Run run_adaptively(const Setup& setup, const RunOptions& options) {
+    const std::unique_ptr<Stepwise> run = begin_stepwise(setup, options);
     while (!run->is_over()) run->go_on();
     return run->conclude();
 }

@@ -5,8 +5,7 @@
 
 namespace arm3r {
 
-// params: valid.
-Run run_adaptively(std::span<const double> params, const RunOptions& options);
-std::unique_ptr<Stepwise> begin_stepwise(std::span<const double> params, const RunOptions& options);
+Run run_adaptively(const Setup& setup, const RunOptions& options);
+std::unique_ptr<Stepwise> begin_stepwise(const Setup& setup, const RunOptions& options);
 
 }  // namespace arm3r

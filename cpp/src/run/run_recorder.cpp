@@ -11,15 +11,15 @@
 namespace arm3r {
 namespace {
 
-Setup small_enough(Setup setup, bool rows) {
+const Setup& small_enough(const Setup& setup, bool rows) {
     refuse_too_large(setup, rows);
     return setup;
 }
 
 }  // namespace
 
-Recorder::Recorder(std::span<const double> params, const RunOptions& options)
-    : setup_(small_enough(make_setup(params), options.rows)), options_(options) {
+Recorder::Recorder(const Setup& setup, const RunOptions& options)
+    : setup_(small_enough(setup, options.rows)), options_(options) {
     run_.t_end = setup_.start;
     run_.has_user_law = setup_.law().type == Controls::user;
     if (!options.rows) return;
@@ -27,7 +27,7 @@ Recorder::Recorder(std::span<const double> params, const RunOptions& options)
     run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
     run_.torque_limit = plain(setup_.plant.arm.torque_limit);
     run_.events.reserve(static_cast<std::size_t>(most_events));
-    run_.warnings = likely_slips(params);
+    run_.warnings = likely_slips(setup);
 }
 
 void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start) {

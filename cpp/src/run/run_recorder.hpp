@@ -33,7 +33,8 @@ inline void note_energies(const FullState& y, const Plant<double>& plant, double
 // A copy goes on by itself: no member refers to another one.
 class Recorder {
 public:
-    Recorder(std::span<const double> params, const RunOptions& options);
+    // Throws Error where the run is too large.
+    Recorder(const Setup& setup, const RunOptions& options);
     Recorder(const Recorder&) = default;
     Recorder& operator=(const Recorder&) = delete;
 

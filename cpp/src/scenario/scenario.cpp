@@ -335,20 +335,21 @@ private:
     // ---- rules of the schema
 
     void add_broken_rules() {
-        const std::vector<Problem> broken = validate(result_.params);
-        keeps_rules_ = broken.empty();
-        for (const Problem& rule : broken)
+        const Validation validation = validate(result_.params);
+        keeps_rules_ = validation.setup.has_value();
+        if (keeps_rules_) result_.setup = *validation.setup;
+        for (const Problem& rule : validation.problems)
             if (!already_refused(rule.path)) problem(place(rule.path), rule);
     }
 
     void add_warnings() {
         if (find(root_, parse_path("controller.gravity"))) return;
-        if (const auto slip = slip_of_default_gravity(result_.params)) result_.warnings.push_back(*slip);
+        if (const auto slip = slip_of_default_gravity(result_.setup)) result_.warnings.push_back(*slip);
     }
 
     // Of the run; all that there are where it cannot be known, because something else is wrong.
     std::vector<std::size_t> columns() const {
-        if (keeps_rules_ && unknown_choices_.empty()) return columns_of(make_setup(result_.params));
+        if (keeps_rules_ && unknown_choices_.empty()) return columns_of(result_.setup);
         std::vector<std::size_t> all(column_table().size());
         std::iota(all.begin(), all.end(), 0);
         return all;

@@ -7,6 +7,7 @@
 
 #include "files/yaml_tree.hpp"
 #include "results/checks.hpp"
+#include "setup/setup.hpp"
 
 namespace arm3r {
 
@@ -25,6 +26,7 @@ void set(Scenario& scenario, std::string_view path, const std::string& value, co
 struct Resolved {
     std::string name;
     std::vector<double> params;
+    Setup setup;  // of the parameters
     std::vector<Check> checks;
     std::vector<std::string> warnings;  // likely slips that the numbers alone do not show
     Node tree;                          // every value there is, each with its origin as note

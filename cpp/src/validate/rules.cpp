@@ -216,7 +216,7 @@ WorstPose smallest_lower_determinant(const Lumped<double>& l) {  // (3.10)
     return {(l.B2 + l.J3) * (l.B3 + l.J3) - coupling * coupling, 0, l.B > 0 ? pi : 0};
 }
 
-void check_setup(std::span<const double> params, Findings& findings) {
+std::optional<Setup> check_setup(std::span<const double> params, Findings& findings) {
     check_time(params, findings);
     check_direction<"wall.normal">(params, findings);
     check_direction<"wall.motion.direction">(params, findings);
@@ -227,7 +227,7 @@ void check_setup(std::span<const double> params, Findings& findings) {
     check_controller_keys(params, findings);
     check_sampling_keys(params, findings);
     if (at<"wall">(params) != 0) check_law(params, findings);
-    if (!findings.none()) return;
+    if (!findings.none()) return {};
     const Setup setup = make_setup(params);
     check_clock(setup, findings);
     check_corners(setup, findings);
@@ -237,6 +237,7 @@ void check_setup(std::span<const double> params, Findings& findings) {
     check_sampling(params, setup, findings);
     check_mass_matrix(setup.plant.arm, findings);
     if (findings.none() && setup.plant.has_wall) check_start(setup, findings);
+    return findings.none() ? std::optional(setup) : std::nullopt;
 }
 
 }  // namespace arm3r

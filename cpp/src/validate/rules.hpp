@@ -2,6 +2,7 @@
 // The rules between keys, by what they concern.
 
 #include <cmath>
+#include <optional>
 
 #include "base/number_text.hpp"
 #include "schema/param_access.hpp"
@@ -10,7 +11,8 @@
 namespace arm3r {
 
 // What no single key can break: the mass matrix over the whole workspace (3.10), the start, what a method cannot do.
-void check_setup(std::span<const double> params, Findings& findings);
+// The setup, where no rule is broken.
+std::optional<Setup> check_setup(std::span<const double> params, Findings& findings);
 
 // Smallest M11 and smallest determinant of the lower block over all poses, and the link angles where they occur (3.10).
 struct WorstPose {

@@ -156,12 +156,12 @@ void check_model(std::span<const double> params, const std::vector<const Key*>& 
         problem.path.replace(0, std::string_view("arm").size(), "controller.model");
 }
 
-void check_all(std::span<const double> params, const NumberKeys& keys, Findings& findings) {
+std::optional<Setup> check_all(std::span<const double> params, const NumberKeys& keys, Findings& findings) {
     check_arm(params, keys.arm, findings);
     for (const Key* key : keys.others) check_numbers(*key, params, findings);
     if (findings.none() && has_model(controls_of(params)) && model_differs(params))
         check_model(params, keys.model, findings);
-    if (findings.none()) check_setup(params, findings);
+    return findings.none() ? check_setup(params, findings) : std::nullopt;
 }
 
 bool is_choice(const Key& key) {
@@ -223,11 +223,18 @@ void refuse_unknown_choices(std::span<const double> params) {
     if (!findings.none()) throw Error(ARM3R_E_SCENARIO, std::move(findings.problems));
 }
 
-std::vector<Problem> validate(std::span<const double> params) {
+Validation validate(std::span<const double> params) {
     Findings findings(Findings::messages);
     check_choices(params, findings);
-    if (findings.none()) check_all(params, number_keys(params), findings);
-    return findings.problems;
+    std::optional<Setup> setup;
+    if (findings.none()) setup = check_all(params, number_keys(params), findings);
+    return {std::move(findings.problems), std::move(setup)};
+}
+
+Setup valid_setup(std::span<const double> params) {
+    Validation validation = validate(params);
+    if (!validation.setup) throw Error(ARM3R_E_SCENARIO, std::move(validation.problems));
+    return *std::move(validation.setup);
 }
 
 Checker::Checker(std::span<const double> params, std::span<const std::size_t> varied) {
@@ -241,10 +248,10 @@ Checker::Checker(std::span<const double> params, std::span<const std::size_t> va
     drop_settled(keys_.model, with_model(params), in_plant(varied));
 }
 
-bool Checker::operator()(std::span<const double> params) const {
+std::optional<Setup> Checker::operator()(std::span<const double> params) const {
+    if (!readable_) return {};
     Findings findings(Findings::verdict);
-    if (readable_) check_all(params, keys_, findings);
-    return readable_ && findings.none();
+    return check_all(params, keys_, findings);
 }
 
 }  // namespace arm3r

@@ -2,16 +2,26 @@
 // The rules that parameters must keep, with messages; and for many arrays that differ in a few numbers without.
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/problem_list.hpp"
 #include "schema/schema.hpp"
+#include "setup/setup.hpp"
 
 namespace arm3r {
 
-// Every rule that one key alone can break (range, shape, word), and those between keys. Empty when all is well.
-std::vector<Problem> validate(std::span<const double> params);
+struct Validation {
+    std::vector<Problem> problems;
+    std::optional<Setup> setup;  // where there are no problems
+};
+
+// Every rule that one key alone can break (range, shape, word), and those between keys.
+Validation validate(std::span<const double> params);
+
+// The setup of parameters that keep every rule; else throws Error ARM3R_E_SCENARIO with every problem.
+Setup valid_setup(std::span<const double> params);
 
 // Keys whose numbers are to be looked at: those of the plant's arm, all others, and those of the controller's copy of the
 // arm, which are the first again as with_model() (setup.hpp) puts them.
@@ -27,7 +37,8 @@ public:
     // The arrays will differ from `params` in the numbers `varied` only, none of them a choice, a flag or a section.
     Checker(std::span<const double> params, std::span<const std::size_t> varied);
 
-    bool operator()(std::span<const double> params) const;
+    // The setup of parameters that keep every rule.
+    std::optional<Setup> operator()(std::span<const double> params) const;
 
 private:
     bool readable_;    // the choices are words

@@ -42,9 +42,10 @@ void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
                         ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
 }
 
-void slip_of_angles(std::span<const double> params, std::vector<std::string>& slips) {
+void slip_of_angles(const Setup& setup, std::vector<std::string>& slips) {
+    const Vec3<double> q = setup.simscape ? flipped(setup.q) : setup.q;
     for (int i = 0; i < 3; ++i) {
-        const double angle = at<"initial.q">(params, std::size_t(i)), in_degrees = angle * 180 / pi;
+        const double angle = q[i], in_degrees = angle * 180 / pi;
         const bool was_degrees = std::abs(in_degrees - std::round(in_degrees)) < 1e-9 * std::abs(in_degrees);
         if (std::abs(angle) > 2 * pi && !was_degrees)
             slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " + shortest(angle) +
@@ -133,8 +134,7 @@ void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
 
 }  // namespace
 
-std::optional<std::string> slip_of_default_gravity(std::span<const double> params) {
-    const Setup setup = make_setup(params);
+std::optional<std::string> slip_of_default_gravity(const Setup& setup) {
     const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.law().model.gravity;
     const bool differ = norm(minus(feels, compensates)) > 0 && !is_nearly_equal(feels, compensates);
     if (!differ || !uses_gravity(setup.law())) return {};
@@ -144,11 +144,10 @@ std::optional<std::string> slip_of_default_gravity(std::span<const double> param
            ", or what it shall believe instead";
 }
 
-std::vector<std::string> likely_slips(std::span<const double> params) {
-    const Setup setup = make_setup(params);
+std::vector<std::string> likely_slips(const Setup& setup) {
     std::vector<std::string> slips;
     slip_of_gravity(setup, slips);
-    slip_of_angles(params, slips);
+    slip_of_angles(setup, slips);
     slip_of_links(setup.plant.arm, slips);
     slip_of_units(setup.plant.arm, slips);
     slip_of_wall(setup, slips);
