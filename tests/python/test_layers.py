@@ -13,7 +13,7 @@ import pytest
 
 # From the bottom up: a file includes files of its own room and of rooms that stand before it.
 ROOMS = """
-include/arm3r/numbers  include/arm3r/model  include/arm3r/ode  include/arm3r/control  include/arm3r
+include/arm3r/numbers  include/arm3r/model  include/arm3r/ode  include/arm3r/control  include/arm3r/sensing  include/arm3r
 src/base  src/schema  src/setup  src/validate
 src/control  src/integrate  src/contact
 src/record  src/run  src/lanes  src/batch

@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "arm3r/control/laws.hpp"
-#include "arm3r/control/observer.hpp"
-#include "arm3r/control/sampling.hpp"
 #include "arm3r/model/contact.hpp"
 #include "arm3r/ode/integrators.hpp"
+#include "arm3r/sensing/observer.hpp"
+#include "arm3r/sensing/sampling.hpp"
 
 namespace arm3r {
 

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "arm3r/control/energy_reserve.hpp"
-#include "arm3r/control/estimator.hpp"
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/random.hpp"
+#include "arm3r/sensing/estimator.hpp"
 #include "base/lane_access.hpp"
 #include "base/noinline.hpp"
 #include "control/user_law.hpp"

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "arm3r/control/law_table.hpp"
 #include "schema/stiffness_presets.hpp"
 #include "schema/suggest.hpp"
 
@@ -297,36 +298,29 @@ void append_wall(std::vector<Key>& keys) {
 
 // ---- controllers: which law takes which gain. The laws themselves: docs/model.md, section 7.
 
-const std::vector<std::string> laws = {"none",
-                                       "constant",
-                                       "gravity_compensation",
-                                       "joint_pd",
-                                       "computed_torque",
-                                       "resolved_acceleration",
-                                       "stiffness",
-                                       "joint_stiffness",
-                                       "impedance",
-                                       "shaped_impedance",
-                                       "operational_space",
-                                       "hybrid",
-                                       "parallel",
-                                       "admittance",
-                                       "adaptive_reference",
-                                       "energy_tank",
-                                       "virtual_wall",
-                                       "user"};
-const std::vector<std::string> with_a_model(laws.begin() + 2, laws.end() - 1);
-const std::vector<std::string> guided(laws.begin() + 3, laws.end() - 2);
-const std::vector<std::string> with_a_sensor(laws.begin() + 2, laws.end());
-const std::vector<std::string> of_force = {"operational_space", "hybrid", "parallel", "adaptive_reference",
-                                           "admittance"};
-
-Key for_laws(std::vector<std::string> which, Key key) {
-    return where("controller.type", std::move(which), std::move(key));
+// The words of the laws of which `holds` is true.
+template <class Holds>
+Words laws_that(Holds holds) {
+    Words words;
+    for (const LawProperties& law : law_table)
+        if (holds(law)) words.emplace_back(law.word);
+    return words;
 }
 
+const Words laws = laws_that([](const LawProperties&) { return true; });
+const Words with_a_torque = laws_that([](const LawProperties& law) { return law.type != Controls::none; });
+const Words with_a_model = laws_that([](const LawProperties& law) { return law.has_model; });
+const Words with_a_path = laws_that([](const LawProperties& law) { return law.follows_path; });
+const Words with_a_sensor =
+    laws_that([](const LawProperties& law) { return law.has_model || law.type == Controls::user; });
+const Words of_force = laws_that([](const LawProperties& law) { return law.takes_force; });
+const Words controlling_force = laws_that([](const LawProperties& law) { return law.controls_force; });
+const Words integrating_force = laws_that([](const LawProperties& law) { return law.integrates_force; });
+
+Key for_laws(Words which, Key key) { return where("controller.type", std::move(which), std::move(key)); }
+
 // Keys that depend on nothing else exist for these laws only.
-void append_for_laws(std::vector<Key>& keys, const std::vector<std::string>& which, std::vector<Key> some) {
+void append_for_laws(std::vector<Key>& keys, const Words& which, std::vector<Key> some) {
     for (Key& key : some) keys.push_back(key.when_key.empty() ? for_laws(which, std::move(key)) : std::move(key));
 }
 
@@ -427,26 +421,25 @@ void append_force_loop(std::vector<Key>& keys) {
         for_laws({"operational_space"},
                  choice("controller.force_term", {"cancelled", "feedforward"}, Source::ours,
                         "What becomes of the contact force: cancelled as measured, or the reference fed forward.")));
-    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
-                            one_gain("force_mass", 1, {1e-6, 1e9}, "kg", "Apparent mass along the normal.")));
+    keys.push_back(
+        for_laws(integrating_force, one_gain("force_mass", 1, {1e-6, 1e9}, "kg", "Apparent mass along the normal.")));
     keys.push_back(for_laws({"operational_space", "hybrid"},
                             one_gain("force_damping", 70, not_negative, "N s/m", "Damping along the normal.")));
-    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
-                            one_gain("force_gain", 0.5, not_negative, "", "Of the force error.")));
-    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
-                            but({{"parallel", {6}}}, one_gain("force_integral_gain", 5, not_negative, "1/s",
-                                                              "Of the integral of the force error."))));
-    keys.push_back(for_laws({"operational_space", "hybrid", "parallel"},
+    keys.push_back(for_laws(integrating_force, one_gain("force_gain", 0.5, not_negative, "", "Of the force error.")));
+    keys.push_back(
+        for_laws(integrating_force, but({{"parallel", {6}}}, one_gain("force_integral_gain", 5, not_negative, "1/s",
+                                                                      "Of the integral of the force error."))));
+    keys.push_back(for_laws(integrating_force,
                             or_infinite(one_gain("integral_limit", infinite, not_negative, "N s",
                                                  "The integral of the force error stays within it, either way."))));
     keys.push_back(
-        for_laws({"operational_space", "hybrid", "parallel"},
+        for_laws(integrating_force,
                  choice("controller.anti_windup", {"none", "conditional", "back_calculation"}, Source::ours,
                         "What the integral does while a torque is at its limit: goes on, waits, or runs back.")));
     keys.push_back(where("controller.anti_windup", {"back_calculation"},
                          one_gain("tracking_time", 0.1, {1e-6, 1e6}, "s", "How fast the integral runs back.")));
     keys.push_back(for_laws(
-        {"operational_space", "hybrid", "parallel", "adaptive_reference"},
+        controlling_force,
         choice(
             "controller.switching", {"in_contact", "latched", "always"}, Source::ours,
             "When force is controlled: while there is contact, from the first contact on, or from the start; else the tip keeps to the reference in all directions.")));
@@ -528,7 +521,7 @@ void append_controller(std::vector<Key>& keys) {
                  flag("controller.ideal_cancellation", false,
                       "The force that is cancelled is the true one; only the force error suffers from the sensor.")));
     keys.push_back(for_laws(
-        {laws.begin() + 1, laws.end()},
+        with_a_torque,
         choice("controller.saturation", {"clamp", "scale"}, Source::ours,
                "At arm.torque_limit: each joint for itself, or all by one factor, which keeps the direction.")));
     append_model(keys);
@@ -757,7 +750,7 @@ std::vector<Key> make_schema() {
                                                "Joint rates at the start; 10 deg means 10 deg/s.")));
     append_wall(keys);
     append_controller(keys);
-    append_for_laws(keys, guided, reference_keys());
+    append_for_laws(keys, with_a_path, reference_keys());
     append_for_laws(keys, of_force, force_reference_keys());
     append_for_laws(keys, with_a_sensor, sampling_keys());
     append_observer(keys);

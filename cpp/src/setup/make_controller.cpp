@@ -72,7 +72,7 @@ bool inverts_jacobian(const Controller<double>& controller) {
         case Controls::operational_space:
         case Controls::parallel:
         case Controls::adaptive_reference: return true;
-        case Controls::impedance: return controller.setpoint.path > Path::point;
+        case Controls::impedance: return is_moving(controller.setpoint.path);
         case Controls::hybrid: return controller.variant != Variant::jacobian_transpose;
         case Controls::admittance: return controller.inner != Inner::joint_pd;
         default: return false;

@@ -31,14 +31,6 @@ Vec3<double> each_axis(std::span<const double> params) {
 
 inline Controls controls_of(std::span<const double> params) { return choice_at<"controller.type", Controls>(params); }
 
-// Whether the law believes something of the arm: it has a copy of it, and a gravity.
-constexpr bool has_model(Controls type) { return type >= Controls::gravity_compensation && type != Controls::user; }
-
-// Whether what the law wants is told in joint angles, else in positions of the tip.
-constexpr bool is_in_joints(Controls type) {
-    return type == Controls::joint_pd || type == Controls::computed_torque || type == Controls::joint_stiffness;
-}
-
 // Whether the law divides by what vanishes in a singular pose.
 bool inverts_jacobian(const Controller<double>& controller);
 

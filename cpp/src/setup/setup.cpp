@@ -278,8 +278,8 @@ static void put_between(std::span<const double> params, Setup& setup) {
     } else {
         plant.observer = digital.observer;
     }
-    plant.needs_azimuth = setup.law().type > Controls::gravity_compensation || setup.digital.sampling.on ||
-                          setup.observes() || setup.estimation.on || plant.load.on;
+    plant.needs_azimuth = has_law(setup.law().type) || setup.digital.sampling.on || setup.observes() ||
+                          setup.estimation.on || plant.load.on;
 }
 
 Setup make_setup(std::span<const double> params) {

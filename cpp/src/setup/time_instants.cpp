@@ -60,7 +60,7 @@ double next_knot(const Setup& setup, double t) {
     }
     if (!has_law(plant.controller.type)) return next;
     const Setpoint<double>& setpoint = plant.controller.setpoint;
-    if (setpoint.path > Path::point) consider(setpoint.start), consider(setpoint.end);
+    if (is_moving(setpoint.path)) consider(setpoint.start), consider(setpoint.end);
     for (int i = 0; i < setpoint.knots; ++i) consider((*setpoint.table)[0].t[std::size_t(i)]);
     if (setpoint.pressing == Pressing::step || setpoint.pressing == Pressing::ramp)
         consider(setpoint.force_start), consider(setpoint.force_start + setpoint.force_duration);

@@ -147,15 +147,7 @@ void check_wall(std::span<const double> params, const Setup& setup, Findings& fi
                            .hint = "add a wall section; `wall: {}` is the lecture's"};
         });
     };
-    switch (setup.law().type) {
-        case Controls::operational_space:
-        case Controls::hybrid:
-        case Controls::parallel:
-        case Controls::adaptive_reference:
-            refuse("controller.type", type_of(params) + " controls the force on a wall");
-            break;
-        default: break;
-    }
+    if (wants_force(setup.law().type)) refuse("controller.type", type_of(params) + " controls the force on a wall");
     if (setup.law().type == Controls::admittance && setup.law().setpoint.force != 0)
         refuse("reference.force.value", "this is a force on the wall");
     if (setup.estimation.on) refuse("estimator", "it estimates the stiffness of the wall");
@@ -186,9 +178,7 @@ void check_levels(const Controller<double>& controller, Findings& findings) {
         check_order("controller.tank_energy", gains.tank_energy, "controller.tank_capacity", gains.tank_capacity, true,
                     "J", findings);
     }
-    const bool switches = controller.type == Controls::operational_space || controller.type == Controls::hybrid ||
-                          controller.type == Controls::parallel || controller.type == Controls::adaptive_reference;
-    if (switches && controller.switching != Switching::always)
+    if (wants_force(controller.type) && controller.switching != Switching::always)
         check_order("controller.contact_off", gains.contact_off, "controller.contact_on", gains.contact_on, true, "N",
                     findings);
 }

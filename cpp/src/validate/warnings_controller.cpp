@@ -214,7 +214,7 @@ void slips_of_reference(const Setup& setup, Slips& slips) {
     const double apart = wanted.path == Path::table ? distance_at_start(controller, setup.start, setup.q) : 0;
     if (apart > 1e-3)
         slips.push_back("the table of the reference begins " + rounded(apart) + " m from where the tip starts");
-    if (wanted.path > Path::point && wanted.start > setup.stop)
+    if (is_moving(wanted.path) && wanted.start > setup.stop)
         slips.push_back(std::string(wanted.path == Path::table ? "reference.t[0]" : "reference.start") + " is " +
                         shortest(wanted.start) + " s, and the run ends at " + shortest(setup.stop) + " s");
 }

@@ -4,32 +4,13 @@
 
 #include <array>
 
+#include "arm3r/control/law_table.hpp"
 #include "arm3r/control/reference.hpp"
 #include "arm3r/model/dynamics.hpp"
 #include "arm3r/model/recursion.hpp"
 
 namespace arm3r {
 
-enum class Controls {
-    none,
-    constant,
-    gravity_compensation,
-    joint_pd,
-    computed_torque,
-    resolved_acceleration,
-    stiffness,
-    joint_stiffness,
-    impedance,
-    shaped_impedance,
-    operational_space,
-    hybrid,
-    parallel,
-    admittance,
-    adaptive_reference,
-    energy_tank,
-    virtual_wall,
-    user,
-};
 enum class Algorithm { closed_form, recursion };
 enum class Variant { dynamic, jacobian_transpose, projected, raibert_craig };
 enum class ForceTerm { cancelled, feedforward };
@@ -38,25 +19,6 @@ enum class Switching { in_contact, latched, always };
 enum class Inner { exact, position, joint_pd };
 enum class Adaptation { integral, indirect };
 enum class Saturation { clamp, scale };
-
-// Whether the law is more than the torque of a formula without gains: it has a file of its own (laws.hpp).
-constexpr bool has_law(Controls type) { return type > Controls::gravity_compensation && type != Controls::user; }
-
-// Whether its first memory is the integral of the force error.
-constexpr bool integrates_force(Controls type) {
-    return type == Controls::operational_space || type == Controls::hybrid || type == Controls::parallel;
-}
-
-// How many numbers a law remembers; what each of them is, its formula says.
-enum : std::size_t { law_memory = 6 };  // at most
-constexpr std::size_t memory_size(Controls type) {
-    if (type == Controls::admittance) return law_memory;
-    return integrates_force(type) || type == Controls::adaptive_reference || type == Controls::energy_tank ? 1 : 0;
-}
-
-// What a law wants at all.
-constexpr bool wants_force(Controls type) { return integrates_force(type) || type == Controls::adaptive_reference; }
-constexpr bool wants_path(Controls type) { return has_law(type) && type != Controls::virtual_wall; }
 
 template <class P>
 struct Gains {

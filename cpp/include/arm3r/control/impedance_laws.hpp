@@ -42,7 +42,7 @@ ARM3R_INLINE Vec3<T> impedance_control(const Controller<P>& controller, const Se
         plus(each_times(controller.gains.damping, tip.error_rate), each_times(controller.gains.stiffness, tip.error));
     const Vec3<T> tau = pulling(model, sensed.pose, force);
     const Path path = controller.setpoint.path;
-    if (path == Path::hold || path == Path::point) return tau;  // no motion to bring along, at a singular pose either
+    if (!is_moving(path)) return tau;  // no motion to bring along, at a singular pose either
     const Vec3<T> rates = joint_rates(model, sensed.pose, tip.wanted_velocity);
     const Vec3<T> by_rates = jacobian_dot_times(model, sensed.pose, sensed.qd, rates);
     const Vec3<T> moved = inertial_torque(model, sensed.pose, minus(tip.wanted_acceleration, by_rates));

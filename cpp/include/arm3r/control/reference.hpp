@@ -10,6 +10,7 @@
 namespace arm3r {
 
 enum class Path { hold, point, line, minimum_jerk, circle, sinusoid, table };
+constexpr bool is_moving(Path path) { return path != Path::hold && path != Path::point; }
 enum class Pressing { constant, step, ramp, sinusoid };
 
 struct SetpointChoices {
