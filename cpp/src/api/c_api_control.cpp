@@ -46,8 +46,7 @@ void refuse_other_controllers(std::span<const double> params) {
                                     .path = "controller.type",
                                     .message = "a law of your own takes the place of no other controller",
                                     .got = choice_of(params, "controller.type"),
-                                    .allowed = "user",
-                                    .hint = ""}});
+                                    .allowed = "user"}});
 }
 
 Run controlled(std::span<const double> params, const Setup& setup, arm3r_law function, void* user, RunOptions options) {
@@ -144,8 +143,7 @@ void check_torque(const double* tau) {
                                          .path = "tau[" + std::to_string(i) + "]",
                                          .message = "not a torque that can be applied",
                                          .got = shortest(tau[i]),
-                                         .allowed = "finite, at most 1e12 N m either way",
-                                         .hint = ""}});
+                                         .allowed = "finite, at most 1e12 N m either way"}});
 }
 
 std::unique_ptr<arm3r_simulation> copied(const arm3r_simulation& from) {
@@ -165,8 +163,7 @@ void refuse_marching(const Setup& setup) {
                   .path = "solver.method",
                   .message = "a simulation stands at its samples only by a method that chooses its steps",
                   .got = setup.solver.method == Solver::rk4 ? "rk4" : "taylor",
-                  .allowed = "dopri5, rodas4 or auto",
-                  .hint = ""}});
+                  .allowed = "dopri5, rodas4 or auto"}});
 }
 
 }  // namespace

@@ -53,8 +53,7 @@ Error bad_value(const Input& in, std::size_t at) {
                                   .path = where,
                                   .message = "not a number that this function takes",
                                   .got = shortest(in.data[at]),
-                                  .allowed = "finite, at most " + shortest(in.limit) + " either way",
-                                  .hint = ""}});
+                                  .allowed = "finite, at most " + shortest(in.limit) + " either way"}});
 }
 
 void check_values(const Input& in, std::size_t n) {
@@ -118,8 +117,6 @@ Error singular(std::size_t i, const char* what) {
         {{.code = "argument.singular",
           .path = "q[" + std::to_string(i) + "]",
           .message = what,
-          .got = "",
-          .allowed = "",
           .hint =
               "|sin q3| and the tip's distance from the joint-1 axis over the arm's length must be at least 1e-3"}});
 }
@@ -146,8 +143,7 @@ void refuse_singular(const Model& model, std::size_t n, const double* q) {
                                  .path = "direction[" + std::to_string(i) + "]",
                                  .message = "a direction needs a length",
                                  .got = "[0, 0, 0]",
-                                 .allowed = "any vector that is not zero",
-                                 .hint = ""}});
+                                 .allowed = "any vector that is not zero"}});
 }
 
 int32_t evaluated(const arm3r_arm* arm, std::size_t n, Inputs inputs, Outputs outputs, GroupFunction& function) {
@@ -377,8 +373,7 @@ int32_t arm3r_arm_inverse_kinematics(const arm3r_arm* arm, size_t n, const doubl
                           .path = "tip[" + std::to_string(i) + "]",
                           .message = "the point is out of reach",
                           .got = shortest(distance) + " m from the shoulder",
-                          .allowed = "[" + shortest(std::abs(a2 - a3)) + ", " + shortest(a2 + a3) + "] m",
-                          .hint = ""}});
+                          .allowed = "[" + shortest(std::abs(a2 - a3)) + ", " + shortest(a2 + a3) + "] m"}});
         }
         for (std::size_t i = 0; i < n; ++i)
             store_joints(*arm, inverse_kinematics(arm->arm, load(tip, i), front, elbow_up).q, q, i);

@@ -11,12 +11,12 @@
 namespace arm3r {
 
 struct Problem {
-    std::string code;     // stable, e.g. "scenario.unknown_key"
-    std::string path;     // "wall.contact.stiffness", "initial.q[1]"; may be empty
-    std::string message;  // the rule that was broken, one sentence
-    std::string got;      // what stood there, as written; may be empty
-    std::string allowed;  // what may stand there; may be empty
-    std::string hint;     // the likely fix; may be empty
+    std::string code;          // stable, e.g. "scenario.unknown_key"
+    std::string path = {};     // "wall.contact.stiffness", "initial.q[1]"; may be empty
+    std::string message = {};  // the rule that was broken, one sentence
+    std::string got = {};      // what stood there, as written; may be empty
+    std::string allowed = {};  // what may stand there; may be empty
+    std::string hint = {};     // the likely fix; may be empty
     std::string file = {};
     int line = 0;    // from 1; 0: not known
     int column = 0;  // from 1, in characters

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "arm3r/model/scalar_motion.hpp"
+
 namespace arm3r {
 namespace {
-
-constexpr std::size_t most_points = 16;
 
 // Of one point: velocity and acceleration, or what is asked of them.
 struct Pair {
@@ -54,8 +54,8 @@ Pair asked(double l, double before, double r, double after) {
 void minimum_jerk_through(std::span<const double> t, std::span<const double> s, std::span<double> v,
                           std::span<double> a) {
     const std::size_t last = t.size() - 1;
-    std::array<Block, most_points> inverses;
-    std::array<Pair, most_points> rest;
+    std::array<Block, most_knots> inverses;
+    std::array<Pair, most_knots> rest;
     for (std::size_t i = 1; i < last; ++i) {
         const double l = t[i] - t[i - 1], r = t[i + 1] - t[i];
         Block diagonal = own(l, r);

@@ -13,7 +13,6 @@ void refuse_missing_law() {
           .path = "controller.type",
           .message = "this controller is a function of your own, and there is none here",
           .got = "user",
-          .allowed = "",
           .hint = "in Python scenario.run(controller=f), in C arm3r_scenario_control; or choose another type"}});
 }
 

@@ -17,13 +17,8 @@ namespace {
 constexpr std::size_t enough = (1 << 20) + 1;  // one byte more than a scenario may have
 
 [[noreturn]] void refuse(const std::string& path, std::string code, std::string message, std::string hint = {}) {
-    throw Error(ARM3R_E_FILE, {{.code = std::move(code),
-                                .path = "",
-                                .message = std::move(message),
-                                .got = "",
-                                .allowed = "",
-                                .hint = std::move(hint),
-                                .file = path}});
+    throw Error(ARM3R_E_FILE,
+                {{.code = std::move(code), .message = std::move(message), .hint = std::move(hint), .file = path}});
 }
 
 class File {

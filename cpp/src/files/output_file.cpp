@@ -15,13 +15,9 @@ namespace arm3r {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& message, std::string hint = {}) {
-    throw Error(ARM3R_E_OUTPUT, {{.code = "output",
-                                  .path = "",
-                                  .message = "cannot be written: " + message,
-                                  .got = "",
-                                  .allowed = "",
-                                  .hint = std::move(hint),
-                                  .file = path}});
+    throw Error(
+        ARM3R_E_OUTPUT,
+        {{.code = "output", .message = "cannot be written: " + message, .hint = std::move(hint), .file = path}});
 }
 
 std::string directory_of(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }

@@ -14,8 +14,6 @@ namespace {
     throw Error(ARM3R_E_INDEX, {{.code = "path.syntax",
                                  .path = std::string(path),
                                  .message = std::move(message),
-                                 .got = "",
-                                 .allowed = "",
                                  .hint = "write it like wall.contact.stiffness or initial.q[1]"}});
 }
 

@@ -194,23 +194,13 @@ private:
     }
 
     void problem(Mark at, std::string code, std::string message, std::string hint) {
-        document.problems.push_back(located({.code = std::move(code),
-                                             .path = path(),
-                                             .message = std::move(message),
-                                             .got = "",
-                                             .allowed = "",
-                                             .hint = std::move(hint)},
-                                            at, file_));
+        document.problems.push_back(
+            located({.code = std::move(code), .path = path(), .message = std::move(message), .hint = std::move(hint)},
+                    at, file_));
     }
 
     [[noreturn]] void fatal(Mark at, std::string code, std::string message, std::string got) const {
-        refuse(located({.code = std::move(code),
-                        .path = "",
-                        .message = std::move(message),
-                        .got = std::move(got),
-                        .allowed = "",
-                        .hint = ""},
-                       at, file_));
+        refuse(located({.code = std::move(code), .message = std::move(message), .got = std::move(got)}, at, file_));
     }
 
     const Lines& lines_;
@@ -264,7 +254,7 @@ Problem syntax_problem(const YAML::Exception& error, const Lines& lines, const s
                        const std::string& file) {
     const Mark at = lines.mark(error.mark);
     const auto has = [&](const char* word) { return error.msg.find(word) != std::string::npos; };
-    Problem problem{.code = "yaml.syntax", .path = "", .message = "", .got = "", .allowed = "", .hint = ""};
+    Problem problem{.code = "yaml.syntax", .message = ""};
     if (has("anchor") || has("alias")) {
         problem.code = "yaml.alias";
         problem.message = "anchors and aliases are not supported";
@@ -287,10 +277,7 @@ public:
     NoDocument(const Lines& lines, const std::string& file) : lines_(lines), file_(file) {}
     void OnDocumentStart(const YAML::Mark& mark) override {
         refuse(located({.code = "yaml.documents",
-                        .path = "",
                         .message = "a second document starts here; one document per file",
-                        .got = "",
-                        .allowed = "",
                         .hint = "split the file at '---'"},
                        lines_.mark(mark), file_));
     }
@@ -314,10 +301,7 @@ private:
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const auto column = 1 + count_characters(before.substr(before.rfind('\n') + 1));
     refuse(located({.code = "yaml.encoding",
-                    .path = "",
                     .message = std::move(what) + " at byte " + std::to_string(at),
-                    .got = "",
-                    .allowed = "",
                     .hint = std::move(hint)},
                    {static_cast<int>(line), static_cast<int>(column)}, file));
 }
@@ -361,11 +345,7 @@ void check_brackets(std::string_view text, const std::string& file) {
         if (open <= most_open_brackets) continue;
         const std::size_t before = count_characters(text.substr(line_begin, at - line_begin));
         refuse(located({.code = "yaml.depth",
-                        .path = "",
-                        .message = "nesting deeper than 64: here " + std::to_string(open) + " brackets are open",
-                        .got = "",
-                        .allowed = "",
-                        .hint = ""},
+                        .message = "nesting deeper than 64: here " + std::to_string(open) + " brackets are open"},
                        {line, static_cast<int>(before) + 1}, file));
     }
 }
@@ -399,11 +379,9 @@ std::string shape_of(const Node& node) {
 std::string checked_text(std::string text, const std::string& file) {
     if (text.size() > most_bytes)
         refuse({.code = "file.size",
-                .path = "",
                 .message = "larger than a scenario may be",
                 .got = "more than " + std::to_string(most_bytes) + " bytes",
                 .allowed = "at most 1048576 bytes (1 MiB)",
-                .hint = "",
                 .file = file});
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         refuse_bytes(text, 0, file, "UTF-16 or UTF-32, not UTF-8", "save the file as UTF-8");

@@ -136,7 +136,6 @@ private:
                                      .path = join(path_, key),
                                      .message = fault.message,
                                      .got = shape_of(*node),
-                                     .allowed = "",
                                      .hint = fault.hint},
                                     node->mark, file_));
         return {};
@@ -359,7 +358,6 @@ std::vector<Check> read_checks(const Node& list, std::span<const double> params,
                                     .path = "checks",
                                     .message = "expects a list of checks",
                                     .got = shape_of(list),
-                                    .allowed = "",
                                     .hint = "checks: [{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}]"},
                                    list.mark, file));
     if (list.type != Node::list) return checks;

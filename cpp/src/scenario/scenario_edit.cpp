@@ -12,12 +12,9 @@ namespace arm3r {
 namespace {
 
 [[noreturn]] void refuse(std::string_view path, std::string code, std::string message, std::string hint) {
-    throw Error(ARM3R_E_SCENARIO, {{.code = std::move(code),
-                                    .path = std::string(path),
-                                    .message = std::move(message),
-                                    .got = "",
-                                    .allowed = "",
-                                    .hint = std::move(hint)}});
+    throw Error(
+        ARM3R_E_SCENARIO,
+        {{.code = std::move(code), .path = std::string(path), .message = std::move(message), .hint = std::move(hint)}});
 }
 
 // ---- the value, and where it stands

@@ -129,8 +129,6 @@ std::string json_at(const Resolved& resolved, std::string_view path) {
     throw Error(ARM3R_E_INDEX, {{.code = "path.unknown",
                                  .path = std::string(path),
                                  .message = "there is no such value",
-                                 .got = "",
-                                 .allowed = "",
                                  .hint = did_you_mean(path, all_paths())}});
 }
 

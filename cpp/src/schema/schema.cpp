@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "arm3r/control/law_table.hpp"
+#include "arm3r/model/scalar_motion.hpp"
 #include "schema/stiffness_presets.hpp"
 #include "schema/suggest.hpp"
 
@@ -25,7 +26,7 @@ constexpr Bounds a_mass{1e-9, 1e9};
 constexpr Bounds a_density{1e-3, 1e6};
 constexpr Bounds an_instant{-1e9, 1e9};
 constexpr Bounds no_bounds{-1e300, 1e300};
-constexpr std::size_t table_size = 16;  // as most_knots (course.hpp)
+constexpr std::size_t table_size = most_knots;
 
 Key number(std::string path, std::vector<double> fallback, Source source, Bounds bounds, std::string unit,
            std::string doc) {
@@ -833,8 +834,6 @@ std::size_t param_index(std::string_view name) {
     throw Error(ARM3R_E_INDEX, {{.code = "argument.parameter",
                                  .path = std::string(name),
                                  .message = "no parameter has this name",
-                                 .got = "",
-                                 .allowed = "",
                                  .hint = near.empty() ? "" : "did you mean " + near + "?"}});
 }
 

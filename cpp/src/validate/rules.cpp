@@ -44,7 +44,6 @@ void check_mass_matrix(const Arm<double>& arm, Findings& findings) {
                            .path = "arm.link3.inertia",
                            .message = "the mass matrix is singular: the determinant of joints 2 and 3 falls to " +
                                       shortest(lower.value) + " " + at_pose(lower),
-                           .got = "",
                            .allowed = "determinant > 0",
                            .hint = "give arm.link3.inertia, or armature for joints 2 and 3"};
         });
@@ -125,7 +124,6 @@ void check_law(std::span<const double> params, Findings& findings) {
                            .path = "wall.contact.impact_speed",
                            .message = has_speed ? "this is the speed of a restitution, and none is given"
                                                 : "the restitution of hunt_crossley depends on the speed of the impact",
-                           .got = "",
                            .allowed = "restitution and impact_speed together",
                            .hint = has_speed ? "give wall.contact.restitution, or take impact_speed out"
                                              : "give the speed at which the restitution is to hold"};
@@ -191,7 +189,6 @@ void check_series(const Setup& setup, Findings& findings) {
             return Problem{.code = "scenario.no_series",
                            .path = reason->path,
                            .message = std::string("taylor has no series of ") + reason->of,
-                           .got = "",
                            .allowed = reason->allowed,
                            .hint = "use method: dopri5"};
         });

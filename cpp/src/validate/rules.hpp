@@ -31,8 +31,7 @@ void check_direction(std::span<const double> params, Findings& findings) {
                            .path = std::string(path),
                            .message = "a direction needs a length",
                            .got = "[0, 0, 0]",
-                           .allowed = "any vector that is not zero",
-                           .hint = ""};
+                           .allowed = "any vector that is not zero"};
         });
 }
 
@@ -69,8 +68,7 @@ void check_table(std::span<const double> params, const char* hint, Findings& fin
                                .path = std::string(t) + "[" + std::to_string(i) + "]",
                                .message = "the instants of a table must increase",
                                .got = shortest(here) + " after " + shortest(before),
-                               .allowed = "more than the one before",
-                               .hint = ""};
+                               .allowed = "more than the one before"};
             });
     }
 }

@@ -24,7 +24,6 @@ void need_one_of(const char* path, bool has_it, const char* other, bool has_othe
         return Problem{.code = has_it ? "scenario.conflict" : "scenario.missing_key",
                        .path = path,
                        .message = has_it ? std::string(other) + " says it already" : of + " needs a target",
-                       .got = "",
                        .allowed = std::string("either ") + path + " or " + other,
                        .hint = has_it ? "take one of the two out" : "give one of the two"};
     });
@@ -49,7 +48,6 @@ void check_amplitude(std::span<const double> params, const std::string& referenc
             return Problem{.code = "scenario.conflict",
                            .path = wrong,
                            .message = "controller.type " + type_of(params) + " works in " + space,
-                           .got = "",
                            .allowed = right,
                            .hint = std::string("give ") + right + " in its place"};
         });
@@ -58,9 +56,7 @@ void check_amplitude(std::span<const double> params, const std::string& referenc
             return Problem{.code = "scenario.missing_key",
                            .path = right,
                            .message = "a sinusoid in " + space + " needs its amplitude",
-                           .got = "",
-                           .allowed = in_joints ? "a list of 3 numbers, rad" : "a list of 3 numbers, m",
-                           .hint = ""};
+                           .allowed = in_joints ? "a list of 3 numbers, rad" : "a list of 3 numbers, m"};
         });
 }
 
@@ -142,8 +138,6 @@ void check_wall(std::span<const double> params, const Setup& setup, Findings& fi
             return Problem{.code = "scenario.needs_wall",
                            .path = path,
                            .message = who + ", and there is no wall",
-                           .got = "",
-                           .allowed = "",
                            .hint = "add a wall section; `wall: {}` is the lecture's"};
         });
     };
@@ -163,8 +157,7 @@ void check_order(const char* path, double low, const char* other, double high, b
                        .path = path,
                        .message = std::string("must lie ") + (may_be_equal ? "not above " : "below ") + other,
                        .got = shortest(low) + " " + unit,
-                       .allowed = (may_be_equal ? "at most " : "less than ") + shortest(high) + " " + unit,
-                       .hint = ""};
+                       .allowed = (may_be_equal ? "at most " : "less than ") + shortest(high) + " " + unit};
     });
 }
 

@@ -16,8 +16,6 @@ void need_computing(std::span<const double> params, Findings& findings) {
                        .path = std::string(section),
                        .message = "controller.type " + choice_of(params, "controller.type") +
                                   " computes nothing and reads nothing",
-                       .got = "",
-                       .allowed = "",
                        .hint = "take the section out, or choose a controller"};
     });
 }
@@ -30,7 +28,6 @@ void need_samples(bool has_it, const char* path, const char* what, Findings& fin
                        .path = path,
                        .message = std::string(what) + " exists sample by sample only",
                        .got = "a controller that computes continuously",
-                       .allowed = "",
                        .hint = "add a sampling section, such as `sampling: {rate: 1000}`"};
     });
 }
@@ -124,12 +121,8 @@ void check_series(std::span<const double> params, const Setup& setup, Findings& 
     if (setup.solver.method != Solver::taylor) return;
     const auto refuse = [&](const char* path, const std::string& of, const std::string& hint) {
         findings.add([&] {
-            return Problem{.code = "scenario.no_series",
-                           .path = path,
-                           .message = "taylor has no series of " + of,
-                           .got = "",
-                           .allowed = "",
-                           .hint = hint};
+            return Problem{
+                .code = "scenario.no_series", .path = path, .message = "taylor has no series of " + of, .hint = hint};
         });
     };
     const std::string samples = "add a sampling section, such as `sampling: {rate: 1000}`, or use method: dopri5";

@@ -43,23 +43,17 @@ void refuse_too_large(const Setup& setup, bool rows) {
                      {.code = "budget.rows",
                       .path = "time.log_every",
                       .message = "the run would need too many rows",
-                      .got = "",
-                      .allowed = "",
                       .hint = "log less often"});
     refuse_above(ticks_of(setup), most_ticks,
                  {.code = "budget.ticks",
                   .path = "sampling.rate",
                   .message = "the controller would have to compute too often",
-                  .got = "",
-                  .allowed = "",
                   .hint = "sample less often"});
     if (has_too_many_steps(setup))
         refuse_above(duration(setup) / setup.solver.step, fixed_steps_allowed(setup.solver),
                      {.code = "budget.steps",
                       .path = "solver.step",
                       .message = "the run would need too many steps",
-                      .got = "",
-                      .allowed = "",
                       .hint = "take a larger step, or raise solver.max_steps"});
 }
 

@@ -50,10 +50,8 @@ Problem missing(const Key& key, std::size_t count) {
     return {.code = "scenario.missing_key",
             .path = key.path,
             .message = "this must be given",
-            .got = "",
             .allowed = (count == 1 ? "a number" : "a list of " + list_sizes(key) + " numbers") +
-                       (key.unit.empty() ? "" : ", " + key.unit),
-            .hint = ""};
+                       (key.unit.empty() ? "" : ", " + key.unit)};
 }
 
 // A choice must be the index of one of its words; everything else is read only when all of them are.
@@ -67,8 +65,7 @@ void check_choice(const Key& key, std::span<const double> params, Findings& find
                            .path = key.path,
                            .message = "no such choice",
                            .got = shortest(stored),
-                           .allowed = "an index from 0 to " + shortest(count - 1),
-                           .hint = ""};
+                           .allowed = "an index from 0 to " + shortest(count - 1)};
         });
 }
 
@@ -79,8 +76,7 @@ void check_number(const Key& key, double value, std::size_t item, std::size_t co
                            .path = item_path(key, item, count),
                            .message = message,
                            .got = shortest(value),
-                           .allowed = range_of(key),
-                           .hint = ""};
+                           .allowed = range_of(key)};
         });
     };
     if (!within(key, value)) broken("scenario.range", "out of range");
@@ -135,8 +131,7 @@ void check_inertia(std::span<const double> params, Findings& findings) {
                                .path = std::string(path),
                                .message = "no body has one principal inertia above the sum of the other two",
                                .got = shortest(own) + " > " + shortest(others),
-                               .allowed = "Ix <= Iy + Iz, and so on in turn",
-                               .hint = ""};
+                               .allowed = "Ix <= Iy + Iz, and so on in turn"};
             });
     }
 }
@@ -172,11 +167,9 @@ void check_choices(std::span<const double> params, Findings& findings) {
     if (params.size() != param_count())
         return findings.add([&] {
             return Problem{.code = "argument.size",
-                           .path = "",
                            .message = "wrong number of parameters",
                            .got = std::to_string(params.size()),
-                           .allowed = std::to_string(param_count()),
-                           .hint = ""};
+                           .allowed = std::to_string(param_count())};
         });
     for (const Key& key : schema())
         if (is_choice(key)) check_choice(key, params, findings);
