@@ -214,7 +214,7 @@ ARM3R_WIDEST void tip_sensor(const Model& model, std::size_t groups, const Rows&
 ARM3R_WIDEST void singularity(const Model& model, std::size_t groups, const Rows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
-        g.put(abs(Eight(p.S23 * p.C2 - p.C23 * p.S2)), 0);
+        g.put(abs(Eight(sin_q3(p))), 0);
         g.put(abs(radius(arm, p)), 1);
     });
 }

@@ -82,7 +82,7 @@ bool is_aimed(Path path) { return path == Path::point || path == Path::line || p
 
 Reach<double> joints_at(const Arm<double>& arm, const Vec3<double>& tip, const Vec3<double>& near) {
     const Pose<double> p = pose(near);
-    const double S3 = p.S23 * p.C2 - p.C23 * p.S2;
+    const double S3 = sin_q3(p);
     const bool front = radius(arm, p) >= 0;
     Reach<double> reach = inverse_kinematics(arm, tip, front, front == (S3 <= 0));
     for (int i = 0; i < 3; ++i) reach.q[i] = next_to(near[i], reach.q[i]);

@@ -110,7 +110,7 @@ void check_pose(std::span<const double> params, const Setup& setup, Findings& fi
     if (!inverts_jacobian(setup.law())) return;
     const Arm<double>& model = setup.law().model;
     const Pose<double> p = pose(setup.q);
-    const double S3 = p.S23 * p.C2 - p.C23 * p.S2, r = radius(model, p);
+    const double S3 = sin_q3(p), r = radius(model, p);
     const double smallest_r = smallest_sine * (model.link2.length + model.link3.length);
     const auto refuse = [&](const std::string& message, const std::string& got, const std::string& allowed) {
         findings.add([&] {

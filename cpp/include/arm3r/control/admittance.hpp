@@ -9,7 +9,6 @@ namespace arm3r {
 // The difference of two angles, within half a turn.
 template <class T>
 ARM3R_INLINE T turned_between(const T& to, const T& from) {
-    constexpr double two_pi = 6.283185307179586;
     const T difference = to - from;
     return difference - two_pi * nearest_integer(T(difference * (1 / two_pi)));
 }
@@ -20,7 +19,7 @@ template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_error(const Arm<P>& model, const Sensed<T>& sensed, const Vec3<T>& point) {
     const P a2 = model.link2.length, a3 = model.link3.length;
     const Pose<T>& p = sensed.pose;
-    const T front = copysign(T(1.0), radius(model, p)), bent = T(p.S23 * p.C2 - p.C23 * p.S2);
+    const T front = copysign(T(1.0), radius(model, p)), bent = T(sin_q3(p));
     const T rho_2 = point[0] * point[0] + point[1] * point[1];
     const T rho = front * sqrt(rho_2), zeta = point[2] - model.base_height;
     const T C3 = (rho_2 + zeta * zeta - a2 * a2 - a3 * a3) / (2.0 * a2 * a3);

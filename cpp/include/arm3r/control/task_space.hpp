@@ -11,7 +11,7 @@ template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_rates(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& xd) {
     const T radial = p.C1 * xd[0] + p.S1 * xd[1];
     const T around = p.C1 * xd[1] - p.S1 * xd[0];
-    const T S3 = p.S23 * p.C2 - p.C23 * p.S2;
+    const T S3 = sin_q3(p);
     const T inverse_r = 1.0 / radius(arm, p);
     const T inverse_plane = 1.0 / (arm.link2.length * arm.link3.length * S3);
     const T w2 = arm.link3.length * (p.C23 * radial + p.S23 * xd[2]) * inverse_plane;
@@ -53,7 +53,7 @@ ARM3R_INLINE Vec3<T> inertial_torque(const Arm<P>& model, const Pose<T>& p, cons
 // How far the pose is from where J has no inverse: 0 there, 1 at most (7.21).
 template <class P, class T>
 ARM3R_INLINE T distance_to_singular(const Arm<P>& arm, const Pose<T>& p) {
-    const T S3 = p.S23 * p.C2 - p.C23 * p.S2;
+    const T S3 = sin_q3(p);
     return min(T(abs(S3)), T(abs(radius(arm, p)) / (arm.link2.length + arm.link3.length)));
 }
 

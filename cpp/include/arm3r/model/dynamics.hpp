@@ -26,7 +26,7 @@ ARM3R_INLINE Mat3<T> coriolis_matrix(const Arm<P>& arm, const Pose<T>& p, const 
     const Lumped<P>& l = arm.lumped;
     const T h3 = -p.S23 * (l.A3 * p.C23 + l.B * p.C2);
     const T h2 = h3 - p.S2 * (l.A2 * p.C2 + l.B * p.C23);
-    const T b = l.B * (p.S23 * p.C2 - p.C23 * p.S2);
+    const T b = l.B * sin_q3(p);
     Mat3<T> C;
     C << h2 * qd[1] + h3 * qd[2], h2 * qd[0], h3 * qd[0],  //
         -h2 * qd[0], -b * qd[2], -b * (qd[1] + qd[2]),     //
@@ -40,7 +40,7 @@ ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& arm, const Pose<T>& p, const
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T row2 = p.S2 * (l.A2 * p.C2 + l.B * p.C23);
     const T row3 = p.S23 * (l.A3 * p.C23 + l.B * p.C2);
-    const T b = l.B * (p.S23 * p.C2 - p.C23 * p.S2);
+    const T b = l.B * sin_q3(p);
     const T third = row3 * w1 * w1 + b * w2 * w2;
     return {-2.0 * (row2 * w2 + row3 * w3) * w1, row2 * w1 * w1 - b * w3 * w3 + third, third};
 }
@@ -115,7 +115,7 @@ ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, con
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T w1_2 = w1 * w1;
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
-    const T BS3 = l.B * (p.S23 * p.C2 - p.C23 * p.S2);
+    const T BS3 = l.B * sin_q3(p);
     const T BC23 = l.B * p.C23, BC2 = l.B * p.C2;
     const T Pc = l.A2 * p.C2 + BC23, Q = l.A3 * p.C23 + BC2;
     const T S2P = p.S2 * Pc, S23Q = p.S23 * Q;

@@ -12,6 +12,12 @@ struct Pose {
     T S1, C1, S2, C2, S23, C23;
 };
 
+// sin q3: zero where the arm is stretched or folded.
+template <class T>
+ARM3R_INLINE T sin_q3(const Pose<T>& p) {
+    return p.S23 * p.C2 - p.C23 * p.S2;
+}
+
 template <class T>
 ARM3R_INLINE Pose<T> pose(const Vec3<T>& q) {
     const T sum = q[1] + q[2];
@@ -79,7 +85,7 @@ ARM3R_INLINE Mat3<T> inverse_jacobian(const Arm<P>& arm, const Pose<T>& p) {
     const T r = radius(arm, p);
     const T h = height(arm, p);
     const T inverse_r = 1.0 / r;
-    const T inverse_plane = 1.0 / (arm.link2.length * arm.link3.length * (p.S23 * p.C2 - p.C23 * p.S2));
+    const T inverse_plane = 1.0 / (arm.link2.length * arm.link3.length * sin_q3(p));
     const T m = arm.link3.length * p.C23 * inverse_plane;
     const T n = arm.link3.length * p.S23 * inverse_plane;
     const T rp = r * inverse_plane;
@@ -129,7 +135,7 @@ ARM3R_INLINE Vec3<T> tip_velocity(const Arm<P>& arm, const Pose<T>& p, const Vec
 
 template <class P, class T>
 ARM3R_INLINE T manipulability(const Arm<P>& arm, const Pose<T>& p) {  // |det J| (2.8)
-    const T S3 = p.S23 * p.C2 - p.C23 * p.S2;
+    const T S3 = sin_q3(p);
     return abs(T(arm.link2.length * arm.link3.length * S3 * radius(arm, p)));
 }
 
