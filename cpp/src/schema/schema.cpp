@@ -387,13 +387,15 @@ void append_motion_gains(std::vector<Key>& keys) {
 }
 
 void append_impedances(std::vector<Key>& keys) {
+    const Words compliant = {"stiffness", "joint_stiffness", "impedance",          "shaped_impedance", "hybrid",
+                             "parallel",  "admittance",      "adaptive_reference", "energy_tank",      "virtual_wall"};
+    const Words damped = compliant;
     keys.push_back(
         for_laws({"shaped_impedance", "admittance", "adaptive_reference"},
                  with_form(Form::number_or_vector, number("controller.mass", {2, unset, unset}, Source::ours,
                                                           {1e-6, 1e9}, "kg", "Apparent mass along the base axes."))));
-    keys.push_back(for_laws({"stiffness", "joint_stiffness", "impedance", "shaped_impedance", "hybrid", "parallel",
-                             "admittance", "adaptive_reference", "energy_tank", "virtual_wall"},
-                            but({{"shaped_impedance", {200, unset, unset}},
+    keys.push_back(
+        for_laws(compliant, but({{"shaped_impedance", {200, unset, unset}},
                                  {"parallel", {100, unset, unset}},
                                  {"admittance", {200, unset, unset}},
                                  {"adaptive_reference", {200, unset, unset}},
@@ -401,16 +403,15 @@ void append_impedances(std::vector<Key>& keys) {
                                  {"virtual_wall", {5000, unset, unset}}},
                                 gain("stiffness", 500, "N/m",
                                      "Force per displacement along the base axes; in hybrid of jacobian_transpose."))));
-    keys.push_back(for_laws({"stiffness", "joint_stiffness", "impedance", "shaped_impedance", "hybrid", "parallel",
-                             "admittance", "adaptive_reference", "energy_tank", "virtual_wall"},
-                            but({{"shaped_impedance", {40, unset, unset}},
-                                 {"parallel", {80, unset, unset}},
-                                 {"admittance", {40, unset, unset}},
-                                 {"adaptive_reference", {80, unset, unset}},
-                                 {"energy_tank", {0.3, unset, unset}},
-                                 {"virtual_wall", {0, unset, unset}}},
-                                gain("damping", 100, "N s/m",
-                                     "Force per velocity along the base axes; in hybrid of jacobian_transpose."))));
+    keys.push_back(
+        for_laws(damped, but({{"shaped_impedance", {40, unset, unset}},
+                              {"parallel", {80, unset, unset}},
+                              {"admittance", {40, unset, unset}},
+                              {"adaptive_reference", {80, unset, unset}},
+                              {"energy_tank", {0.3, unset, unset}},
+                              {"virtual_wall", {0, unset, unset}}},
+                             gain("damping", 100, "N s/m",
+                                  "Force per velocity along the base axes; in hybrid of jacobian_transpose."))));
 }
 
 void append_force_loop(std::vector<Key>& keys) {

@@ -46,7 +46,7 @@ struct LawProperties {
 
 // In the order of the enumerators.
 inline constexpr std::array law_table = [] {
-    constexpr auto plain = [](Controls type, std::string_view word) {
+    constexpr auto basic = [](Controls type, std::string_view word) {
         return LawProperties{.type = type, .word = word};
     };
     constexpr auto with_model = [](Controls type, std::string_view word) {
@@ -74,8 +74,8 @@ inline constexpr std::array law_table = [] {
     LawProperties without_path = with_model(virtual_wall, "virtual_wall");
     without_path.has_gains = true;
     return std::array{
-        plain(none, "none"),
-        plain(constant, "constant"),
+        basic(none, "none"),
+        basic(constant, "constant"),
         with_model(gravity_compensation, "gravity_compensation"),
         motion(joint_pd, "joint_pd", true),
         motion(computed_torque, "computed_torque", true),
@@ -91,7 +91,7 @@ inline constexpr std::array law_table = [] {
         remembering(pressing(motion(adaptive_reference, "adaptive_reference", false), true, false), 1),
         remembering(motion(energy_tank, "energy_tank", false), 1),
         without_path,
-        plain(user, "user"),
+        basic(user, "user"),
     };
 }();
 static_assert([] {
