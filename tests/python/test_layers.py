@@ -12,14 +12,11 @@ from pathlib import Path
 import pytest
 
 # From the bottom up: a file includes files of its own room and of rooms that stand before it.
-ROOMS = """
-include/arm3r/numbers  include/arm3r/model  include/arm3r/ode  include/arm3r/control  include/arm3r/sensing  include/arm3r
-src/base  src/schema  src/setup  src/validate
-src/control  src/integrate  src/contact
-src/record  src/run  src/lanes  src/batch
-src/files  src/results  src/scenario
-src/api  src/cli
-""".split()
+HEADERS = ("numbers", "model", "ode", "control", "sensing")
+PROGRAM = ("base", "schema", "setup", "validate", "control", "integrate", "contact", "record", "run", "lanes", "batch")
+FACES = ("files", "results", "scenario", "api", "cli")
+ROOMS = [*(f"include/arm3r/{room}" for room in HEADERS), "include/arm3r"]
+ROOMS += [f"src/{room}" for room in PROGRAM + FACES]
 MOST_FILES = 16  # with a name of their own: X.hpp and X.cpp are one
 
 # What only these files may include.

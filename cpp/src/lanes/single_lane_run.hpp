@@ -2,6 +2,7 @@
 // Single runs by the methods that march in lanes too (lane_run.hpp).
 
 #include "record/run_data.hpp"
+#include "setup/setup.hpp"
 
 namespace arm3r {
 

@@ -1,0 +1,83 @@
+"""The page docs/adding_a_controller.md, applied as it stands: its changes fit the sources and give a law that runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+SCENARIO = """\
+format: 1
+arm: {convention: slide, link2: {length: 0.9}, link3: {length: 1.2}}
+initial: {q: [0.2, 0.7, -1.1], qd: [0.4, -0.3, 0.9]}
+controller: {type: tip_damper, damping: 60}
+time: {stop: 2, log_every: 0.5}
+"""
+
+
+def changes(page: str) -> list[tuple[str, str, str]]:
+    """(file, old text, new text) of every change that the page shows; the old text of a new file is empty."""
+    found = []
+    for part in re.split(r"^\*\*\d\. ", page, flags=re.M)[1:]:
+        file = re.search(r"`(cpp/[^`]+)`", part)
+        for kind, block in re.findall(r"^```(\w+)\n(.*?)^```$", part, flags=re.M | re.S):
+            assert file
+            lines = block.splitlines(keepends=True)
+            if kind == "cpp":
+                found.append((file[1], "", block))
+                continue
+            old = "".join(line[1:] for line in lines if line[0] in " -")
+            new = "".join(line[1:] for line in lines if line[0] in " +")
+            found.append((file[1], old, new))
+    return found
+
+
+def apply(root: Path, page: str) -> set[str]:
+    """Makes the changes; the names of the files."""
+    for file, old, new in changes(page):
+        path = root / file
+        text = path.read_text() if old else ""
+        assert text.count(old) == 1 or not old, f"{file} does not hold the lines that the page shows:\n{old}"
+        path.write_text(text.replace(old, new) if old else new)
+    return {file for file, _, _ in changes(page)}
+
+
+@pytest.fixture
+def tree(root: Path, tmp_path: Path) -> Path:
+    for name in ("cpp", "cmake"):
+        shutil.copytree(root / name, tmp_path / name)
+    for name in ("CMakeLists.txt", "pyproject.toml"):
+        shutil.copy(root / name, tmp_path / name)
+    return tmp_path
+
+
+def test_the_changes_fit_and_touch_at_most_five_files(root: Path, tree: Path) -> None:
+    files = apply(tree, (root / "docs/adding_a_controller.md").read_text())
+    assert len(files) == 4  # and docs/controllers.md
+
+
+@pytest.mark.gate
+def test_the_new_law_runs(root: Path, tree: Path, scripts: Path) -> None:
+    apply(tree, (root / "docs/adding_a_controller.md").read_text())
+    environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
+    options = ["-DCMAKE_CXX_FLAGS_RELEASE=-O0", "-DCMAKE_BUILD_TYPE=Release", "-DARM3R_LANES=1", "-DARM3R_PCH=OFF"]
+    options += ["-DARM3R_PYTHON=OFF", f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}"]
+    build = tree / "build"
+    for command in (
+        ["cmake", "-S", str(tree), "-B", str(build), *options],
+        ["cmake", "--build", str(build), "--target", "arm3r_cli", "--parallel", "2"],
+    ):
+        subprocess.run(command, check=True, env=environment, capture_output=True)
+    scenario = tree / "scenario.yaml"
+    scenario.write_text(SCENARIO)
+    done = subprocess.run([build / "arm3r", "run", scenario, "--json"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    metrics = json.loads(done.stdout)["metrics"]
+    assert max(abs(metrics[name]) for name in ("qd1", "qd2", "qd3")) < 1e-3  # the tip has come to rest, and stays up
+    assert metrics["tip_z"] > -1
