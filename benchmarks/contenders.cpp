@@ -55,7 +55,7 @@ Contender our_steps(std::string job, std::vector<double> (*params)()) {
 
 template <std::size_t Size>
 Contender our_packs(std::string job, std::vector<double> (*params)()) {
-    return {std::move(job), "arm3r in packs of " + std::to_string(arm3r::widest_lanes()) + ", per arm", our_build,
+    return {std::move(job), "arm3r in packs of " + std::to_string(arm3r::max_lanes()) + ", per arm", our_build,
             [params] {
                 return over_steps<PackStepper<Size>>(std::make_shared<PackStepper<Size>>(params()),
                                                      &PackStepper<Size>::start);
@@ -153,8 +153,8 @@ template <class Peer>
 }  // namespace
 
 std::vector<Contender> contenders() {
-    const std::string falls = "RK4 step, free fall", pushed = "RK4 step, compensation and two-way wall";
-    const std::string books = ", with the books";
+    const std::string zero_crossing = "RK4 step, free fall", pushed = "RK4 step, compensation and two-way wall";
+    const std::string quadratures = ", with the books";
     return {
         {"forward dynamics", "arm3r", our_build,
          [] {
@@ -162,20 +162,20 @@ std::vector<Contender> contenders() {
          }},
         casadi(),
         pinocchio(),
-        our_steps<motion_size>(falls, free_fall),
-        our_packs<motion_size>(falls, free_fall),
-        casadi(falls, false),
-        mujoco(falls),
-        our_steps<state_size>(falls + books, free_fall),
-        our_packs<state_size>(falls + books, free_fall),
-        our_runs(falls + books, free_fall),
+        our_steps<motion_size>(zero_crossing, free_fall),
+        our_packs<motion_size>(zero_crossing, free_fall),
+        casadi(zero_crossing, false),
+        mujoco(zero_crossing),
+        our_steps<state_size>(zero_crossing + quadratures, free_fall),
+        our_packs<state_size>(zero_crossing + quadratures, free_fall),
+        our_runs(zero_crossing + quadratures, free_fall),
         our_steps<motion_size>(pushed, compensated_at_wall),
         our_packs<motion_size>(pushed, compensated_at_wall),
         casadi(pushed, true),
         mujoco(pushed),
-        our_steps<state_size>(pushed + books, compensated_at_wall),
-        our_packs<state_size>(pushed + books, compensated_at_wall),
-        our_runs(pushed + books, compensated_at_wall),
+        our_steps<state_size>(pushed + quadratures, compensated_at_wall),
+        our_packs<state_size>(pushed + quadratures, compensated_at_wall),
+        our_runs(pushed + quadratures, compensated_at_wall),
     };
 }
 

@@ -43,7 +43,7 @@ std::vector<double> compensated_at_wall() {
     return params_of({{"wall", 1},
                       {"wall.point[0]", 1.735},  // 3 mm from the tip
                       {"wall.acts_on_arm", 1},
-                      {"controller.type", double(Controls::gravity_compensation)}});
+                      {"controller.type", double(ControllerType::gravity_compensation)}});
 }
 
 [[gnu::noinline]] void forward_dynamics(const Arm<double>& arm, const Query& query, Joints& qdd) {
@@ -55,7 +55,7 @@ std::vector<double> compensated_at_wall() {
 
 template <std::size_t Size>
 Stepper<Size>::Stepper(const std::vector<double>& params) : setup_(make_setup(params)), rhs_(setup_.plant) {
-    if (setup_.plant.acts_on_arm) rhs_.touch = Touch::each_stage;
+    if (setup_.plant.acts_on_arm) rhs_.force_mode = ContactForceMode::each_stage;
     start();
 }
 
@@ -89,7 +89,7 @@ template class Stepper<state_size>;
 template <int N, std::size_t Size>
 ARM3R_INLINE void march_packs(const Plant<Pack<N>>& plant, State<Pack<N>, Size>& y, int steps) {
     RightHandSide<Pack<N>, Pack<N>> rhs(plant);
-    if (plant.acts_on_arm) rhs.touch = Touch::each_stage;
+    if (plant.acts_on_arm) rhs.force_mode = ContactForceMode::each_stage;
     State<Pack<N>, Size> f;
     Pack<N> t(0.0), h(step);
     rhs.begin_step(y);
@@ -138,7 +138,7 @@ void PackStepper<Size>::march(int steps) {
 
 template <std::size_t Size>
 void PackStepper<Size>::advance(int steps) {
-    const int lanes = widest_lanes(), before = taken_ / lanes;
+    const int lanes = max_lanes(), before = taken_ / lanes;
     taken_ += steps;
     const int each = taken_ / lanes - before;
 #if ARM3R_WIDE_PACKS

@@ -22,13 +22,13 @@ struct Query {
 
 const std::vector<Query>& queries();  // the same ones for everyone, spread over the workspace
 
-std::vector<double> free_fall();            // the lecture's arm, let go
+std::vector<double> free_fall();            // the lecture's arm, released
 std::vector<double> compensated_at_wall();  // held up, and pushed by the moving wall
 
 void forward_dynamics(const arm3r::Arm<double>& arm, const Query& query, Joints& qdd);
 
-// The motion from the setup's start, stepped by RK4, and nothing beside it. `Size` components of the state: with or
-// without the books.
+// The motion from the setup's start, stepped by RK4 only. `Size` components of the state: with or without the
+// quadratures.
 template <std::size_t Size>
 class Stepper {
 public:
@@ -44,8 +44,8 @@ private:
     double t_;
 };
 
-// The same steps of as many arms side by side as this processor's registers hold, each with numbers and a pose of its
-// own; they count arm by arm.
+// The same steps of as many arms in parallel as this processor's registers hold, each with its own numbers and pose;
+// they count arm by arm.
 template <std::size_t Size>
 class PackStepper {
 public:
@@ -63,7 +63,8 @@ private:
     double sum_ = 0;  // so that the result is used
 };
 
-// The same steps within a whole run: contact watched, books kept and the state judged after each, two rows logged.
+// The same steps within a whole run: after each step contact, energy balance and conditioning are checked; two rows are
+// logged.
 void run_fixed_steps(const std::vector<double>& params, int steps);
 
 }  // namespace bench

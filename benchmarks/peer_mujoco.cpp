@@ -50,9 +50,9 @@ mjModel* model_of(const std::string& xml) {
 
 }  // namespace
 
-struct Mujoco::Inside {
-    explicit Inside(const std::string& xml) : model(model_of(xml)), data(mj_makeData(model)) {}
-    ~Inside() {
+struct Mujoco::DenseOutput {
+    explicit DenseOutput(const std::string& xml) : model(model_of(xml)), data(mj_makeData(model)) {}
+    ~DenseOutput() {
         mj_deleteData(data);
         mj_deleteModel(model);
     }
@@ -62,7 +62,7 @@ struct Mujoco::Inside {
 
 std::string Mujoco::build() { return "MuJoCo " + std::string(mj_versionString()) + ", its own wheel"; }
 
-Mujoco::Mujoco(const Numbers& numbers, double step) : in_(std::make_unique<Inside>(mjcf(numbers, step))) {}
+Mujoco::Mujoco(const Numbers& numbers, double step) : in_(std::make_unique<DenseOutput>(mjcf(numbers, step))) {}
 Mujoco::~Mujoco() = default;
 
 void Mujoco::forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd) {

@@ -1,6 +1,6 @@
 #pragma once
-// The same arm in the hands of others, behind plain numbers: each peer is a library of its own, compiled as suits it
-// best, and sees nothing of arm3r but this file. Slide convention.
+// The same arm in other programs, behind plain numbers: each peer is a library of its own, compiled as suits it best,
+// and includes nothing of arm3r but this file. Slide convention.
 
 #include <memory>
 #include <string>
@@ -27,8 +27,8 @@ public:
     void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);
 
 private:
-    struct Inside;
-    std::unique_ptr<Inside> in_;
+    struct DenseOutput;
+    std::unique_ptr<DenseOutput> in_;
 };
 
 class [[gnu::visibility("default")]] Mujoco {
@@ -43,8 +43,8 @@ public:
     const double* qd() const;
 
 private:
-    struct Inside;
-    std::unique_ptr<Inside> in_;
+    struct DenseOutput;
+    std::unique_ptr<DenseOutput> in_;
 };
 
 // Generated for the lecture's arm alone.

@@ -1,6 +1,6 @@
 #pragma once
-// Batches as the tests make them, and what is asked of each: the numbers of its runs alone, bit for bit, for every width
-// and number of threads.
+// Batches of the tests and their condition: the numbers of each run are those of the run alone, bit for bit, for every
+// width and number of threads.
 
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -30,7 +30,7 @@ struct Runs {
         return params;
     }
 
-    std::vector<double> together(const BatchOptions& options) const {
+    std::vector<double> rows_per_block(const BatchOptions& options) const {
         std::vector<std::size_t> varied;
         std::vector<double> flat;
         for (std::size_t j = 0; j < names.size(); ++j) {
@@ -51,7 +51,7 @@ struct Runs {
 
 inline std::vector<int> widths() {
     std::vector<int> all = {1};
-    for (int width = 2; width <= widest_lanes(); width *= 2) all.push_back(width);
+    for (int width = 2; width <= max_lanes(); width *= 2) all.push_back(width);
     return all;
 }
 
@@ -62,19 +62,19 @@ inline void check_against_single_runs(const Runs& runs, const std::vector<double
     for (std::size_t i = 0; i < runs.count(); ++i) {
         const Run alone = runs.alone(i).run();
         for (std::size_t c = 0; c < summary_table().size(); ++c) {
-            const double together = results[c * runs.count() + i], single = summary_table()[c].of(alone) + 0.0;
-            BOOST_TEST(same(together, single),
-                       "run " << i << ", " << summary_table()[c].name << ": " << together << " and " << single);
+            const double rows_per_block = results[c * runs.count() + i], single = summary_table()[c].of(alone) + 0.0;
+            BOOST_TEST(same(rows_per_block, single),
+                       "run " << i << ", " << summary_table()[c].name << ": " << rows_per_block << " and " << single);
         }
     }
 }
 
 // Every width and number of threads gives the same table; it is returned.
 inline std::vector<double> check_widths_and_threads(const Runs& runs) {
-    const std::vector<double> reference = runs.together({.threads = 1, .lanes = 1});
+    const std::vector<double> reference = runs.rows_per_block({.threads = 1, .lanes = 1});
     for (const int lanes : widths()) {
         for (const int threads : {1, 3}) {
-            const std::vector<double> other = runs.together({.threads = threads, .lanes = lanes});
+            const std::vector<double> other = runs.rows_per_block({.threads = threads, .lanes = lanes});
             BOOST_TEST((std::memcmp(other.data(), reference.data(), reference.size() * sizeof(double)) == 0),
                        lanes << " lanes, " << threads << " threads");
         }

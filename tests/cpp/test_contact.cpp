@@ -5,7 +5,7 @@
 
 namespace arm3r {
 
-// When contact begins and ends, and what the books say of it.
+// The instants at which contact begins and ends, and the energy balance there.
 BOOST_AUTO_TEST_SUITE(contact)
 
 static Vec3<double> start_of(const Params& params) {
@@ -193,9 +193,10 @@ BOOST_AUTO_TEST_CASE(an_arm_that_spins_up_meets_the_wall_every_turn) {
 }
 
 // How far a step may turn a link: 45 degrees, or less where the tolerance is fine (5.2).
-static double largest_turn(double rtol) { return std::min(M_PI / 4, std::pow(1e5 * rtol, 0.2)); }
+static double max_turn(double rtol) { return std::min(M_PI / 4, std::pow(1e5 * rtol, 0.2)); }
 
-// Where the steps end, from runs that may take one more each. Rate and acceleration may each turn it as far.
+// The ends of the steps, from runs that may take one more step each. Rate and acceleration may each turn the angle as
+// far.
 BOOST_AUTO_TEST_CASE(an_arm_that_starts_to_spin_is_held_to_its_turn_from_the_first_steps_on) {
     for (const double torque : {1.0, 2.0, 3.0, 5.0, 7.0}) {
         for (const double rtol : {1e-9, 1e-3}) {
@@ -205,7 +206,7 @@ BOOST_AUTO_TEST_CASE(an_arm_that_starts_to_spin_is_held_to_its_turn_from_the_fir
             double turned = 0;
             for (int steps = 1; steps <= 20; ++steps) {
                 const double t = params.set("solver.max_steps", steps).run().t_end, angle = 0.5 * acceleration * t * t;
-                BOOST_TEST(angle - turned <= 2 * largest_turn(rtol) + 1e-9);
+                BOOST_TEST(angle - turned <= 2 * max_turn(rtol) + 1e-9);
                 turned = angle;
             }
             BOOST_TEST(turned > 2);
@@ -220,7 +221,7 @@ BOOST_AUTO_TEST_CASE(no_step_turns_a_link_too_far_and_none_is_needlessly_short) 
         for (const double rtol : {1e-9, 1e-3}) {
             Params params = spinning(qd).set("arm.link3.com", 0).set("solver.rtol", rtol);
             const Run run = params.set("time.stop", 100).set("time.log_every", 10).run();
-            const double fewest = 100 * 3 / largest_turn(rtol);
+            const double fewest = 100 * 3 / max_turn(rtol);
             BOOST_TEST(double(run.steps.accepted) >= fewest, "at " << qd.transpose());
             BOOST_TEST(double(run.steps.accepted) <= 1.1 * fewest, "at " << qd.transpose());
         }

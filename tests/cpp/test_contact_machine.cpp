@@ -6,7 +6,7 @@
 
 namespace arm3r {
 
-// Runs against walls of every law that move in every way: when they let go, and what the books say of it.
+// Runs against walls of every law and motion: the instants at which the force ends, and the energy balance.
 BOOST_AUTO_TEST_SUITE(contact_machine)
 
 // ---- a mass in one dimension: the straight arm turns about the vertical, without gravity, into a wall across its way;
@@ -48,7 +48,7 @@ static Params kelvin_voigt_impact(double zeta) {
 }
 
 static void check_books(const Run& run, double e) {
-    BOOST_TEST(std::abs(run.books[2] / Impact::energy() - (1 - e * e)) <= 1e-8);
+    BOOST_TEST(std::abs(run.quadratures[2] / Impact::energy() - (1 - e * e)) <= 1e-8);
     BOOST_TEST(run.ledger_residual <= 1e-9 * Impact::energy());
     BOOST_TEST(std::abs(run.impulse / (Impact::mass() * Impact::speed) - (1 + e)) <= 1e-8);
 }
@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(kelvin_voigt_returns_the_speed_of_its_closed_form) {
     BOOST_TEST(std::abs(Impact::restitution(kelvin_voigt_impact(1.0).run()) - 0.135335283) <= 1e-8);
 }
 
-// It lets go while the wall is dented, flies out of the dent, and breaks contact where the dent ends.
+// The force ends while the depth is still positive, the tip moves out freely, and contact ends at depth zero.
 BOOST_AUTO_TEST_CASE(contact_outlasts_the_force_by_the_way_out_of_the_dent) {
     for (const double zeta : {0.1, 0.3, 0.8}) {
         const Params params = kelvin_voigt_impact(zeta);
@@ -200,7 +200,7 @@ BOOST_AUTO_TEST_CASE(a_stiff_spring_bounces_as_simulated_elsewhere) {
         BOOST_TEST(std::abs(run.peak_force / peak - 1) <= 1e-6);
         BOOST_TEST(std::abs(v[0] / vx - 1) <= 1e-6);
         BOOST_TEST(std::abs(v[2] / vz - 1) <= 1e-6);
-        if (work > 0) BOOST_TEST(std::abs(run.books[1] / work - 1) <= 1e-6);
+        if (work > 0) BOOST_TEST(std::abs(run.quadratures[1] / work - 1) <= 1e-6);
     }
 }
 
@@ -252,7 +252,7 @@ BOOST_AUTO_TEST_CASE(the_books_close_whatever_the_wall_is_and_does) {
         BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
         BOOST_TEST(run.events.size() >= 2u);
         BOOST_TEST(run.energy_residual_max <= 2e-8);
-        BOOST_TEST(std::abs(run.books[1]) > 0.05);
+        BOOST_TEST(std::abs(run.quadratures[1]) > 0.05);
         const auto lost = column(run, "energy_dissipated");
         for (std::size_t i = 1; i < run.rows; ++i) BOOST_TEST(lost[i] >= lost[i - 1] - 1e-13);
     }
@@ -356,7 +356,7 @@ BOOST_AUTO_TEST_CASE(what_a_plate_holds_where_it_slides_away_is_booked_as_lost) 
     const Run run = params.run();
     BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
     BOOST_TEST(std::abs(run.events[1].t - 0.002) <= 1e-9);
-    BOOST_TEST(std::abs(run.books[2] - 0.02) <= 1e-9);
+    BOOST_TEST(std::abs(run.quadratures[2] - 0.02) <= 1e-9);
     BOOST_TEST(run.energy_residual_max <= 1e-9);
 }
 
@@ -411,7 +411,8 @@ BOOST_AUTO_TEST_CASE(a_ramp_of_a_moment_is_not_overslept) {
     BOOST_TEST(std::abs(run.peak_force - 50) <= 1e-9);
 }
 
-// Both ways, with a damper that feels a jump of the wall's velocity: a step ends there and the next sees the new one.
+// Both directions, with a damper that depends on a jump of the wall's velocity: a step ends at the jump, and the next
+// step uses the new velocity.
 BOOST_AUTO_TEST_CASE(a_wall_that_starts_and_stops_with_a_jerk_is_followed) {
     Params params = lecture_wall().set("wall.point", {std::sqrt(3) - 1e-3, 0, 0}).set("time.stop", 0.5);
     params.choose("wall.contact.law", "kelvin_voigt")
@@ -427,16 +428,16 @@ BOOST_AUTO_TEST_CASE(a_wall_that_starts_and_stops_with_a_jerk_is_followed) {
     const auto force = column(run, "f_on_wall_x");
     BOOST_TEST(force[20] - force[19] > 5.5);  // the damper: 30 N s/m times 0.2 m/s
     BOOST_TEST(force[29] - force[30] > 5.5);
-    // The same in three runs, each with a smooth wall.
+    // The same motion in three runs, each with a smooth wall.
     Params first = Params(params).choose("wall.motion.type", "fixed").set("time.stop", 0.2);
     const Run before = first.run();
-    const auto go_on = [&](const Run& from, double speed, double start, double stop) {
+    const auto advance = [&](const Run& from, double speed, double start, double stop) {
         Params next = Params(params).choose("wall.motion.type", "constant").set("wall.motion.velocity", speed);
         next.set("initial.q", Vec3<double>(from.q.data())).set("initial.qd", Vec3<double>(from.qd.data()));
         next.set("wall.point", {std::sqrt(3) - 1e-3 - start, 0, 0}).set("time.stop", stop);
         return next.run();
     };
-    const Run last = go_on(go_on(before, 0.2, 0, 0.1), 0, 0.02, 0.2);
+    const Run last = advance(advance(before, 0.2, 0, 0.1), 0, 0.02, 0.2);
     for (int i = 0; i < 3; ++i) {
         BOOST_TEST(std::abs(run.q[i] - last.q[i]) <= 1e-10);
         BOOST_TEST(std::abs(run.qd[i] - last.qd[i]) <= 1e-9);
@@ -455,7 +456,7 @@ BOOST_AUTO_TEST_CASE(a_start_in_a_wall_that_recedes_faster_than_the_law_follows_
     }
 }
 
-// A swinging wall follows the tip out and in again without ever leaving it: it lets go and takes hold of it inside.
+// An oscillating wall follows the tip out and in again without losing contact: the force ends and begins again inside.
 BOOST_AUTO_TEST_CASE(a_wall_may_take_hold_again_without_having_been_left) {
     const double k = 1000, c = 200, depth = 0.01, A = 0.008, w = 2 * M_PI * 1.7;
     Params params = held(depth, {-1, 0, 0}).choose("wall.contact.law", "kelvin_voigt").set("wall.contact.stiffness", k);

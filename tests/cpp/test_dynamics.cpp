@@ -8,7 +8,7 @@
 
 namespace arm3r {
 
-// What must hold whatever the arm: identities, and derivatives taken by Dual.
+// Identities that hold for every arm, and derivatives by Dual.
 BOOST_AUTO_TEST_SUITE(dynamics)
 
 struct Case {
@@ -40,7 +40,7 @@ static bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double tol
 static bool close(double a, double b) { return std::abs(a - b) <= 1e-12 * (1 + std::abs(a)); }
 
 template <class M>
-static Eigen::MatrixXd slopes(const M& matrix, int i = 0) {
+static Eigen::MatrixXd linearization(const M& matrix, int i = 0) {
     Eigen::MatrixXd result(matrix.rows(), matrix.cols());
     for (int r = 0; r < matrix.rows(); ++r)
         for (int c = 0; c < matrix.cols(); ++c) result(r, c) = matrix(r, c).slope[i];
@@ -50,7 +50,7 @@ static Eigen::MatrixXd slopes(const M& matrix, int i = 0) {
 // Columns: derivatives by q1, q2, q3.
 static Eigen::Matrix3d gradient(const Vec3<Dual<3>>& v) {
     Eigen::Matrix3d columns;
-    for (int j = 0; j < 3; ++j) columns.col(j) = slopes(v, j);
+    for (int j = 0; j < 3; ++j) columns.col(j) = linearization(v, j);
     return columns;
 }
 
@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(jacobian_is_the_derivative_of_the_tip) {
 
 BOOST_AUTO_TEST_CASE(jacobian_dot_is_the_derivative_of_the_jacobian) {
     for_random_cases(2, [](const Case& c) {
-        BOOST_TEST(close(slopes(jacobian(c.arm, pose(moving(c.q, c.qd)))), jacobian_dot(c.arm, c.p, c.qd)));
+        BOOST_TEST(close(linearization(jacobian(c.arm, pose(moving(c.q, c.qd)))), jacobian_dot(c.arm, c.p, c.qd)));
     });
 }
 
@@ -82,7 +82,7 @@ static Mat3<Dual<1>> orientation(const Arm<double>& arm, const Vec3<double>& q, 
 
 static Vec3<double> angular_velocity(const Mat3<Dual<1>>& R) {  // of Rdot R^T = skew(omega)
     const Eigen::Matrix3d rotation = R.unaryExpr([](const Dual<1>& x) { return x.number; });
-    const Eigen::Matrix3d skew = slopes(R) * rotation.transpose();
+    const Eigen::Matrix3d skew = linearization(R) * rotation.transpose();
     return {skew(2, 1), skew(0, 2), skew(1, 0)};
 }
 
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(inverse_kinematics_tells_a_point_out_of_reach_from_one_with
 
 BOOST_AUTO_TEST_CASE(the_rate_of_M_is_C_plus_its_transpose) {
     for_random_cases(8, [](const Case& c) {
-        const Eigen::Matrix3d Mdot = slopes(mass_matrix(c.arm, pose(moving(c.q, c.qd))));
+        const Eigen::Matrix3d Mdot = linearization(mass_matrix(c.arm, pose(moving(c.q, c.qd))));
         const Eigen::Matrix3d C = coriolis_matrix(c.arm, c.p, c.qd);
         const Eigen::Matrix3d N = Mdot - 2 * C;
         BOOST_TEST(close(Mdot, C + C.transpose()));
@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(energies_are_the_sums_over_bodies) {
         double kinetic = 0, potential = 0;
         const auto add_point = [&](double mass, int body, Vec3<Dual<1>> point) {
             for (int j = body; j >= 0; --j) point = plus(bodies[j].origin, times(bodies[j].R, point));
-            kinetic += 0.5 * mass * slopes(point).squaredNorm();
+            kinetic += 0.5 * mass * linearization(point).squaredNorm();
             for (int k = 0; k < 3; ++k) potential -= mass * c.arm.gravity[k] * point[k].number;
         };
         for (int body = 0; body < 3; ++body) {

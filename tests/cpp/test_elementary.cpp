@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(sincos_near_is_within_4e_16_inside_and_outside_its_reach) {
         const auto full = sincos(x);
         BOOST_REQUIRE_SMALL(near.sin - full.sin, 4e-16);
         BOOST_REQUIRE_SMALL(near.cos - full.cos, 4e-16);
-        if (std::abs(x - base) > sincos_reach) BOOST_REQUIRE(same_bits(near.sin, full.sin));
+        if (std::abs(x - base) > sincos_near_limit) BOOST_REQUIRE(same_bits(near.sin, full.sin));
     }
 }
 

@@ -13,12 +13,12 @@ template <class T>
 static Eigen::Matrix<T, 3, 1> formula(const T& x, const T& y) {
     const auto [s, c] = sincos(x * y);
     const T bent = select((x < y || !(x <= -y)) && x != T(0.0), tanh(x - 0.5), atan2(y, -x));
-    const T clipped = min(max(s, T(-0.5)), abs(c)) + copysign(sqrt(abs(x)), y);
+    const T clamped = min(max(s, T(-0.5)), abs(c)) + copysign(sqrt(abs(x)), y);
     Eigen::Matrix<T, 3, 3> m = Eigen::Matrix<T, 3, 3>::Identity() * 2.0;
     m(0, 1) = bent;
     m(2, 0) = acos(c) / (2.0 + s);
     m(2, 1) = exp(x) - log(abs(y)) * power(abs(y), x) + power(abs(x), 1.5);
-    return m * Eigen::Matrix<T, 3, 1>(clipped, hypot2(x, y), T(1.0)) + 0.5 * m.col(1);
+    return m * Eigen::Matrix<T, 3, 1>(clamped, hypot2(x, y), T(1.0)) + 0.5 * m.col(1);
 }
 
 struct Recording {

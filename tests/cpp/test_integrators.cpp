@@ -81,9 +81,9 @@ static double order_within_a_step() {
         double largest = 0;
         for (double t = 0; t < 6; t += 0.1) {
             Swell f;
-            const auto inside = Method::step(f, t, Scalar{Swell::exact(t)}, h).second;
+            const auto dense = Method::step(f, t, Scalar{Swell::exact(t)}, h).second;
             for (const double theta : {0.2, 0.4, 0.6, 0.8})
-                largest = std::max(largest, std::abs(inside(theta)[0] - Swell::exact(t + theta * h)));
+                largest = std::max(largest, std::abs(dense(theta)[0] - Swell::exact(t + theta * h)));
         }
         errors.push_back(largest);
     }
@@ -100,11 +100,11 @@ BOOST_AUTO_TEST_CASE(the_solution_within_a_step_meets_both_its_ends_and_their_sl
     Swell f;
     const double t = 0.7, h = 0.1, d = 1e-6;
     const auto check = [&](const auto& result) {
-        const auto& [y1, inside] = result;
-        BOOST_TEST(inside(0.0)[0] == Swell::exact(t));
-        BOOST_TEST(std::abs(inside(1.0)[0] - y1[0]) <= 1e-15);
-        BOOST_TEST(std::abs((inside(d)[0] - inside(-d)[0]) / (2 * d * h) - Swell::exact(t) * std::cos(t)) <= 1e-8);
-        BOOST_TEST(std::abs((inside(1 + d)[0] - inside(1 - d)[0]) / (2 * d * h) - y1[0] * std::cos(t + h)) <= 1e-8);
+        const auto& [y1, dense] = result;
+        BOOST_TEST(dense(0.0)[0] == Swell::exact(t));
+        BOOST_TEST(std::abs(dense(1.0)[0] - y1[0]) <= 1e-15);
+        BOOST_TEST(std::abs((dense(d)[0] - dense(-d)[0]) / (2 * d * h) - Swell::exact(t) * std::cos(t)) <= 1e-8);
+        BOOST_TEST(std::abs((dense(1 + d)[0] - dense(1 - d)[0]) / (2 * d * h) - y1[0] * std::cos(t + h)) <= 1e-8);
     };
     check(Rk4::step(f, t, Scalar{Swell::exact(t)}, h));
     check(Dp5::step(f, t, Scalar{Swell::exact(t)}, h));
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(the_error_estimate_is_of_order_5_and_counts_the_motion_alon
     BOOST_TEST(stepper.error({1.0, 0.0}, 0.01, 1e-6, 1e-6) < 1);
 }
 
-// Of the two ends of a step the larger sets the tolerance.
+// The larger value at the two ends of a step sets the tolerance.
 BOOST_AUTO_TEST_CASE(the_tolerance_is_that_of_the_larger_end) {
     Dopri5<double, 1, 1> stepper;
     stepper.k = {Scalar{1.0}};

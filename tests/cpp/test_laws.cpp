@@ -1,4 +1,4 @@
-#include "arm3r/control/laws.hpp"
+#include "arm3r/control/control_laws.hpp"
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
@@ -16,7 +16,7 @@ BOOST_AUTO_TEST_SUITE(laws)
 using Matrix = Eigen::Matrix3d;
 using Vector = Eigen::Vector3d;
 using Memory = std::array<double, law_memory>;
-using Slopes = Dual<slopes_at_once>;
+using Slopes = Dual<derivatives_per_pass>;
 
 static bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double tolerance = 1e-10) {
     return distance(a, b) <= tolerance * (1 + a.cwiseAbs().maxCoeff());
@@ -32,12 +32,12 @@ static double farness(const Vector& q, const Arm<double>& arm) {  // from singul
 }
 
 // A controller with its own model and random gains, and what it senses. All that may differ does.
-struct Scene {
+struct RowContext {
     Controller<double> controller{};
-    Sensed<double> sensed{};
+    Measurement<double> sensed{};
     Memory memory{};
 
-    Scene(Random& random, Controls type) {
+    RowContext(Random& random, ControllerType type) {
         each_law_number([&](double& x) { x = random.in(0.5, 2); }, controller);
         Gains<double>& gains = controller.gains;
         gains.integral_limit = 100;
@@ -48,15 +48,15 @@ struct Scene {
         controller.type = type;
         controller.model = random_params(random).arm();
         controller.compensates_gravity = controller.cancels_force = controller.has_tank = true;
-        Setpoint<double>& setpoint = controller.setpoint;
-        setpoint.path = Path::minimum_jerk;
-        setpoint.in_joints =
-            type == Controls::joint_pd || type == Controls::computed_torque || type == Controls::joint_stiffness;
-        setpoint.from = random.vector(-1, 1);
-        setpoint.to = random.vector(-1, 1);
-        setpoint.pressing = Pressing::sinusoid;
+        Reference<double>& reference = controller.reference;
+        reference.path = Path::minimum_jerk;
+        reference.in_joints = type == ControllerType::joint_pd || type == ControllerType::computed_torque ||
+                              type == ControllerType::joint_stiffness;
+        reference.from = random.vector(-1, 1);
+        reference.to = random.vector(-1, 1);
+        reference.force_profile = ForceProfile::sinusoid;
 
-        sensed.t = setpoint.start + setpoint.duration * random.in(0.1, 0.9);
+        sensed.t = reference.start + reference.duration * random.in(0.1, 0.9);
         do sensed.q = random.vector(-4, 4);
         while (farness(sensed.q, controller.model) < 0.2);
         sensed.qd = random.vector(-2, 2);
@@ -68,7 +68,7 @@ struct Scene {
         sensed.contact = 1;
         sensed.force_phase = random.in(0, 1) < 0.7;
         for (double& number : memory) number = random.in(-0.9, 0.9);
-        if (type == Controls::energy_tank) memory[0] = random.in(0, 1.6);
+        if (type == ControllerType::energy_tank) memory[0] = random.in(0, 1.6);
     }
 
     // Exact model and exact sensors.
@@ -76,28 +76,28 @@ struct Scene {
 
     Command<double> command() const {
         Command<double> result;
-        law(controller, sensed, memory, result);
+        control_law(controller, sensed, memory, result);
         return result;
     }
     Vector tau() const { return command().tau; }
 };
 
 template <class F>
-static void for_scenes(Controls type, F check) {
+static void for_scenes(ControllerType type, F check) {
     Random random(unsigned(type) + 1);
-    for (int i = 0; i < 300; ++i) check(Scene(random, type));
+    for (int i = 0; i < 300; ++i) check(RowContext(random, type));
 }
 
 // The formulas' symbols, in matrices.
 struct Symbols {
     const Controller<double>& controller;
     const Gains<double>& g;
-    const Sensed<double>& s;
+    const Measurement<double>& s;
     Matrix M, C, J, Jd, Ji, Lambda, mu, S_f, S_p;
     Vector qd, tau_g, tau_f, p, x, xd, x_d, xd_d, xdd_d, p_in;
     double f_d, e_f, z;
 
-    explicit Symbols(const Scene& scene)
+    explicit Symbols(const RowContext& scene)
         : controller(scene.controller), g(controller.gains), s(scene.sensed), qd(s.qd), p_in(-s.n), z(scene.memory[0]) {
         const Arm<double>& model = controller.model;
         M = mass_matrix(model, s.pose);
@@ -112,13 +112,13 @@ struct Symbols {
         p = Ji.transpose() * tau_g;
         x = tip_position(model, s.pose);
         xd = J * qd;
-        const Wanted<double> wanted = wanted_at(controller.setpoint, s.t);
-        x_d = wanted.position;
-        xd_d = wanted.velocity;
-        xdd_d = wanted.acceleration;
+        const DesiredMotion<double> desired = desired_motion_at(controller.reference, s.t);
+        x_d = desired.position;
+        xd_d = desired.velocity;
+        xdd_d = desired.acceleration;
         S_f = s.force_phase * p_in * p_in.transpose();
         S_p = Matrix::Identity() - S_f;
-        f_d = force_wanted_at(controller.setpoint, s.t);
+        f_d = desired_force_at(controller.reference, s.t);
         e_f = f_d - p_in.dot(-s.f_on_tip);
     }
 
@@ -134,7 +134,7 @@ struct Symbols {
 // ---- each law is its formula
 
 BOOST_AUTO_TEST_CASE(joint_pd_is_its_formula) {
-    for_scenes(Controls::joint_pd, [](Scene scene) {
+    for_scenes(ControllerType::joint_pd, [](RowContext scene) {
         const Symbols y(scene);
         const Vector pd =
             y.diagonal(y.g.joint_stiffness) * (y.x_d - Vector(y.s.q)) - y.diagonal(y.g.joint_damping) * y.qd;
@@ -145,7 +145,7 @@ BOOST_AUTO_TEST_CASE(joint_pd_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(computed_torque_is_its_formula) {
-    for_scenes(Controls::computed_torque, [](Scene scene) {
+    for_scenes(ControllerType::computed_torque, [](RowContext scene) {
         const Symbols y(scene);
         const Vector a =
             y.xdd_d + y.diagonal(y.g.velocity) * (y.xd_d - y.qd) + y.diagonal(y.g.position) * (y.x_d - Vector(y.s.q));
@@ -157,7 +157,7 @@ BOOST_AUTO_TEST_CASE(computed_torque_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(resolved_acceleration_is_its_formula) {
-    for_scenes(Controls::resolved_acceleration, [](Scene scene) {
+    for_scenes(ControllerType::resolved_acceleration, [](RowContext scene) {
         const Symbols y(scene);
         BOOST_TEST(close(y.ID(y.a_m()), scene.tau()));
         scene.controller.cancels_force = false;
@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(resolved_acceleration_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(stiffness_is_its_formula) {
-    for_scenes(Controls::stiffness, [](const Scene& scene) {
+    for_scenes(ControllerType::stiffness, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = y.diagonal(y.g.stiffness) * (y.x_d - y.x) - y.diagonal(y.g.damping) * y.xd;
         BOOST_TEST(close(y.tau_g + y.J.transpose() * force, scene.tau()));
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(stiffness_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(joint_stiffness_is_its_formula) {
-    for_scenes(Controls::joint_stiffness, [](const Scene& scene) {
+    for_scenes(ControllerType::joint_stiffness, [](const RowContext& scene) {
         const Symbols y(scene);
         const Matrix J_d = jacobian(y.controller.model, pose(Vec3<double>(y.x_d)));
         const Matrix K_q = J_d.transpose() * y.diagonal(y.g.stiffness) * J_d;
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(joint_stiffness_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(impedance_is_its_formula) {
-    for_scenes(Controls::impedance, [](const Scene& scene) {
+    for_scenes(ControllerType::impedance, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = y.Lambda * y.xdd_d + y.mu * y.xd_d - y.diagonal(y.g.damping) * (y.xd - y.xd_d) -
                              y.diagonal(y.g.stiffness) * (y.x - y.x_d);
@@ -193,21 +193,21 @@ BOOST_AUTO_TEST_CASE(impedance_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(impedance_about_a_point_is_stiffness_at_a_singular_pose_too) {
-    for_scenes(Controls::impedance, [](Scene scene) {
-        scene.controller.setpoint.path = Path::point;
-        Scene stretched = scene;
+    for_scenes(ControllerType::impedance, [](RowContext scene) {
+        scene.controller.reference.path = Path::point;
+        RowContext stretched = scene;
         stretched.sensed.q[2] = 0;
         stretched.sensed.pose = pose(stretched.sensed.q);
-        for (Scene* it : {&scene, &stretched}) {
+        for (RowContext* it : {&scene, &stretched}) {
             const Vector tau = it->tau();
-            it->controller.type = Controls::stiffness;
+            it->controller.type = ControllerType::stiffness;
             BOOST_TEST(close(it->tau(), tau, 1e-14));
         }
     });
 }
 
 BOOST_AUTO_TEST_CASE(shaped_impedance_is_its_formula) {
-    for_scenes(Controls::shaped_impedance, [](const Scene& scene) {
+    for_scenes(ControllerType::shaped_impedance, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = Vector(y.s.f_on_tip) - y.diagonal(y.g.damping) * (y.xd - y.xd_d) -
                              y.diagonal(y.g.stiffness) * (y.x - y.x_d);
@@ -216,7 +216,7 @@ BOOST_AUTO_TEST_CASE(shaped_impedance_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(operational_space_is_its_formula_in_lambda_mu_and_p) {
-    for_scenes(Controls::operational_space, [](Scene scene) {
+    for_scenes(ControllerType::operational_space, [](RowContext scene) {
         const Symbols y(scene);
         const Vector inertial = y.Lambda * (y.S_p * y.a_m() + y.S_f * y.a_f()) + y.mu * y.xd + y.p;
         BOOST_TEST(close(y.J.transpose() * (inertial - Vector(y.s.f_cancelled)) + y.tau_f, scene.tau()));
@@ -226,7 +226,7 @@ BOOST_AUTO_TEST_CASE(operational_space_is_its_formula_in_lambda_mu_and_p) {
 }
 
 BOOST_AUTO_TEST_CASE(hybrid_is_its_formula_in_each_variant) {
-    for_scenes(Controls::hybrid, [](Scene scene) {
+    for_scenes(ControllerType::hybrid, [](RowContext scene) {
         const Symbols y(scene);
         scene.controller.variant = Variant::dynamic;
         BOOST_TEST(close(y.ID(y.S_p * y.a_m() + y.S_f * y.a_f()), scene.tau()));
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_CASE(hybrid_is_its_formula_in_each_variant) {
 }
 
 BOOST_AUTO_TEST_CASE(parallel_is_its_formula) {
-    for_scenes(Controls::parallel, [](const Scene& scene) {
+    for_scenes(ControllerType::parallel, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = y.diagonal(y.g.damping) * (y.xd_d - y.xd) + y.diagonal(y.g.stiffness) * (y.x_d - y.x) +
                              y.S_f * y.p_in * y.correction();
@@ -262,7 +262,7 @@ BOOST_AUTO_TEST_CASE(parallel_is_its_formula) {
 }
 
 BOOST_AUTO_TEST_CASE(admittance_yields_and_follows_by_its_formulas) {
-    for_scenes(Controls::admittance, [](Scene scene) {
+    for_scenes(ControllerType::admittance, [](RowContext scene) {
         const Symbols y(scene);
         const Vector x_c(scene.memory[0], scene.memory[1], scene.memory[2]);
         const Vector xd_c(scene.memory[3], scene.memory[4], scene.memory[5]);
@@ -284,7 +284,7 @@ BOOST_AUTO_TEST_CASE(admittance_yields_and_follows_by_its_formulas) {
 BOOST_AUTO_TEST_CASE(admittance_by_joint_pd_pulls_the_joints_on_their_branch) {
     int out_of_first_turn = 0;
     Random shift(77);
-    for_scenes(Controls::admittance, [&](Scene scene) {
+    for_scenes(ControllerType::admittance, [&](RowContext scene) {
         const Symbols y(scene);
         const Vector away = shift.vector(-0.1, 0.1);  // stays on the branch: farness is 0.2 and more
         const Vector x_c = tip_position(y.controller.model, pose(Vec3<double>(Vector(y.s.q) + away)));
@@ -298,7 +298,7 @@ BOOST_AUTO_TEST_CASE(admittance_by_joint_pd_pulls_the_joints_on_their_branch) {
 }
 
 BOOST_AUTO_TEST_CASE(admittance_beyond_reach_stretches_the_arm_towards_the_point) {
-    for_scenes(Controls::admittance, [&](Scene scene) {
+    for_scenes(ControllerType::admittance, [&](RowContext scene) {
         const Arm<double>& model = scene.controller.model;
         const Vector base(0, 0, model.base_height);
         const Vector x_c = base + 10 * (Vector(tip_position(model, scene.sensed.pose)) - base);
@@ -306,31 +306,31 @@ BOOST_AUTO_TEST_CASE(admittance_beyond_reach_stretches_the_arm_towards_the_point
         scene.controller.gains.joint_stiffness = {1, 1, 1};
         scene.controller.gains.joint_damping = {0, 0, 0};
         scene.controller.inner = Inner::joint_pd;
-        const Vector wanted = Vector(scene.sensed.q) + scene.tau() - Symbols(scene).tau_g;
-        const Vector reached = Vector(tip_position(model, pose(Vec3<double>(wanted)))) - base;
-        BOOST_TEST(std::abs(std::sin(wanted[2])) < 1e-12);
+        const Vector desired = Vector(scene.sensed.q) + scene.tau() - Symbols(scene).tau_g;
+        const Vector reached = Vector(tip_position(model, pose(Vec3<double>(desired)))) - base;
+        BOOST_TEST(std::abs(std::sin(desired[2])) < 1e-12);
         BOOST_TEST(close(reached.normalized(), (x_c - base).normalized()));
         BOOST_TEST(close(reached.norm(), model.link2.length + model.link3.length));
     });
 }
 
 BOOST_AUTO_TEST_CASE(adaptive_reference_displaces_the_reference_of_shaped_impedance) {
-    for_scenes(Controls::adaptive_reference, [](const Scene& scene) {
+    for_scenes(ControllerType::adaptive_reference, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector e = y.x - y.x_d - y.s.force_phase * scene.memory[0] * y.p_in;
         const Vector force =
             Vector(y.s.f_on_tip) - y.diagonal(y.g.damping) * (y.xd - y.xd_d) - y.diagonal(y.g.stiffness) * e;
         BOOST_TEST(close(y.ID(y.xdd_d + y.diagonal(y.g.mass).inverse() * force), scene.tau()));
-        BOOST_TEST(close(y.g.reference * y.e_f, scene.command().rates[0]));
+        BOOST_TEST(close(y.g.reference_gain * y.e_f, scene.command().rates[0]));
     });
 }
 
 // At rest the spring balances the wall, k_e deep: what force does the reference give?
 BOOST_AUTO_TEST_CASE(adaptive_reference_from_a_wall_stiffness_presses_as_its_closed_form_says) {
-    for_scenes(Controls::adaptive_reference, [](Scene scene) {
+    for_scenes(ControllerType::adaptive_reference, [](RowContext scene) {
         scene.controller.adaptation = Adaptation::indirect;
         scene.sensed.force_phase = 1;
-        scene.controller.setpoint.path = Path::point;
+        scene.controller.reference.path = Path::point;
         const Symbols y(scene);
         const Matrix K = y.diagonal(y.g.stiffness);
         const double k_e = scene.controller.gains.assumed_stiffness, s_E = -y.s.face;
@@ -368,7 +368,7 @@ static double quintic(double low, double high, double x) {
 }
 
 BOOST_AUTO_TEST_CASE(energy_tank_is_its_formula) {
-    for_scenes(Controls::energy_tank, [](Scene scene) {
+    for_scenes(ControllerType::energy_tank, [](RowContext scene) {
         const Symbols y(scene);
         const Vector e = y.x - y.x_d, ed = y.xd - y.xd_d, damped = y.diagonal(y.g.damping) * ed;
         const double dK = y.g.stiffness_amplitude * std::sin(2 * M_PI * y.g.stiffness_frequency * y.s.t);
@@ -387,15 +387,15 @@ BOOST_AUTO_TEST_CASE(equal_levels_of_the_tank_make_the_valves_hard) {
     Gains<double> gains{};
     gains.tank_low = gains.tank_high = 0.5;
     gains.tank_capacity = 2;
-    BOOST_TEST(valves(gains, 0.4999).out == 0);
-    BOOST_TEST(valves(gains, 0.5001).out == 1);
-    BOOST_TEST(valves(gains, 1.9999).in == 1);
-    BOOST_TEST(valves(gains, 2.0001).in == 0);
+    BOOST_TEST(tank_gains(gains, 0.4999).out == 0);
+    BOOST_TEST(tank_gains(gains, 0.5001).out == 1);
+    BOOST_TEST(tank_gains(gains, 1.9999).in == 1);
+    BOOST_TEST(tank_gains(gains, 2.0001).in == 0);
 }
 
 BOOST_AUTO_TEST_CASE(virtual_wall_pushes_one_way) {
     int pushed = 0;
-    for_scenes(Controls::virtual_wall, [&](const Scene& scene) {
+    for_scenes(ControllerType::virtual_wall, [&](const RowContext& scene) {
         const Symbols y(scene);
         const Vector normal = y.g.plane_normal;
         const double depth = normal.dot(Vector(y.g.plane_point) - y.x), rate = -normal.dot(y.xd);
@@ -412,8 +412,9 @@ BOOST_AUTO_TEST_CASE(virtual_wall_pushes_one_way) {
 // ---- memory
 
 BOOST_AUTO_TEST_CASE(the_integral_grows_in_contact_and_in_the_force_phase_only) {
-    for (const Controls type : {Controls::operational_space, Controls::hybrid, Controls::parallel})
-        for_scenes(type, [](Scene scene) {
+    for (const ControllerType type :
+         {ControllerType::operational_space, ControllerType::hybrid, ControllerType::parallel})
+        for_scenes(type, [](RowContext scene) {
             const double e_f = Symbols(scene).e_f;
             for (const double contact : {0.0, 1.0})
                 for (const double phase : {0.0, 1.0}) {
@@ -425,7 +426,7 @@ BOOST_AUTO_TEST_CASE(the_integral_grows_in_contact_and_in_the_force_phase_only) 
 }
 
 BOOST_AUTO_TEST_CASE(the_integral_stays_within_its_limit) {
-    for_scenes(Controls::hybrid, [](Scene scene) {
+    for_scenes(ControllerType::hybrid, [](RowContext scene) {
         scene.sensed.force_phase = 1;
         scene.controller.gains.integral_limit = 3;
         const double e_f = Symbols(scene).e_f;
@@ -438,33 +439,34 @@ BOOST_AUTO_TEST_CASE(the_integral_stays_within_its_limit) {
 }
 
 BOOST_AUTO_TEST_CASE(per_integral_is_what_the_torque_changes_by) {
-    for (const Controls type : {Controls::operational_space, Controls::hybrid, Controls::parallel})
-        for_scenes(type, [](Scene scene) {
+    for (const ControllerType type :
+         {ControllerType::operational_space, ControllerType::hybrid, ControllerType::parallel})
+        for_scenes(type, [](RowContext scene) {
             scene.controller.anti_windup = AntiWindup::conditional;
             for (const Variant variant :
                  {Variant::dynamic, Variant::jacobian_transpose, Variant::projected, Variant::raibert_craig}) {
                 scene.controller.variant = variant;
                 const Command<double> before = scene.command();
-                Scene after = scene;
+                RowContext after = scene;
                 after.memory[0] += 1;
-                BOOST_TEST(close(after.tau() - Vector(before.tau), before.per_integral, 1e-9));
+                BOOST_TEST(close(after.tau() - Vector(before.tau), before.dtau_dintegral, 1e-9));
             }
         });
 }
 
 BOOST_AUTO_TEST_CASE(memory_starts_where_the_law_needs_it) {
     Random random(5);
-    const Scene tank(random, Controls::energy_tank);
+    const RowContext tank(random, ControllerType::energy_tank);
     BOOST_TEST(memory_at_start(tank.controller, tank.sensed)[0] == tank.controller.gains.tank_energy);
 
-    const Scene admitting(random, Controls::admittance);
+    const RowContext admitting(random, ControllerType::admittance);
     const Memory at = memory_at_start(admitting.controller, admitting.sensed);
     const Symbols y(admitting);
     BOOST_TEST(distance(Vector(at[0], at[1], at[2]), y.x_d) == 0);
     BOOST_TEST(distance(Vector(at[3], at[4], at[5]), y.xd_d) == 0);
 
-    for (const Controls type : {Controls::hybrid, Controls::adaptive_reference}) {
-        const Scene forcing(random, type);
+    for (const ControllerType type : {ControllerType::hybrid, ControllerType::adaptive_reference}) {
+        const RowContext forcing(random, type);
         BOOST_TEST((memory_at_start(forcing.controller, forcing.sensed) == Memory{}));
     }
 }
@@ -475,15 +477,15 @@ struct Motion3 {
     Vector qdd, xdd;
 };
 
-static Motion3 motion(const Scene& scene) {
+static Motion3 motion(const RowContext& scene) {
     const Symbols y(scene);
-    const Sensed<double>& s = scene.sensed;
+    const Measurement<double>& s = scene.sensed;
     const Vector qdd = forward_dynamics(scene.controller.model, s.pose, s.qd, Vec3<double>(scene.tau()), s.f_on_tip);
     return {qdd, y.J * qdd + y.Jd * y.qd};
 }
 
 BOOST_AUTO_TEST_CASE(computed_torque_makes_the_joint_errors_linear) {
-    for_scenes(Controls::computed_torque, [](Scene scene) {
+    for_scenes(ControllerType::computed_torque, [](RowContext scene) {
         scene.trust_everything();
         const Symbols y(scene);
         const Vector e = y.x_d - Vector(y.s.q), ed = y.xd_d - y.qd;
@@ -497,17 +499,18 @@ BOOST_AUTO_TEST_CASE(computed_torque_makes_the_joint_errors_linear) {
 }
 
 BOOST_AUTO_TEST_CASE(resolved_acceleration_and_hybrid_make_the_tip_accelerate_as_told) {
-    for (const Controls type : {Controls::resolved_acceleration, Controls::hybrid, Controls::operational_space})
-        for_scenes(type, [&](Scene scene) {
+    for (const ControllerType type :
+         {ControllerType::resolved_acceleration, ControllerType::hybrid, ControllerType::operational_space})
+        for_scenes(type, [&](RowContext scene) {
             scene.trust_everything();
-            if (type == Controls::resolved_acceleration) scene.sensed.force_phase = 0;
+            if (type == ControllerType::resolved_acceleration) scene.sensed.force_phase = 0;
             const Symbols y(scene);
             BOOST_TEST(close(y.S_p * y.a_m() + y.S_f * y.a_f(), motion(scene).xdd, 1e-9));
         });
 }
 
 BOOST_AUTO_TEST_CASE(a_force_fed_forward_couples_through_the_mobility) {
-    for_scenes(Controls::operational_space, [](Scene scene) {
+    for_scenes(ControllerType::operational_space, [](RowContext scene) {
         scene.controller.force_term = ForceTerm::feedforward;
         const Symbols y(scene);
         const Vector extra = y.Lambda.inverse() * (y.S_f * y.p_in * y.f_d + Vector(y.s.f_on_tip));
@@ -516,7 +519,7 @@ BOOST_AUTO_TEST_CASE(a_force_fed_forward_couples_through_the_mobility) {
 }
 
 BOOST_AUTO_TEST_CASE(shaped_impedance_is_a_mass_on_a_spring) {
-    for_scenes(Controls::shaped_impedance, [](Scene scene) {
+    for_scenes(ControllerType::shaped_impedance, [](RowContext scene) {
         scene.trust_everything();
         const Symbols y(scene);
         const Vector edd = motion(scene).xdd - y.xdd_d;
@@ -527,7 +530,7 @@ BOOST_AUTO_TEST_CASE(shaped_impedance_is_a_mass_on_a_spring) {
 }
 
 BOOST_AUTO_TEST_CASE(parallel_control_is_a_mass_between_spring_and_force_loop) {
-    for_scenes(Controls::parallel, [](Scene scene) {
+    for_scenes(ControllerType::parallel, [](RowContext scene) {
         scene.trust_everything();
         const Symbols y(scene);
         const Vector balance = y.g.force_mass * (motion(scene).xdd - y.xdd_d) +
@@ -542,7 +545,7 @@ static void take_friction_away(Arm<double>& arm) {
 }
 
 BOOST_AUTO_TEST_CASE(impedance_keeps_the_arms_own_inertia) {
-    for_scenes(Controls::impedance, [](Scene scene) {
+    for_scenes(ControllerType::impedance, [](RowContext scene) {
         take_friction_away(scene.controller.model);
         const Symbols y(scene);
         const Vector edd = motion(scene).xdd - y.xdd_d, ed = y.xd - y.xd_d;
@@ -553,14 +556,14 @@ BOOST_AUTO_TEST_CASE(impedance_keeps_the_arms_own_inertia) {
 }
 
 // V = ed^T Lambda ed/2 + e^T K e/2 along the motion, differentiated by Dual.
-static double storage_rate(const Scene& scene, const Vector& qdd) {
-    const Sensed<double>& s = scene.sensed;
+static double storage_rate(const RowContext& scene, const Vector& qdd) {
+    const Measurement<double>& s = scene.sensed;
     const Controller<double>& controller = scene.controller;
     const Vec3<Dual<1>> q = moving(s.q, s.qd), qd = moving(s.qd, Vec3<double>(qdd));
     const Pose<Dual<1>> p = pose(q);
-    const Wanted<Dual<1>> wanted = wanted_at(controller.setpoint, Dual<1>(s.t, {1}));
-    const Vec3<Dual<1>> e = minus(tip_position(controller.model, p), wanted.position);
-    const Vec3<Dual<1>> ed = minus(tip_velocity(controller.model, p, qd), wanted.velocity);
+    const DesiredMotion<Dual<1>> desired = desired_motion_at(controller.reference, Dual<1>(s.t, {1}));
+    const Vec3<Dual<1>> e = minus(tip_position(controller.model, p), desired.position);
+    const Vec3<Dual<1>> ed = minus(tip_velocity(controller.model, p, qd), desired.velocity);
     const Dual<1> kinetic = dot(ed, times(operational_space_inertia(controller.model, p), ed));
     Dual<1> elastic(0.0);
     for (int i = 0; i < 3; ++i) elastic += controller.gains.stiffness[i] * e[i] * e[i];
@@ -568,7 +571,7 @@ static double storage_rate(const Scene& scene, const Vector& qdd) {
 }
 
 BOOST_AUTO_TEST_CASE(impedance_stores_what_the_world_gives_less_what_it_damps) {
-    for_scenes(Controls::impedance, [](Scene scene) {
+    for_scenes(ControllerType::impedance, [](RowContext scene) {
         take_friction_away(scene.controller.model);
         const Symbols y(scene);
         const Vector ed = y.xd - y.xd_d;
@@ -578,9 +581,9 @@ BOOST_AUTO_TEST_CASE(impedance_stores_what_the_world_gives_less_what_it_damps) {
 }
 
 BOOST_AUTO_TEST_CASE(the_tank_pays_for_the_stiffness) {
-    for_scenes(Controls::energy_tank, [](Scene scene) {
+    for_scenes(ControllerType::energy_tank, [](RowContext scene) {
         take_friction_away(scene.controller.model);
-        scene.controller.setpoint.path = Path::point;
+        scene.controller.reference.path = Path::point;
         const Symbols y(scene);
         const double beta = 1 - quintic(1.1, 1.5, y.z);
         const double V = storage_rate(scene, motion(scene).qdd) + scene.command().rates[0];
@@ -591,16 +594,16 @@ BOOST_AUTO_TEST_CASE(the_tank_pays_for_the_stiffness) {
 
 // Without its own error the inner loop is the impedance that the outer one asks for.
 BOOST_AUTO_TEST_CASE(admittance_tracked_exactly_is_shaped_impedance) {
-    for_scenes(Controls::admittance, [](Scene scene) {
-        scene.controller.setpoint.pressing = Pressing::constant;
-        scene.controller.setpoint.force = 0;
+    for_scenes(ControllerType::admittance, [](RowContext scene) {
+        scene.controller.reference.force_profile = ForceProfile::constant;
+        scene.controller.reference.force = 0;
         const Symbols y(scene);
         for (int i = 0; i < 3; ++i) {
             scene.memory[std::size_t(i)] = y.x[i];
             scene.memory[std::size_t(3 + i)] = y.xd[i];
         }
         const Vector tau = scene.tau();
-        scene.controller.type = Controls::shaped_impedance;
+        scene.controller.type = ControllerType::shaped_impedance;
         BOOST_TEST(close(scene.tau(), tau));
     });
 }
@@ -609,21 +612,21 @@ BOOST_AUTO_TEST_CASE(admittance_tracked_exactly_is_shaped_impedance) {
 // The eigenvalue is that of M^-1 J^-1 S_p J, from an independent derivation.
 BOOST_AUTO_TEST_CASE(hybrid_of_raibert_and_craig_is_unstable_where_it_is_known_to_be) {
     Random random(3);
-    Scene scene(random, Controls::hybrid);
+    RowContext scene(random, ControllerType::hybrid);
     Controller<double>& controller = scene.controller;
     controller.model = Params().arm();
-    controller.setpoint.path = Path::point;
+    controller.reference.path = Path::point;
     controller.gains.joint_stiffness = {1, 1, 1};
     controller.gains.force = controller.gains.force_integral = 0;
-    controller.setpoint.pressing = Pressing::constant;
-    controller.setpoint.force = 0;
+    controller.reference.force_profile = ForceProfile::constant;
+    controller.reference.force = 0;
     const Vec3<double> q(0, -75 * M_PI / 180, 45 * M_PI / 180);
-    controller.setpoint.to = tip_position(controller.model, pose(q));
+    controller.reference.to = tip_position(controller.model, pose(q));
     const Vec3<Slopes> moved(Slopes::variable(q[0], 0), Slopes::variable(q[1], 1), Slopes::variable(q[2], 2));
     const Slopes o(0.0), l(1.0);
     const Vec3<Slopes> zero(o, o, o), n(o, o, l);
-    const Sensed<Slopes> sensed{o, moved, zero, pose(moved), zero, zero, n, o, l, l};
-    const auto least_eigenvalue = [&](Variant variant) {
+    const Measurement<Slopes> sensed{o, moved, zero, pose(moved), zero, zero, n, o, l, l};
+    const auto min_eigenvalue = [&](Variant variant) {
         controller.variant = variant;
         Command<Slopes> command;
         compiled_law<double, Slopes>()(controller, sensed, {}, command);
@@ -634,8 +637,8 @@ BOOST_AUTO_TEST_CASE(hybrid_of_raibert_and_craig_is_unstable_where_it_is_known_t
         const Matrix M = mass_matrix(controller.model, pose(q));
         return Eigen::EigenSolver<Matrix>(-(M.inverse() * slope)).eigenvalues().real().minCoeff();
     };
-    BOOST_TEST(close(-0.4323820891, least_eigenvalue(Variant::raibert_craig), 1e-9));
-    BOOST_TEST(std::abs(least_eigenvalue(Variant::projected)) < 1e-9);
+    BOOST_TEST(close(-0.4323820891, min_eigenvalue(Variant::raibert_craig), 1e-9));
+    BOOST_TEST(std::abs(min_eigenvalue(Variant::projected)) < 1e-9);
 }
 
 // ---- where the laws end
@@ -654,16 +657,16 @@ BOOST_AUTO_TEST_CASE(distance_to_singular_is_that_of_elbow_or_axis) {
 // Every law in every one of its forms.
 static std::vector<Controller<double>> all_laws(Random& random) {
     std::vector<Controller<double>> result;
-    for (int type = int(Controls::joint_pd); type < int(Controls::user); ++type)
+    for (int type = int(ControllerType::joint_pd); type < int(ControllerType::user); ++type)
         for (int form = 0; form < 4; ++form) {
-            Controller<double> controller = Scene(random, Controls(type)).controller;
+            Controller<double> controller = RowContext(random, ControllerType(type)).controller;
             controller.variant = Variant(form);
             controller.force_term = ForceTerm(form % 2);
             controller.anti_windup = AntiWindup(form % 3);
             controller.inner = Inner(form % 3);
             controller.adaptation = Adaptation(form % 2);
-            controller.setpoint.path = Path(2 + form);
-            controller.setpoint.pressing = Pressing(form);
+            controller.reference.path = Path(2 + form);
+            controller.reference.force_profile = ForceProfile(form);
             controller.has_tank = controller.cancels_force = controller.compensates_gravity = form % 2;
             result.push_back(controller);
         }
@@ -673,7 +676,7 @@ static std::vector<Controller<double>> all_laws(Random& random) {
 static std::vector<double> numbers(const Command<double>& command) {
     std::vector<double> all(command.tau.data(), command.tau.data() + 3);
     all.insert(all.end(), command.rates.begin(), command.rates.end());
-    all.insert(all.end(), command.per_integral.data(), command.per_integral.data() + 3);
+    all.insert(all.end(), command.dtau_dintegral.data(), command.dtau_dintegral.data() + 3);
     return all;
 }
 
@@ -687,24 +690,24 @@ static void each_sensed_number(F f, Senses&... s) {
     f(s.face...), f(s.contact...), f(s.force_phase...);
 }
 
-// What the lanes of a pack get together, and each alone. Objects of packs are aligned by hand: outside functions for wide
-// registers the compiler would not.
+// The results of the lanes of a pack, and of each alone. Objects of packs are aligned by hand, because the compiler
+// would not do it outside functions for wide registers.
 template <class P, int N>
 static void check_lanes(Random& random, const Controller<double>& form) {
     constexpr bool one_controller = std::is_same_v<P, double>;
-    const Scene shared(random, form.type);
-    std::vector<Scene> scenes;
+    const RowContext shared(random, form.type);
+    std::vector<RowContext> scenes;
     alignas(64) Controller<P> controllers{};
     copy_controller_choices(form, controllers);
     controllers.model.has_damping = controllers.model.has_dry_friction = true;
-    alignas(64) Sensed<Pack<N>> sensed;
+    alignas(64) Measurement<Pack<N>> sensed;
     alignas(64) std::array<Pack<N>, law_memory> memory;
     const auto put = [](int lane, auto& to, double x) {
         if constexpr (one_controller) to = x;
         else to.set(lane, x);
     };
     for (int lane = 0; lane < N; ++lane) {
-        Scene scene(random, form.type);
+        RowContext scene(random, form.type);
         if (one_controller) scene.controller = shared.controller;
         copy_controller_choices(form, scene.controller);
         const auto into = [&](P& to, const double& x) { put(lane, to, x); };
@@ -714,15 +717,15 @@ static void check_lanes(Random& random, const Controller<double>& form) {
         for (std::size_t i = 0; i < law_memory; ++i) memory[i].set(lane, scene.memory[i]);
         scenes.push_back(scene);
     }
-    alignas(64) Command<Pack<N>> together;
-    compiled_law<P, Pack<N>>()(controllers, sensed, memory, together);
+    alignas(64) Command<Pack<N>> rows_per_block;
+    compiled_law<P, Pack<N>>()(controllers, sensed, memory, rows_per_block);
     for (int lane = 0; lane < N; ++lane) {
         Command<double> of_lane;
         for (int i = 0; i < 3; ++i) {
-            of_lane.tau[i] = together.tau[i][lane];
-            of_lane.per_integral[i] = together.per_integral[i][lane];
+            of_lane.tau[i] = rows_per_block.tau[i][lane];
+            of_lane.dtau_dintegral[i] = rows_per_block.dtau_dintegral[i][lane];
         }
-        for (std::size_t i = 0; i < law_memory; ++i) of_lane.rates[i] = together.rates[i][lane];
+        for (std::size_t i = 0; i < law_memory; ++i) of_lane.rates[i] = rows_per_block.rates[i][lane];
         const std::vector<double> alone = numbers(scenes[std::size_t(lane)].command()), packed = numbers(of_lane);
         BOOST_TEST(std::equal(alone.begin(), alone.end(), packed.begin(), same_bits));
     }
@@ -734,9 +737,9 @@ BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_each_law_alone) {
         check_lanes<Pack<2>, 2>(random, form);
         check_lanes<double, 2>(random, form);
 #if ARM3R_WIDE_PACKS
-        if (widest_lanes() >= 4) check_lanes<double, 4>(random, form);
-        if (widest_lanes() >= 4) check_lanes<Pack<4>, 4>(random, form);
-        if (widest_lanes() >= 8) check_lanes<Pack<8>, 8>(random, form);
+        if (max_lanes() >= 4) check_lanes<double, 4>(random, form);
+        if (max_lanes() >= 4) check_lanes<Pack<4>, 4>(random, form);
+        if (max_lanes() >= 8) check_lanes<Pack<8>, 8>(random, form);
 #endif
     }
 }
@@ -744,7 +747,7 @@ BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_each_law_alone) {
 // tau and rates along a line through q, qd, f, t and memory: slopes of Dual against differences of double.
 struct Along {
     const Controller<double>& controller;
-    Scene at, by;
+    RowContext at, by;
 
     template <class T>
     std::vector<T> operator()(const T& share) const {
@@ -752,18 +755,18 @@ struct Along {
         const auto vector = [&](const Vec3<double>& from, const Vec3<double>& step) {
             return Vec3<T>(shifted(from[0], step[0]), shifted(from[1], step[1]), shifted(from[2], step[2]));
         };
-        const Sensed<double>&s = at.sensed, &d = by.sensed;
+        const Measurement<double>&s = at.sensed, &d = by.sensed;
         const Vec3<T> q = vector(s.q, d.q);
-        const Sensed<T> sensed{shifted(s.t, d.t),
-                               q,
-                               vector(s.qd, d.qd),
-                               pose(q),
-                               vector(s.f_on_tip, d.qd),
-                               vector(s.f_cancelled, d.qd),
-                               vector(s.n, Vector::Zero()),
-                               T(s.face),
-                               T(1.0),
-                               T(1.0)};
+        const Measurement<T> sensed{shifted(s.t, d.t),
+                                    q,
+                                    vector(s.qd, d.qd),
+                                    pose(q),
+                                    vector(s.f_on_tip, d.qd),
+                                    vector(s.f_cancelled, d.qd),
+                                    vector(s.n, Vector::Zero()),
+                                    T(s.face),
+                                    T(1.0),
+                                    T(1.0)};
         std::array<T, law_memory> memory;
         for (std::size_t i = 0; i < law_memory; ++i) memory[i] = shifted(at.memory[i], by.memory[i]);
         Command<T> command;
@@ -777,10 +780,10 @@ struct Along {
 BOOST_AUTO_TEST_CASE(slopes_of_each_law_are_right) {
     Random random(31);
     for (const Controller<double>& controller : all_laws(random)) {
-        Scene at(random, controller.type), by(random, controller.type);
+        RowContext at(random, controller.type), by(random, controller.type);
         do at.sensed.q = random.vector(-4, 4);
         while (farness(at.sensed.q, controller.model) < 0.3);
-        at.sensed.t = controller.setpoint.start + 0.37 * controller.setpoint.duration;
+        at.sensed.t = controller.reference.start + 0.37 * controller.reference.duration;
         const Along along{controller, at, by};
         const std::vector<Slopes> exact = along(Slopes::variable(0.0, 0));
         const double h = 1e-4;

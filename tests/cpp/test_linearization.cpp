@@ -11,8 +11,8 @@ BOOST_AUTO_TEST_SUITE(linearization)
 using Full = State<double, state_size>;
 using Slopes = Linearization<state_size>;
 
-// Of everything that the right-hand side has: an oblique gravity, friction of both kinds, a controller with another arm in
-// mind, now and then at its limit, a wall that swings.
+// A plant with all features of the right-hand side: an oblique gravity, friction of both kinds, a controller with the
+// model of another arm, at times at its limit, an oscillating wall.
 static Plant<double> random_plant(Random& random, double friction_velocity) {
     Params params =
         random_params(random).set("wall", 1).set("wall.acts_on_arm", 1).set("wall.point", random.vector(-0.5, 0.5));
@@ -33,18 +33,18 @@ static Full random_state(Random& random) {
 }
 
 template <class T>
-static RightHandSide<double, T> right_hand_side(const Plant<double>& plant, Touch touch) {
+static RightHandSide<double, T> right_hand_side(const Plant<double>& plant, ContactForceMode force_mode) {
     RightHandSide<double, T> f(plant);
-    f.touch = touch;
+    f.force_mode = force_mode;
     return f;
 }
 
 template <int K>
-static Slopes slopes_of(const Plant<double>& plant, Touch touch, double t, const Full& y, Full& f0) {
-    Slopes slopes{};
-    auto f = right_hand_side<Dual<K>>(plant, touch);
-    linearize<motion_size, ledger_size, K>(f, t, y, 0, f0, slopes);
-    return slopes;
+static Slopes slopes_of(const Plant<double>& plant, ContactForceMode force_mode, double t, const Full& y, Full& f0) {
+    Slopes linearization{};
+    auto f = right_hand_side<Dual<K>>(plant, force_mode);
+    linearize<motion_size, quadrature_count, K>(f, t, y, 0, f0, linearization);
+    return linearization;
 }
 
 // d f/d x of component i along one input, by the central difference of order 6.
@@ -65,23 +65,23 @@ static void check(const Full& slope, const Full& expected, double tolerance, con
                    "f" << i << " by " << input << j << ": " << slope[i] << ", not " << expected[i]);
 }
 
-static Full column(const Slopes& slopes, std::size_t j) {
+static Full column(const Slopes& linearization, std::size_t j) {
     Full of_all;
-    for (std::size_t i = 0; i < state_size; ++i) of_all[i] = slopes.by_state[i][j];
+    for (std::size_t i = 0; i < state_size; ++i) of_all[i] = linearization.df_dy[i][j];
     return of_all;
 }
 
 static bool is_near_a_limit(const Plant<double>& plant, const Full& y) {
-    const Vec3<double> q(y[0], y[1], y[2]), tau = control(plant.controller, q, pose(q));
+    const Vec3<double> q(y[0], y[1], y[2]), tau = feedforward_torque(plant.controller, q, pose(q));
     for (int i = 0; i < 3; ++i)
         if (std::abs(std::abs(tau[i]) - plant.arm.torque_limit[i]) < 0.5) return true;
     return false;
 }
 
 // The differences turn their poses from the same anchor as the slopes do, or, `far`, from none that is near.
-static void check_plant(const Plant<double>& plant, Touch touch, double t, const Full& y, bool far, double h,
-                        double tolerance) {
-    auto f = right_hand_side<double>(plant, touch);
+static void check_plant(const Plant<double>& plant, ContactForceMode force_mode, double t, const Full& y, bool far,
+                        double h, double tolerance) {
+    auto f = right_hand_side<double>(plant, force_mode);
     Full anchor = y;
     if (far)
         for (std::size_t i = 0; i < 3; ++i) anchor[i] += 1;
@@ -92,16 +92,16 @@ static void check_plant(const Plant<double>& plant, Touch touch, double t, const
         return dy;
     };
     Full f0{};
-    const Slopes slopes = slopes_of<7>(plant, touch, t, y, f0);
+    const Slopes linearization = slopes_of<7>(plant, force_mode, t, y, f0);
     for (std::size_t j = 0; j < motion_size; ++j) {
         const auto moved = [&](double by) {
             Full shifted = y;
             shifted[j] += by;
             return at(t, shifted);
         };
-        check(column(slopes, j), difference(moved, h), tolerance, "y", j);
+        check(column(linearization, j), difference(moved, h), tolerance, "y", j);
     }
-    check(slopes.by_time, difference([&](double by) { return at(t + by, y); }, h), tolerance, "t", 0);
+    check(linearization.df_dt, difference([&](double by) { return at(t + by, y); }, h), tolerance, "t", 0);
 }
 
 BOOST_AUTO_TEST_CASE(slopes_of_the_plant_are_the_differences) {
@@ -112,9 +112,9 @@ BOOST_AUTO_TEST_CASE(slopes_of_the_plant_are_the_differences) {
         Full y = random_state(random);
         y[2] = random.in(0.5, 2.5);  // away from the singular poses, where differences fail
         if (is_near_a_limit(plant, y)) continue;
-        for (const Touch touch : {Touch::none, Touch::pressed})
-            check_plant(plant, touch, random.in(0, 3), y, i % 2 == 0, 1e-3, 1e-7);
-        const Vec3<double> q(y[0], y[1], y[2]), tau = control(plant.controller, q, pose(q));
+        for (const ContactForceMode force_mode : {ContactForceMode::none, ContactForceMode::pressed})
+            check_plant(plant, force_mode, random.in(0, 3), y, i % 2 == 0, 1e-3, 1e-7);
+        const Vec3<double> q(y[0], y[1], y[2]), tau = feedforward_torque(plant.controller, q, pose(q));
         limited += std::abs(tau[1]) > plant.arm.torque_limit[1] || std::abs(tau[2]) > plant.arm.torque_limit[2];
     }
     BOOST_TEST(limited > 10);
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(slopes_on_the_grid_of_angles) {
         y[0] = 13.0 / 32;
         y[1] = -21.0 / 32;
         y[2] = 50.0 / 32;
-        if (!is_near_a_limit(plant, y)) check_plant(plant, Touch::pressed, 0.3, y, false, 1e-3, 1e-7);
+        if (!is_near_a_limit(plant, y)) check_plant(plant, ContactForceMode::pressed, 0.3, y, false, 1e-3, 1e-7);
     }
 }
 
@@ -142,12 +142,12 @@ BOOST_AUTO_TEST_CASE(slopes_of_sharp_friction) {
         Full y = random_state(random), f0{};
         y[2] = 1.1;
         y[3] = y[4] = y[5] = 0;
-        const Slopes slopes = slopes_of<7>(plant, Touch::none, 0.0, y, f0);
+        const Slopes linearization = slopes_of<7>(plant, ContactForceMode::none, 0.0, y, f0);
         const Mat3<double> M = mass_matrix(plant.arm, pose(Vec3<double>(y[0], y[1], y[2])));
         Eigen::Matrix3d by_rate;
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = 0; j < 3; ++j)
-                by_rate(Eigen::Index(i), Eigen::Index(j)) = slopes.by_state[3 + i][3 + j];
+                by_rate(Eigen::Index(i), Eigen::Index(j)) = linearization.df_dy[3 + i][3 + j];
         const Eigen::Matrix3d steepness = -Eigen::Matrix3d(M) * by_rate;
         for (int i = 0; i < 3; ++i) {
             const double expected = plant.arm.damping[i] + plant.arm.friction[i] / velocity;
@@ -165,26 +165,26 @@ BOOST_AUTO_TEST_CASE(every_width_gives_the_same_bits_and_those_of_doubles) {
         const Plant<double> plant = random_plant(random, 0.1);
         const Full y = random_state(random);
         const double t = random.in(0, 3);
-        auto f = right_hand_side<double>(plant, Touch::pressed);
+        auto f = right_hand_side<double>(plant, ContactForceMode::pressed);
         Full plain;
         f.begin_step(y);
         f(t, y, plain);
         Full f7, f3, f1;
-        const Slopes at_once = slopes_of<7>(plant, Touch::pressed, t, y, f7),
-                     by_threes = slopes_of<3>(plant, Touch::pressed, t, y, f3),
-                     singly = slopes_of<1>(plant, Touch::pressed, t, y, f1);
+        const Slopes at_once = slopes_of<7>(plant, ContactForceMode::pressed, t, y, f7),
+                     by_threes = slopes_of<3>(plant, ContactForceMode::pressed, t, y, f3),
+                     singly = slopes_of<1>(plant, ContactForceMode::pressed, t, y, f1);
         for (std::size_t k = 0; k < state_size; ++k) {
             for (const Full& f0 : {f7, f3, f1}) BOOST_TEST(same_bits(f0[k], plain[k]));
             for (const Slopes& other : {by_threes, singly}) {
-                BOOST_TEST(same_bits(other.by_time[k], at_once.by_time[k]));
+                BOOST_TEST(same_bits(other.df_dt[k], at_once.df_dt[k]));
                 for (std::size_t j = 0; j < motion_size; ++j)
-                    BOOST_TEST(same_bits(other.by_state[k][j], at_once.by_state[k][j]));
+                    BOOST_TEST(same_bits(other.df_dy[k][j], at_once.df_dy[k][j]));
             }
         }
     }
 }
 
-// Behind the books come the numbers that a controller remembers, of which some are in use.
+// The quadratures are followed by the memory of a controller, of which some components are in use.
 struct Remembering {
     template <class S>
     void begin_step(const S&) {}
@@ -199,23 +199,23 @@ struct Remembering {
 };
 
 BOOST_AUTO_TEST_CASE(memory_counts_as_far_as_it_is_in_use) {
-    constexpr std::size_t N = 5;  // one that moves, a book, three of memory
+    constexpr std::size_t N = 5;  // one motion, one quadrature, three of memory
     const State<double, N> y{0.7, 1e9, -0.3, 1.1, 5.0};
     const double t = 0.6;
     const State<double, N> untouched{-7, -7, -7, -7, -7};
     State<double, N> f0 = untouched;
-    Linearization<N> slopes{{untouched, untouched, untouched, untouched, untouched}, untouched};
+    Linearization<N> linearization{{untouched, untouched, untouched, untouched, untouched}, untouched};
     Remembering f;
-    linearize<1, 1, 2>(f, t, y, 2, f0, slopes);
-    const State<double, N> by_state[] = {{y[2], -7, y[0], t, -7},
-                                         {0, -7, 2 * y[2] * t, 0, -7},
-                                         {0, -7, 0, 1, -7},
-                                         {3 * y[0] * y[0], -7, 1, 0, -7},
-                                         untouched};
-    const State<double, N> by_time{y[3], y[2] * y[2], -4 * t, 0, -7};
+    linearize<1, 1, 2>(f, t, y, 2, f0, linearization);
+    const State<double, N> df_dy[] = {{y[2], -7, y[0], t, -7},
+                                      {0, -7, 2 * y[2] * t, 0, -7},
+                                      {0, -7, 0, 1, -7},
+                                      {3 * y[0] * y[0], -7, 1, 0, -7},
+                                      untouched};
+    const State<double, N> df_dt{y[3], y[2] * y[2], -4 * t, 0, -7};
     for (std::size_t i = 0; i < N; ++i) {
-        BOOST_TEST(std::abs(slopes.by_time[i] - by_time[i]) <= 1e-15);
-        for (std::size_t j = 0; j < N; ++j) BOOST_TEST(std::abs(slopes.by_state[i][j] - by_state[i][j]) <= 1e-15);
+        BOOST_TEST(std::abs(linearization.df_dt[i] - df_dt[i]) <= 1e-15);
+        for (std::size_t j = 0; j < N; ++j) BOOST_TEST(std::abs(linearization.df_dy[i][j] - df_dy[i][j]) <= 1e-15);
     }
     BOOST_TEST(f0[4] == -7);
     BOOST_TEST(f0[3] == y[0] * y[0] * y[0] + y[2]);

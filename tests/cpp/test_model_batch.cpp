@@ -26,7 +26,7 @@ Numbers joined(Numbers a, const Numbers& b) {
     return a;
 }
 
-// What a row of results is in slide, and how it is told in simscape.
+// A row of results in the slide convention, and the same row in simscape.
 enum class Kind { space, joints, columns_in_joints, joints_twice };
 
 struct Case {
@@ -48,7 +48,11 @@ const Case cases[] = {
      {3},
      Kind::space,
      [](const State1& s) { return numbers(elbow_position(s.arm, s.p)); }},
-    {"centres", in_groups::centres, {9}, Kind::space, [](const State1& s) { return numbers(centres(s.arm, s.p)); }},
+    {"centres",
+     in_groups::centres_of_mass,
+     {9},
+     Kind::space,
+     [](const State1& s) { return numbers(centres_of_mass(s.arm, s.p)); }},
     {"jacobian",
      in_groups::jacobian,
      {9},
@@ -147,7 +151,7 @@ Numbers random_rows(Random& random, std::size_t n, double limit) {
 
 Vec3<double> row(const Numbers& rows, std::size_t i, bool flip) {
     const Vec3<double> v(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]);
-    return flip ? flipped(v) : v;
+    return flip ? change_convention(v) : v;
 }
 
 constexpr double untouched = 12345;
@@ -158,7 +162,7 @@ void compare(const Model& model, std::size_t n, Random& random, bool with_force)
     const Numbers force = with_force ? random_rows(random, n, 50) : Numbers(3 * n);
     for (const Case& c : cases) {
         std::array<Numbers, 2> out;
-        Rows rows{{q.data(), qd.data(), third.data(), with_force ? force.data() : nullptr}, {}};
+        StateRows rows{{q.data(), qd.data(), third.data(), with_force ? force.data() : nullptr}, {}};
         for (std::size_t k = 0; k < c.widths.size(); ++k) {
             out[k].assign(n * c.widths[k] + 1, untouched);
             rows.out[k] = {out[k].data(), c.widths[k]};

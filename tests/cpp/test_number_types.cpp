@@ -74,11 +74,11 @@ struct Outlined {
     }
 };
 
-// One step of each method, with the books, from t = x[6], on a plant where contact is decided at every stage.
+// One step of each method, with the quadratures, from t = x[6], on a plant where each stage decides about contact.
 template <class T>
 static std::vector<T> stepped(const Plant<double>& plant, const T* x) {
     RightHandSide<double, T> f(plant);
-    f.touch = Touch::each_stage;
+    f.force_mode = ContactForceMode::each_stage;
     const State<T, state_size> y{x[0], x[1], x[2], x[3], x[4], x[5], T(0.0), T(0.0), T(0.0)};
     const T t = x[6], h(0.01);
     State<T, state_size> f0;
@@ -142,9 +142,9 @@ template <int N, class F>
 static void check_lanes(Random& random, F formula) {
     std::vector<Numbers> lanes;
     for (int lane = 0; lane < N; ++lane) lanes.push_back(random_state(random));
-    const std::vector<Pack<N>> together = formula(packed<N>(lanes).data());
+    const std::vector<Pack<N>> rows_per_block = formula(packed<N>(lanes).data());
     for (int lane = 0; lane < N; ++lane)
-        BOOST_TEST(same(lane_of(together, lane), formula(lanes[std::size_t(lane)].data())));
+        BOOST_TEST(same(lane_of(rows_per_block, lane), formula(lanes[std::size_t(lane)].data())));
 }
 
 template <class F>
@@ -221,9 +221,9 @@ BOOST_AUTO_TEST_CASE(each_lane_may_have_its_own_arm) {
             arms.push_back(random_params(random).arm());
             lanes.push_back(random_state(random));
         }
-        const Arm<Pack<N>> together = packed_arm<N>(arms);
-        const std::vector<Pack<N>> x = packed<N>(lanes), closed = closed_form(together, x.data()),
-                                   recursion = by_recursion(together, x.data());
+        const Arm<Pack<N>> rows_per_block = packed_arm<N>(arms);
+        const std::vector<Pack<N>> x = packed<N>(lanes), closed = closed_form(rows_per_block, x.data()),
+                                   recursion = by_recursion(rows_per_block, x.data());
         for (std::size_t lane = 0; lane < N; ++lane) {
             BOOST_TEST(same(lane_of(closed, int(lane)), closed_form(arms[lane], lanes[lane].data())));
             BOOST_TEST(same(lane_of(recursion, int(lane)), by_recursion(arms[lane], lanes[lane].data())));
@@ -267,14 +267,14 @@ BOOST_AUTO_TEST_CASE(slopes_of_the_dynamics_are_the_differences) {
     }
 }
 
-// By position, velocity and time: what a gradient through a wall that moves needs.
+// Derivatives by position, velocity and time, which a gradient through a moving wall needs.
 BOOST_AUTO_TEST_CASE(slopes_of_a_right_hand_side_with_contact_are_the_differences) {
     Random random(45);
     for (int i = 0; i < 30; ++i) {
         const Plant<double> plant = plant_with_wall(random);
         const auto formula = [&]<class T>(const T* x) {
             RightHandSide<double, T> f(plant);
-            f.touch = Touch::pressed;
+            f.force_mode = ContactForceMode::pressed;
             const State<T, state_size> y{x[0], x[1], x[2], x[3], x[4], x[5], T(0.0), T(0.0), T(0.0)};
             State<T, state_size> dy;
             f.begin_step(y);
@@ -295,14 +295,14 @@ BOOST_AUTO_TEST_CASE(slopes_by_a_mass_are_the_differences) {
         const auto acceleration = [&]<class P>(const P& mass) {
             Arm<P> heavier{};
             heavier.link1.inertia_axial = P(arm.link1.inertia_axial);
-            heavier.link2 = {arm.link2.length, arm.link2.mass, arm.link2.com, lifted<P>(arm.link2.inertia)};
-            heavier.link3 = {arm.link3.length, mass, arm.link3.com, lifted<P>(arm.link3.inertia)};
+            heavier.link2 = {arm.link2.length, arm.link2.mass, arm.link2.com, broadcast<P>(arm.link2.inertia)};
+            heavier.link3 = {arm.link3.length, mass, arm.link3.com, broadcast<P>(arm.link3.inertia)};
             heavier.payload = P(arm.payload);
-            heavier.gravity = lifted<P>(arm.gravity);
-            heavier.armature = lifted<P>(arm.armature);
+            heavier.gravity = broadcast<P>(arm.gravity);
+            heavier.armature = broadcast<P>(arm.armature);
             heavier.lumped = lump(heavier);
-            const Vec3<P> q = lifted<P>(three(x.data())), qd = lifted<P>(three(x.data() + 3)),
-                          tau = lifted<P>(three(x.data() + 6));
+            const Vec3<P> q = broadcast<P>(three(x.data())), qd = broadcast<P>(three(x.data() + 3)),
+                          tau = broadcast<P>(three(x.data() + 6));
             return joint_acceleration(heavier, pose(q), qd, tau);
         };
         const double m = arm.link3.mass, h = 1e-6;
@@ -348,7 +348,7 @@ BOOST_AUTO_TEST_CASE(a_recorded_step_with_contact_plays_back_to_the_same_bits_of
     std::vector<Expr> inputs;
     for (int i = 0; i < state_numbers; ++i) inputs.push_back(tape.input());
     RightHandSide<double, Expr> f(plant);
-    f.touch = Touch::each_stage;
+    f.force_mode = ContactForceMode::each_stage;
     const State<Expr, motion_size> y{inputs[0], inputs[1], inputs[2], inputs[3], inputs[4], inputs[5]};
     const Outlined<Expr, RightHandSide<double, Expr>> outlined{f};
     State<Expr, motion_size> f0;

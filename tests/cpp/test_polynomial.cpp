@@ -73,7 +73,7 @@ static double rounding_of(const Poly& p) {
     return p.degree * epsilon * sum;
 }
 
-// Is what first_fall says true? For a g that is not below zero at `from`.
+// Is what first_crossing says true? For a g that is not below zero at `from`.
 static bool is_first_fall(const Poly& g, double from, const std::optional<double>& fall) {
     const double noise = 2 * rounding_of(g);
     const double end = fall ? *fall - 1.01 * resolution : 1.0;
@@ -84,14 +84,14 @@ static bool is_first_fall(const Poly& g, double from, const std::optional<double
 }
 
 static void expect_fall(const Poly& g, double from, double root, double tolerance = resolution) {
-    const auto fall = first_fall(g, from, resolution);
+    const auto fall = first_crossing(g, from, resolution);
     BOOST_REQUIRE_MESSAGE(fall, "no fall found at " << root);
     BOOST_TEST(std::abs(*fall - root) <= tolerance, *fall << " instead of " << root << ", off " << *fall - root);
     BOOST_TEST(value(g, *fall) <= rounding_of(g));
 }
 
 static void expect_no_fall(const Poly& g, double from = 0) {
-    const auto fall = first_fall(g, from, resolution);
+    const auto fall = first_crossing(g, from, resolution);
     BOOST_TEST(!fall, "fall found at " << fall.value_or(0));
 }
 
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(value_slope_derivative_and_integral_of_a_known_cubic) {
 }
 
 BOOST_AUTO_TEST_CASE(the_integral_over_a_sliver_keeps_its_digits) {
-    for (int degree = 1; degree <= most_degree; ++degree) {
+    for (int degree = 1; degree <= max_degree; ++degree) {
         Poly p{degree, {}};
         for (int i = 0; i <= degree; ++i) p.c[i] = uniform(0.5, 1);
         const double a = uniform(0.1, 0.9), b = a + 0x1p-30;
@@ -136,7 +136,7 @@ BOOST_AUTO_TEST_CASE(the_hermite_cubic_meets_both_ends_and_their_slopes) {
 
 // Summed up by their basis, C(n, j) theta^j (1 - theta)^(n - j), the coefficients give the polynomial back.
 BOOST_AUTO_TEST_CASE(bernstein_coefficients_give_the_polynomial_back) {
-    for (int degree = 0; degree <= most_degree; ++degree) {
+    for (int degree = 0; degree <= max_degree; ++degree) {
         const Poly p = random_coefficients(degree);
         const auto b = bernstein(p);
         BOOST_TEST(b[0] == p.c[0]);
@@ -205,7 +205,7 @@ static void scalar(const double* c, const double* ab, int degree, int lanes, int
 static int differences(Run run, int lanes) {
     int count = 0;
     for (int trial = 0; trial < 2000; ++trial) {
-        const int degree = uniform_degree(0, most_degree);
+        const int degree = uniform_degree(0, max_degree);
         double c[21 * 8], ab[16], out[results * 8] = {}, expected[results] = {};
         std::generate(std::begin(c), std::end(c), [] { return uniform(-1, 1); });
         std::generate(std::begin(ab), std::end(ab), [] { return uniform(0, 1); });
@@ -234,12 +234,12 @@ BOOST_AUTO_TEST_CASE(each_lane_equals_the_double_bit_for_bit) {
 #endif
 }
 
-// ---- first_fall
+// ---- first_crossing
 
 BOOST_AUTO_TEST_CASE(one_simple_root_of_any_degree_is_found_to_the_resolution) {
     for (int trial = 0; trial < 5000; ++trial) {
         const double root = uniform(0.001, 1);
-        const Poly g = with_roots({root}, uniform_degree(1, most_degree), -1);
+        const Poly g = with_roots({root}, uniform_degree(1, max_degree), -1);
         const double steep = std::abs(slope(g, root));
         expect_fall(g, 0, root, resolution + rounding_of(g) / steep);
         expect_fall(g, 0.9 * root, root, resolution + rounding_of(g) / steep);
@@ -251,8 +251,8 @@ BOOST_AUTO_TEST_CASE(the_finest_resolution_ends_and_a_coarse_one_is_kept) {
         const double root = uniform(0, 1);
         const Poly g = with_roots({root}, 12, -1);
         for (const double fine : {0.0, 1e-300, 1e-16, -1.0, std::numeric_limits<double>::quiet_NaN()})
-            BOOST_TEST(std::abs(first_fall(g, 0, fine).value() - root) <= 1e-14);
-        const double coarse = first_fall(g, 0, 1e-3).value();
+            BOOST_TEST(std::abs(first_crossing(g, 0, fine).value() - root) <= 1e-14);
+        const double coarse = first_crossing(g, 0, 1e-3).value();
         BOOST_TEST(std::abs(coarse - root) <= 1e-3);
         BOOST_TEST(value(g, coarse) < 0);
     }
@@ -274,7 +274,7 @@ BOOST_AUTO_TEST_CASE(several_roots_give_the_first_fall_after_from) {
 BOOST_AUTO_TEST_CASE(random_polynomials_fall_where_samples_say) {
     int found = 0, none = 0;
     for (int trial = 0; trial < 12000; ++trial) {
-        const int degree = uniform_degree(3, most_degree);
+        const int degree = uniform_degree(3, max_degree);
         Poly g = random_coefficients(degree);
         if (trial % 2) {
             std::vector<double> roots;
@@ -287,7 +287,7 @@ BOOST_AUTO_TEST_CASE(random_polynomials_fall_where_samples_say) {
         const double from = trial % 3 ? 0.0 : uniform(0, 0.9);
         if (exact(g, from) < 0)
             for (int i = 0; i <= g.degree; ++i) g.c[i] = -g.c[i];
-        const auto fall = first_fall(g, from, resolution);
+        const auto fall = first_crossing(g, from, resolution);
         BOOST_REQUIRE_MESSAGE(is_first_fall(g, from, fall), "trial " << trial << ", degree " << g.degree << ", from "
                                                                      << from << ": " << fall.value_or(-1));
         ++(fall ? found : none);
@@ -298,24 +298,24 @@ BOOST_AUTO_TEST_CASE(random_polynomials_fall_where_samples_say) {
 
 BOOST_AUTO_TEST_CASE(a_dip_of_any_width_is_found_and_a_touch_is_none) {
     for (int trial = 0; trial < 3000; ++trial) {
-        const int degree = uniform_degree(2, most_degree);
+        const int degree = uniform_degree(2, max_degree);
         const double root = uniform(0.01, 0.9), width = std::pow(10.0, uniform(-6, -1.1));
         Poly dip = with_roots({root, root + width}, degree);
         const double steep = std::abs(slope(dip, root));
         expect_fall(dip, 0, root, resolution + rounding_of(dip) / steep);
 
         const double lowest = double(exact(dip, root + 0.5 * width));
-        Poly touch = with_roots({root, root}, degree);
-        expect_no_fall(touch);
-        touch.c[0] += std::abs(lowest);
-        expect_no_fall(touch);
+        Poly force_mode = with_roots({root, root}, degree);
+        expect_no_fall(force_mode);
+        force_mode.c[0] += std::abs(lowest);
+        expect_no_fall(force_mode);
     }
 }
 
 BOOST_AUTO_TEST_CASE(the_width_of_a_dip_decides_not_where_the_halving_cuts) {
     for (int trial = 0; trial < 1000; ++trial) {
         const double root = uniform(0.01, 0.9), coarse = std::pow(10.0, uniform(-4, -2));
-        const auto fall = first_fall(with_roots({root, root + 1.01 * coarse}, 6), 0, coarse);
+        const auto fall = first_crossing(with_roots({root, root + 1.01 * coarse}, 6), 0, coarse);
         BOOST_REQUIRE(fall);
         BOOST_TEST(std::abs(*fall - root) <= coarse);
         expect_no_fall(with_roots({root, root + 1e-9}, 6));  // not as deep as the rounding of the coefficients
@@ -341,7 +341,7 @@ BOOST_AUTO_TEST_CASE(exact_touches_and_roots_at_the_ends) {
 }
 
 BOOST_AUTO_TEST_CASE(the_place_found_has_fallen_where_the_root_is_a_double_itself) {
-    BOOST_TEST(value(power_form({0.5, -1}), first_fall(power_form({0.5, -1}), 0, resolution).value()) < 0);
+    BOOST_TEST(value(power_form({0.5, -1}), first_crossing(power_form({0.5, -1}), 0, resolution).value()) < 0);
 }
 
 // Values drown in rounding as far as |theta - root|^k is below it.
@@ -355,7 +355,7 @@ BOOST_AUTO_TEST_CASE(a_root_of_odd_multiplicity_is_found_as_well_as_rounding_let
 
 // Flat starts: theta^k (root - theta), lifted or lowered by less than rounding.
 BOOST_AUTO_TEST_CASE(a_long_flat_start_is_no_fall) {
-    for (int k = 1; k < most_degree; ++k)
+    for (int k = 1; k < max_degree; ++k)
         for (const double start : {0.0, 1e-18, -1e-18}) {
             Poly g{k + 1, {}};
             g.c[0] = start;
@@ -375,34 +375,34 @@ BOOST_AUTO_TEST_CASE(a_start_below_zero_falls_at_once_unless_it_comes_up_without
         expect_fall(power_form({start, -1, 2}), 0, 0);  // sinks, then comes up
         expect_fall(power_form({start, 0, 0, -1}), 0, 0);
         if (!by_rounding) {
-            BOOST_TEST(first_fall(power_form({start, -1}), 0, resolution).value() == 0);
-            BOOST_TEST(first_fall(power_form({start, 0.5 * -start}), 0.25, resolution).value() == 0.25);
+            BOOST_TEST(first_crossing(power_form({start, -1}), 0, resolution).value() == 0);
+            BOOST_TEST(first_crossing(power_form({start, 0.5 * -start}), 0.25, resolution).value() == 0.25);
         }
     }
-    BOOST_TEST(first_fall(power_form({-1e-17}), 0, resolution).value() == 0);
+    BOOST_TEST(first_crossing(power_form({-1e-17}), 0, resolution).value() == 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_scale_changes_nothing) {
     for (int trial = 0; trial < 500; ++trial) {
-        const Poly g = random_coefficients(uniform_degree(3, most_degree));
+        const Poly g = random_coefficients(uniform_degree(3, max_degree));
         for (const double scale : {0x1p-900, 0x1p-60, 0x1p60, 0x1p900}) {
             Poly scaled = g;
             for (int i = 0; i <= g.degree; ++i) scaled.c[i] *= scale;
-            BOOST_TEST((first_fall(scaled, 0.1, resolution) == first_fall(g, 0.1, resolution)));
+            BOOST_TEST((first_crossing(scaled, 0.1, resolution) == first_crossing(g, 0.1, resolution)));
         }
     }
 }
 
 BOOST_AUTO_TEST_CASE(what_is_not_finite_gives_nothing) {
     constexpr double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
-    for (int degree = 0; degree <= most_degree; ++degree)
+    for (int degree = 0; degree <= max_degree; ++degree)
         for (int i = 0; i <= degree; ++i)
             for (const double bad : {inf, -inf, nan}) {
                 Poly g = random_coefficients(degree);
                 g.c[i] = bad;
                 expect_no_fall(g);
                 expect_no_fall(g, 0.5);
-                BOOST_TEST(!std::isfinite(largest(g, 0, 1)));
+                BOOST_TEST(!std::isfinite(max_value(g, 0, 1)));
             }
     expect_no_fall(power_form({1, -2}), nan);
 }
@@ -422,14 +422,14 @@ BOOST_AUTO_TEST_CASE(the_largest_is_that_of_dense_samples) {
     constexpr int samples = 2000;
     int inside = 0;
     for (int trial = 0; trial < 3000; ++trial) {
-        const Poly p = trial % 2 ? random_coefficients(uniform_degree(1, most_degree))
+        const Poly p = trial % 2 ? random_coefficients(uniform_degree(1, max_degree))
                                  : with_roots({uniform(0, 1), uniform(0, 1), uniform(0, 1), uniform(0, 1)}, 12);
         const double a = trial % 3 ? 0.0 : uniform(0, 0.5), b = trial % 3 ? 1.0 : uniform(0.5, 1);
         long double most = -HUGE_VALL;
         double bend = 0;  // bounds the second derivative
         for (int i = 0; i <= samples; ++i) most = std::max(most, exact(p, a + (b - a) * (double(i) / samples)));
         for (int i = 2; i <= p.degree; ++i) bend += i * (i - 1) * std::abs(p.c[i]);
-        const double gap = 0.5 * bend / (4.0 * samples * samples), found = largest(p, a, b);
+        const double gap = 0.5 * bend / (4.0 * samples * samples), found = max_value(p, a, b);
         const double noise = epsilon + rounding_of(p);
         BOOST_TEST(found >= double(most) - noise);
         BOOST_TEST(found <= double(most) + gap + noise);

@@ -39,7 +39,7 @@ static double correlation(const Numbers& x, const Numbers& y, std::size_t lag) {
     return deviation([&](std::size_t i) { return x[i] * y[(i + lag) % count]; });
 }
 
-// Of 64 bins of equal probability: mean 63, standard deviation 11.2.
+// A test of 64 bins of equal probability: mean 63, standard deviation 11.2.
 static double chi_square(const Numbers& probabilities) {
     int hits[64] = {};
     for (const double p : probabilities) ++hits[int(64 * p)];

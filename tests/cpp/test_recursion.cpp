@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(centres_and_elbow_are_where_the_chain_puts_them) {
             for (; body >= 0; --body) point = plus(bodies[body].origin, times(bodies[body].R, point));
             return point;
         };
-        const Mat3<double> rows = centres(arm, pose(q));
+        const Mat3<double> rows = centres_of_mass(arm, pose(q));
         for (int body = 0; body < 3; ++body)
             worst.compare("centre", placed(body, bodies[body].com), Vec3<double>(rows.row(body).transpose()));
         worst.compare("elbow", placed(2, zero), elbow_position(arm, pose(q)));

@@ -33,7 +33,8 @@ struct Classical {
     Vector6 weights(const Vector6& of_u) const { return gamma.transpose() * of_u; }
 };
 
-// By how much the weights b miss the eight conditions of a solution at theta; the first four are those of order 3.
+// The residuals of the eight order conditions for the weights b of a solution at theta; the first four are those of
+// order 3.
 static std::array<double, 8> misses(const Classical& m, const Vector6& b, double theta) {
     const Vector6 one = Vector6::Ones(), alpha = m.alpha * one, beta = m.beta * one;
     const Vector6 alpha2 = alpha.cwiseProduct(alpha);
@@ -92,9 +93,10 @@ struct Problem {
     void begin_step(const S&) {}
 };
 
-// Two that move, a book, three places for memory of which two are used; coupled, nonlinear, driven, and of known solution.
+// Two components of motion, a quadrature, three components of memory of which two are used; coupled, nonlinear, driven,
+// and with a known solution.
 struct Driven : Problem {
-    static constexpr std::size_t size = 6, motion = 2, books = 1, memory = 2;
+    static constexpr std::size_t size = 6, motion = 2, quadratures = 1, memory = 2;
 
     template <class T>
     static State<T, size> exact(const T& t) {
@@ -102,7 +104,8 @@ struct Driven : Problem {
         const T rise = exponential(s.sin);
         return {rise, 1.0 / (1.0 + t * t), rise * rise, s.cos * s.sin, s.cos, T(0.25)};
     }
-    // y' of the solution, and terms that vanish on it, so that every component feels every other but the book.
+    // y' of the solution plus terms that vanish on it, so that every component depends on every other one but the
+    // quadrature.
     template <class T>
     void operator()(const T& t, const State<T, size>& y, State<T, size>& dy) const {
         const State<T, size> e = exact(t);
@@ -125,7 +128,7 @@ private:
 
 // Relaxation oscillations, by the slow time.
 struct VanDerPol : Problem {
-    static constexpr std::size_t size = 2, motion = 2, books = 0, memory = 0;
+    static constexpr std::size_t size = 2, motion = 2, quadratures = 0, memory = 0;
     double mu;
 
     explicit VanDerPol(double mu) : mu(mu) {}
@@ -135,9 +138,9 @@ struct VanDerPol : Problem {
     }
 };
 
-// Three species, the product a book: what the others lose.
+// Three species; the product is a quadrature of what the others lose.
 struct Robertson : Problem {
-    static constexpr std::size_t size = 3, motion = 2, books = 1, memory = 0;
+    static constexpr std::size_t size = 3, motion = 2, quadratures = 1, memory = 0;
 
     template <class T>
     void operator()(const T&, const State<T, size>& y, State<T, size>& dy) const {
@@ -151,12 +154,12 @@ template <class P>
 class Solver {
 public:
     using Y = State<double, P::size>;
-    Rodas4<P::size, P::motion, P::books> stepper;
+    Rodas4<P::size, P::motion, P::quadratures> stepper;
 
     explicit Solver(const P& problem) : problem_(problem) { stepper.memory = P::memory; }
 
     bool step(double t, const Y& y, double h) {
-        linearize<P::motion, P::books, 3>(problem_, t, y, P::memory, f0_, slopes_);
+        linearize<P::motion, P::quadratures, 3>(problem_, t, y, P::memory, f0_, slopes_);
         return stepper.step(problem_, slopes_, t, y, f0_, h);
     }
 
@@ -232,12 +235,12 @@ BOOST_AUTO_TEST_CASE(the_solution_within_a_step_and_the_error_estimate_are_of_or
             const auto start = Driven::exact(t);
             BOOST_REQUIRE(solver.step(t, start, h));
             estimate = std::max(estimate, solver.stepper.error(start, 0.0, 1.0));
-            const auto inside = solver.stepper.interpolant(t, start, h);
+            const auto dense = solver.stepper.interpolant(t, start, h);
             for (const double theta : {0.2, 0.4, 0.6, 0.8}) {
                 const auto truth = Driven::exact(t + theta * h);
                 for (std::size_t i = 0; i < 5; ++i)
-                    largest[i] = std::max(largest[i], std::abs(inside(theta)[i] - truth[i]));
-                BOOST_TEST(inside(theta)[5] == 0.25);
+                    largest[i] = std::max(largest[i], std::abs(dense(theta)[i] - truth[i]));
+                BOOST_TEST(dense(theta)[5] == 0.25);
             }
         }
         for (std::size_t i = 0; i < 5; ++i) errors[i].push_back(largest[i]);
@@ -252,10 +255,10 @@ BOOST_AUTO_TEST_CASE(the_solution_within_a_step_meets_both_its_ends) {
     Solver<Driven> solver{Driven()};
     const auto start = Driven::exact(0.7);
     BOOST_REQUIRE(solver.step(0.7, start, 0.1));
-    const auto inside = solver.stepper.interpolant(0.7, start, 0.1);
+    const auto dense = solver.stepper.interpolant(0.7, start, 0.1);
     for (std::size_t i = 0; i < Driven::size; ++i) {
-        BOOST_TEST(inside(0.0)[i] == start[i]);
-        BOOST_TEST(std::abs(inside(1.0)[i] - solver.stepper.y1[i]) <= 4e-16 * std::abs(start[i]));
+        BOOST_TEST(dense(0.0)[i] == start[i]);
+        BOOST_TEST(std::abs(dense(1.0)[i] - solver.stepper.y1[i]) <= 4e-16 * std::abs(start[i]));
     }
 }
 
@@ -273,7 +276,7 @@ BOOST_AUTO_TEST_CASE(the_error_is_the_largest_of_motion_and_memory_by_the_larger
     BOOST_TEST(std::abs(error({1e-3, -2e-3, 0, 0, 0, 0}) - 2e-3 / (1e-3 + 1e-2 * 4)) <= 1e-15);
     BOOST_TEST(std::abs(error({9e-3, -2e-3, 0, 1e-5, 0, 0}) - 9e-3 / (1e-3 + 1e-2 * 3)) <= 1e-15);
     BOOST_TEST(std::abs(error({1e-9, 1e-9, 0, 0, -7e-3, 0}) - 7e-3 / (1e-3 + 1e-2 * 5)) <= 1e-15);
-    BOOST_TEST(error({0, 0, 1e9, 0, 0, 1e9}) == 0);  // a book, and memory that is not in use
+    BOOST_TEST(error({0, 0, 1e9, 0, 0, 1e9}) == 0);  // a quadrature, and unused memory
 }
 
 BOOST_AUTO_TEST_CASE(the_next_step_follows_the_fourth_root_of_the_error_between_its_bounds) {
@@ -284,13 +287,13 @@ BOOST_AUTO_TEST_CASE(the_next_step_follows_the_fourth_root_of_the_error_between_
     for (const double error : {1e9, HUGE_VAL}) BOOST_TEST(Stepper::step_factor(error) == 0.2);
 }
 
-// 1 - h gamma df/dy = 0; a derivative that is none; a stage that is none, be it of the motion or of a book.
+// 1 - h gamma df/dy = 0; a derivative that is NaN; a stage that is NaN, of the motion or of a quadrature.
 BOOST_AUTO_TEST_CASE(a_step_without_an_end_is_told) {
-    const auto is_taken = [](double by_state, double value, double book) {
+    const auto is_taken = [](double df_dy, double value, double book) {
         const auto f = [&](double, const State<double, 2>&, State<double, 2>& dy) { dy = {value, book}; };
-        const Linearization<2> slopes{{State<double, 2>{by_state, 0.0}, State<double, 2>{0.0, 0.0}}, {0.0, 0.0}};
+        const Linearization<2> linearization{{State<double, 2>{df_dy, 0.0}, State<double, 2>{0.0, 0.0}}, {0.0, 0.0}};
         Rodas4<2, 1, 1> stepper;
-        return stepper.step(f, slopes, 0.0, {1.0, 1.0}, {1.0, 1.0}, 0.5);
+        return stepper.step(f, linearization, 0.0, {1.0, 1.0}, {1.0, 1.0}, 0.5);
     };
     BOOST_TEST(is_taken(-1, 1, 1));
     BOOST_TEST(!is_taken(1 / (0.5 * rodas4::gamma), 1, 1));
@@ -312,14 +315,14 @@ static Eigen::Matrix2d stability_function(double re, double im) {
     } f;
     f.re = re;
     f.im = im;
-    const Linearization<2> slopes{{State<double, 2>{re, -im}, State<double, 2>{im, re}}, {0.0, 0.0}};
+    const Linearization<2> linearization{{State<double, 2>{re, -im}, State<double, 2>{im, re}}, {0.0, 0.0}};
     Eigen::Matrix2d R;
     for (std::size_t column = 0; column < 2; ++column) {
         State<double, 2> y{}, f0;
         y[column] = 1;
         f(0.0, y, f0);
         Rodas4<2, 2, 0> stepper;
-        BOOST_REQUIRE(stepper.step(f, slopes, 0.0, y, f0, 1.0));
+        BOOST_REQUIRE(stepper.step(f, linearization, 0.0, y, f0, 1.0));
         R.col(Eigen::Index(column)) << stepper.y1[0], stepper.y1[1];
     }
     return R;

@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(weakest_poses_are_those_of_a_search_over_all_poses) {
                 determinant = std::min(determinant, lower_determinant(M));
             }
         }
-        const WorstPose weakest = smallest_M11(arm.lumped), folded = smallest_lower_determinant(arm.lumped);
+        const WorstPose weakest = min_M11(arm.lumped), folded = min_lower_determinant(arm.lumped);
         BOOST_TEST(M11 >= weakest.value - 1e-12);
         BOOST_TEST(M11 <= weakest.value + 2e-3);
         BOOST_TEST(std::abs(determinant - folded.value) <= 1e-12);
@@ -112,11 +112,13 @@ BOOST_AUTO_TEST_CASE(a_controllers_copy_that_is_no_arm_is_refused_where_it_is_sa
 }
 
 BOOST_AUTO_TEST_CASE(a_vector_with_a_hole_is_refused) {
-    const double hole = std::nan("");
+    const double unset = std::nan("");
     Params params = unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1);
-    check_refusal(Params(params).set("controller.gravity", {9, hole, 7}), "scenario.missing_key", "controller.gravity");
-    check_refusal(Params(params).set("controller.gravity", {9, 7, hole}), "scenario.missing_key", "controller.gravity");
-    check_refusal(Params(params).set("wall.motion.velocity", {0.1, hole, 0.2}), "scenario.missing_key",
+    check_refusal(Params(params).set("controller.gravity", {9, unset, 7}), "scenario.missing_key",
+                  "controller.gravity");
+    check_refusal(Params(params).set("controller.gravity", {9, 7, unset}), "scenario.missing_key",
+                  "controller.gravity");
+    check_refusal(Params(params).set("wall.motion.velocity", {0.1, unset, 0.2}), "scenario.missing_key",
                   "wall.motion.velocity");
 }
 
@@ -325,46 +327,46 @@ BOOST_AUTO_TEST_CASE(the_controllers_copy_differs_only_where_it_is_told_to) {
     BOOST_TEST(model.gravity[2] == -9.80665);
 }
 
-// ---- likely slips
+// ---- warnings
 
-static std::vector<std::string> slips(const Params& params) { return likely_slips(make_setup(params)); }
+static std::vector<std::string> warnings(const Params& params) { return scenario_warnings(make_setup(params)); }
 
 static void check_slip(const Params& params, const std::string& part) {
-    const std::vector<std::string> found = slips(params);
+    const std::vector<std::string> found = warnings(params);
     BOOST_TEST(found.size() == 1u);
     BOOST_TEST((!found.empty() && contains(found.front(), part)),
                part << " in: " << (found.empty() ? "" : found.front()));
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_said_of_an_ordinary_scenario) {
-    BOOST_TEST(slips(unequal_params()).empty());
-    BOOST_TEST(slips(unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1)).empty());
+    BOOST_TEST(warnings(unequal_params()).empty());
+    BOOST_TEST(warnings(unequal_params().choose("controller.type", "gravity_compensation").set("wall", 1)).empty());
 }
 
 BOOST_AUTO_TEST_CASE(two_gravities_within_a_percent_but_not_equal_are_named) {
     Params params = unequal_params().choose("controller.type", "gravity_compensation");
     check_slip(Params(params).set("controller.gravity", 9.8065), "9.8065");
     check_slip(Params(params).set("controller.gravity", 9.72), "9.72");
-    BOOST_TEST(slips(Params(params).set("controller.gravity", 9.66)).empty());
+    BOOST_TEST(warnings(Params(params).set("controller.gravity", 9.66)).empty());
 }
 
 BOOST_AUTO_TEST_CASE(an_angle_that_looks_like_degrees_is_named) {
     check_slip(unequal_params().set("initial.q", {0.4, -30, 0.2}), "`-30 deg`");
-    BOOST_TEST(slips(unequal_params().set("initial.q", {0.4, 720 * M_PI / 180, 0.2})).empty());
+    BOOST_TEST(warnings(unequal_params().set("initial.q", {0.4, 720 * M_PI / 180, 0.2})).empty());
 }
 
 BOOST_AUTO_TEST_CASE(a_wall_that_passes_the_shoulder_is_named) {
     Params params = unequal_params().set("wall", 1).set("time.stop", 50);
     check_slip(params, "shoulder");
-    BOOST_TEST(slips(params.set("time.stop", 30)).empty());
+    BOOST_TEST(warnings(params.set("time.stop", 30)).empty());
 }
 
 BOOST_AUTO_TEST_CASE(a_fixed_step_that_cannot_resolve_the_contact_is_named) {
     Params params = unequal_params().set("wall", 1).set("wall.acts_on_arm", 1).choose("solver.method", "rk4");
     check_slip(Params(params).set("wall.contact.stiffness", 1e8), "solver.step");
-    BOOST_TEST(slips(params).empty());
+    BOOST_TEST(warnings(params).empty());
     params.choose("wall.contact.law", "kelvin_voigt");
-    BOOST_TEST(slips(Params(params).set("wall.contact.damping", 100)).empty());
+    BOOST_TEST(warnings(Params(params).set("wall.contact.damping", 100)).empty());
     check_slip(Params(params).set("wall.contact.damping", 2000), "solver.step");
 }
 
@@ -372,9 +374,9 @@ BOOST_AUTO_TEST_CASE(units_off_by_powers_of_ten_are_a_slip) {
     const Params params = unequal_params();
     const Vec3<double> I = params.arm().link2.inertia;
     const Params in_g_cm2 = Params(params).set("arm.link2.inertia", Vec3<double>(1e7 * I));
-    BOOST_REQUIRE_EQUAL(slips(in_g_cm2).size(), 1u);
-    BOOST_TEST(slips(in_g_cm2)[0].find("g cm^2") != std::string::npos);
-    const std::vector<std::string> in_mm = slips(Params(params).set("arm.link3.length", 700));
+    BOOST_REQUIRE_EQUAL(warnings(in_g_cm2).size(), 1u);
+    BOOST_TEST(warnings(in_g_cm2)[0].find("g cm^2") != std::string::npos);
+    const std::vector<std::string> in_mm = warnings(Params(params).set("arm.link3.length", 700));
     BOOST_TEST(std::count_if(in_mm.begin(), in_mm.end(),
                              [](const std::string& slip) { return slip.find("millimetres") != slip.npos; }) == 1);
 }

@@ -22,8 +22,8 @@ static Params with_law(const std::string& type) {
     return unequal_params().choose("controller.type", type).set("wall", 1).set("wall.acts_on_arm", 1);
 }
 
-static Controller<double> controller_of(const Params& params) { return make_setup(params).law(); }
-static Setpoint<double> setpoint_of(const Params& params) { return controller_of(params).setpoint; }
+static Controller<double> controller_of(const Params& params) { return make_setup(params).controller(); }
+static Reference<double> reference_of(const Params& params) { return controller_of(params).reference; }
 
 static void check_close(const Vec3<double>& a, const Vec3<double>& b, double within) {
     BOOST_TEST(distance(a, b) <= within, a.transpose() << " and " << b.transpose());
@@ -57,7 +57,7 @@ static void check_words(const char* path, const std::vector<std::pair<const char
 }
 
 BOOST_AUTO_TEST_CASE(every_word_is_the_choice_of_its_name) {
-    using C = Controls;
+    using C = ControllerType;
     const Params params = with_law("hybrid");
     check_words<C>(
         "controller.type",
@@ -122,14 +122,14 @@ BOOST_AUTO_TEST_CASE(every_word_is_the_choice_of_its_name) {
          {"circle", Path::circle},
          {"sinusoid", Path::sinusoid},
          {"table", Path::table}},
-        [](const Params& p) { return setpoint_of(p).path; }, along_a_table());
-    check_words<Pressing>(
+        [](const Params& p) { return reference_of(p).path; }, along_a_table());
+    check_words<ForceProfile>(
         "reference.force.type",
-        {{"constant", Pressing::constant},
-         {"step", Pressing::step},
-         {"ramp", Pressing::ramp},
-         {"sinusoid", Pressing::sinusoid}},
-        [](const Params& p) { return setpoint_of(p).pressing; }, params);
+        {{"constant", ForceProfile::constant},
+         {"step", ForceProfile::step},
+         {"ramp", ForceProfile::ramp},
+         {"sinusoid", ForceProfile::sinusoid}},
+        [](const Params& p) { return reference_of(p).force_profile; }, params);
     check_words<VelocityEstimate>(
         "sensors.velocity.estimate",
         {{"exact", VelocityEstimate::exact},
@@ -252,30 +252,30 @@ BOOST_AUTO_TEST_CASE(joint_vectors_are_in_the_arms_convention) {
     Params slide = with_law("joint_pd").choose("reference.type", "point").set("reference.q", {0.1, 0.2, -0.4});
     Params simscape = Params(slide).choose("arm.convention", "simscape").set("reference.q", {0.1, -0.2, 0.4});
     simscape.set("initial.q", {0.4, -0.7, 0.9});
-    BOOST_TEST(setpoint_of(slide).to == Vec3<double>(0.1, 0.2, -0.4));
-    BOOST_TEST(setpoint_of(simscape).to == Vec3<double>(0.1, 0.2, -0.4));
-    BOOST_TEST(setpoint_of(simscape).from == Vec3<double>(0.4, 0.7, -0.9));
+    BOOST_TEST(reference_of(slide).to == Vec3<double>(0.1, 0.2, -0.4));
+    BOOST_TEST(reference_of(simscape).to == Vec3<double>(0.1, 0.2, -0.4));
+    BOOST_TEST(reference_of(simscape).from == Vec3<double>(0.4, 0.7, -0.9));
     for (Params* params : {&slide, &simscape}) {
         params->choose("reference.type", "sinusoid").set("reference.q_amplitude", {0.1, 0.2, 0.3});
         params->choose("controller.type", "computed_torque");
     }
-    BOOST_TEST(setpoint_of(slide).amplitude == Vec3<double>(0.1, 0.2, 0.3));
-    BOOST_TEST(setpoint_of(simscape).amplitude == Vec3<double>(0.1, -0.2, -0.3));
+    BOOST_TEST(reference_of(slide).amplitude == Vec3<double>(0.1, 0.2, 0.3));
+    BOOST_TEST(reference_of(simscape).amplitude == Vec3<double>(0.1, -0.2, -0.3));
     simscape.choose("controller.type", "constant").set("controller.torque", {1, 2, 3});
     BOOST_TEST(controller_of(simscape).torque == Vec3<double>(1, -2, -3));
 }
 
-// ---- what is wanted
+// ---- the reference
 
 BOOST_AUTO_TEST_CASE(a_law_holds_what_it_works_in) {
     const std::vector<std::string> in_joints = {"joint_pd", "computed_torque", "joint_stiffness"};
     for (const std::string& law : laws) {
         const Params params = with_law(law).set("controller.model.link2.length", 0.9);
-        const Setpoint<double> wanted = setpoint_of(params);
+        const Reference<double> wanted = reference_of(params);
         const bool is_in_joints = std::find(in_joints.begin(), in_joints.end(), law) != in_joints.end();
         BOOST_TEST(wanted.in_joints == is_in_joints, law);
         const Vec3<double> q(0.4, 0.7, -0.9);
-        check_close(wanted_at(wanted, 0.37).position, is_in_joints ? q : tip_by_hand(q, 0.3, 0.9, 0.6), 1e-15);
+        check_close(desired_motion_at(wanted, 0.37).position, is_in_joints ? q : tip_by_hand(q, 0.3, 0.9, 0.6), 1e-15);
     }
 }
 
@@ -283,7 +283,7 @@ BOOST_AUTO_TEST_CASE(a_target_may_be_told_as_joint_angles_of_the_model) {
     const Vec3<double> q(-0.3, 0.5, -1.1);
     const Params params = with_law("stiffness").set("controller.model.link3.length", 0.5).set("reference.q", q);
     for (const char* path : {"point", "line", "minimum_jerk"})
-        check_close(setpoint_of(Params(params).choose("reference.type", path)).to, tip_by_hand(q, 0.3, 0.8, 0.5),
+        check_close(reference_of(Params(params).choose("reference.type", path)).to, tip_by_hand(q, 0.3, 0.8, 0.5),
                     1e-15);
 }
 
@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(a_joint_law_finds_the_angles_of_a_tip_on_the_branch_it_star
     params.choose("reference.type", "line").set("reference.tip", tip);
     std::vector<Vec3<double>> found;
     for (const Vec3<double>& start : starts) {
-        const Vec3<double> q = setpoint_of(params.set("initial.q", start)).to;
+        const Vec3<double> q = reference_of(params.set("initial.q", start)).to;
         check_close(tip_by_hand(q, 0.3, 0.9, 0.6), tip, 1e-15);
         const auto side = [](const Vec3<double>& of) { return 0.9 * std::cos(of[1]) + 0.6 * std::cos(of[1] + of[2]); };
         BOOST_TEST((side(q) > 0) == (side(start) > 0));
@@ -304,62 +304,63 @@ BOOST_AUTO_TEST_CASE(a_joint_law_finds_the_angles_of_a_tip_on_the_branch_it_star
         for (const Vec3<double>& other : found) BOOST_TEST(distance(q, other) > 0.1);
         found.push_back(q);
         const Vec3<double> turns(2 * M_PI, -4 * M_PI, 6 * M_PI);
-        check_close(setpoint_of(params.set("initial.q", Vec3<double>(start + turns))).to, q + turns, 1e-14);
+        check_close(reference_of(params.set("initial.q", Vec3<double>(start + turns))).to, q + turns, 1e-14);
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_line_leads_from_the_start_to_the_target_in_its_time) {
     Params params = with_law("hybrid").choose("reference.type", "line").set("reference.tip", {0.6, 0.3, 0.8});
     params.set("reference.start", 0.5).set("reference.duration", 2);
-    const Setpoint<double> wanted = setpoint_of(params);
+    const Reference<double> wanted = reference_of(params);
     const Vec3<double> start = tip_by_hand({0.4, 0.7, -0.9}, 0.3, 0.8, 0.6), end(0.6, 0.3, 0.8);
-    check_close(wanted_at(wanted, 0.4).position, start, 1e-15);
-    check_close(wanted_at(wanted, 1.0).position, 0.75 * start + 0.25 * end, 1e-15);
-    check_close(wanted_at(wanted, 2.6).position, end, 1e-15);
+    check_close(desired_motion_at(wanted, 0.4).position, start, 1e-15);
+    check_close(desired_motion_at(wanted, 1.0).position, 0.75 * start + 0.25 * end, 1e-15);
+    check_close(desired_motion_at(wanted, 2.6).position, end, 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(a_circle_lies_on_the_face_and_turns_about_the_pressing_direction) {
     Params params = with_law("resolved_acceleration").choose("reference.type", "circle");
     params.set("wall.normal", {-2, 1, 0.5}).set("wall.point", {3, 0, 0}).set("reference.radius", 0.07);
     params.set("reference.period", 3).set("reference.turns", 1.5).set("reference.start", 0.2);
-    const Setpoint<double> wanted = setpoint_of(params);
-    const Vec3<double> n = Vec3<double>(-2, 1, 0.5).normalized(), start = wanted_at(wanted, 0.0).position;
+    const Reference<double> wanted = reference_of(params);
+    const Vec3<double> n = Vec3<double>(-2, 1, 0.5).normalized(), start = desired_motion_at(wanted, 0.0).position;
     check_close(start, tip_by_hand({0.4, 0.7, -0.9}, 0.3, 0.8, 0.6), 1e-15);
-    const Vec3<double> centre = 0.5 * (start + wanted_at(wanted, 4.7).position);  // half a turn on
+    const Vec3<double> centre = 0.5 * (start + desired_motion_at(wanted, 4.7).position);  // half a turn on
     BOOST_TEST(std::abs((start - centre).norm() - 0.07) < 1e-15);
     for (const double t : {0.5, 1.1, 2.3, 3.9}) {
-        const Wanted<double> at = wanted_at(wanted, t);
+        const DesiredMotion<double> at = desired_motion_at(wanted, t);
         const Vec3<double> out = at.position - centre;
         BOOST_TEST(std::abs(out.norm() - 0.07) < 1e-15);
         BOOST_TEST(std::abs(n.dot(out)) < 1e-15);
         BOOST_TEST(out.cross(at.velocity).dot(-n) > 0);
     }
-    check_close(wanted_at(wanted, 0.2 + 2.25).position - centre, -(start - centre), 0.15);  // half way: 3/4 of a turn
-    BOOST_TEST(wanted_at(wanted, 4.71).velocity.norm() == 0);
+    check_close(desired_motion_at(wanted, 0.2 + 2.25).position - centre, -(start - centre),
+                0.15);  // half way: 3/4 of a turn
+    BOOST_TEST(desired_motion_at(wanted, 4.71).velocity.norm() == 0);
 }
 
 BOOST_AUTO_TEST_CASE(without_a_wall_a_circle_lies_across_the_x_axis) {
     Params params =
         with_law("stiffness").set("wall", 0).choose("reference.type", "circle").set("wall.normal", {0, 1, 1});
-    const Setpoint<double> wanted = setpoint_of(params.set("reference.radius", 0.05));
+    const Reference<double> wanted = reference_of(params.set("reference.radius", 0.05));
     const Vec3<double> start = wanted.from;
-    for (const double t : {0.5, 1.0, 2.0}) BOOST_TEST(wanted_at(wanted, t).position[0] == start[0]);
-    check_close(wanted_at(wanted, 2.0).position, start - Vec3<double>(0, 0.1, 0), 1e-15);
+    for (const double t : {0.5, 1.0, 2.0}) BOOST_TEST(desired_motion_at(wanted, t).position[0] == start[0]);
+    check_close(desired_motion_at(wanted, 2.0).position, start - Vec3<double>(0, 0.1, 0), 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(a_tip_swings_about_its_start) {
     Params params = with_law("impedance").choose("reference.type", "sinusoid").set("reference.frequency", 2);
     params.set("reference.tip_amplitude", {0.01, -0.02, 0.03}).set("reference.start", 1);
-    const Setpoint<double> wanted = setpoint_of(params);
-    check_close(wanted_at(wanted, 0.9).position, wanted.from, 0);
-    check_close(wanted_at(wanted, 1.125).position, wanted.from + Vec3<double>(0.01, -0.02, 0.03), 1e-15);
+    const Reference<double> wanted = reference_of(params);
+    check_close(desired_motion_at(wanted, 0.9).position, wanted.from, 0);
+    check_close(desired_motion_at(wanted, 1.125).position, wanted.from + Vec3<double>(0.01, -0.02, 0.03), 1e-15);
 }
 
 // scipy.interpolate.make_interp_spline(t, s, k=5), first and second derivative 0 at both ends, and its derivatives.
 BOOST_AUTO_TEST_CASE(a_table_is_followed_as_smoothly_as_scipy_would) {
-    const Setpoint<double> wanted = setpoint_of(along_a_table());
+    const Reference<double> wanted = reference_of(along_a_table());
     const auto check = [&](double t, const Vec3<double>& x, const Vec3<double>& v, const Vec3<double>& a) {
-        const Wanted<double> at = wanted_at(wanted, t);
+        const DesiredMotion<double> at = desired_motion_at(wanted, t);
         check_close(at.position, x, 1e-13);
         check_close(at.velocity, v, 1e-12);
         check_close(at.acceleration, a, 1e-11);
@@ -384,13 +385,13 @@ BOOST_AUTO_TEST_CASE(a_table_of_two_points_is_a_minimum_jerk_motion) {
         const std::string column = std::string("reference.") + "xyz"[i];
         params.set(column + "[0]", from[i]).set(column + "[1]", to[i]);
     }
-    const Setpoint<double> table = setpoint_of(params);
+    const Reference<double> table = reference_of(params);
     params.choose("reference.type", "minimum_jerk").set("reference.tip", to);
-    const Setpoint<double> motion = setpoint_of(params.set("reference.start", 0.5).set("reference.duration", 2));
+    const Reference<double> motion = reference_of(params.set("reference.start", 0.5).set("reference.duration", 2));
     for (const double t : {0.0, 0.7, 1.5, 2.2, 4.0}) {
-        check_close(wanted_at(table, t).position, wanted_at(motion, t).position, 1e-15);
-        check_close(wanted_at(table, t).velocity, wanted_at(motion, t).velocity, 1e-15);
-        check_close(wanted_at(table, t).acceleration, wanted_at(motion, t).acceleration, 1e-14);
+        check_close(desired_motion_at(table, t).position, desired_motion_at(motion, t).position, 1e-15);
+        check_close(desired_motion_at(table, t).velocity, desired_motion_at(motion, t).velocity, 1e-15);
+        check_close(desired_motion_at(table, t).acceleration, desired_motion_at(motion, t).acceleration, 1e-14);
     }
 }
 
@@ -404,10 +405,10 @@ BOOST_AUTO_TEST_CASE(every_lane_follows_its_own_table) {
         each_law_number([lane](Pack<2>& all, const double& one) { all.set(lane, one); }, both, alone[lane]);
     }
     for (const double t : {0.2, 0.9, 1.5, 2.5, 5.0}) {
-        const Wanted<Pack<2>> wanted = wanted_at(both.setpoint, Pack<2>(t));
+        const DesiredMotion<Pack<2>> wanted = desired_motion_at(both.reference, Pack<2>(t));
         for (int lane = 0; lane < 2; ++lane)
             for (int i = 0; i < 3; ++i) {
-                const Wanted<double> one = wanted_at(alone[lane].setpoint, t);
+                const DesiredMotion<double> one = desired_motion_at(alone[lane].reference, t);
                 BOOST_TEST(same_bits(wanted.position[i][lane], one.position[i]));
                 BOOST_TEST(same_bits(wanted.acceleration[i][lane], one.acceleration[i]));
             }
@@ -419,7 +420,7 @@ BOOST_AUTO_TEST_CASE(the_force_is_as_wanted) {
     params.set("reference.force.start", 2).set("reference.force.duration", 4);
     params.set("reference.force.amplitude", 3).set("reference.force.frequency", 0.5);
     const auto force = [&](const char* type, double t) {
-        return force_wanted_at(setpoint_of(Params(params).choose("reference.force.type", type)), t);
+        return desired_force_at(reference_of(Params(params).choose("reference.force.type", type)), t);
     };
     BOOST_TEST(force("constant", 0.0) == 30);
     BOOST_TEST(force("step", 1.99) == 10);
@@ -433,20 +434,21 @@ BOOST_AUTO_TEST_CASE(the_force_is_as_wanted) {
 
 BOOST_AUTO_TEST_CASE(sections_that_are_absent_are_off) {
     const Setup setup = make_setup(with_law("hybrid"));
-    BOOST_TEST((!setup.digital.sampling.on && !setup.observes() && !setup.estimation.on && !setup.plant.load.on));
+    BOOST_TEST(
+        (!setup.digital.sampling.on && !setup.observes() && !setup.estimation.on && !setup.plant.external_force.on));
     BOOST_TEST((static_cast<const SensorChoices&>(setup.plant.sensors) == SensorChoices{}));
     BOOST_TEST((static_cast<const SensorChoices&>(setup.digital.sensors) == SensorChoices{}));
-    BOOST_TEST((setup.plant.controller.type == Controls::hybrid));
+    BOOST_TEST((setup.plant.controller.type == ControllerType::hybrid));
 }
 
 BOOST_AUTO_TEST_CASE(of_a_digital_controller_the_plant_sees_a_torque) {
     const Params params = with_law("hybrid").set("sampling", 1).set("observer", 1).set("controller.gravity", 5);
     const Setup setup = make_setup(params);
-    BOOST_TEST((setup.plant.controller.type == Controls::constant));
+    BOOST_TEST((setup.plant.controller.type == ControllerType::constant));
     BOOST_TEST(setup.plant.controller.torque == Vec3<double>(0, 0, 0));
     BOOST_TEST(setup.plant.controller.model.gravity[2] == -9.80665);
     BOOST_TEST(!setup.plant.observer.on);
-    BOOST_TEST((setup.digital.controller.type == Controls::hybrid));
+    BOOST_TEST((setup.digital.controller.type == ControllerType::hybrid));
     BOOST_TEST(setup.digital.controller.model.gravity[2] == -5);
     BOOST_TEST(setup.digital.observer.on);
     BOOST_TEST(make_setup(with_law("hybrid").set("observer", 1)).plant.observer.on);
@@ -491,7 +493,7 @@ BOOST_AUTO_TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
     params.set("push.force", {-1, 2, -3}).set("push.start", 0.5).set("push.rise", 0.25).set("push.duration", 4);
     const Setup setup = make_setup(params);
     const Observer<double>& observer = setup.plant.observer;
-    BOOST_TEST((observer.on && setup.estimation.on && setup.plant.load.on));
+    BOOST_TEST((observer.on && setup.estimation.on && setup.plant.external_force.on));
     BOOST_TEST(observer.gain == Vec3<double>(50, 60, 70));
     BOOST_TEST(observer.threshold == Vec3<double>(0.4, 0.4, 0.4));
     BOOST_TEST(observer.hold == 0.1);
@@ -503,23 +505,23 @@ BOOST_AUTO_TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
     BOOST_TEST(estimation.period == 0.005);
     BOOST_TEST(estimation.forgetting == 0.9);
     BOOST_TEST(estimation.start == 2);
-    BOOST_TEST(estimation.largest_condition == 1e6);
+    BOOST_TEST(estimation.max_condition == 1e6);
     BOOST_TEST(!estimation.wall_moves);
     BOOST_TEST(make_setup(params.choose("estimator.wall", "moving")).estimation.wall_moves);
-    const TipLoad<double>& load = setup.plant.load;
-    BOOST_TEST(load.force == Vec3<double>(-1, 2, -3));
-    BOOST_TEST(load.start == 0.5);
-    BOOST_TEST(load.rise == 0.25);
-    BOOST_TEST(load.end == 4.5);
+    const ExternalForce<double>& external_force = setup.plant.external_force;
+    BOOST_TEST(external_force.force == Vec3<double>(-1, 2, -3));
+    BOOST_TEST(external_force.start == 0.5);
+    BOOST_TEST(external_force.rise == 0.25);
+    BOOST_TEST(external_force.end == 4.5);
 }
 
 // ---- limits of loops
 
-static double largest_real_part(const Eigen::MatrixXd& A) {
+static double max_real_part(const Eigen::MatrixXd& A) {
     return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().real().maxCoeff();
 }
 
-// Of c[n] s^n + ... + c[0].
+// The value of c[n] s^n + ... + c[0].
 static Eigen::MatrixXd companion(const std::vector<double>& c) {
     const auto n = Eigen::Index(c.size()) - 1;
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
@@ -533,7 +535,7 @@ BOOST_AUTO_TEST_CASE(a_cubic_is_stable_where_all_its_roots_decay) {
     int stable = 0;
     for (int i = 0; i < 500; ++i) {
         const double m = random.in(0.1, 3), b = random.in(0.1, 3), c = random.in(0.1, 3), d = random.in(0.1, 6);
-        const bool decays = largest_real_part(companion({d, c, b, m})) < 0;
+        const bool decays = max_real_part(companion({d, c, b, m})) < 0;
         BOOST_TEST(is_stable(m, b, c, d) == decays);
         stable += decays;
     }
@@ -550,7 +552,7 @@ BOOST_AUTO_TEST_CASE(an_admittance_bears_a_wall_up_to_where_its_roots_cross) {
         const double w = random.in(20, 80), z = random.in(0.4, 1.5);
         const double limit = admittance_limit(M, B, K, w, z);
         const auto growth = [&](double k_e) {
-            return largest_real_part(companion(
+            return max_real_part(companion(
                 {(K + k_e) * w * w, 2 * z * w * K + w * w * B, K + 2 * z * w * B + w * w * M, B + 2 * z * w * M, M}));
         };
         BOOST_TEST(growth(limit - 0.001 * (limit + K)) < 0);
@@ -564,7 +566,7 @@ BOOST_AUTO_TEST_CASE(a_reference_may_be_moved_by_the_force_error_up_to_where_its
     for (int i = 0; i < 100; ++i) {
         const double M = random.in(0.5, 4), B = random.in(5, 80), K = random.in(50, 500), k_e = random.in(100, 9000);
         const double limit = reference_gain_limit(M, B, K, k_e);
-        const auto growth = [&](double k_r) { return largest_real_part(companion({K * k_r * k_e, K + k_e, B, M})); };
+        const auto growth = [&](double k_r) { return max_real_part(companion({K * k_r * k_e, K + k_e, B, M})); };
         BOOST_TEST(growth(0.999 * limit) < 0);
         BOOST_TEST(growth(1.001 * limit) > 0);
     }
@@ -579,12 +581,12 @@ static double growth_of_held_acceleration(double Kp, double Kd, double T) {
 
 BOOST_AUTO_TEST_CASE(a_held_acceleration_is_stable_up_to_the_longest_period) {
     Random random(74);
-    BOOST_TEST(std::abs(longest_period(400, 40) - 0.05) < 1e-15);
-    BOOST_TEST(std::abs(longest_period(400, 20) - 0.1) < 1e-15);
-    BOOST_TEST(std::abs(longest_period(400, 12) - 0.06) < 1e-15);
-    BOOST_TEST(longest_period(0, 10) == 0.2);
+    BOOST_TEST(std::abs(max_period(400, 40) - 0.05) < 1e-15);
+    BOOST_TEST(std::abs(max_period(400, 20) - 0.1) < 1e-15);
+    BOOST_TEST(std::abs(max_period(400, 12) - 0.06) < 1e-15);
+    BOOST_TEST(max_period(0, 10) == 0.2);
     for (int i = 0; i < 100; ++i) {
-        const double Kp = random.in(10, 1000), Kd = random.in(1, 100), T = longest_period(Kp, Kd);
+        const double Kp = random.in(10, 1000), Kd = random.in(1, 100), T = max_period(Kp, Kd);
         BOOST_TEST(growth_of_held_acceleration(Kp, Kd, 0.999 * T) < 1);
         BOOST_TEST(growth_of_held_acceleration(Kp, Kd, 1.001 * T) > 1);
     }
@@ -623,11 +625,11 @@ BOOST_AUTO_TEST_CASE(a_setup_is_made_of_whatever_the_rules_let_through) {
                     params.set(key.path, std::floor(random.in(0, double(key.choices.size()))));
             params.set("reference.tip", random.vector(-2, 2)).set("reference.q_amplitude", random.vector(-1, 1));
             if (!problems_of(params).empty()) continue;
-            const Setpoint<double> wanted = setpoint_of(params);
+            const Reference<double> wanted = reference_of(params);
             for (const double t : {0.0, 0.3, 1.0, 7.0}) {
-                BOOST_TEST(wanted_at(wanted, t).position.allFinite());
-                BOOST_TEST(wanted_at(wanted, t).acceleration.allFinite());
-                BOOST_TEST(std::isfinite(force_wanted_at(wanted, t)));
+                BOOST_TEST(desired_motion_at(wanted, t).position.allFinite());
+                BOOST_TEST(desired_motion_at(wanted, t).acceleration.allFinite());
+                BOOST_TEST(std::isfinite(desired_force_at(wanted, t)));
             }
         }
 }

@@ -11,7 +11,7 @@ BOOST_AUTO_TEST_SUITE(small_lu)
 constexpr std::size_t most = 18;
 using Vector = std::array<double, most>;
 
-// What lies beyond n must not be seen.
+// Memory beyond n must not be read.
 static SmallLu<most> filled(const Eigen::MatrixXd& m) {
     SmallLu<most> lu;
     lu.n = std::size_t(m.rows());

@@ -117,16 +117,16 @@ static std::vector<Terms> played(const Tape& tape, const std::vector<Terms>& inp
 // Position and velocity of the wall's frame about `at`.
 static std::vector<Terms> wall_terms(const Wall<double>& wall) {
     std::vector<Terms> x(6, Terms(order + 1, 0.0));
-    const Real80 w = 2 * std::acos(Real80(-1)) * wall.swing.frequency, A = wall.swing.amplitude;
+    const Real80 w = 2 * std::acos(Real80(-1)) * wall.sinusoid.frequency, A = wall.sinusoid.amplitude;
     for (int i = 0; i < 3; ++i) {
         Terms& p = x[i];
         p[0] = wall.point[i];
         if (wall.motion == Motion::constant) p[0] += wall.velocity[i] * Real80(at), p[1] = wall.velocity[i];
         if (wall.motion == Motion::sinusoid) {
             Real80 factor = A * wall.direction[i];
-            p[0] -= factor * std::sin(Real80(wall.swing.phase));
+            p[0] -= factor * std::sin(Real80(wall.sinusoid.phase));
             for (int k = 0; k <= order; factor *= w / Real80(++k))
-                p[k] += factor * std::sin(w * Real80(at) + wall.swing.phase + k * std::acos(Real80(0)));
+                p[k] += factor * std::sin(w * Real80(at) + wall.sinusoid.phase + k * std::acos(Real80(0)));
         }
         for (int k = 0; k < order; ++k) x[3 + i][k] = Real80(k + 1) * p[k + 1];
         x[3 + i][order] = 0;  // enters nothing that is compared
@@ -144,7 +144,7 @@ static std::vector<Terms> series_by_definition(const Plant<double>& plant, bool 
     for (Expr& x : wall.position) x = tape.input();
     for (Expr& x : wall.velocity) x = tape.input();
     RightHandSide<double, Expr> rhs(plant);
-    rhs.touch = pressed ? Touch::pressed : Touch::none;
+    rhs.force_mode = pressed ? ContactForceMode::pressed : ContactForceMode::none;
     rhs.derivative(Expr(0.0), wall, rhs.pose_near(y), y, dy);
     for (const Expr& x : dy) tape.output(x);
     const auto [q1, q2, q3] = std::array{y[0], y[1], Expr(y[1] + y[2])};
@@ -203,7 +203,7 @@ BOOST_AUTO_TEST_CASE(the_series_is_the_motion) {
         const Expansion<double> e = expanded(Kernel(i), plant, y);
         const double span = std::min(0.02, step_of(e, 1e-14)), h = span / 100;
         RightHandSide<double, double> f(plant);
-        f.touch = recipes[i].force ? Touch::pressed : Touch::none;
+        f.force_mode = recipes[i].force ? ContactForceMode::pressed : ContactForceMode::none;
         for (int n = 0; n < 100; ++n) {
             const double t = at + n * h;
             f.begin_step(y);
@@ -226,7 +226,7 @@ BOOST_AUTO_TEST_CASE(the_series_is_the_motion) {
 // Each lane with a plant, a state and an instant of its own, at every order.
 #if ARM3R_WIDE_PACKS
 BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_double) {
-    if (widest_lanes() < 8) return;  // what this processor can do: test_batch.cpp
+    if (max_lanes() < 8) return;  // what this processor can do: test_batch.cpp
 
     Random random(3);
     for (std::size_t i = 0; i < recipes.size(); ++i) {
@@ -244,7 +244,7 @@ BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_double) {
             for (std::size_t j = 0; j < state_size; ++j) pack_y[j].set(lane, y[lane][j]);
             t.set(lane, lane * 0.1);
         }
-        for (int n = 1; n <= most_degree; ++n) {
+        for (int n = 1; n <= max_degree; ++n) {
             Expansion<Pack<8>> packed;
             expand(Kernel(i), pack_plant, t, pack_y, n, packed);
             const Pack<8> h = step_of(packed, tol);
@@ -302,24 +302,24 @@ BOOST_AUTO_TEST_CASE(the_cheapest_kernel_that_suffices_is_taken) {
         BOOST_TEST(bool(kernel_of(plant, recipes[i].force) == Kernel(i)), "recipe " << i);
     }
     Plant<double> free_of_control = random_plant(recipes.back(), random);
-    free_of_control.controller.type = Controls::none;
+    free_of_control.controller.type = ControllerType::none;
     BOOST_TEST(recipes[std::size_t(kernel_of(free_of_control, true))].friction);
 }
 
 BOOST_AUTO_TEST_CASE(the_order_follows_the_tolerance) {
-    const auto formula = [](double tol) { return std::clamp(int(std::ceil(-std::log(tol) / 2)) + 1, 2, most_degree); };
+    const auto formula = [](double tol) { return std::clamp(int(std::ceil(-std::log(tol) / 2)) + 1, 2, max_degree); };
     for (const double tol : {1.0, 0.5, 1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-16, 1e-300})
         BOOST_TEST(order_of(tol) == formula(tol), tol);
-    BOOST_TEST(order_of(0.0) == most_degree);
+    BOOST_TEST(order_of(0.0) == max_degree);
 }
 
 BOOST_AUTO_TEST_CASE(a_rough_root_is_good_to_a_thousandth) {
     Random random(7);
-    for (int k = 1; k <= most_degree; ++k)
+    for (int k = 1; k <= max_degree; ++k)
         for (int n = 0; n < 2000; ++n) {
             const double x = std::exp(random.in(-700, 700));
             const double truth = std::pow(x, 1.0 / k);
-            BOOST_REQUIRE(std::abs(rough_root(x, k) - truth) < 1e-3 * truth);
+            BOOST_REQUIRE(std::abs(approximate_root(x, k) - truth) < 1e-3 * truth);
         }
 }
 
@@ -341,7 +341,7 @@ BOOST_AUTO_TEST_CASE(a_step_keeps_its_tolerance) {
         const Kernel kernel = kernel_of(plant, recipe.force);
         Expansion<double> e, better;
         expand(kernel, plant, at, y, order_of(1e-9), e);
-        expand(kernel, plant, at, y, most_degree, better);
+        expand(kernel, plant, at, y, max_degree, better);
         const double h = step_of(e, 1e-9);
         for (std::size_t j = 0; j < quantities; ++j)
             BOOST_TEST(std::abs(value(e, j, h) - value(better, j, h)) <

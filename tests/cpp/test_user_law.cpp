@@ -22,13 +22,13 @@ Params controlled(const char* method) {
     return params;
 }
 
-// Turns faster and faster, and remembers when it was asked.
+// A law that turns the arm faster and faster, and stores the instants of its calls.
 struct Pushing {
     std::vector<double> times, ticks;
     double refuse_at = -1, break_at = -1;
 
-    static int ask(void* self, double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>&,
-                   Vec3<double>& tau) {
+    static int ask(void* self, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
+                   const ControllerState<double>&, Vec3<double>& tau) {
         Pushing& law = *static_cast<Pushing*>(self);
         BOOST_TEST(truth.qd[1] == sensed.qd[1]);
         law.times.push_back(sensed.t);
@@ -91,14 +91,14 @@ BOOST_AUTO_TEST_CASE(a_copy_goes_on_as_the_original) {
     Pushing law, again;
     const Params params = controlled("dopri5");
     const Run whole = law.run(params);
-    const std::unique_ptr<Stepwise> run = begin_stepwise(valid_setup(params), {});
-    run->use({Pushing::ask, &again});
-    for (int i = 0; i < 30; ++i) run->go_on();
-    const std::unique_ptr<Stepwise> copy = run->copy();
-    for (Stepwise* one : {copy.get(), run.get()}) {
-        one->use({Pushing::ask, &again});
-        while (!one->is_over()) one->go_on();
-        BOOST_TEST(same(one->so_far(), whole));
+    const std::unique_ptr<InteractiveRun> run = start_interactive_run(valid_setup(params), {});
+    run->set_user_law({Pushing::ask, &again});
+    for (int i = 0; i < 30; ++i) run->advance();
+    const std::unique_ptr<InteractiveRun> copy = run->copy();
+    for (InteractiveRun* one : {copy.get(), run.get()}) {
+        one->set_user_law({Pushing::ask, &again});
+        while (!one->is_over()) one->advance();
+        BOOST_TEST(same(one->snapshot(), whole));
     }
     BOOST_TEST(same(run->conclude(), whole));
 }
@@ -107,11 +107,11 @@ BOOST_AUTO_TEST_CASE(a_rehearsal_changes_nothing) {
     Pushing law, shown;
     const Params params = controlled("auto");
     const Run whole = law.run(params);
-    const std::unique_ptr<Stepwise> run = begin_stepwise(valid_setup(params), {});
-    run->use({Pushing::ask, &law});
+    const std::unique_ptr<InteractiveRun> run = start_interactive_run(valid_setup(params), {});
+    run->set_user_law({Pushing::ask, &law});
     while (!run->is_over()) {
-        run->show({Pushing::ask, &shown});
-        run->go_on();
+        run->preview({Pushing::ask, &shown});
+        run->advance();
     }
     BOOST_TEST(same(run->conclude(), whole));
     BOOST_TEST(shown.ticks.size() == 101u);

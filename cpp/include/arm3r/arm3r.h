@@ -175,7 +175,7 @@ ARM3R_API int32_t arm3r_run_event(const arm3r_run *run, size_t index, arm3r_even
  * for one; its torque is held until the next, within arm.torque_limit.
  */
 
-/* What the law sees: what the scenario's sensors read (the truth where there are none), and what follows from it. */
+/* The input of the law: the values that the scenario's sensors measure (the true ones without sensors), and functions of them. */
 typedef struct arm3r_law_state {
     size_t struct_size;             /* of the library's own version of this struct */
     double tick;                    /* samples before this one */
@@ -185,16 +185,16 @@ typedef struct arm3r_law_state {
     double jacobian[9];             /* m, row-major: tip_velocity = jacobian qd */
     double tau_g[3];                /* N m: what holds the arm at this q */
     double f_on_tip[3];             /* N */
-    double contact;                 /* 1 from where this force presses with more than 1 N until it does with less than 0.5 N; else 0 */
+    double contact;                 /* 1 after this force has exceeded 1 N until it falls below 0.5 N; else 0 */
     double wall_normal[3];          /* unit, from the wall towards the arm; this and the next two 0 without a wall */
     double wall_point[3];           /* m, of the face */
     double wall_velocity[3];        /* m/s, of the frame's origin */
     double residual[3];             /* N m: the observer's external torque; this and the next 0 without one */
-    double collision;               /* 1 while it takes a collision for going on */
+    double collision;               /* 1 from the start of a detected collision to its end */
     double stiffness_estimate;      /* N/m, of the wall; this and the next two 0 without an estimator */
     double wall_speed_estimate;     /* m/s */
-    double identifiable;            /* 1 where the data tell the two apart */
-    double q_true[3], qd_true[3], f_on_tip_true[3]; /* what is, which no controller knows */
+    double identifiable;            /* 1 where the data determine both */
+    double q_true[3], qd_true[3], f_on_tip_true[3]; /* the true state, without sensor errors */
 } arm3r_law_state;
 
 /* Writes three torques, N m. Not 0, or a torque that is not finite or beyond 1e12: the run ends as `controller`. The state is
@@ -216,7 +216,7 @@ typedef struct arm3r_batch_options {
     arm3r_batch_progress progress;  /* Nullable */
     void *user;                     /* Nullable: handed to progress */
     int32_t threads;                /* 0: as many as the CPUs that this process may use */
-    int32_t lanes;                  /* runs that march side by side in a thread: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
+    int32_t lanes;                  /* runs that a thread computes in parallel: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
     int64_t reserved[4];            /* 0 */
 } arm3r_batch_options;
 
@@ -250,7 +250,7 @@ ARM3R_API int32_t arm3r_scenario_get(const arm3r_scenario *scenario, const char 
 ARM3R_API int32_t arm3r_scenario_name(const arm3r_scenario *scenario, const char **name);
 /* The whole scenario with all defaults, itself a scenario file; annotate 1: each value with its provenance in a comment. */
 ARM3R_API int32_t arm3r_scenario_yaml(const arm3r_scenario *scenario, int32_t annotate, const char **yaml);
-/* What is allowed but probably a slip, a line each: "FILE: warning: SENTENCE"; "" where there is nothing to say. */
+/* Warnings of what is allowed but probably a mistake, one a line: "FILE: warning: SENTENCE"; "" if there are none. */
 ARM3R_API int32_t arm3r_scenario_warnings(const arm3r_scenario *scenario, const char **text);
 ARM3R_API int32_t arm3r_scenario_params(const arm3r_scenario *scenario, double *params, size_t count);
 ARM3R_API int32_t arm3r_scenario_run(const arm3r_scenario *scenario, const arm3r_run_options *options /* Nullable */, arm3r_run **run);
@@ -259,8 +259,8 @@ ARM3R_API int32_t arm3r_scenario_run(const arm3r_scenario *scenario, const arm3r
 ARM3R_API int32_t arm3r_scenario_control(const arm3r_scenario *scenario, arm3r_law law, void *user /* Nullable */,
                                          const arm3r_run_options *options /* Nullable */, arm3r_run **run);
 
-/* ---- text: a run in your own hands ----------------------------------------------------------------------------------
- * A simulation of a scenario with controller.type: user stands at a sample, until it is over: at time.stop, whose sample is
+/* ---- text: a run that you step yourself ---------------------------------------------------------------------------------
+ * A simulation of a scenario with controller.type: user waits at a sample, until it is over: at time.stop, whose sample is
  * the last one, or where the run ended before. Given the same torques, it is bit for bit the run of arm3r_scenario_control.
  * The methods are those with steps of their own choice: dopri5, rodas4 and auto.
  */
@@ -270,12 +270,12 @@ typedef struct arm3r_simulation arm3r_simulation;
 ARM3R_API int32_t arm3r_simulation_create(const arm3r_scenario *scenario, arm3r_simulation **simulation);
 ARM3R_API void arm3r_simulation_free(arm3r_simulation *simulation); /* Nullable */
 ARM3R_API int32_t arm3r_simulation_is_over(const arm3r_simulation *simulation, int32_t *is_over);
-/* What the law would see at this sample; once it is over, what it saw last. */
+/* The state that the law would get at this sample; after the end, the last one that it got. */
 ARM3R_API int32_t arm3r_simulation_state(const arm3r_simulation *simulation, arm3r_law_state *state);
 /* Apply three torques, N m, from this sample to the next. ARM3R_E_VALUE: not finite, beyond 1e12; nothing has happened.
  * ARM3R_E_OVER: there is no sample left. */
 ARM3R_API int32_t arm3r_simulation_step(arm3r_simulation *simulation, const double *tau);
-/* All of it, as it is now, in a simulation of its own; and back, from one of the same scenario: the same bits follow. */
+/* Copy a simulation in its present state, or restore the state of another one of the same scenario. It continues with the same bits. */
 ARM3R_API int32_t arm3r_simulation_copy(const arm3r_simulation *simulation, arm3r_simulation **copy);
 ARM3R_API int32_t arm3r_simulation_restore(arm3r_simulation *simulation, const arm3r_simulation *from);
 /* The rows so far, as a run; its outcome is `stopped` where it is not over. */

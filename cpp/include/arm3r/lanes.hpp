@@ -1,11 +1,11 @@
 #pragma once
-// The numbers of a plant one by one, so that plants of different number types can be filled from each other.
+// Lists of the numbers of a plant, so that plants of different number types can be filled from each other.
 
 #include "arm3r/plant.hpp"
 
 namespace arm3r {
 
-// f(x...) for each number x of arms of any number types, in a fixed order; flags and choices are left alone.
+// Calls f(x...) for each number x of arms of any number types, in a fixed order; flags and choices are left out.
 template <class F, class... Arms>
 ARM3R_INLINE void each_arm_number(F f, Arms&... a) {
     const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
@@ -28,10 +28,10 @@ ARM3R_INLINE void each_arm_number(F f, Arms&... a) {
 
 template <class F, class... Tables>
 void each_table_number(F f, Tables&... tables) {
-    for (int i = 0; i < most_knots; ++i) f(tables.t[i]...), f(tables.s[i]...), f(tables.v[i]...), f(tables.a[i]...);
+    for (int i = 0; i < max_knots; ++i) f(tables.t[i]...), f(tables.s[i]...), f(tables.v[i]...), f(tables.a[i]...);
 }
 
-// The same of the gains and the setpoint of controllers.
+// Calls f for each of the gains and the numbers of the reference of controllers.
 template <class F, class... Controllers>
 ARM3R_INLINE void each_law_number(F f, Controllers&... c) {
     const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
@@ -40,12 +40,12 @@ ARM3R_INLINE void each_law_number(F f, Controllers&... c) {
         vector(g.mass...), vector(g.stiffness...), vector(g.damping...);
         f(g.force_mass...), f(g.force_damping...), f(g.force...), f(g.force_integral...);
         f(g.integral_limit...), f(g.tracking_time...), f(g.contact_on...), f(g.contact_off...);
-        f(g.inner_bandwidth...), f(g.inner_damping_ratio...), f(g.reference...), f(g.assumed_stiffness...);
+        f(g.inner_bandwidth...), f(g.inner_damping_ratio...), f(g.reference_gain...), f(g.assumed_stiffness...);
         f(g.stiffness_amplitude...), f(g.stiffness_frequency...);
         f(g.tank_energy...), f(g.tank_low...), f(g.tank_high...), f(g.tank_capacity...);
         vector(g.plane_point...), vector(g.plane_normal...);
     };
-    const auto setpoint = [&](auto&... s) ARM3R_INLINE_LAMBDA {
+    const auto reference = [&](auto&... s) ARM3R_INLINE_LAMBDA {
         vector(s.from...), vector(s.to...);
         f(s.start...), f(s.duration...), f(s.end...);
         vector(s.across1...), vector(s.across2...);
@@ -57,10 +57,10 @@ ARM3R_INLINE void each_law_number(F f, Controllers&... c) {
             for (std::size_t i = 0; i < 3; ++i) each_table_number(f, (*s.table)[i]...);
     };
     gains(c.gains...);
-    setpoint(c.setpoint...);
+    reference(c.reference...);
 }
 
-// The same of sensors and observer.
+// Calls f for each number of sensors.
 template <class F, class... Sets>
 ARM3R_INLINE void each_sensor_number(F f, Sets&... s) {
     f(s.encoder_step...), f(s.velocity_share...), f(s.noise...), f(s.resolution...);
@@ -77,7 +77,7 @@ ARM3R_INLINE void each_observer_number(F f, Observers&... o) {
 }
 
 template <class F, class... Loads>
-ARM3R_INLINE void each_load_number(F f, Loads&... l) {
+ARM3R_INLINE void each_external_force_number(F f, Loads&... l) {
     f(l.force[0]...), f(l.force[1]...), f(l.force[2]...), f(l.start...), f(l.rise...), f(l.end...);
 }
 
@@ -87,19 +87,19 @@ ARM3R_INLINE void each_contact_number(F f, Contacts&... c) {
     f(c.damping...), f(c.exponent...), f(c.dissipation...), f(c.friction...), f(c.slip_velocity...);
 }
 
-// The same of plants, but for the tables of walls and what only a law uses.
+// Calls f for each number of plants, except the tables of walls and the numbers that only a law uses.
 template <class F, class... Plants>
 ARM3R_INLINE void each_number(F f, Plants&... plants) {
     const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
-    const auto swing = [&](auto&... s) ARM3R_INLINE_LAMBDA { f(s.amplitude...), f(s.frequency...), f(s.phase...); };
+    const auto sinusoid = [&](auto&... s) ARM3R_INLINE_LAMBDA { f(s.amplitude...), f(s.frequency...), f(s.phase...); };
     const auto wall = [&](auto&... w) ARM3R_INLINE_LAMBDA {
         vector(w.point...), vector(w.n...), vector(w.e1...), vector(w.e2...);
         f(w.half1...), f(w.half2...), f(w.face_offset...);
         vector(w.velocity...), vector(w.direction...);
-        swing(w.swing...);
+        sinusoid(w.sinusoid...);
         f(w.ramp.distance...), f(w.ramp.start...), f(w.ramp.duration...);
         vector(w.axis...), f(w.turn_rate...);
-        swing(w.turn_swing...);
+        sinusoid(w.turn_sinusoid...);
     };
     each_arm_number(f, plants.arm...);
     wall(plants.wall...);
@@ -120,11 +120,12 @@ template <class A, class B>
 void copy_controller_choices(const Controller<A>& from, Controller<B>& to) {
     copy_arm_choices(from.model, to.model);
     static_cast<ControllerChoices&>(to) = from;
-    static_cast<SetpointChoices&>(to.setpoint) = from.setpoint;
-    if (!from.setpoint.table) return;
-    if (!to.setpoint.table)
-        to.setpoint.table = std::make_shared<std::array<Table<B>, 3>>();  // else other lanes are in it
-    for (Table<B>& along : *to.setpoint.table) along.knots = from.setpoint.knots;
+    static_cast<ReferenceChoices&>(to.reference) = from.reference;
+    if (!from.reference.table) return;
+    if (!to.reference.table)
+        to.reference.table =
+            std::make_shared<std::array<QuinticTable<B>, 3>>();  // otherwise other lanes use it already
+    for (QuinticTable<B>& along : *to.reference.table) along.knots = from.reference.knots;
 }
 
 template <class A, class B>
@@ -133,7 +134,7 @@ void copy_choices(const Plant<A>& from, Plant<B>& to) {
     to.wall.motion = from.wall.motion;
     to.wall.rotation = from.wall.rotation;
     if (from.wall.table) {
-        to.wall.table = std::make_shared<Table<B>>();
+        to.wall.table = std::make_shared<QuinticTable<B>>();
         to.wall.table->knots = from.wall.table->knots;
     }
     to.wall.has_outline = from.wall.has_outline;
@@ -142,7 +143,7 @@ void copy_choices(const Plant<A>& from, Plant<B>& to) {
     copy_controller_choices(from.controller, to.controller);
     static_cast<SensorChoices&>(to.sensors) = from.sensors;
     static_cast<ObserverChoices&>(to.observer) = from.observer;
-    to.load.on = from.load.on;
+    to.external_force.on = from.external_force.on;
     to.needs_azimuth = from.needs_azimuth;
     to.has_wall = from.has_wall;
     to.acts_on_arm = from.acts_on_arm;

@@ -1,9 +1,9 @@
 #pragma once
-// Arm, wall and controller together: the right-hand side of the equation of motion, with the energy books beside it (4.9).
+// Arm, wall and controller together: the right-hand side of the equation of motion, with the energy quadratures (4.9).
 
 #include <limits>
 
-#include "arm3r/control/laws.hpp"
+#include "arm3r/control/control_laws.hpp"
 #include "arm3r/model/contact.hpp"
 #include "arm3r/ode/integrators.hpp"
 #include "arm3r/sensing/observer.hpp"
@@ -11,8 +11,8 @@
 
 namespace arm3r {
 
-// q, qd, and the quadratures of the energy balance since the start (4.9): work of the actuators, work of the wall's drive,
-// dissipated energy, and the parts of the latter that went into the joints and into friction along the wall.
+// The state is q, qd, and the quadratures of the energy balance since the start (4.9): work of the actuators, work of
+// the wall's drive, dissipated energy, and the parts of the latter in the joints and in friction along the wall.
 enum : std::size_t {
     motion_size = 6,
     work_of_actuators = motion_size,
@@ -21,11 +21,11 @@ enum : std::size_t {
     dissipated_in_joints,
     dissipated_in_friction,
     state_size,
-    ledger_size = state_size - motion_size,
-    ledger_parts = state_size - dissipated_in_joints,  // the last of them, which are parts of another one
+    quadrature_count = state_size - motion_size,
+    quadrature_parts = state_size - dissipated_in_joints,  // the last of them, which are parts of another one
 };
 
-// And, where a continuous controller remembers something, its law's memory, the observer's, and the filtered force.
+// A continuous controller with memory adds the memory of its law, that of its observer, and the filtered force.
 enum : std::size_t {
     law_at = state_size,
     observer_at = law_at + law_memory,
@@ -33,11 +33,11 @@ enum : std::size_t {
     full_size = filter_at + 3,
 };
 
-enum class Touch {
-    none,        // the tip is free, or behind the plate without having come through its face
-    pressed,     // in contact: the law holds, smoothly continued past the instants at which contact ends
-    released,    // inside a wall that would have to pull: no force, and what the dent still holds is lost
-    each_stage,  // fixed steps: contact is wherever the tip is inside, asked anew at each stage
+enum class ContactForceMode {
+    none,        // the tip is free, or behind the plate without having crossed its face
+    pressed,     // in contact: the contact law, smoothly continued past the instants at which contact ends
+    released,    // inside a wall that would have to pull: no force; the elastic energy is lost
+    each_stage,  // fixed steps: there is contact wherever the tip is inside, which each stage decides again
 };
 
 template <class P>
@@ -48,27 +48,27 @@ struct Plant {
     Controller<P> controller;  // a digital one is, between its samples, a constant torque
     Sensors<P> sensors;        // of a continuous one: bias and analog filter
     Observer<P> observer;      // beside a continuous one
-    TipLoad<P> load;
+    ExternalForce<P> external_force;
     bool has_wall = false, acts_on_arm = false;
-    bool needs_azimuth = false;  // something beside gravity and wall looks at q1
+    bool needs_azimuth = false;  // something besides gravity and wall depends on q1
 };
 
-// Whether a continuous controller or filter looks at the contact.
+// Whether a continuous controller or filter needs the contact force.
 template <class P>
 bool senses_wall(const Plant<P>& plant) {
     return plant.has_wall && (has_law(plant.controller.type) || plant.sensors.has_analog_filter);
 }
 
-// Whether the state has the memory of such ones.
+// Whether the state contains a controller's memory.
 template <class P>
 bool has_memory(const Plant<P>& plant) {
     return has_law(plant.controller.type) || plant.observer.on || plant.sensors.has_analog_filter;
 }
 
-// Whether the contact itself turns energy into heat: by damping, or where springs along the plate let go.
+// Whether the contact itself dissipates energy: by damping, or when springs along the plate are released.
 template <class P>
 bool dissipates_in_contact(const Plant<P>& plant) {
-    return plant.acts_on_arm && (is_damped(plant.contact.law) || plant.contact.law == Law::diagonal);
+    return plant.acts_on_arm && (is_damped(plant.contact.law) || plant.contact.law == ContactLaw::diagonal);
 }
 
 template <class P>
@@ -85,7 +85,8 @@ ARM3R_INLINE Indentation<T> tip_indentation(const Plant<P>& plant, const WallSta
     return indentation(plant.wall, wall, tip_position(plant.arm, p), tip_velocity(plant.arm, p, qd));
 }
 
-// The derivative of the state. N is motion_size for the motion alone, state_size with the books, full_size with memory.
+// The derivative of the state. N is motion_size for the motion alone, state_size with the quadratures, full_size with
+// the controller's memory.
 template <class P, class T>
 class RightHandSide {
 public:
@@ -94,65 +95,70 @@ public:
           needs_azimuth_(!plant.arm.gravity_is_vertical || !plant.controller.model.gravity_is_vertical ||
                          plant.has_wall || plant.needs_azimuth) {}
 
-    Touch touch = Touch::none;
-    T contact{0.0}, force_phase{0.0};  // what a continuous controller takes them for (Sensed), constant within a step
-    LawFunction<P, T> law_function = nullptr;           // of a continuous controller that has one: law_by_template
-    T latest{std::numeric_limits<double>::infinity()};  // s: just before a jump on which the step ends (5.8)
+    ContactForceMode force_mode = ContactForceMode::none;
+    T contact{0.0}, force_phase{0.0};          // inputs of a continuous controller, constant within a step
+    LawFunction<P, T> law_function = nullptr;  // the law of a continuous controller, or null
+    // s: formulas of time are evaluated at this instant at the latest, just before a jump at the end of the step (5.8)
+    T latest{std::numeric_limits<double>::infinity()};
 
-    // The stages of a step are turned from the sines and cosines at the nearest point of a grid of angles (elementary.hpp,
-    // sincos_near), which change so rarely that they are kept. What is kept never changes a result: it is that of the point.
+    // The stages of a step rotate the cached sines and cosines of the nearest point of a grid of angles
+    // (elementary.hpp, sincos_near), which changes rarely. The cache never changes a result: the grid point depends on
+    // the state only.
     template <std::size_t N>
     ARM3R_INLINE void begin_step(const State<T, N>& y) {
         const Vec3<T> nearest(on_grid(y[0]), on_grid(y[1]), on_grid(T(y[1] + y[2])));
-        auto is_kept = nearest[1] == anchor_q_[1] && nearest[2] == anchor_q_[2];
-        if (needs_azimuth_) is_kept = is_kept && nearest[0] == anchor_q_[0];
+        auto is_kept = nearest[1] == cached_q_[1] && nearest[2] == cached_q_[2];
+        if (needs_azimuth_) is_kept = is_kept && nearest[0] == cached_q_[0];
         if (all(is_kept)) return;
-        move_anchor(nearest);
+        update_cached_pose(nearest);
     }
 
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
         const T seen = min(t, latest);
-        WallState<T> wall;  // where nobody looks at it, nothing
-        if (senses_wall(plant_) || (plant_.acts_on_arm && touch != Touch::none)) wall = wall_at(plant_.wall, seen);
+        WallState<T> wall;  // left uninitialised if unused
+        if (senses_wall(plant_) || (plant_.acts_on_arm && force_mode != ContactForceMode::none))
+            wall = wall_at(plant_.wall, seen);
         derivative(seen, wall, pose_near(y), y, dy);
     }
 
-    // The same where the pose is known, and the wall unless it is not felt.
+    // The same with a known pose, and with a known wall if the wall is needed.
     template <std::size_t N>
     ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const State<T, N>& y,
                                  State<T, N>& dy) const {
         Indentation<T> in;
-        if (feels())
-            in = is_plain(plant_.wall, plant_.contact)
+        if (needs_contact())
+            in = is_plain_spring(plant_.wall, plant_.contact)
                      ? indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p))
                      : tip_indentation(plant_, wall, p, Vec3<T>(y[3], y[4], y[5]));
         Vec3<T> tau;
         derivative(t, wall, p, in, y, dy, tau);
     }
 
-    // The same where the indentation is known too; and the torque that is applied.
+    // The same with a known indentation; it also returns the applied torque.
     template <std::size_t N>
     ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
                                  const State<T, N>& y, State<T, N>& dy, Vec3<T>& tau) const {
         const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
         const Arm<P>& arm = plant_.arm;
-        Feeling feeling;
-        if (feels()) feel(wall, p, in, feeling);
-        const Vec3<T> load = plant_.load.on ? load_at(plant_.load, t) : none<T>();
-        tau = torque(t, wall, p, q, qd, plant_.load.on ? plus(feeling.on_tip, load) : feeling.on_tip, y, dy);
+        ContactLoad contact_load;
+        if (needs_contact()) set_contact_load(wall, p, in, contact_load);
+        const Vec3<T> external_force =
+            plant_.external_force.on ? external_force_at(plant_.external_force, t) : zero_vector<T>();
+        tau = torque(t, wall, p, q, qd,
+                     plant_.external_force.on ? plus(contact_load.on_tip, external_force) : contact_load.on_tip, y, dy);
         const Vec3<T> tau_f = friction_torque(arm, qd);
-        Vec3<T> drive = minus(compensates_weight() ? none<T>() : tau, tau_f);
+        Vec3<T> drive = minus(compensates_weight() ? zero_vector<T>() : tau, tau_f);
         T outer_power(0.0), contact_loss(0.0), friction_loss(0.0);
-        if (plant_.acts_on_arm && feeling.anything) {
-            drive = plus(drive, tip_force_torque(arm, p, feeling.on_tip));
-            outer_power = feeling.wall_power;
-            contact_loss = feeling.loss;
-            friction_loss = feeling.friction_loss;
+        if (plant_.acts_on_arm && contact_load.anything) {
+            drive = plus(drive, tip_force_torque(arm, p, contact_load.on_tip));
+            outer_power = contact_load.wall_power;
+            contact_loss = contact_load.loss;
+            friction_loss = contact_load.friction_loss;
         }
-        if (plant_.load.on) {
-            drive = plus(drive, tip_force_torque(arm, p, load));
-            outer_power = outer_power + dot(load, tip_velocity(arm, p, qd));
+        if (plant_.external_force.on) {
+            drive = plus(drive, tip_force_torque(arm, p, external_force));
+            outer_power = outer_power + dot(external_force, tip_velocity(arm, p, qd));
         }
         const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive, weight_left(p));
         for (int i = 0; i < 3; ++i) {
@@ -169,25 +175,25 @@ public:
         }
     }
 
-    // The torque that is applied, and into dy the rates of the controller's memory.
+    // Returns the applied torque and writes the rates of the controller's memory into dy.
     template <std::size_t N>
     ARM3R_INLINE Vec3<T> torque(const T& t, const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& q,
                                 const Vec3<T>& qd, const Vec3<T>& f_on_tip, const State<T, N>& y,
                                 State<T, N>& dy) const {
         const Controller<P>& controller = plant_.controller;
         if constexpr (N < full_size) {
-            return limited(plant_.arm, control(controller, q, p), controller.saturation);
+            return limited(plant_.arm, feedforward_torque(controller, q, p), controller.saturation);
         } else {
             Command<T> command;
             if (has_law(controller.type)) {
-                const Sensed<T> sensed = sense(t, wall, p, q, qd, f_on_tip, y);
+                const Measurement<T> sensed = measure(t, wall, p, q, qd, f_on_tip, y);
                 std::array<T, law_memory> memory;
                 for (std::size_t i = 0; i < law_memory; ++i) memory[i] = y[law_at + i];
                 law_function(controller, sensed, memory, command);
             } else {
-                command.tau = control(controller, q, p);
+                command.tau = feedforward_torque(controller, q, p);
                 command.rates.fill(T(0.0));
-                command.per_integral = {T(0.0), T(0.0), T(0.0)};
+                command.dtau_dintegral = {T(0.0), T(0.0), T(0.0)};
             }
             const Vec3<T> tau = actuated(plant_.arm, controller, y[law_at], command);
             for (std::size_t i = 0; i < law_memory; ++i) dy[law_at + i] = command.rates[i];
@@ -203,13 +209,14 @@ public:
         }
     }
 
-    // What a continuous controller is told.
-    ARM3R_INLINE Sensed<T> sense(const T& t, const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& q,
-                                 const Vec3<T>& qd, const Vec3<T>& f_on_tip, const State<T, full_size>& y) const {
+    // The measurements of a continuous controller.
+    ARM3R_INLINE Measurement<T> measure(const T& t, const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& q,
+                                        const Vec3<T>& qd, const Vec3<T>& f_on_tip,
+                                        const State<T, full_size>& y) const {
         Vec3<T> measured = f_on_tip;
         if (plant_.sensors.has_analog_filter) measured = {y[filter_at], y[filter_at + 1], y[filter_at + 2]};
-        if (plant_.sensors.has_bias) measured = plus(measured, lifted<T>(plant_.sensors.bias));
-        const Vec3<T> n = plant_.has_wall ? normal(plant_.wall, wall) : none<T>();
+        if (plant_.sensors.has_bias) measured = plus(measured, broadcast<T>(plant_.sensors.bias));
+        const Vec3<T> n = plant_.has_wall ? normal(plant_.wall, wall) : zero_vector<T>();
         const T face = plant_.has_wall ? T(dot(n, wall.position) + plant_.wall.face_offset) : T(0.0);
         return {t, q,    qd,      p,          measured, plant_.controller.ideal_cancellation ? f_on_tip : measured,
                 n, face, contact, force_phase};
@@ -221,59 +228,61 @@ public:
                         Vec3<T>(y[observer_at], y[observer_at + 1], y[observer_at + 2]));
     }
 
-    // The pose near the one of begin_step().
+    // The pose from the sines and cosines that begin_step() has cached.
     template <std::size_t N>
     ARM3R_INLINE Pose<T> pose_near(const State<T, N>& y) const {
         const auto [second, third] =
-            sincos_near_pair(anchor_q_[1], SinCos<T>{anchor_.S2, anchor_.C2}, y[1], anchor_q_[2],
-                             SinCos<T>{anchor_.S23, anchor_.C23}, T(y[1] + y[2]));
+            sincos_near_pair(cached_q_[1], SinCos<T>{cached_pose_.S2, cached_pose_.C2}, y[1], cached_q_[2],
+                             SinCos<T>{cached_pose_.S23, cached_pose_.C23}, T(y[1] + y[2]));
         if (!needs_azimuth_) return {T(0.0), T(1.0), second.sin, second.cos, third.sin, third.cos};
-        const SinCos<T> first = sincos_near(anchor_q_[0], SinCos<T>{anchor_.S1, anchor_.C1}, y[0]);
+        const SinCos<T> first = sincos_near(cached_q_[0], SinCos<T>{cached_pose_.S1, cached_pose_.C1}, y[0]);
         return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
     }
 
 private:
-    // Whether the actuators do nothing but carry the weight of the controller's arm: they are then taken together with that
-    // of the arm, so that nothing is left by rounding where the two are equal (3.8).
+    // Whether the actuators only compensate the weight of the controller's model. Both weights are then subtracted from
+    // each other, so that equal ones leave no rounding error (3.8).
     ARM3R_INLINE bool compensates_weight() const {
         const Controller<P>& controller = plant_.controller;
-        return controller.type == Controls::gravity_compensation && controller.algorithm == Algorithm::closed_form &&
-               !plant_.arm.has_torque_limit;
+        return controller.type == ControllerType::gravity_compensation &&
+               controller.algorithm == Algorithm::closed_form && !plant_.arm.has_torque_limit;
     }
     ARM3R_INLINE Vec3<T> weight_left(const Pose<T>& p) const {
         const Vec3<T> weight = link_weight(plant_.arm, p);
         return compensates_weight() ? minus(weight, link_weight(plant_.controller.model, p)) : weight;
     }
 
-    // What the wall does to the tip: nothing but where it touches.
-    struct Feeling {
+    // The effect of the wall on the tip; zero without contact.
+    struct ContactLoad {
         bool anything = false;
         decltype(T(0.0) > T(0.0)) where = T(0.0) > T(0.0);
         Vec3<T> on_tip{T(0.0), T(0.0), T(0.0)};            // N
         T wall_power{0.0}, loss{0.0}, friction_loss{0.0};  // W; the last is a part of the loss
     };
 
-    ARM3R_INLINE bool feels() const { return touch != Touch::none && (plant_.acts_on_arm || senses_wall(plant_)); }
+    ARM3R_INLINE bool needs_contact() const {
+        return force_mode != ContactForceMode::none && (plant_.acts_on_arm || senses_wall(plant_));
+    }
 
-    ARM3R_INLINE void feel(const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
-                           Feeling& feeling) const {
-        if (touch == Touch::each_stage) {
-            feeling.where = in.depth > T(0.0);
-            if (!any(feeling.where)) return;
-            feeling.where = feeling.where && within(in);
+    ARM3R_INLINE void set_contact_load(const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
+                                       ContactLoad& contact_load) const {
+        if (force_mode == ContactForceMode::each_stage) {
+            contact_load.where = in.depth > T(0.0);
+            if (!any(contact_load.where)) return;
+            contact_load.where = contact_load.where && within(in);
         }
-        const ContactForce<T> force = contact_force(plant_.wall, wall, plant_.contact, in, grip());
-        feeling.anything = true;
-        feeling.on_tip = force.on_tip;
-        feeling.wall_power = dot(force.on_tip, velocity_at(plant_.wall, wall, tip_position(plant_.arm, p)));
-        feeling.loss = force.dissipated;
-        feeling.friction_loss = force.friction_loss;
-        if (touch != Touch::each_stage) return;
+        const ContactForce<T> force = contact_force(plant_.wall, wall, plant_.contact, in, clamping());
+        contact_load.anything = true;
+        contact_load.on_tip = force.on_tip;
+        contact_load.wall_power = dot(force.on_tip, velocity_at(plant_.wall, wall, tip_position(plant_.arm, p)));
+        contact_load.loss = force.dissipated;
+        contact_load.friction_loss = force.friction_loss;
+        if (force_mode != ContactForceMode::each_stage) return;
         const T o(0.0);
-        for (int i = 0; i < 3; ++i) feeling.on_tip[i] = select(feeling.where, feeling.on_tip[i], o);
-        feeling.wall_power = select(feeling.where, feeling.wall_power, o);
-        feeling.loss = select(feeling.where, feeling.loss, o);
-        feeling.friction_loss = select(feeling.where, feeling.friction_loss, o);
+        for (int i = 0; i < 3; ++i) contact_load.on_tip[i] = select(contact_load.where, contact_load.on_tip[i], o);
+        contact_load.wall_power = select(contact_load.where, contact_load.wall_power, o);
+        contact_load.loss = select(contact_load.where, contact_load.loss, o);
+        contact_load.friction_loss = select(contact_load.where, contact_load.friction_loss, o);
     }
 
     ARM3R_INLINE static T on_grid(const T& angle) {
@@ -281,15 +290,15 @@ private:
         return nearest_integer(T(angle * points_per_radian)) * (1 / points_per_radian);
     }
 
-    ARM3R_INLINE void move_anchor(const Vec3<T>& nearest) {
+    ARM3R_INLINE void update_cached_pose(const Vec3<T>& nearest) {
         const SinCos<T> first = sincos(nearest[0]), second = sincos(nearest[1]), third = sincos(nearest[2]);
-        anchor_q_ = nearest;
-        anchor_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
+        cached_q_ = nearest;
+        cached_pose_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
     }
 
-    ARM3R_INLINE Grip grip() const {
-        if (touch == Touch::each_stage) return Grip::clipped;
-        return touch == Touch::released ? Grip::released : Grip::smooth;
+    ARM3R_INLINE Clamping clamping() const {
+        if (force_mode == ContactForceMode::each_stage) return Clamping::clamped;
+        return force_mode == ContactForceMode::released ? Clamping::released : Clamping::smooth;
     }
 
     ARM3R_INLINE auto within(const Indentation<T>& in) const {
@@ -299,8 +308,8 @@ private:
 
     const Plant<P>& plant_;
     bool needs_azimuth_;
-    Vec3<T> anchor_q_{T(0.0), T(0.0), T(0.0)};
-    Pose<T> anchor_{T(0.0), T(1.0), T(0.0), T(1.0), T(0.0), T(1.0)};
+    Vec3<T> cached_q_{T(0.0), T(0.0), T(0.0)};
+    Pose<T> cached_pose_{T(0.0), T(1.0), T(0.0), T(1.0), T(0.0), T(1.0)};
 };
 
 }  // namespace arm3r

@@ -62,7 +62,7 @@ std::string json(const Error& error) {
 
 }  // namespace
 
-int32_t remember(const Error& error) noexcept {
+int32_t store_error(const Error& error) noexcept {
     try {
         last = {error.what(), json(error)};
     } catch (...) {
@@ -71,10 +71,10 @@ int32_t remember(const Error& error) noexcept {
     return error.status();
 }
 
-int32_t remember(arm3r_status status, const char* message) noexcept {
+int32_t store_error(arm3r_status status, const char* message) noexcept {
     try {
         const bool bug = status == ARM3R_E_INTERNAL;
-        return remember(Error(status, bug ? std::string("a bug in arm3r, please report it: ") + message : message));
+        return store_error(Error(status, bug ? std::string("a bug in arm3r, please report it: ") + message : message));
     } catch (...) {
         last.fixed_message = message;
         return status;

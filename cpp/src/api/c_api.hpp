@@ -1,5 +1,5 @@
 #pragma once
-// What every function of the C interface stands on: the guard, the checks of arguments, and the handles.
+// Common parts of the C interface: the guard, the checks of arguments, and the handles.
 
 #include <cxxabi.h>
 
@@ -23,9 +23,9 @@
 
 namespace arm3r {
 
-// Keep a failure for arm3r_error_message() of this thread, and return its status.
-int32_t remember(const Error& error) noexcept;
-int32_t remember(arm3r_status status, const char* message) noexcept;
+// Stores an error for arm3r_error_message() of this thread, and returns its status.
+int32_t store_error(const Error& error) noexcept;
+int32_t store_error(arm3r_status status, const char* message) noexcept;
 
 inline constexpr const char* out_of_memory =
     "error[memory]: there is not enough memory; of a run most goes to its rows (time.log_every)";
@@ -41,13 +41,13 @@ int32_t guard(Body&& body) {
     } catch (const abi::__forced_unwind&) {
         throw;
     } catch (const Error& error) {
-        return remember(error);
+        return store_error(error);
     } catch (const std::bad_alloc&) {
-        return remember(ARM3R_E_MEMORY, out_of_memory);
+        return store_error(ARM3R_E_MEMORY, out_of_memory);
     } catch (const std::exception& error) {
-        return remember(ARM3R_E_INTERNAL, error.what());
+        return store_error(ARM3R_E_INTERNAL, error.what());
     } catch (...) {
-        return remember(ARM3R_E_INTERNAL, "an unknown exception");
+        return store_error(ARM3R_E_INTERNAL, "an unknown exception");
     }
 }
 
@@ -64,8 +64,8 @@ void check_index(std::size_t index, std::size_t count, const char* what);
 
 std::span<const double> params_in(const double* params, std::size_t count);
 
-// What the caller's version of a struct says, in ours; all begin with their size and end with reserved fields. Throws
-// Error ARM3R_E_ABI where it holds what this library does not know.
+// Reads the caller's version of a struct into that of the library; all begin with their size and end with reserved
+// fields. Throws Error ARM3R_E_ABI if it contains something that this library does not know.
 void read_struct(const void* given, void* into, std::size_t known, const char* name);
 
 template <class Struct>
@@ -80,9 +80,9 @@ Struct struct_in(const Struct* given, const char* name) {
 // Null gives the defaults.
 RunOptions options_in(const arm3r_run_options* options);
 
-// Problems that only the numbers show, with their place in the text.
+// Adds the location in the text to problems that were found in the numbers.
 template <class Body>
-auto with_places(const Scenario& scenario, Body body) {
+auto with_locations(const Scenario& scenario, Body body) {
     try {
         return body();
     } catch (const Error& error) {
@@ -91,7 +91,7 @@ auto with_places(const Scenario& scenario, Body body) {
     }
 }
 
-// Texts that a handle has given out: each is made once and stays where it is.
+// Texts that belong to a handle: each is made once and keeps its address.
 class Texts {
 public:
     template <class Make>
@@ -120,7 +120,7 @@ struct arm3r_run {
 
 namespace arm3r {
 
-// What a run has of its scenario: name, text, warnings, checks.
+// Sets what a run keeps of its scenario: name, text, warnings, checks.
 void describe(arm3r_run& handle, const Resolved& resolved);
 
 }  // namespace arm3r

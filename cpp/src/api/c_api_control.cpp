@@ -1,4 +1,5 @@
-// The part of the C interface where the controller is the caller's: a law that is called, and a run stepped by hand.
+// The part of the C interface with the caller's own controller: a law as a callback, and a simulation that the caller
+// steps.
 
 #include <atomic>
 #include <cmath>
@@ -19,23 +20,23 @@ using namespace arm3r;
 
 namespace {
 
-struct Law {
+struct LawAdapter {
     arm3r_law function;
     void* user;
     LawView view;
     arm3r_law_state state{};
 
-    Law(arm3r_law function, void* user, const Setup& setup) : function(function), user(user), view(setup) {
+    LawAdapter(arm3r_law function, void* user, const Setup& setup) : function(function), user(user), view(setup) {
         state.struct_size = sizeof state;
     }
 
-    static int ask(void* self, double tick, const Truth& truth, const Sensed<double>& sensed,
-                   const Known<double>& known, Vec3<double>& tau) {
-        Law& law = *static_cast<Law*>(self);
-        law.view.look(tick, truth, sensed, known, law.state);
-        double answer[3] = {NAN, NAN, NAN};
-        const int32_t status = call_back(law.function, law.user, &law.state, answer);
-        tau = law.view.torque(answer);
+    static int call(void* self, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
+                    const ControllerState<double>& controller_state, Vec3<double>& tau) {
+        LawAdapter& law = *static_cast<LawAdapter*>(self);
+        law.view.fill_state(tick, truth, sensed, controller_state, law.state);
+        double caller[3] = {NAN, NAN, NAN};
+        const int32_t status = call_back(law.function, law.user, &law.state, caller);
+        tau = law.view.torque(caller);
         return status;
     }
 };
@@ -49,10 +50,11 @@ void refuse_other_controllers(std::span<const double> params) {
                                     .allowed = "user"}});
 }
 
-Run controlled(std::span<const double> params, const Setup& setup, arm3r_law function, void* user, RunOptions options) {
+Run run_with_law(std::span<const double> params, const Setup& setup, arm3r_law function, void* user,
+                 RunOptions options) {
     refuse_other_controllers(params);
-    Law law(function, user, setup);
-    options.user_law = {Law::ask, &law, setup.simscape};
+    LawAdapter law(function, user, setup);
+    options.user_law = {LawAdapter::call, &law, setup.simscape};
     return simulate(setup, options);
 }
 
@@ -65,7 +67,7 @@ int32_t arm3r_params_control(const double* params, size_t count, arm3r_law law, 
         need(run, "run");
         auto handle = std::make_unique<arm3r_run>();
         const std::span<const double> numbers = params_in(params, count);
-        handle->run = controlled(numbers, valid_setup(numbers), law, user, options_in(options));
+        handle->run = run_with_law(numbers, valid_setup(numbers), law, user, options_in(options));
         *run = handle.release();
     });
 }
@@ -79,21 +81,21 @@ int32_t arm3r_scenario_control(const arm3r_scenario* scenario, arm3r_law law, vo
         const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = with_places(scenario->scenario,
-                                  [&] { return controlled(resolved.params, resolved.setup, law, user, chosen); });
+        handle->run = with_locations(scenario->scenario,
+                                     [&] { return run_with_law(resolved.params, resolved.setup, law, user, chosen); });
         describe(*handle, resolved);
         *run = handle.release();
     });
 }
 
-// ---- a run in the caller's hands
+// ---- a simulation that the caller steps
 
 struct arm3r_simulation {
     std::shared_ptr<const Resolved> resolved;
     std::shared_ptr<const std::string> yaml;
     std::shared_ptr<const LawView> view;
-    std::unique_ptr<Stepwise> run;
-    arm3r_law_state last{};  // seen at the last sample that was answered
+    std::unique_ptr<InteractiveRun> run;
+    arm3r_law_state last{};  // as seen at the last sample that got a torque
     mutable std::atomic_flag busy{};
 
     arm3r_simulation() { last.struct_size = sizeof last; }
@@ -101,44 +103,45 @@ struct arm3r_simulation {
 
 namespace {
 
-class Hold {
+class SimulationLock {
 public:
-    explicit Hold(const arm3r_simulation* simulation) : flag_((need(simulation, "simulation"), simulation->busy)) {
+    explicit SimulationLock(const arm3r_simulation* simulation)
+        : flag_((need(simulation, "simulation"), simulation->busy)) {
         if (flag_.test_and_set()) throw Error(ARM3R_E_BUSY, "the simulation is in use by another call");
     }
-    ~Hold() { flag_.clear(); }
-    Hold(const Hold&) = delete;
-    Hold& operator=(const Hold&) = delete;
+    ~SimulationLock() { flag_.clear(); }
+    SimulationLock(const SimulationLock&) = delete;
+    SimulationLock& operator=(const SimulationLock&) = delete;
 
 private:
     std::atomic_flag& flag_;
 };
 
-struct Answer {
+struct CallersTorque {
     const LawView& view;
     arm3r_law_state& state;
     Vec3<double> tau{0, 0, 0};
 
-    static int give(void* self, double tick, const Truth& truth, const Sensed<double>& sensed,
-                    const Known<double>& known, Vec3<double>& tau) {
-        Answer& answer = *static_cast<Answer*>(self);
-        answer.view.look(tick, truth, sensed, known, answer.state);
-        tau = answer.tau;
+    static int call(void* self, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
+                    const ControllerState<double>& controller_state, Vec3<double>& tau) {
+        CallersTorque& caller = *static_cast<CallersTorque*>(self);
+        caller.view.fill_state(tick, truth, sensed, controller_state, caller.state);
+        tau = caller.tau;
         return 0;
     }
 };
 
-arm3r_law_state seen(const arm3r_simulation& simulation) {
+arm3r_law_state present_state(const arm3r_simulation& simulation) {
     arm3r_law_state state = simulation.last;
     if (simulation.run->is_over()) return state;
-    Answer nothing{*simulation.view, state};
-    simulation.run->show({Answer::give, &nothing});
+    CallersTorque nothing{*simulation.view, state};
+    simulation.run->preview({CallersTorque::call, &nothing});
     return state;
 }
 
 void check_torque(const double* tau) {
     for (int i = 0; i < 3; ++i)
-        if (!(std::abs(tau[i]) <= largest_torque))
+        if (!(std::abs(tau[i]) <= max_torque))
             throw Error(ARM3R_E_VALUE, {{.code = "argument.value",
                                          .path = "tau[" + std::to_string(i) + "]",
                                          .message = "not a torque that can be applied",
@@ -156,8 +159,8 @@ std::unique_ptr<arm3r_simulation> copied(const arm3r_simulation& from) {
     return copy;
 }
 
-void refuse_marching(const Setup& setup) {
-    if (!setup.solver.marches()) return;
+void refuse_lane_method(const Setup& setup) {
+    if (!setup.solver.runs_in_lanes()) return;
     throw Error(ARM3R_E_SCENARIO,
                 {{.code = "scenario.other_choice",
                   .path = "solver.method",
@@ -175,12 +178,12 @@ int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation
         auto handle = std::make_unique<arm3r_simulation>();
         handle->resolved = std::make_shared<Resolved>(scenario->resolved());
         handle->yaml = std::make_shared<std::string>(to_yaml(handle->resolved->tree, false));
-        with_places(scenario->scenario, [&] {
+        with_locations(scenario->scenario, [&] {
             refuse_other_controllers(handle->resolved->params);
             const Setup& setup = handle->resolved->setup;
-            refuse_marching(setup);
+            refuse_lane_method(setup);
             handle->view = std::make_shared<LawView>(setup);
-            handle->run = begin_stepwise(setup, {});
+            handle->run = start_interactive_run(setup, {});
         });
         *simulation = handle.release();
     });
@@ -190,7 +193,7 @@ void arm3r_simulation_free(arm3r_simulation* simulation) { delete simulation; }
 
 int32_t arm3r_simulation_is_over(const arm3r_simulation* simulation, int32_t* is_over) {
     return guard([&] {
-        const Hold hold(simulation);
+        const SimulationLock lock(simulation);
         need(is_over, "is_over");
         *is_over = simulation->run->is_over();
     });
@@ -198,28 +201,28 @@ int32_t arm3r_simulation_is_over(const arm3r_simulation* simulation, int32_t* is
 
 int32_t arm3r_simulation_state(const arm3r_simulation* simulation, arm3r_law_state* state) {
     return guard([&] {
-        const Hold hold(simulation);
+        const SimulationLock lock(simulation);
         need(state, "state");
-        *state = seen(*simulation);
+        *state = present_state(*simulation);
     });
 }
 
 int32_t arm3r_simulation_step(arm3r_simulation* simulation, const double* tau) {
     return guard([&] {
-        const Hold hold(simulation);
+        const SimulationLock lock(simulation);
         check_pointer(tau, "tau");
         check_torque(tau);
         if (simulation->run->is_over())
             throw Error(ARM3R_E_OVER, "the simulation is over at t = " + shortest(simulation->last.t) + " s");
-        Answer answer{*simulation->view, simulation->last, simulation->view->torque(tau)};
-        simulation->run->use({Answer::give, &answer});
-        simulation->run->go_on();
+        CallersTorque caller{*simulation->view, simulation->last, simulation->view->torque(tau)};
+        simulation->run->set_user_law({CallersTorque::call, &caller});
+        simulation->run->advance();
     });
 }
 
 int32_t arm3r_simulation_copy(const arm3r_simulation* simulation, arm3r_simulation** copy) {
     return guard([&] {
-        const Hold hold(simulation);
+        const SimulationLock lock(simulation);
         need(copy, "copy");
         *copy = copied(*simulation).release();
     });
@@ -227,10 +230,10 @@ int32_t arm3r_simulation_copy(const arm3r_simulation* simulation, arm3r_simulati
 
 int32_t arm3r_simulation_restore(arm3r_simulation* simulation, const arm3r_simulation* from) {
     return guard([&] {
-        const Hold hold(simulation);
+        const SimulationLock lock(simulation);
         need(from, "from");
         if (from == simulation) return;
-        const Hold other(from);
+        const SimulationLock other(from);
         if (*from->yaml != *simulation->yaml) throw Error(ARM3R_E_VALUE, "`from` is a simulation of another scenario");
         simulation->run = from->run->copy();
         simulation->last = from->last;
@@ -239,10 +242,10 @@ int32_t arm3r_simulation_restore(arm3r_simulation* simulation, const arm3r_simul
 
 int32_t arm3r_simulation_run(const arm3r_simulation* simulation, arm3r_run** run) {
     return guard([&] {
-        const Hold hold(simulation);
+        const SimulationLock lock(simulation);
         need(run, "run");
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = simulation->run->so_far();
+        handle->run = simulation->run->snapshot();
         describe(*handle, *simulation->resolved);
         *run = handle.release();
     });

@@ -23,9 +23,9 @@ struct arm3r_arm : Model {};
 
 namespace {
 
-constexpr double largest_number = 1e100;  // its square and cube are still numbers
-constexpr double least_sine = 1e-3;  // of joint 3, or of the tip's distance from joint 1's axis over the arm's length
-constexpr std::size_t most_states = std::numeric_limits<std::size_t>::max() / (18 * sizeof(double));
+constexpr double max_number = 1e100;  // its square and cube are still numbers
+constexpr double min_sine = 1e-3;     // of joint 3, or of the tip's distance from joint 1's axis over the arm's length
+constexpr std::size_t max_states = std::numeric_limits<std::size_t>::max() / (18 * sizeof(double));
 
 struct Input {  // rows of 3
     const double* data;
@@ -44,8 +44,8 @@ using Inputs = std::initializer_list<Input>;
 using Outputs = std::initializer_list<Output>;
 
 Input joint_angles(const double* q) { return {q, "q", sincos_limit}; }
-Input numbers(const double* data, const char* name) { return {data, name, largest_number}; }
-Input tip_force(const double* f_on_tip) { return {f_on_tip, "f_on_tip", largest_number, true}; }
+Input numbers(const double* data, const char* name) { return {data, name, max_number}; }
+Input tip_force(const double* f_on_tip) { return {f_on_tip, "f_on_tip", max_number, true}; }
 
 Error bad_value(const Input& in, std::size_t at) {
     const std::string where = std::string(in.name) + "[" + std::to_string(at / 3) + "][" + std::to_string(at % 3) + "]";
@@ -78,7 +78,7 @@ void check(const arm3r_arm* arm, std::size_t n, Inputs inputs, Outputs outputs) 
     for (const Input& in : inputs)
         if (in.data || !in.nullable) check_pointer(in.data, in.name);
     for (const Output& out : outputs) check_pointer(out.data, out.name);
-    if (n > most_states) throw Error(ARM3R_E_SIZE, "n is " + std::to_string(n) + ": no array is as long");
+    if (n > max_states) throw Error(ARM3R_E_SIZE, "n is " + std::to_string(n) + ": no array is as long");
     for (const Output& out : outputs) {
         for (const Input& in : inputs) check_overlap(out, in.data, 3, in.name, n);
         for (const Output& other : outputs)
@@ -88,11 +88,11 @@ void check(const arm3r_arm* arm, std::size_t n, Inputs inputs, Outputs outputs) 
     for (const Input& in : inputs) check_values(in, n);
 }
 
-Rows rows(Inputs inputs, Outputs outputs) {
-    Rows all{};
+StateRows rows(Inputs inputs, Outputs outputs) {
+    StateRows all{};
     std::transform(inputs.begin(), inputs.end(), all.in.begin(), [](const Input& in) { return in.data; });
     std::transform(outputs.begin(), outputs.end(), all.out.begin(),
-                   [](const Output& out) { return Rows::Out{out.data, out.width}; });
+                   [](const Output& out) { return StateRows::Out{out.data, out.width}; });
     return all;
 }
 
@@ -100,7 +100,7 @@ Vec3<double> load(const double* data, std::size_t i) { return {data[3 * i], data
 
 // Joint vectors in the caller's convention from and to slide.
 Vec3<double> load_joints(const arm3r_arm& arm, const double* data, std::size_t i) {
-    return arm.simscape ? flipped(load(data, i)) : load(data, i);
+    return arm.simscape ? change_convention(load(data, i)) : load(data, i);
 }
 
 void store(const Vec3<double>& v, double* data, std::size_t i) {
@@ -108,7 +108,7 @@ void store(const Vec3<double>& v, double* data, std::size_t i) {
 }
 
 void store_joints(const arm3r_arm& arm, const Vec3<double>& v, double* data, std::size_t i) {
-    store(arm.simscape ? flipped(v) : v, data, i);
+    store(arm.simscape ? change_convention(v) : v, data, i);
 }
 
 Error singular(std::size_t i, const char* what) {
@@ -129,15 +129,15 @@ void refuse_singular(const Model& model, std::size_t n, const double* q) {
         const std::size_t count = std::min(most, n - first);
         evaluate(in_groups::singularity, model, count, {{q + 3 * first}, {{{sine, 1}, {radius, 1}}}});
         for (std::size_t i = 0; i < count; ++i) {
-            if (sine[i] < least_sine) throw singular(first + i, "the arm is stretched or folded: the pose is singular");
-            if (radius[i] < least_sine * reach)
+            if (sine[i] < min_sine) throw singular(first + i, "the arm is stretched or folded: the pose is singular");
+            if (radius[i] < min_sine * reach)
                 throw singular(first + i, "the tip is on the axis of joint 1: the pose is singular");
         }
     }
 }
 
 [[noreturn]] void refuse_direction(const Vec3<double>& direction, std::size_t i) {
-    if (std::sqrt(dot(direction, direction)) > least_length)
+    if (std::sqrt(dot(direction, direction)) > min_length)
         throw singular(i, "the tip cannot move along this direction");
     throw Error(ARM3R_E_VALUE, {{.code = "argument.value",
                                  .path = "direction[" + std::to_string(i) + "]",
@@ -155,7 +155,7 @@ int32_t evaluated(const arm3r_arm* arm, std::size_t n, Inputs inputs, Outputs ou
 
 constexpr double no_force[3] = {0, 0, 0};
 
-// By the recursion, state after state. An absent force is one of zero for every state.
+// Evaluates the recursion for one state after the other. A missing force is zero for every state.
 template <class Body>
 int32_t by_recursion(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd, const char* third_name,
                      const double* third, const double* f_on_tip, Output out, Body body) {
@@ -254,8 +254,8 @@ int32_t arm3r_arm_elbow_position(const arm3r_arm* arm, size_t n, const double* q
     return evaluated(arm, n, {joint_angles(q)}, {{elbow, 3, "elbow"}}, in_groups::elbow_position);
 }
 
-int32_t arm3r_arm_centres(const arm3r_arm* arm, size_t n, const double* q, double* centres) {
-    return evaluated(arm, n, {joint_angles(q)}, {{centres, 9, "centres"}}, in_groups::centres);
+int32_t arm3r_arm_centres(const arm3r_arm* arm, size_t n, const double* q, double* centres_of_mass) {
+    return evaluated(arm, n, {joint_angles(q)}, {{centres_of_mass, 9, "centres"}}, in_groups::centres_of_mass);
 }
 
 int32_t arm3r_arm_jacobian(const arm3r_arm* arm, size_t n, const double* q, double* jacobian) {

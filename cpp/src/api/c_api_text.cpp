@@ -133,7 +133,7 @@ int32_t arm3r_scenario_validate(const arm3r_scenario* scenario) {
     return guard([&] {
         need(scenario, "scenario");
         const Setup& setup = scenario->resolved().setup;
-        with_places(scenario->scenario, [&] { refuse_too_large(setup); });
+        with_locations(scenario->scenario, [&] { refuse_too_large(setup); });
     });
 }
 
@@ -174,7 +174,7 @@ int32_t arm3r_scenario_warnings(const arm3r_scenario* scenario, const char** tex
             const std::string place = visible(scenario->scenario.file, 4096) + ": warning: ";
             std::string lines;
             for (const std::string& slip : resolved.warnings) lines += place + slip + "\n";
-            for (const std::string& slip : likely_slips(resolved.params)) lines += place + slip + "\n";
+            for (const std::string& slip : scenario_warnings(resolved.params)) lines += place + slip + "\n";
             return lines;
         });
     });
@@ -199,7 +199,7 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = with_places(scenario->scenario, [&] { return simulate(resolved.setup, chosen); });
+        handle->run = with_locations(scenario->scenario, [&] { return simulate(resolved.setup, chosen); });
         describe(*handle, resolved);
         *run = handle.release();
     });

@@ -11,7 +11,7 @@
 
 namespace arm3r {
 
-// What the function throws becomes an Error, and what it changes in the floating-point environment is undone. A thread
+// An exception of the function becomes an Error, and its changes of the floating-point environment are undone. A thread
 // that is ended within it (pthread_exit, as Python does with threads that outlive it) is ended, destructors included.
 template <class Function, class... Arguments>
 auto call_back(Function* function, Arguments... arguments) {

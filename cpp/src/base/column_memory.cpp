@@ -34,9 +34,9 @@ RowTable::RowTable(const RowTable& other) {
         std::copy_n(other.data.get() + i * capacity, rows, data.get() + i * capacity);
 }
 
-void RowTable::reserve(std::vector<std::size_t> wanted, std::size_t most_rows) {
+void RowTable::reserve(std::vector<std::size_t> wanted, std::size_t max_rows) {
     columns = std::move(wanted);
-    capacity = most_rows;
+    capacity = max_rows;
     data = allocate_rows(capacity * columns.size());
 }
 

@@ -29,7 +29,7 @@ struct RowTable {
     RowTable& operator=(RowTable&&) = default;
     RowTable(const RowTable& other);
 
-    // Takes the memory for so many rows of these columns.
+    // Allocates memory for this many rows of these columns.
     void reserve(std::vector<std::size_t> columns, std::size_t capacity);
     std::span<const double> column(std::size_t i) const { return {data.get() + i * capacity, rows}; }
 };

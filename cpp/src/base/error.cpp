@@ -6,7 +6,7 @@ namespace arm3r {
 
 namespace {
 
-constexpr std::size_t most_problems = 20;
+constexpr std::size_t max_problems = 20;
 
 std::string place(const Problem& problem) {
     std::string out = visible(problem.file, 4096);
@@ -16,7 +16,7 @@ std::string place(const Problem& problem) {
 }
 
 std::vector<Problem> at_most(std::vector<Problem> problems) {
-    if (problems.size() > most_problems) problems.resize(most_problems);
+    if (problems.size() > max_problems) problems.resize(max_problems);
     return problems;
 }
 

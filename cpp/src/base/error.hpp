@@ -1,5 +1,5 @@
 #pragma once
-// What went wrong, in the words the user needs: which key, what stood there, what is allowed, and what to try.
+// An error message in the user's terms: which key, what was there, what is allowed, and how to fix it.
 
 #include <exception>
 #include <string>

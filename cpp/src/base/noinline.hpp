@@ -1,13 +1,13 @@
 #pragma once
-// A piece of a long function as a function of its own, compiled for the registers that hold T: what is not always needed
-// stays out of the way of what is.
+// Runs f in a function that is not inlined and that is compiled for the vector width of T, so that rare code does not
+// spill registers in the hot loop.
 
 #include "arm3r/numbers/pack.hpp"
 
 namespace arm3r {
 
 template <class T>
-struct Apart {
+struct Outlined {
     template <class F>
     [[gnu::noinline]] static void run(F f) {
         f();
@@ -16,7 +16,7 @@ struct Apart {
 
 #if ARM3R_WIDE_PACKS
 template <>
-struct Apart<Pack<4>> {
+struct Outlined<Pack<4>> {
     template <class F>
     [[gnu::noinline]] ARM3R_FOR_FOUR static void run(F f) {
         f();
@@ -24,7 +24,7 @@ struct Apart<Pack<4>> {
 };
 
 template <>
-struct Apart<Pack<8>> {
+struct Outlined<Pack<8>> {
     template <class F>
     [[gnu::noinline]] ARM3R_FOR_EIGHT static void run(F f) {
         f();
@@ -32,17 +32,17 @@ struct Apart<Pack<8>> {
 };
 #endif
 
-// A right-hand side that the stages of a step call, instead of each holding a copy of it.
+// A right-hand side as a function call, so that the stages of a step do not each contain a copy of it.
 template <class T, class F>
-struct Called {
+struct OutlinedFunction {
     const F& f;
     template <class Y>
     ARM3R_INLINE void operator()(const T& t, const Y& y, Y& dy) const {
-        Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { f(t, y, dy); });
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { f(t, y, dy); });
     }
 };
 template <class T, class F>
-ARM3R_INLINE Called<T, F> called(const F& f) {
+ARM3R_INLINE OutlinedFunction<T, F> outlined(const F& f) {
     return {f};
 }
 

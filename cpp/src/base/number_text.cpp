@@ -110,7 +110,7 @@ bool is_degrees(std::string_view unit) {
     return unit == "deg" || unit == "\u00b0" || unit == "degree" || unit == "degrees" || unit == "deg/s";
 }
 
-// What the writer of `number` followed by `unit` most likely wanted.
+// A hint at what was probably meant by `number` followed by `unit`.
 std::string unit_hint(std::string_view number, std::string_view unit, const NumberRules& rules) {
     if (is_degrees(unit)) {
         if (rules.degrees) return "write " + std::string(number) + " deg";

@@ -24,7 +24,7 @@ std::optional<double> read_number(std::string_view text, const NumberRules& rule
 // A double in the shortest form that reads back to the same bits; "inf". No sign on zero.
 std::string shortest(double value);
 
-// The same into a buffer of at least 32 characters; returns the end.
+// Writes the same into a buffer of at least 32 characters; returns the end.
 char* write_shortest(char* begin, double value);
 
 }  // namespace arm3r

@@ -1,5 +1,5 @@
 #pragma once
-// The rules that were found broken: with their messages, or, where nobody would read them, only whether there are any.
+// A list of broken rules: with messages, or, if nobody reads them, only the information whether it is empty.
 
 #include <vector>
 
@@ -7,24 +7,24 @@
 
 namespace arm3r {
 
-class Findings {
+class ProblemList {
 public:
-    enum Detail { messages, verdict };
-    explicit Findings(Detail detail) : detail_(detail) {}
+    enum Detail { messages, count_only };
+    explicit ProblemList(Detail detail) : detail_(detail) {}
 
     template <class MakeProblem>
     void add(const MakeProblem& problem) {
-        none_ = false;
+        empty_ = false;
         if (detail_ == messages) problems.push_back(problem());
     }
 
-    bool none() const { return none_; }
+    bool empty() const { return empty_; }
 
     std::vector<Problem> problems;
 
 private:
     const Detail detail_;
-    bool none_ = true;
+    bool empty_ = true;
 };
 
 }  // namespace arm3r

@@ -8,7 +8,7 @@
 namespace arm3r {
 namespace {
 
-// Of one point: velocity and acceleration, or what is asked of them.
+// Velocity and acceleration at one point, or the right-hand side for them.
 struct Pair {
     double v, a;
 };
@@ -33,14 +33,14 @@ Block times(const Block& A, const Block& B) {
 
 Block minus(const Block& A, const Block& B) { return {A.vv - B.vv, A.va - B.va, A.av - B.av, A.aa - B.aa}; }
 
-// What the jumps of the fourth and third derivative at a point take from its own v, a: l and r are the times before it and
-// after it.
+// The jumps of the fourth and third derivative at a point as a function of v, a at this point: l and r are the
+// intervals before and after it.
 Block own(double l, double r) {
     const double mixed = 36 / (r * r) - 36 / (l * l);
     return {192 / (l * l * l) + 192 / (r * r * r), mixed, mixed, 9 / l + 9 / r};
 }
 
-// And from those of the point before it.
+// The same as a function of v, a at the point before it.
 Block of_before(double l) { return {168 / (l * l * l), 24 / (l * l), -24 / (l * l), -3 / l}; }
 
 Pair asked(double l, double before, double r, double after) {
@@ -54,8 +54,8 @@ Pair asked(double l, double before, double r, double after) {
 void minimum_jerk_through(std::span<const double> t, std::span<const double> s, std::span<double> v,
                           std::span<double> a) {
     const std::size_t last = t.size() - 1;
-    std::array<Block, most_knots> inverses;
-    std::array<Pair, most_knots> rest;
+    std::array<Block, max_knots> inverses;
+    std::array<Pair, max_knots> rest;
     for (std::size_t i = 1; i < last; ++i) {
         const double l = t[i] - t[i - 1], r = t[i + 1] - t[i];
         Block diagonal = own(l, r);

@@ -1,5 +1,5 @@
 #pragma once
-// The smoothest curve through points: of all that begin and end at rest, the one with the least integral of squared jerk.
+// The smoothest curve through points: the one from rest to rest with the smallest integral of squared jerk.
 
 #include <span>
 

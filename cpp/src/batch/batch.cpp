@@ -20,8 +20,8 @@
 namespace arm3r {
 namespace {
 
-constexpr std::size_t least_runs_per_thread = 64;
-constexpr std::chrono::milliseconds between_looks{5}, between_reports{20};
+constexpr std::size_t min_runs_per_thread = 64;
+constexpr std::chrono::milliseconds poll_interval{5}, report_interval{20};
 using Clock = std::chrono::steady_clock;
 
 int allowed_threads() {
@@ -44,40 +44,41 @@ void check_variation(const Variation& variation) {
     }
 }
 
-// Asks the threads to stop before they are joined, whichever way the calling thread leaves: it may be ended in a callback.
-struct Ending {
+// Asks the threads to stop before they are joined, also if the calling thread leaves by an exception or is ended in a
+// callback.
+struct StopGuard {
     std::atomic<bool>& stop;
-    ~Ending() { stop = true; }
+    ~StopGuard() { stop = true; }
 };
 
 class Batch {
 public:
     Batch(const Variation& variation, const BatchOptions& options, double* results)
         : options_(options),
-          work_{variation, Checker(variation.params, variation.varied), results,
-                options.lanes ? options.lanes : widest_lanes()} {}
+          job_{variation, Checker(variation.params, variation.varied), results,
+               options.lanes ? options.lanes : max_lanes()} {}
 
     void run() {
-        const std::size_t runs = work_.variation.runs;
+        const std::size_t runs = job_.variation.runs;
         const std::size_t wanted = options_.threads > 0 ? options_.threads : allowed_threads();
-        const std::size_t count = std::clamp<std::size_t>(runs / least_runs_per_thread, 1, wanted);
+        const std::size_t count = std::clamp<std::size_t>(runs / min_runs_per_thread, 1, wanted);
         std::vector<std::jthread> threads;
-        const Ending ending{work_.stop};
+        const StopGuard stop_guard{job_.stop};
         threads.reserve(count);
         try {
-            while (threads.size() < count) threads.emplace_back([this] { work(); });
-        } catch (const std::system_error&) {  // fewer will do
+            while (threads.size() < count) threads.emplace_back([this] { run_worker(); });
+        } catch (const std::system_error&) {  // fewer threads are enough
             if (threads.empty()) throw;
         }
-        while (!has_ended(threads.size())) watch();
+        while (!has_ended(threads.size())) poll_caller();
         threads.clear();
         if (failure_) std::rethrow_exception(failure_);
     }
 
 private:
-    void work() {
+    void run_worker() {
         try {
-            Crew(work_).run();
+            BatchWorker(job_).run();
         } catch (...) {
             fail(std::current_exception());
         }
@@ -89,34 +90,34 @@ private:
     void fail(std::exception_ptr failure) {
         const std::lock_guard lock(mutex_);
         if (!failure_) failure_ = std::move(failure);
-        work_.stop = true;
+        job_.stop = true;
     }
 
     bool has_ended(std::size_t threads) {
         std::unique_lock lock(mutex_);
-        return wake_.wait_for(lock, between_looks, [&] { return ended_ == threads; });
+        return wake_.wait_for(lock, poll_interval, [&] { return ended_ == threads; });
     }
 
-    // The calling thread hands on the wish to stop, and reports.
-    void watch() {
-        if (options_.stop && *options_.stop) work_.stop = true;
+    // The calling thread forwards a request to stop and reports progress.
+    void poll_caller() {
+        if (options_.stop && *options_.stop) job_.stop = true;
         if (!options_.progress || Clock::now() < next_report_) return;
-        next_report_ = Clock::now() + between_reports;
-        const std::int32_t answer = call_back(options_.progress, options_.user, std::int64_t(work_.done.load()),
-                                              std::int64_t(work_.variation.runs));
-        if (answer != 0) work_.stop = true;
+        next_report_ = Clock::now() + report_interval;
+        const std::int32_t answer = call_back(options_.progress, options_.user, std::int64_t(job_.done.load()),
+                                              std::int64_t(job_.variation.runs));
+        if (answer != 0) job_.stop = true;
         if (answer < 0)
             fail(std::make_exception_ptr(
                 Error(ARM3R_E_CALLBACK, "the progress function asked to stop with " + std::to_string(answer))));
     }
 
     const BatchOptions& options_;
-    Work work_;
+    BatchJob job_;
     std::mutex mutex_;
     std::condition_variable wake_;
     std::size_t ended_ = 0;
     std::exception_ptr failure_;
-    Clock::time_point next_report_ = Clock::now() + between_reports;
+    Clock::time_point next_report_ = Clock::now() + report_interval;
 };
 
 }  // namespace
@@ -124,8 +125,8 @@ private:
 void run_batch(const Variation& variation, const BatchOptions& options, double* results) {
     check_variation(variation);
     refuse_unknown_choices(variation.params);
-    if (options.lanes > widest_lanes())
-        throw Error(ARM3R_E_VALUE, "lanes: this processor has instructions for " + std::to_string(widest_lanes()) +
+    if (options.lanes > max_lanes())
+        throw Error(ARM3R_E_VALUE, "lanes: this processor has instructions for " + std::to_string(max_lanes()) +
                                        ", not for " + std::to_string(options.lanes));
     if (variation.varied.empty()) valid_setup(variation.params);  // throws what is wrong in all runs alike
     Batch(variation, options, results).run();

@@ -1,5 +1,5 @@
 #pragma once
-// Many runs that differ in numbers, spread over threads; each row of the table is what the run alone would say.
+// Many runs that differ in numbers, on several threads. Each row of the table has the same bits as the run alone.
 
 #include <cstdint>
 #include <span>

@@ -5,10 +5,10 @@
 
 namespace arm3r {
 
-// The run and those of its structure that follow, in lanes (lineup.hpp): by RK4, by RK4 with a continuous controller's
-// memory in the state, by power series.
-void march_by_rk4(int lanes, Crew& crew, const Setup& first, std::size_t run);
-void march_with_memory(int lanes, Crew& crew, const Setup& first, std::size_t run);
-void march_by_taylor(int lanes, Crew& crew, const Setup& first, std::size_t run);
+// Integrates a run and the following runs with the same key in lanes (lane_group.hpp): by RK4, by RK4 with the memory
+// of a continuous controller in the state, by Taylor series.
+void run_lanes_rk4(int lanes, BatchWorker& worker, const Setup& first, std::size_t run);
+void run_lanes_rk4_controlled(int lanes, BatchWorker& worker, const Setup& first, std::size_t run);
+void run_lanes_taylor(int lanes, BatchWorker& worker, const Setup& first, std::size_t run);
 
 }  // namespace arm3r

@@ -5,10 +5,10 @@
 namespace arm3r {
 
 template <class T>
-using PlainMarch = FixedMarch<T>;
+using PlainLaneRk4 = LaneRk4<T>;
 
-void march_by_rk4(int lanes, Crew& crew, const Setup& first, std::size_t run) {
-    Lineups<PlainMarch>::of(lanes, crew, first, run);
+void run_lanes_rk4(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
+    LaneGroups<PlainLaneRk4>::run(lanes, worker, first, run);
 }
 
 }  // namespace arm3r

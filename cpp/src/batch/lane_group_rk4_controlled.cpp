@@ -5,10 +5,10 @@
 namespace arm3r {
 
 template <class T>
-using MarchWithMemory = FixedMarch<T, full_size>;
+using ControlledLaneRk4 = LaneRk4<T, full_size>;
 
-void march_with_memory(int lanes, Crew& crew, const Setup& first, std::size_t run) {
-    Lineups<MarchWithMemory>::of(lanes, crew, first, run);
+void run_lanes_rk4_controlled(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
+    LaneGroups<ControlledLaneRk4>::run(lanes, worker, first, run);
 }
 
 }  // namespace arm3r

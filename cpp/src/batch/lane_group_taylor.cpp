@@ -4,8 +4,8 @@
 
 namespace arm3r {
 
-void march_by_taylor(int lanes, Crew& crew, const Setup& first, std::size_t run) {
-    Lineups<TaylorMarch>::of(lanes, crew, first, run);
+void run_lanes_taylor(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
+    LaneGroups<LaneTaylor>::run(lanes, worker, first, run);
 }
 
 }  // namespace arm3r

@@ -1,5 +1,5 @@
 #pragma once
-// Runs of one structure that march in lanes, by one method; each method is built in a file of its own.
+// Groups of runs with the same batch key, in lanes, by one method; each method is compiled in a file of its own.
 
 #include <memory>
 
@@ -7,87 +7,91 @@
 
 namespace arm3r {
 
-// Lets runs of one structure march until there are no more.
-template <class Marching>
-class Lineup {
+// Integrates runs with the same batch key until there are no more.
+template <class Integrator>
+class LaneGroup {
 public:
-    Lineup(Crew& crew, const Setup& first, std::size_t run)
-        : crew_(crew), structure_(structure_of(first)), march_(first) {
-        march_.put(0, first);
+    LaneGroup(BatchWorker& worker, const Setup& first, std::size_t run)
+        : worker_(worker), batch_key_(batch_key_of(first)), lane_run_(first) {
+        lane_run_.load_lane(0, first);
         run_[0] = run;
-        for (int lane = 1; lane < Marching::lanes; ++lane) fill(lane);
+        for (int lane = 1; lane < Integrator::lanes; ++lane) fill(lane);
     }
 
     ARM3R_INLINE void run() {
-        march_.begin();
+        lane_run_.start_lanes();
         while (true) {
-            while ((march_.someone_ended() || crew_.is_stopped()) && turn_over()) march_.begin();
-            if (!march_.is_anyone_running()) return;
-            march_.step([](int, const Change&) {});
+            while ((lane_run_.any_ended() || worker_.is_stopped()) && refill()) lane_run_.start_lanes();
+            if (!lane_run_.any_running()) return;
+            lane_run_.step([](int, const ContactChange&) {});
         }
     }
 
 private:
     bool fill(int lane) {
         Setup setup;
-        const bool found = crew_.next(structure_, setup, run_[lane]);
-        if (found) march_.put(lane, setup);
+        const bool found = worker_.next(batch_key_, setup, run_[lane]);
+        if (found) lane_run_.load_lane(lane, setup);
         return found;
     }
 
-    // Those that have ended make room for the next; whether there are any.
-    [[gnu::noinline]] bool turn_over() {
-        bool anyone_new = false;
-        march_.forget_failures();
-        for (int lane = 0; lane < Marching::lanes; ++lane) {
-            if (!march_.is_running(lane)) continue;
-            if (crew_.is_stopped() && !march_.has_ended(lane)) march_.stop_lane(lane, ARM3R_RUN_STOPPED);
-            if (!march_.has_ended(lane)) continue;
-            crew_.store(run_[lane], march_.metrics(lane));
-            if (fill(lane)) anyone_new = true;
-            else march_.retire(lane);
+    // Runs that have ended are stored and their lanes refilled; returns whether there are new runs.
+    [[gnu::noinline]] bool refill() {
+        bool any_new = false;
+        lane_run_.clear_failures();
+        for (int lane = 0; lane < Integrator::lanes; ++lane) {
+            if (!lane_run_.is_running(lane)) continue;
+            if (worker_.is_stopped() && !lane_run_.has_ended(lane)) lane_run_.stop_lane(lane, ARM3R_RUN_STOPPED);
+            if (!lane_run_.has_ended(lane)) continue;
+            worker_.store(run_[lane], lane_run_.metrics(lane));
+            if (fill(lane)) any_new = true;
+            else lane_run_.clear_lane(lane);
         }
-        return anyone_new;
+        return any_new;
     }
 
-    Crew& crew_;
-    const Structure structure_;
-    Marching march_;
-    std::array<std::size_t, Marching::lanes> run_{};
+    BatchWorker& worker_;
+    const BatchKey batch_key_;
+    Integrator lane_run_;
+    std::array<std::size_t, Integrator::lanes> run_{};
 };
 
-// Packs as wide as the registers: wider ones are slow.
-template <template <class> class Marching>
-struct Lineups {
-    static void one(Crew& crew, const Setup& first, std::size_t run) { march<double>(crew, first, run); }
+// Packs as wide as the registers; wider packs are slow.
+template <template <class> class Integrator>
+struct LaneGroups {
+    static void one(BatchWorker& worker, const Setup& first, std::size_t run) {
+        run_at_width<double>(worker, first, run);
+    }
 #if !ARM3R_ONE_LANE
-    static void two(Crew& crew, const Setup& first, std::size_t run) { march<Pack<2>>(crew, first, run); }
+    static void two(BatchWorker& worker, const Setup& first, std::size_t run) {
+        run_at_width<Pack<2>>(worker, first, run);
+    }
 #endif
 #if ARM3R_WIDE_PACKS
-    ARM3R_FOR_FOUR static void four(Crew& crew, const Setup& first, std::size_t run) {
-        march<Pack<4>>(crew, first, run);
+    ARM3R_FOR_FOUR static void four(BatchWorker& worker, const Setup& first, std::size_t run) {
+        run_at_width<Pack<4>>(worker, first, run);
     }
-    ARM3R_FOR_EIGHT static void eight(Crew& crew, const Setup& first, std::size_t run) {
-        march<Pack<8>>(crew, first, run);
+    ARM3R_FOR_EIGHT static void eight(BatchWorker& worker, const Setup& first, std::size_t run) {
+        run_at_width<Pack<8>>(worker, first, run);
     }
 #endif
 
     template <class T>
-    ARM3R_INLINE static void march(Crew& crew, const Setup& first, std::size_t run) {
-        std::make_unique<Lineup<Marching<T>>>(crew, first, run)->run();
+    ARM3R_INLINE static void run_at_width(BatchWorker& worker, const Setup& first, std::size_t run) {
+        std::make_unique<LaneGroup<Integrator<T>>>(worker, first, run)->run();
     }
 
-    static void of(int lanes, Crew& crew, const Setup& first, std::size_t run) {
+    static void run(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
         switch (lanes) {
-            case 1: return one(crew, first, run);
+            case 1: return one(worker, first, run);
 #if !ARM3R_ONE_LANE
-            case 2: return two(crew, first, run);
+            case 2: return two(worker, first, run);
 #endif
 #if ARM3R_WIDE_PACKS
-            case 4: return four(crew, first, run);
-            case 8: return eight(crew, first, run);
+            case 4: return four(worker, first, run);
+            case 8: return eight(worker, first, run);
 #endif
-            default: return one(crew, first, run);
+            default: return one(worker, first, run);
         }
     }
 };

@@ -12,7 +12,7 @@ namespace arm3r {
 namespace {
 
 constexpr std::size_t group = 8;
-constexpr std::size_t widest_row = 18;
+constexpr std::size_t max_row_width = 18;
 using Eight = Pack<group>;
 
 // Eight rows of three numbers, turned into three columns of eight.
@@ -38,7 +38,7 @@ ARM3R_INLINE void store_columns(const Vec3<Eight>& columns, double* rows) {
 
 // Eight states: their rows as the formulas take them, and the results as rows.
 struct Group {
-    const Rows& rows;
+    const StateRows& rows;
     std::size_t index;
     const Eight& flip;  // of joints 2 and 3, between slide and the convention of the rows
 
@@ -47,18 +47,18 @@ struct Group {
         if (!from) return {Eight(0.0), Eight(0.0), Eight(0.0)};
         return load_columns(from + index * 3 * group);
     }
-    ARM3R_INLINE Vec3<Eight> joints(int argument) const { return flipped(vector(argument)); }
+    ARM3R_INLINE Vec3<Eight> joints(int argument) const { return change_convention(vector(argument)); }
     ARM3R_INLINE Pose<Eight> pose() const { return arm3r::pose(joints(0)); }
 
     // + 0.0: no negative zero
-    ARM3R_INLINE void put(const Eight& number, int result = 0) const { (number + 0.0).store(row(result)); }
-    ARM3R_INLINE void put(const Vec3<Eight>& v, int result = 0) const {
+    ARM3R_INLINE void store(const Eight& number, int result = 0) const { (number + 0.0).store(row(result)); }
+    ARM3R_INLINE void store(const Vec3<Eight>& v, int result = 0) const {
         store_columns({v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}, row(result));
     }
-    ARM3R_INLINE void put_joints(const Vec3<Eight>& v) const { put(flipped(v)); }
+    ARM3R_INLINE void store_joints(const Vec3<Eight>& v) const { store(change_convention(v)); }
 
     // Nine numbers of every row, from `offset` on.
-    ARM3R_INLINE void put(const Mat3<Eight>& m, std::size_t offset = 0) const {
+    ARM3R_INLINE void store(const Mat3<Eight>& m, std::size_t offset = 0) const {
         alignas(64) double columns[9][group];
         for (int k = 0; k < 9; ++k) (m.data()[k] + 0.0).store(columns[k]);
         double* to = row(0) + offset;
@@ -66,26 +66,26 @@ struct Group {
             for (int k = 0; k < 9; ++k) to[k] = columns[k][lane];
     }
     // J D: rows in space, columns in joints. D M D: both in joints.
-    ARM3R_INLINE void put_in_joints(Mat3<Eight> J, std::size_t offset = 0) const {
+    ARM3R_INLINE void store_in_joints(Mat3<Eight> J, std::size_t offset = 0) const {
         for (int i = 0; i < 3; ++i)
             for (int j = 1; j < 3; ++j) J(i, j) *= flip;
-        put(J, offset);
+        store(J, offset);
     }
-    ARM3R_INLINE void put_joints(Mat3<Eight> M) const {
+    ARM3R_INLINE void store_joints(Mat3<Eight> M) const {
         for (int i = 1; i < 3; ++i)
             for (int j = 0; j < 3; ++j) M(i, j) *= flip;
-        put_in_joints(M);
+        store_in_joints(M);
     }
 
 private:
     ARM3R_INLINE double* row(int result) const {
         return rows.out[result].data + index * group * rows.out[result].width;
     }
-    ARM3R_INLINE Vec3<Eight> flipped(const Vec3<Eight>& v) const { return {v[0], v[1] * flip, v[2] * flip}; }
+    ARM3R_INLINE Vec3<Eight> change_convention(const Vec3<Eight>& v) const { return {v[0], v[1] * flip, v[2] * flip}; }
 };
 
 // The parameters in all lanes, so that no formula has to spread them.
-ARM3R_INLINE Arm<Eight> lifted_arm(const Arm<double>& from) {
+ARM3R_INLINE Arm<Eight> broadcast_arm(const Arm<double>& from) {
     Arm<Eight> arm;
     each_arm_number([](Eight& to, const double& number) ARM3R_INLINE_LAMBDA { to = number; }, arm, from);
     copy_arm_choices(from, arm);
@@ -93,8 +93,8 @@ ARM3R_INLINE Arm<Eight> lifted_arm(const Arm<double>& from) {
 }
 
 template <class Formula>
-ARM3R_INLINE void each(const Model& model, std::size_t groups, const Rows& rows, Formula formula) {
-    const Arm<Eight> arm = lifted_arm(model.arm);
+ARM3R_INLINE void each(const Model& model, std::size_t groups, const StateRows& rows, Formula formula) {
+    const Arm<Eight> arm = broadcast_arm(model.arm);
     const Eight flip = model.simscape ? -1.0 : 1.0;
     for (std::size_t i = 0; i < groups; ++i) formula(Group{rows, i, flip}, arm);
 }
@@ -103,7 +103,7 @@ ARM3R_INLINE void each(const Model& model, std::size_t groups, const Rows& rows,
 ARM3R_INLINE Eight mass_along(const Arm<Eight>& arm, const Pose<Eight>& p, const Vec3<Eight>& direction) {
     const Eight length = sqrt(dot(direction, direction));
     const Vec3<Eight> n(direction[0] / length, direction[1] / length, direction[2] / length);
-    return select(length > Eight(least_length), effective_mass(arm, p, n), Eight(0.0));
+    return select(length > Eight(min_length), effective_mass(arm, p, n), Eight(0.0));
 }
 
 }  // namespace
@@ -113,123 +113,124 @@ namespace in_groups {
 using Parameters = const Arm<Eight>&;
 using Here = const Group&;
 
-ARM3R_WIDEST void tip_position(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void tip_position(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::tip_position(arm, g.pose())); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::tip_position(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void elbow_position(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void elbow_position(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::elbow_position(arm, g.pose())); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::elbow_position(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void centres(const Model& model, std::size_t groups, const Rows& rows) {
-    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::centres(arm, g.pose())); });
-}
-
-ARM3R_WIDEST void jacobian(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void centres_of_mass(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put_in_joints(arm3r::jacobian(arm, g.pose())); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::centres_of_mass(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void geometric_jacobian(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void jacobian(const Model& model, std::size_t groups, const StateRows& rows) {
+    each(model, groups, rows,
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store_in_joints(arm3r::jacobian(arm, g.pose())); });
+}
+
+ARM3R_WIDEST void geometric_jacobian(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
-        g.put_in_joints(arm3r::jacobian(arm, p));
-        g.put_in_joints(angular_jacobian(p), 9);
+        g.store_in_joints(arm3r::jacobian(arm, p));
+        g.store_in_joints(angular_jacobian(p), 9);
     });
 }
 
-ARM3R_WIDEST void jacobian_dot(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void jacobian_dot(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
-        g.put_in_joints(arm3r::jacobian_dot(arm, g.pose(), g.joints(1)));
+        g.store_in_joints(arm3r::jacobian_dot(arm, g.pose(), g.joints(1)));
     });
 }
 
-ARM3R_WIDEST void mass_matrix(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void mass_matrix(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put_joints(arm3r::mass_matrix(arm, g.pose())); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store_joints(arm3r::mass_matrix(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void coriolis_matrix(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void coriolis_matrix(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
-        g.put_joints(arm3r::coriolis_matrix(arm, g.pose(), g.joints(1)));
+        g.store_joints(arm3r::coriolis_matrix(arm, g.pose(), g.joints(1)));
     });
 }
 
-ARM3R_WIDEST void velocity_product(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void velocity_product(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
-        g.put_joints(arm3r::velocity_product(arm, g.pose(), g.joints(1)));
+        g.store_joints(arm3r::velocity_product(arm, g.pose(), g.joints(1)));
     });
 }
 
-ARM3R_WIDEST void gravity_torque(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void gravity_torque(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put_joints(arm3r::gravity_torque(arm, g.pose())); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store_joints(arm3r::gravity_torque(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void operational_space_inertia(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void operational_space_inertia(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::operational_space_inertia(arm, g.pose())); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::operational_space_inertia(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void effective_mass(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void effective_mass(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(mass_along(arm, g.pose(), g.vector(1))); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(mass_along(arm, g.pose(), g.vector(1))); });
 }
 
-ARM3R_WIDEST void manipulability(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void manipulability(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
-         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.put(arm3r::manipulability(arm, g.pose())); });
+         [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::manipulability(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void energy(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void energy(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
-        g.put(kinetic_energy(arm, p, g.joints(1)), 0);
-        g.put(potential_energy(arm, p), 1);
+        g.store(kinetic_energy(arm, p, g.joints(1)), 0);
+        g.store(potential_energy(arm, p), 1);
     });
 }
 
-ARM3R_WIDEST void forward_dynamics(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void forward_dynamics(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
-        g.put_joints(arm3r::forward_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
+        g.store_joints(arm3r::forward_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
     });
 }
 
-ARM3R_WIDEST void inverse_dynamics(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void inverse_dynamics(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
-        g.put_joints(arm3r::inverse_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
+        g.store_joints(arm3r::inverse_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
     });
 }
 
-ARM3R_WIDEST void tip_sensor(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void tip_sensor(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const TipSensor<Eight> sensor = arm3r::tip_sensor(arm, g.joints(0), g.joints(1));
-        g.put(sensor.position, 0);
-        g.put(sensor.velocity, 1);
+        g.store(sensor.position, 0);
+        g.store(sensor.velocity, 1);
     });
 }
 
-ARM3R_WIDEST void singularity(const Model& model, std::size_t groups, const Rows& rows) {
+ARM3R_WIDEST void singularity(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
-        g.put(abs(Eight(sin_q3(p))), 0);
-        g.put(abs(radius(arm, p)), 1);
+        g.store(abs(Eight(sin_q3(p))), 0);
+        g.store(abs(radius(arm, p)), 1);
     });
 }
 
 }  // namespace in_groups
 
-// What is left over fills a group up with states of zeros.
-void evaluate(GroupFunction& function, const Model& model, std::size_t n, const Rows& rows) {
+// An incomplete last group is filled with states of zeros.
+void evaluate(GroupFunction& function, const Model& model, std::size_t n, const StateRows& rows) {
     const std::size_t left = n % group, done = n - left;
     if (done > 0) function(model, done / group, rows);
     if (left == 0) return;
 
-    double in[std::tuple_size_v<decltype(Rows::in)>][3 * group] = {};
-    double out[std::tuple_size_v<decltype(Rows::out)>][widest_row * group];
-    Rows rest = rows;
+    double in[std::tuple_size_v<decltype(StateRows::in)>][3 * group] = {};
+    double out[std::tuple_size_v<decltype(StateRows::out)>][max_row_width * group];
+    StateRows rest = rows;
     for (std::size_t k = 0; k < rows.in.size(); ++k) {
         if (!rows.in[k]) continue;
         std::copy_n(rows.in[k] + 3 * done, 3 * left, in[k]);
@@ -241,7 +242,7 @@ void evaluate(GroupFunction& function, const Model& model, std::size_t n, const 
         if (const auto [data, width] = rows.out[k]; data) std::copy_n(out[k], left * width, data + done * width);
 }
 
-// Numbers without their sign are ordered as their bits are, with those that are not numbers above all.
+// Without their sign, numbers are ordered like their bits, and NaN is above all.
 ARM3R_WIDEST bool all_within(const double* data, std::size_t count, double limit) {
     const auto most = std::bit_cast<std::int64_t>(limit);
     std::int64_t room = 0;  // negative where any was beyond

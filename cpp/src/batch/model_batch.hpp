@@ -13,8 +13,8 @@ struct Model {
     bool simscape;  // the convention of the joint vectors in the rows
 };
 
-// Arrays of one row a state: rows of 3 in, where an absent one is null and stands for zeros, and rows of `width` out.
-struct Rows {
+// Arrays with one row per state: input rows of 3, where null means zeros, and output rows of `width`.
+struct StateRows {
     struct Out {
         double* data;
         std::size_t width;
@@ -23,14 +23,14 @@ struct Rows {
     std::array<Out, 2> out;
 };
 
-// Of a direction, for effective_mass: below it the mass is 0.
-inline constexpr double least_length = 1e-100;
+// The minimum length of a direction for effective_mass: below it the mass is 0.
+inline constexpr double min_length = 1e-100;
 
 // One function of the model on whole groups of eight states; in and out as in arm3r.h.
-using GroupFunction = void(const Model& model, std::size_t groups, const Rows& rows);
+using GroupFunction = void(const Model& model, std::size_t groups, const StateRows& rows);
 
 namespace in_groups {
-GroupFunction tip_position, elbow_position, centres, jacobian, geometric_jacobian, jacobian_dot, mass_matrix,
+GroupFunction tip_position, elbow_position, centres_of_mass, jacobian, geometric_jacobian, jacobian_dot, mass_matrix,
     coriolis_matrix, velocity_product, gravity_torque, operational_space_inertia, effective_mass, manipulability,
     energy, forward_dynamics, inverse_dynamics, tip_sensor;
 
@@ -39,9 +39,9 @@ GroupFunction singularity;
 }  // namespace in_groups
 
 // Any number of states.
-void evaluate(GroupFunction& function, const Model& model, std::size_t n, const Rows& rows);
+void evaluate(GroupFunction& function, const Model& model, std::size_t n, const StateRows& rows);
 
-// No number is beyond the limit or not a number.
+// Whether every number is finite and within the limit.
 bool all_within(const double* data, std::size_t count, double limit);
 
 }  // namespace arm3r

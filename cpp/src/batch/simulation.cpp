@@ -17,8 +17,8 @@ void refuse_missing_law() {
 }
 
 Run simulate(const Setup& setup, const RunOptions& options) {
-    if (setup.law().type == Controls::user && !options.user_law.function) refuse_missing_law();
-    return setup.solver.marches() ? run_marching(setup, options) : run_adaptively(setup, options);
+    if (setup.controller().type == ControllerType::user && !options.user_law.function) refuse_missing_law();
+    return setup.solver.runs_in_lanes() ? run_in_lane(setup, options) : run_adaptively(setup, options);
 }
 
 }  // namespace arm3r

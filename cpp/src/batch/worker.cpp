@@ -11,86 +11,87 @@
 namespace arm3r {
 namespace {
 
-constexpr std::size_t runs_at_a_time = 256, most_aside = 1024;
+constexpr std::size_t runs_at_a_time = 256, max_deferred = 1024;
 
-auto lineups_of(const Setup& first) {
-    if (first.solver.method == Solver::taylor) return march_by_taylor;
-    return has_memory(first.plant) ? march_with_memory : march_by_rk4;
+auto lane_group_of(const Setup& first) {
+    if (first.solver.method == Solver::taylor) return run_lanes_taylor;
+    return has_memory(first.plant) ? run_lanes_rk4_controlled : run_lanes_rk4;
 }
 
 }  // namespace
 
-Crew::Crew(Work& work) : work_(work), params_(work.variation.params.begin(), work.variation.params.end()) {}
+BatchWorker::BatchWorker(BatchJob& job)
+    : job_(job), params_(job.variation.params.begin(), job.variation.params.end()) {}
 
-void Crew::run() {
+void BatchWorker::run() {
     std::size_t run;
     Setup setup;
-    while (take(run))
-        if (prepare(run, setup)) march(setup, run);
+    while (fetch(run))
+        if (prepare(run, setup)) run_group(setup, run);
 }
 
-void Crew::march(const Setup& first, std::size_t run) {
-    if (!first.solver.marches()) {
-        store(run, run_adaptively(first, {.should_stop = &work_.stop, .rows = false}));
+void BatchWorker::run_group(const Setup& first, std::size_t run) {
+    if (!first.solver.runs_in_lanes()) {
+        store(run, run_adaptively(first, {.should_stop = &job_.stop, .rows = false}));
     } else {
-        lineups_of(first)(work_.lanes, *this, first, run);
-        again_.insert(again_.end(), aside_.begin(), aside_.end());
-        aside_.clear();
+        lane_group_of(first)(job_.lanes, *this, first, run);
+        retry_.insert(retry_.end(), deferred_.begin(), deferred_.end());
+        deferred_.clear();
     }
 }
 
-bool Crew::next(const Structure& structure, Setup& setup, std::size_t& run) {
-    while (aside_.size() < most_aside && take(run)) {
+bool BatchWorker::next(const BatchKey& batch_key, Setup& setup, std::size_t& run) {
+    while (deferred_.size() < max_deferred && fetch(run)) {
         if (!prepare(run, setup)) continue;
-        if (structure_of(setup) == structure) return true;
-        aside_.push_back(run);
+        if (batch_key_of(setup) == batch_key) return true;
+        deferred_.push_back(run);
     }
     return false;
 }
 
-bool Crew::take(std::size_t& run) {
-    if (first_ == last_ && again_.empty()) {
-        const std::size_t runs = work_.variation.runs;
-        first_ = std::min(runs, work_.next.fetch_add(runs_at_a_time));
+bool BatchWorker::fetch(std::size_t& run) {
+    if (first_ == last_ && retry_.empty()) {
+        const std::size_t runs = job_.variation.runs;
+        first_ = std::min(runs, job_.next.fetch_add(runs_at_a_time));
         last_ = std::min(runs, first_ + runs_at_a_time);
     }
     if (first_ < last_) {
         run = first_++;
         return true;
     }
-    if (again_.empty()) return false;
-    run = again_.back();
-    again_.pop_back();
+    if (retry_.empty()) return false;
+    run = retry_.back();
+    retry_.pop_back();
     return true;
 }
 
-// False where there is nothing to simulate: its row is then filled in.
-bool Crew::prepare(std::size_t run, Setup& setup) {
-    const Variation& variation = work_.variation;
+// Returns false if there is nothing to simulate; the row is then complete.
+bool BatchWorker::prepare(std::size_t run, Setup& setup) {
+    const Variation& variation = job_.variation;
     for (std::size_t j = 0; j < variation.varied.size(); ++j)
         params_[variation.varied[j]] = variation.values[j * variation.runs + run];
     if (is_stopped()) return refuse(run, ARM3R_RUN_STOPPED), false;
-    const std::optional<Setup> valid = work_.check(params_);
+    const std::optional<Setup> valid = job_.check(params_);
     if (!valid) return refuse(run, ARM3R_RUN_INVALID), false;
     setup = *valid;
     if (has_too_many_steps(setup)) return refuse(run, ARM3R_RUN_BUDGET), false;
     return true;
 }
 
-void Crew::store(std::size_t run, const Metrics& metrics) {
-    double* cell = work_.results + run;
+void BatchWorker::store(std::size_t run, const Metrics& metrics) {
+    double* cell = job_.results + run;
     for (const SummaryNumber& number : summary_table()) {
         *cell = number.of(metrics) + 0.0;
-        cell += work_.variation.runs;
+        cell += job_.variation.runs;
     }
-    work_.done.fetch_add(1, std::memory_order_relaxed);
+    job_.done.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Crew::refuse(std::size_t run, arm3r_outcome why) {
+void BatchWorker::refuse(std::size_t run, arm3r_outcome why) {
     for (std::size_t i = 0; i < summary_table().size(); ++i)
-        work_.results[i * work_.variation.runs + run] = std::numeric_limits<double>::quiet_NaN();
-    work_.results[run] = double(why);  // the outcome is the first column
-    work_.done.fetch_add(1, std::memory_order_relaxed);
+        job_.results[i * job_.variation.runs + run] = std::numeric_limits<double>::quiet_NaN();
+    job_.results[run] = double(why);  // the outcome is the first column
+    job_.done.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace arm3r

@@ -1,5 +1,5 @@
 #pragma once
-// One thread's share of a batch: takes runs from the common supply, lets them march in lanes, fills in their rows.
+// A batch worker, one per thread: it fetches runs, integrates them in lanes, and writes their rows.
 
 #include <atomic>
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace arm3r {
 
-// What the threads of a batch share. The rows are each written by one thread.
-struct Work {
+// The data that the threads of a batch share. Each row is written by one thread.
+struct BatchJob {
     const Variation& variation;
     const Checker check;
     double* const results;
@@ -21,28 +21,28 @@ struct Work {
     std::atomic<bool> stop = false;
 };
 
-class Crew {
+class BatchWorker {
 public:
-    explicit Crew(Work& work);
+    explicit BatchWorker(BatchJob& job);
 
-    // Until the supply is used up.
+    // Works until there are no more runs.
     void run();
 
-    // The next run whose structure is `structure`; those of others are put aside.
-    bool next(const Structure& structure, Setup& setup, std::size_t& run);
+    // The next run with the key `batch_key`; runs with other keys are deferred.
+    bool next(const BatchKey& batch_key, Setup& setup, std::size_t& run);
     void store(std::size_t run, const Metrics& metrics);
-    void refuse(std::size_t run, arm3r_outcome why);  // not begun: its row has no other number
-    bool is_stopped() const { return work_.stop.load(std::memory_order_relaxed); }
+    void refuse(std::size_t run, arm3r_outcome why);  // the run was not started: its row has no other number
+    bool is_stopped() const { return job_.stop.load(std::memory_order_relaxed); }
 
 private:
-    bool take(std::size_t& run);
+    bool fetch(std::size_t& run);
     bool prepare(std::size_t run, Setup& setup);
-    void march(const Setup& first, std::size_t run);
+    void run_group(const Setup& first, std::size_t run);
 
-    Work& work_;
+    BatchJob& job_;
     std::vector<double> params_;
-    std::size_t first_ = 0, last_ = 0;  // what is left of the runs taken from the supply
-    std::vector<std::size_t> again_, aside_;
+    std::size_t first_ = 0, last_ = 0;  // the runs that were fetched and not yet started
+    std::vector<std::size_t> retry_, deferred_;
 };
 
 }  // namespace arm3r

@@ -56,8 +56,9 @@ bool takes(std::string_view call, const Option& option) {
            (" " + std::string(option.calls) + " ").find(" " + std::string(call) + " ") != std::string::npos;
 }
 
-// One slip of the fingers: what differs, between a common head and a common tail, is at most two letters long.
-bool is_slip(std::string_view typed, std::string_view meant) {
+// A typing error of one or two letters: the words differ in at most two letters between a common head and a common
+// tail.
+bool is_typing_error(std::string_view typed, std::string_view meant) {
     while (!typed.empty() && !meant.empty() && typed.front() == meant.front())
         typed.remove_prefix(1), meant.remove_prefix(1);
     while (!typed.empty() && !meant.empty() && typed.back() == meant.back())
@@ -65,10 +66,10 @@ bool is_slip(std::string_view typed, std::string_view meant) {
     return typed.size() <= 2 && meant.size() <= 2;
 }
 
-template <class Table>
-std::string did_you_mean(std::string_view typed, const Table& table) {
+template <class QuinticTable>
+std::string did_you_mean(std::string_view typed, const QuinticTable& table) {
     for (const auto& entry : table)
-        if (is_slip(typed, entry.name) || (typed.size() > 2 && entry.name.starts_with(typed)))
+        if (is_typing_error(typed, entry.name) || (typed.size() > 2 && entry.name.starts_with(typed)))
             return "; did you mean " + std::string(entry.name) + "?";
     return {};
 }

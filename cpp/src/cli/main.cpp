@@ -65,7 +65,7 @@ ScenarioHandle load(const std::string& path, const Arguments& arguments) {
     return scenario;
 }
 
-// All of them, or the problems of all of them.
+// All scenarios, or the problems of all of them.
 std::vector<ScenarioHandle> load_all(const Arguments& arguments) {
     std::vector<ScenarioHandle> scenarios;
     Exit failed{exit_ok, ""};
@@ -87,7 +87,7 @@ std::string name_of(const ScenarioHandle& scenario) {
     return name;
 }
 
-// ---- where the results go
+// ---- output files
 
 bool is_directory(const std::string& path) {
     struct stat about{};
@@ -261,13 +261,13 @@ std::vector<std::string> search_path() {
 
 std::string directory_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
 
-// Where the called program lies: as it was called, then behind its links.
-std::vector<std::string> own_directories(const std::string& called) {
-    std::string path = called;
-    if (called.find('/') == called.npos)
+// The path of the called program: as it was called, then with its links resolved.
+std::vector<std::string> own_directories(const std::string& outlined) {
+    std::string path = outlined;
+    if (outlined.find('/') == outlined.npos)
         for (const std::string& directory : search_path())
-            if (path == called && access((directory + "/" + called).c_str(), X_OK) == 0)
-                path = directory + "/" + called;
+            if (path == outlined && access((directory + "/" + outlined).c_str(), X_OK) == 0)
+                path = directory + "/" + outlined;
     if (path.find('/') == path.npos) return {};
     std::vector<std::string> directories = {directory_of(path)};
     const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr), std::free);

@@ -1,5 +1,5 @@
 #pragma once
-// What the executable does with signals, standard output and a terminal.
+// Signals, standard output and the terminal of the executable.
 
 #include <cstdint>
 #include <limits>
@@ -8,13 +8,13 @@
 
 namespace cli {
 
-// From here on SIGINT, SIGTERM and SIGHUP ask the run to stop; a second one ends the program at once.
+// After this call SIGINT, SIGTERM and SIGHUP request the run to stop; a second signal ends the program at once.
 void catch_signals();
 const volatile std::int32_t* stop_flag();
 bool stop_requested();
 [[noreturn]] void die_by_signal();
 
-// All of it, or throws Exit. Standard error is best effort.
+// Writes all of the text, or throws Exit. Errors on standard error are ignored.
 void print(std::string_view text);
 void complain(std::string_view text);
 

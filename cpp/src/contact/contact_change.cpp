@@ -10,8 +10,8 @@ Polynomial<double> inside_edge(double half, double sign, Polynomial<double> acro
     return across;
 }
 
-// No value on [0, 1] is larger, either way.
-double reach(const Polynomial<double>& p) {
+// A bound on |p| over [0, 1].
+double max_abs(const Polynomial<double>& p) {
     double sum = 0;
     for (int i = 0; i <= p.degree; ++i) sum += abs(p.c[i]);
     return sum;
@@ -22,13 +22,13 @@ bool within_outline(const Wall<double>& wall, const ContactSignals<double>& sign
     return abs(value(signals.across1, theta)) <= wall.half1 && abs(value(signals.across2, theta)) <= wall.half2;
 }
 
-class Earliest {
+class EarliestCrossing {
 public:
-    Earliest(double from, double resolution) : from_(from), resolution_(resolution) {}
+    EarliestCrossing(double from, double resolution) : from_(from), resolution_(resolution) {}
 
-    void fall_of(const Polynomial<double>& g, Mode next) {
+    void include(const Polynomial<double>& g, ContactMode next) {
         if (range_of(g).low > 0) return;
-        const std::optional<double> theta = first_fall(g, from_, resolution_);
+        const std::optional<double> theta = first_crossing(g, from_, resolution_);
         if (theta && (!found_ || *theta < found_->theta)) found_ = {*theta, next};
     }
     std::optional<Crossing> found() const { return found_; }
@@ -40,30 +40,30 @@ private:
 
 }  // namespace
 
-Change change_at(const Plant<double>& plant, const Indentation<double>& in, double theta, double t, Mode from,
-                 Mode to) {
-    Change change{theta, t, 0, 0, from, to};
+ContactChange change_at(const Plant<double>& plant, const Indentation<double>& in, double theta, double t,
+                        ContactMode from, ContactMode to) {
+    ContactChange change{theta, t, 0, 0, from, to};
     if (!plant.acts_on_arm) return change;
-    const double sideways = stored_sideways(plant.contact, in);
-    if (change.breaks()) change.lost = sideways + (in.depth > 0 ? push(plant.contact, in).stored : 0);
-    if (change.makes()) change.gained = sideways;
+    const double tangential = stored_tangential(plant.contact, in);
+    if (change.breaks()) change.lost = tangential + (in.depth > 0 ? normal_force_law(plant.contact, in).stored : 0);
+    if (change.makes()) change.gained = tangential;
     return change;
 }
 
 std::optional<Crossing> next_crossing(const Wall<double>& wall, const ContactSignals<double>& signals, double from,
-                                      Mode mode, double resolution) {
-    Earliest earliest(from, resolution);
-    if (mode == Mode::free) {
-        earliest.fall_of(negative(signals.depth), Mode::contact);
+                                      ContactMode mode, double resolution) {
+    EarliestCrossing earliest(from, resolution);
+    if (mode == ContactMode::free) {
+        earliest.include(negative(signals.depth), ContactMode::contact);
         std::optional<Crossing> crossing = earliest.found();
-        if (crossing && !within_outline(wall, signals, crossing->theta)) crossing->next = Mode::embedded;
+        if (crossing && !within_outline(wall, signals, crossing->theta)) crossing->next = ContactMode::embedded;
         return crossing;
     }
-    earliest.fall_of(signals.depth, Mode::free);
-    if (mode != Mode::contact || !wall.has_outline) return earliest.found();
+    earliest.include(signals.depth, ContactMode::free);
+    if (mode != ContactMode::contact || !wall.has_outline) return earliest.found();
     const auto edges = [&](double half, const Polynomial<double>& across) {
-        if (reach(across) < half) return;
-        for (const double sign : {-1.0, 1.0}) earliest.fall_of(inside_edge(half, sign, across), Mode::embedded);
+        if (max_abs(across) < half) return;
+        for (const double sign : {-1.0, 1.0}) earliest.include(inside_edge(half, sign, across), ContactMode::embedded);
     };
     edges(wall.half1, signals.across1);
     edges(wall.half2, signals.across2);

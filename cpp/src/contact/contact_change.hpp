@@ -1,6 +1,7 @@
 #pragma once
-// Contact within one step, from polynomials of the step's share theta in [0, 1]: how deep the tip is, and where on the
-// plate. One lane at a time here; what is usual, that nothing happens, is seen for all lanes at once. docs/model.md (4.8).
+// Contact within one step, from polynomials in theta in [0, 1]: the depth of the tip and its place on the plate. These
+// functions handle one lane; the callers detect for all lanes at once that nothing happens, which is the usual case.
+// docs/model.md (4.8).
 
 #include <optional>
 
@@ -10,26 +11,29 @@
 
 namespace arm3r {
 
-inline constexpr double finest_event = 1e-14;  // s
+inline constexpr double event_time_tolerance = 1e-14;  // s
 
 struct Crossing {
     double theta;  // where in the step, in (from, 1]
-    Mode next;
+    ContactMode next;
 };
 
-// A crossing that has been made: where in the step, in seconds too, and what it cost or brought.
-struct Change {
-    double theta, t;      // t: s
-    double lost, gained;  // J: held by the springs that let go; by those along the plate that are taut at once
-    Mode from, to;
+// A change of the contact mode: its instant, as theta and in seconds, and the energy that is lost or gained.
+struct ContactChange {
+    double theta, t;  // t: s
+    // J: energy of the springs that is lost when contact ends; energy of the springs along the plate that are strained
+    // at once
+    double lost, gained;
+    ContactMode from, to;
 
     bool makes() const { return !is_touching(from) && is_touching(to); }
     bool breaks() const { return is_touching(from) && !is_touching(to); }
-    double lost_at_edge() const { return to == Mode::embedded ? lost : 0; }  // J
+    double lost_at_edge() const { return to == ContactMode::embedded ? lost : 0; }  // J
 };
 
-// The same for a tip that stands at `in` then.
-Change change_at(const Plant<double>& plant, const Indentation<double>& in, double theta, double t, Mode from, Mode to);
+// The same for a tip with the indentation `in` at that instant.
+ContactChange change_at(const Plant<double>& plant, const Indentation<double>& in, double theta, double t,
+                        ContactMode from, ContactMode to);
 
 template <class T>
 struct ContactSignals {
@@ -41,7 +45,7 @@ struct Range {
     T low, high;
 };
 
-// Between these a polynomial lies on [0, 1].
+// Bounds of the polynomial on [0, 1].
 template <class T>
 ARM3R_INLINE Range<T> range_of(const Polynomial<T>& p) {
     Range<T> range{p.c[0], p.c[0]};
@@ -52,8 +56,8 @@ ARM3R_INLINE Range<T> range_of(const Polynomial<T>& p) {
     return range;
 }
 
-// The first change of mode after `from`, if there is one. resolution: of theta.
+// The first change of the contact mode after `from`, if there is one. resolution: in theta.
 std::optional<Crossing> next_crossing(const Wall<double>& wall, const ContactSignals<double>& signals, double from,
-                                      Mode mode, double resolution);
+                                      ContactMode mode, double resolution);
 
 }  // namespace arm3r

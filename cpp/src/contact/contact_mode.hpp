@@ -3,14 +3,14 @@
 
 namespace arm3r {
 
-enum class Mode {  // (4.8)
+enum class ContactMode {  // (4.8)
     free,
     contact,
     separated,  // inside a wall that would have to pull to follow the tip
     embedded,   // behind the plate without having come through its face
 };
 
-// What the column `contact` tells, and what begins and ends with events.
-inline bool is_touching(Mode mode) { return mode == Mode::contact || mode == Mode::separated; }
+// Whether the column `contact` is 1; events mark where this changes.
+inline bool is_touching(ContactMode mode) { return mode == ContactMode::contact || mode == ContactMode::separated; }
 
 }  // namespace arm3r

@@ -1,5 +1,5 @@
 #pragma once
-// When the tip touches the wall and lets go of it, found on the solution within a step; docs/model.md (4.8), (5.3).
+// Location of the instants at which contact begins and ends, on the dense output of a step; docs/model.md (4.8), (5.3).
 
 #include <array>
 #include <optional>
@@ -17,44 +17,45 @@ struct Peak {
     }
 };
 
-class ContactWatch {
+class ContactSearch {
 public:
-    // `looks`: at how many places per step the depth is looked at, ends included.
-    ContactWatch(const Plant<double>& plant, int looks) : plant_(plant), looks_(looks) {}
+    // `sample_count`: at how many points of a step the depth is sampled, ends included.
+    ContactSearch(const Plant<double>& plant, int sample_count) : plant_(plant), sample_count_(sample_count) {}
 
-    Mode mode_at_start(double t, const FullState& y) const;
+    ContactMode mode_at_start(double t, const FullState& y) const;
 
-    // The first change of mode after `from`, or nothing. `peak` grows to the largest normal force that contact reaches
-    // between the two.
-    std::optional<Crossing> next(const Inside& inside, double from, Mode mode, Peak& peak) const;
+    // The first change of mode after `from`, if there is one. `peak` becomes the largest normal force in contact until
+    // then.
+    std::optional<Crossing> next(const DenseOutput& dense, double from, ContactMode mode, Peak& peak) const;
 
-    // Integral of the normal force of contact, N s, along the solution from place a to place b within the step.
-    double impulse(const Inside& inside, double a, double b) const;
+    // Integral of the normal contact force, N s, along the solution from theta = a to b of the step.
+    double impulse(const DenseOutput& dense, double a, double b) const;
 
 private:
-    // Depth and the four distances inside the outline, m; then what tells when a damped law would pull (Push::release),
-    // and the normal force, N. The rates have the right sign.
-    struct Look {
+    // The signals at an instant: the depth and the four distances inside the outline, m; the signal that is negative
+    // where a damped law would pull (NormalForce::release); the normal force, N. The rates are correct in sign only.
+    struct SignalSample {
         std::array<double, 7> value, rate;
     };
-    struct Falling {
+    struct ZeroCrossing {
         int signal;
         double sign;  // the event is where sign*value falls below zero
-        Mode next;
+        ContactMode next;
     };
 
-    static bool has_fallen(const Falling& falling, const Look& here);
-    static bool within_outline(const Look& here);
-    Look look(const Inside& inside, double theta) const;
-    std::optional<double> first_fall(const Inside& inside, const Falling& falling, double a, const Look& at_a, double b,
-                                     const Look& at_b) const;
-    double turning_point(const Inside& inside, const Falling& falling, double a, double b) const;
-    // The largest normal force from a to b in contact joins the peak.
-    void look_for_peak(const Inside& inside, double a, const Look& at_a, double b, const Look& at_b, Peak& peak) const;
-    double root(const Inside& inside, const Falling& falling, double a, double b) const;
+    static bool has_crossed(const ZeroCrossing& event, const SignalSample& here);
+    static bool within_outline(const SignalSample& here);
+    SignalSample sample(const DenseOutput& dense, double theta) const;
+    std::optional<double> first_crossing(const DenseOutput& dense, const ZeroCrossing& event, double a,
+                                         const SignalSample& at_a, double b, const SignalSample& at_b) const;
+    double turning_point(const DenseOutput& dense, const ZeroCrossing& event, double a, double b) const;
+    // Includes the largest normal force in contact from a to b in the peak.
+    void update_peak(const DenseOutput& dense, double a, const SignalSample& at_a, double b, const SignalSample& at_b,
+                     Peak& peak) const;
+    double root(const DenseOutput& dense, const ZeroCrossing& event, double a, double b) const;
 
     const Plant<double>& plant_;
-    int looks_;
+    int sample_count_;
 };
 
 }  // namespace arm3r

@@ -1,14 +1,14 @@
 #pragma once
-// The control laws (laws.hpp) behind pointers, built for the widest registers that there are: the right-hand sides of all
-// methods call these.
+// The control laws (control_laws.hpp) as function pointers, compiled for the widest registers. The right-hand sides of
+// all methods call them.
 
-#include "arm3r/control/laws.hpp"
+#include "arm3r/control/control_laws.hpp"
 #include "arm3r/numbers/dual.hpp"
 #include "arm3r/numbers/pack.hpp"
 
 namespace arm3r {
 
-inline constexpr int slopes_at_once = 10;  // of Dual, in the Jacobian of a stiff method
+inline constexpr int derivatives_per_pass = 10;  // of Dual: columns of the Jacobian that one evaluation computes
 
 template <class P, class T>
 LawFunction<P, T> compiled_law();

@@ -4,7 +4,7 @@ namespace arm3r {
 namespace {
 
 // One by one: read in pairs, numbers that were just written have to be waited for. + 0.0: no negative zero.
-void put(const Vec3<double>& v, double* out) {
+void write(const Vec3<double>& v, double* out) {
     out[0] = v[0] + 0.0;
     out[1] = v[1] + 0.0;
     out[2] = v[2] + 0.0;
@@ -12,50 +12,50 @@ void put(const Vec3<double>& v, double* out) {
 
 }  // namespace
 
-void LawView::put_joints(const Vec3<double>& v, double* out) const {
+void LawView::write_joints(const Vec3<double>& v, double* out) const {
     const double sign = simscape_ ? -1.0 : 1.0;
-    put({v[0], sign * v[1], sign * v[2]}, out);
+    write({v[0], sign * v[1], sign * v[2]}, out);
 }
 
-void LawView::look(double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>& known,
-                   arm3r_law_state& state) const {
+void LawView::fill_state(double tick, const GroundTruth& truth, const Measurement<double>& sensed,
+                         const ControllerState<double>& controller_state, arm3r_law_state& state) const {
     state.tick = tick;
     state.t = sensed.t;
     state.period = period_;
-    put_joints(sensed.q, state.q);
-    put_joints(sensed.qd, state.qd);
-    put(tip_position(arm_, sensed.pose), state.tip);
-    put(tip_velocity(arm_, sensed.pose, sensed.qd), state.tip_velocity);
+    write_joints(sensed.q, state.q);
+    write_joints(sensed.qd, state.qd);
+    write(tip_position(arm_, sensed.pose), state.tip);
+    write(tip_velocity(arm_, sensed.pose, sensed.qd), state.tip_velocity);
     const Mat3<double> J = jacobian(arm_, sensed.pose);
-    for (int row = 0; row < 3; ++row) put_joints({J(row, 0), J(row, 1), J(row, 2)}, state.jacobian + 3 * row);
-    put_joints(gravity_torque(arm_, sensed.pose), state.tau_g);
-    put(sensed.f_on_tip, state.f_on_tip);
+    for (int row = 0; row < 3; ++row) write_joints({J(row, 0), J(row, 1), J(row, 2)}, state.jacobian + 3 * row);
+    write_joints(gravity_torque(arm_, sensed.pose), state.tau_g);
+    write(sensed.f_on_tip, state.f_on_tip);
     state.contact = sensed.contact;
     if (has_wall_) {
         const WallState<double> wall = wall_at(wall_, sensed.t);
         Vec3<double> point = wall.position;
         for (int i = 0; i < 3; ++i) point[i] = point[i] + wall_.face_offset * sensed.n[i];
-        put(sensed.n, state.wall_normal);
-        put(point, state.wall_point);
-        put(wall.velocity, state.wall_velocity);
+        write(sensed.n, state.wall_normal);
+        write(point, state.wall_point);
+        write(wall.velocity, state.wall_velocity);
     }
     if (observes_) {
-        put_joints(known.residual, state.residual);
-        state.collision = known.collision;
+        write_joints(controller_state.residual, state.residual);
+        state.collision = controller_state.collision;
     }
     if (estimates_) {
-        state.stiffness_estimate = known.stiffness;
-        state.wall_speed_estimate = known.wall_speed;
-        state.identifiable = known.identifiable;
+        state.stiffness_estimate = controller_state.stiffness;
+        state.wall_speed_estimate = controller_state.wall_speed;
+        state.identifiable = controller_state.identifiable;
     }
-    put_joints(truth.q, state.q_true);
-    put_joints(truth.qd, state.qd_true);
-    put(truth.f_on_tip, state.f_on_tip_true);
+    write_joints(truth.q, state.q_true);
+    write_joints(truth.qd, state.qd_true);
+    write(truth.f_on_tip, state.f_on_tip_true);
 }
 
 Vec3<double> LawView::torque(const double* tau) const {
     const Vec3<double> v(tau[0], tau[1], tau[2]);
-    return simscape_ ? flipped(v) : v;
+    return simscape_ ? change_convention(v) : v;
 }
 
 }  // namespace arm3r

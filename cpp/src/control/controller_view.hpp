@@ -1,5 +1,5 @@
 #pragma once
-// What a law of the user's own sees, and what it answers, in the arm's convention.
+// The state that a user's law gets, and the torque that it returns, in the arm's convention.
 
 #include "arm3r/arm3r.h"
 #include "control/sampled_controller.hpp"
@@ -18,14 +18,14 @@ public:
           simscape_(setup.simscape),
           period_(setup.digital.sampling.period) {}
 
-    // Into a state of zeros, or one that was looked at before.
-    void look(double tick, const Truth& truth, const Sensed<double>& sensed, const Known<double>& known,
-              arm3r_law_state& state) const;
+    // Fills a state of zeros, or one that was filled before.
+    void fill_state(double tick, const GroundTruth& truth, const Measurement<double>& sensed,
+                    const ControllerState<double>& controller_state, arm3r_law_state& state) const;
 
     Vec3<double> torque(const double* tau) const;  // slide
 
 private:
-    void put_joints(const Vec3<double>& v, double* out) const;
+    void write_joints(const Vec3<double>& v, double* out) const;
 
     Arm<double> arm_;
     Wall<double> wall_;

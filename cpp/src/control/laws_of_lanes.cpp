@@ -1,4 +1,4 @@
-// A controller per lane.
+// One controller per lane.
 
 #include "control/compiled_laws.hpp"
 
@@ -10,20 +10,20 @@ namespace {
 template <class T>
 using Memory = std::array<T, law_memory>;
 
-void of_two(const Controller<Pack<2>>& controller, const Sensed<Pack<2>>& sensed, const Memory<Pack<2>>& memory,
+void of_two(const Controller<Pack<2>>& controller, const Measurement<Pack<2>>& sensed, const Memory<Pack<2>>& memory,
             Command<Pack<2>>& command) {
-    law(controller, sensed, memory, command);
+    control_law(controller, sensed, memory, command);
 }
 
 #if ARM3R_WIDE_PACKS
-ARM3R_FOR_FOUR void of_four(const Controller<Pack<4>>& controller, const Sensed<Pack<4>>& sensed,
+ARM3R_FOR_FOUR void of_four(const Controller<Pack<4>>& controller, const Measurement<Pack<4>>& sensed,
                             const Memory<Pack<4>>& memory, Command<Pack<4>>& command) {
-    law(controller, sensed, memory, command);
+    control_law(controller, sensed, memory, command);
 }
 
-ARM3R_FOR_EIGHT void of_eight(const Controller<Pack<8>>& controller, const Sensed<Pack<8>>& sensed,
+ARM3R_FOR_EIGHT void of_eight(const Controller<Pack<8>>& controller, const Measurement<Pack<8>>& sensed,
                               const Memory<Pack<8>>& memory, Command<Pack<8>>& command) {
-    law(controller, sensed, memory, command);
+    control_law(controller, sensed, memory, command);
 }
 #endif
 

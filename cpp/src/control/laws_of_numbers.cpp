@@ -10,9 +10,9 @@ namespace {
 template <class T>
 using Memory = std::array<T, law_memory>;
 
-void of_double(const Controller<double>& controller, const Sensed<double>& sensed, const Memory<double>& memory,
+void of_double(const Controller<double>& controller, const Measurement<double>& sensed, const Memory<double>& memory,
                Command<double>& command) {
-    law(controller, sensed, memory, command);
+    control_law(controller, sensed, memory, command);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One controller at several instants, rows side by side: the laws of the lanes, with it in every lane.
+// One controller at several instants, one row per lane: the laws of the lanes, with the same controller in every lane.
 
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
@@ -8,8 +8,8 @@ namespace arm3r {
 namespace {
 
 template <class T>
-void of_rows(const Controller<double>& controller, const Sensed<T>& sensed, const std::array<T, law_memory>& memory,
-             Command<T>& command) {
+void of_rows(const Controller<double>& controller, const Measurement<T>& sensed,
+             const std::array<T, law_memory>& memory, Command<T>& command) {
     Controller<T> in_every_lane;
     copy_controller_choices(controller, in_every_lane);
     const auto copy = [](T& to, double from) { to = T(from); };

@@ -1,4 +1,4 @@
-// With slopes, for the Jacobian of a stiff method.
+// With derivatives, for the Jacobian of a stiff method.
 
 #include "control/compiled_laws.hpp"
 
@@ -10,15 +10,15 @@ namespace {
 template <class T>
 using Memory = std::array<T, law_memory>;
 
-void of_dual(const Controller<double>& controller, const Sensed<Dual<slopes_at_once>>& sensed,
-             const Memory<Dual<slopes_at_once>>& memory, Command<Dual<slopes_at_once>>& command) {
-    law(controller, sensed, memory, command);
+void of_dual(const Controller<double>& controller, const Measurement<Dual<derivatives_per_pass>>& sensed,
+             const Memory<Dual<derivatives_per_pass>>& memory, Command<Dual<derivatives_per_pass>>& command) {
+    control_law(controller, sensed, memory, command);
 }
 
 }  // namespace
 
 template <>
-LawFunction<double, Dual<slopes_at_once>> compiled_law() {
+LawFunction<double, Dual<derivatives_per_pass>> compiled_law() {
     return of_dual;
 }
 

@@ -21,7 +21,7 @@ void each_digital_number(F f, A& a, B& b) {
 }
 
 template <class A, class B>
-void copy_digital_choices(const Digital<A>& from, Digital<B>& to) {
+void copy_digital_choices(const DigitalController<A>& from, DigitalController<B>& to) {
     static_cast<SamplingChoices&>(to.sampling) = from.sampling;
     static_cast<SensorChoices&>(to.sensors) = from.sensors;
     static_cast<ObserverChoices&>(to.observer) = from.observer;
@@ -31,7 +31,8 @@ void copy_digital_choices(const Digital<A>& from, Digital<B>& to) {
 }  // namespace
 
 template <class T>
-void ControlLoop<T>::put(int lane, const Digital<double>& from, const Estimation<double>& estimation) {
+void SampledController<T>::load_lane(int lane, const DigitalController<double>& from,
+                                     const Estimation<double>& estimation) {
     const auto set = [&](T& x, double value) { Lanes<T>::set(x, lane, value); };
     law_function = compiled_law<T, T>();
     copy_digital_choices(from, digital_);
@@ -39,17 +40,17 @@ void ControlLoop<T>::put(int lane, const Digital<double>& from, const Estimation
     static_cast<EstimationChoices&>(estimation_) = estimation;
     set(estimation_.period, estimation.period), set(estimation_.start, estimation.start);
     set(estimation_.forgetting, estimation.forgetting);
-    set(estimation_.largest_condition, estimation.largest_condition);
+    set(estimation_.max_condition, estimation.max_condition);
     set(next_estimate_, estimation.on ? estimation.start : never);
-    estimator_.forget(estimation.wall_moves, [&](T& x) { set(x, 0.0); });
-    for (T* zero : {&count_, &outputs_done_, &known_.contact, &known_.force_phase, &known_.collision, &known_.stiffness,
-                    &known_.wall_speed, &known_.identifiable, &quiet_since_, &reacts_, &last_potential_, &early_share_,
-                    &estimates_, &samples_in_, &pressing_.counts})
+    estimator_.reset(estimation.wall_moves, [&](T& x) { set(x, 0.0); });
+    for (T* zero : {&count_, &outputs_done_, &state_.contact, &state_.force_phase, &state_.collision, &state_.stiffness,
+                    &state_.wall_speed, &state_.identifiable, &quiet_since_, &reacts_, &last_potential_, &early_share_,
+                    &estimates_, &samples_in_, &contact_sample_.counts})
         set(*zero, 0.0);
-    for (Vec3<T>* zeros : {&known_.q, &known_.qd, &known_.f_on_tip, &known_.residual, &filtered_, &expected_,
-                           &kept_pose_, &last_q_, &last_qd_, &last_wanted_, &early_torque_})
+    for (Vec3<T>* zeros : {&state_.q, &state_.qd, &state_.f_on_tip, &state_.residual, &filtered_, &expected_,
+                           &hold_pose_, &last_q_, &last_qd_, &last_desired_, &early_torque_})
         for (int i = 0; i < 3; ++i) set((*zeros)[i], 0.0);
-    for (T& number : known_.memory) set(number, 0.0);
+    for (T& number : state_.memory) set(number, 0.0);
     set(next_sample_, from.sampling.on ? from.sampling.start : never);
     set(next_output_, never);
     set(early_share_, from.sampling.delay - std::floor(from.sampling.delay));
@@ -59,7 +60,7 @@ void ControlLoop<T>::put(int lane, const Digital<double>& from, const Estimation
 }
 
 template <class T>
-void ControlLoop<T>::add_noise(const Mask& due, Vec3<T>& f) const {
+void SampledController<T>::add_noise(const Mask& due, Vec3<T>& f) const {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
         const auto seed = static_cast<std::uint64_t>(Lanes<T>::get(digital_.sampling.seed, lane));
@@ -72,13 +73,13 @@ void ControlLoop<T>::add_noise(const Mask& due, Vec3<T>& f) const {
 }
 
 template <class T>
-Vec3<T> ControlLoop<T>::delayed_force(const Mask& due, const Vec3<T>& f) {
+Vec3<T> SampledController<T>::delayed_force(const Mask& due, const Vec3<T>& f) {
     Vec3<T> seen = f;
-    constexpr std::size_t size = most_force_delay + 2;
+    constexpr std::size_t size = max_force_delay + 2;
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
         const double now = Lanes<T>::get(count_, lane), delay = Lanes<T>::get(digital_.sensors.force_delay, lane);
-        const double place = std::max(0.0, now - delay), before = std::floor(place), share = place - before;
+        const double position = std::max(0.0, now - delay), before = std::floor(position), share = position - before;
         auto& ring = forces_[lane];
         const auto at = [&](double sample) -> Vec3<double>& { return ring[std::size_t(sample) % size]; };
         for (int i = 0; i < 3; ++i) at(now)[i] = Lanes<T>::get(f[i], lane);
@@ -88,10 +89,10 @@ Vec3<T> ControlLoop<T>::delayed_force(const Mask& due, const Vec3<T>& f) {
     return seen;
 }
 
-// The torque put out at the last sample but the delay acts until the next sample, the one before it for the fraction of a
-// delay that is not whole: their mean is what an integral over the period sees.
+// The torque of sample k - floor(delay) acts until the next sample; if the delay is not a whole number, the torque
+// before it acts for the fractional part first. Their mean is what an integral over the period needs.
 template <class T>
-void ControlLoop<T>::queue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
+void SampledController<T>::enqueue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
         auto& ring = outputs_[lane];
@@ -113,7 +114,7 @@ void ControlLoop<T>::queue(const Mask& due, const Vec3<T>& output, Vec3<T>& acti
 }
 
 template <class T>
-void ControlLoop<T>::put_out(const Mask& due, Vec3<T>& acting) {
+void SampledController<T>::apply_queued(const Mask& due, Vec3<T>& acting) {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
         const double done = Lanes<T>::get(outputs_done_, lane);
@@ -124,74 +125,74 @@ void ControlLoop<T>::put_out(const Mask& due, Vec3<T>& acting) {
     }
 }
 
-// When the torque of a sample comes through, s.
+// The instant at which the torque of a sample begins to act, s.
 template <class T>
-double ControlLoop<T>::due_time(int lane, double sample) const {
+double SampledController<T>::due_time(int lane, double sample) const {
     const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
     const Sampling<T>& sampling = digital_.sampling;
     return get(sampling.start) + (sample + get(sampling.delay)) * get(sampling.period);
 }
 
 template <class T>
-void ControlLoop<T>::ask_user(const Sensed<T>& sensed, Vec3<T>& tau) {
+void SampledController<T>::call_user_law(const Measurement<T>& sensed, Vec3<T>& tau) {
     tau = {T(0.0), T(0.0), T(0.0)};
     if constexpr (Lanes<T>::count == 1) {
         if (has_failed_) return;
-        user_status_ = user.function(user.user, count_, truth_, sensed, known_, user_torque_);
+        user_status_ = user.function(user.user, count_, truth_, sensed, state_, user_torque_);
         has_failed_ = user_status_ != 0;
-        for (int i = 0; i < 3; ++i) has_failed_ = has_failed_ || !(std::abs(user_torque_[i]) <= largest_torque);
+        for (int i = 0; i < 3; ++i) has_failed_ = has_failed_ || !(std::abs(user_torque_[i]) <= max_torque);
         if (!has_failed_) tau = user_torque_;
     }
 }
 
 template <class T>
-std::string ControlLoop<T>::complaint() const {
+std::string SampledController<T>::error_message() const {
     const double tick = Lanes<T>::get(count_, 0) - 1;
     const double t = Lanes<T>::get(digital_.sampling.start, 0) + tick * Lanes<T>::get(digital_.sampling.period, 0);
-    const std::string place = " at tick " + shortest(tick) + ", t = " + shortest(t) + " s";
-    if (user_status_ != 0) return "the controller asked to stop with " + std::to_string(user_status_) + place;
-    const Vec3<double> tau = user.simscape ? flipped(user_torque_) : user_torque_;
+    const std::string position = " at tick " + shortest(tick) + ", t = " + shortest(t) + " s";
+    if (user_status_ != 0) return "the controller asked to stop with " + std::to_string(user_status_) + position;
+    const Vec3<double> tau = user.simscape ? change_convention(user_torque_) : user_torque_;
     return "the controller gave the torque [" + shortest(tau[0]) + ", " + shortest(tau[1]) + ", " + shortest(tau[2]) +
-           "] N m" + place + "; three finite numbers are needed, at most 1e12 either way";
+           "] N m" + position + "; three finite numbers are needed, at most 1e12 either way";
 }
 
-// What the law has given out since the last sample: the work of the torques that acted, less what has changed in the
-// potential of which the law is the gradient, less what the motion of its reference has brought in. Exact but for the two
-// torques of a delay that is no whole number of samples, where the accelerations are taken for constant.
+// The energy that the law has put out since the last sample: the work of the applied torques, less the change of the
+// potential whose gradient is the law, less the work of the moving reference. It is exact, except for the two torques
+// of a delay that is not a whole number of samples, where the accelerations are assumed to be constant.
 template <class T>
-void ControlLoop<T>::settle(const Mask& due, const Sensed<T>& sensed) {
+void SampledController<T>::update_reserve(const Mask& due, const Measurement<T>& sensed) {
     const Controller<T>& controller = digital_.controller;
-    const Vec3<T> wanted = wanted_tip(sensed), way = minus(sensed.q, last_q_);
-    const T potential = law_potential(controller, sensed.pose, wanted);
+    const Vec3<T> desired = desired_tip(sensed), way = minus(sensed.q, last_q_);
+    const T potential = law_potential(controller, sensed.pose, desired);
     T given = dot(mean_acting_, way) - (potential - last_potential_);
     if (has_output_delay_) {
         const T share = 0.5 * early_share_ * (1.0 - early_share_) * digital_.sampling.period;
         given = given - share * dot(early_torque_, minus(sensed.qd, last_qd_));
     }
-    if (wants_path(controller.type)) given = given - work_of_reference(wanted);
-    T reserve = known_.memory[0] - given;
-    if (controller.type == Controls::energy_tank) reserve = min(reserve, controller.gains.tank_capacity);
-    known_.memory[0] = select(due && count_ > T(0.0), reserve, known_.memory[0]);
-    keep(due, sensed.q, last_q_);
-    keep(due, sensed.qd, last_qd_);
-    keep(due, wanted, last_wanted_);
+    if (tracks_path(controller.type)) given = given - work_of_reference(desired);
+    T reserve = state_.memory[0] - given;
+    if (controller.type == ControllerType::energy_tank) reserve = min(reserve, controller.gains.tank_capacity);
+    state_.memory[0] = select(due && count_ > T(0.0), reserve, state_.memory[0]);
+    assign_where(due, sensed.q, last_q_);
+    assign_where(due, sensed.qd, last_qd_);
+    assign_where(due, desired, last_desired_);
     last_potential_ = select(due, potential, last_potential_);
 }
 
-// J, by the force at the tip that the torque stood for, which a singular pose does not tell.
+// J, from the force at the tip that is equivalent to the torque; a singular pose does not determine that force.
 template <class T>
-T ControlLoop<T>::work_of_reference(const Vec3<T>& wanted) const {
+T SampledController<T>::work_of_reference(const Vec3<T>& desired) const {
     const Arm<T>& model = digital_.controller.model;
     const Pose<T> before = pose(last_q_);
     const Vec3<T> force = force_from(model, before, minus(mean_acting_, gravity_torque(model, before)));
-    const Vec3<T> moved = minus(wanted, last_wanted_);
+    const Vec3<T> moved = minus(desired, last_desired_);
     const Mask stands = dot(moved, moved) == T(0.0) || distance_to_singular(model, before) < T(1e-3);
     return select(stands, T(0.0), T(dot(force, moved)));
 }
 
-// The torque that acts `still` periods before that of this sample does, and for which share of a period.
+// The torque that acts `still` periods before that of this sample, and the fraction of a period for which it acts.
 template <class T>
-T ControlLoop<T>::pending(const Mask& due, double still, Vec3<T>& acting) const {
+T SampledController<T>::pending_torque(const Mask& due, double still, Vec3<T>& acting) const {
     T share(0.0);
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         const double whole = std::floor(Lanes<T>::get(digital_.sampling.delay, lane));
@@ -205,78 +206,82 @@ T ControlLoop<T>::pending(const Mask& due, double still, Vec3<T>& acting) const 
     return share;
 }
 
-// Where the arm will be when the torque of this sample begins to act, and what will be left of the reserve by then.
+// The predicted state of the arm and the reserve when the torque of this sample begins to act.
 template <class T>
-Prospect<T> ControlLoop<T>::when_it_acts(const Mask& due, const Sensed<T>& sensed, const Vec3<T>& output) const {
-    Prospect<T> ahead{sensed.q, sensed.qd, sensed.pose, last_potential_, known_.memory[0]};
-    if (!has_output_delay_) return ahead;
+Prediction<T> SampledController<T>::predict_at_actuation(const Mask& due, const Measurement<T>& sensed,
+                                                         const Vec3<T>& output) const {
+    Prediction<T> prediction{sensed.q, sensed.qd, sensed.pose, last_potential_, state_.memory[0]};
+    if (!has_output_delay_) return prediction;
     const Sampling<T>& sampling = digital_.sampling;
     double longest = 0;
     for (int lane = 0; lane < Lanes<T>::count; ++lane)
         if (Lanes<T>::is(due, lane)) longest = std::max(longest, std::floor(Lanes<T>::get(sampling.delay, lane)));
     for (double still = longest; still >= 0; --still) {
         Vec3<T> acting = output;
-        const T time = sampling.period * pending(due, still, acting);
-        advance(digital_.controller, last_wanted_, acting, time, ahead);
+        const T time = sampling.period * pending_torque(due, still, acting);
+        predict(digital_.controller, last_desired_, acting, time, prediction);
     }
-    return ahead;
+    return prediction;
 }
 
-// The brake works beside any torque, and outside a virtual wall too.
+// The braking torque is added to any torque, also outside a virtual wall.
 template <class T>
-void ControlLoop<T>::keep_passive(const Mask& due, const Arm<T>& arm, const Sensed<T>& sensed, Command<T>& command) {
+void SampledController<T>::apply_brake(const Mask& due, const Arm<T>& arm, const Measurement<T>& sensed,
+                                       Command<T>& command) {
     const Controller<T>& controller = digital_.controller;
     const Vec3<T> output = limited(arm, command.tau, controller.saturation);
-    const Prospect<T> ahead = when_it_acts(due, sensed, output);
-    command.tau = plus(command.tau, brake(controller, last_wanted_, output, digital_.sampling.period, ahead));
+    const Prediction<T> prediction = predict_at_actuation(due, sensed, output);
+    command.tau =
+        plus(command.tau, braking_torque(controller, last_desired_, output, digital_.sampling.period, prediction));
 }
 
-// What was measured counts once, and in contact only. The answer is the assumed stiffness of a law that asks for it.
+// Each sample is used once, and in contact only. The estimate becomes the assumed stiffness of a law that needs it.
 template <class T>
-void ControlLoop<T>::estimate(const Mask& due) {
+void SampledController<T>::estimate(const Mask& due) {
     const T o(0.0), l(1.0);
-    const Mask counts = due && pressing_.counts > o;
+    const Mask counts = due && contact_sample_.counts > o;
     const Mask first = counts && samples_in_ == o;
-    first_place_ = select(first, pressing_.place, first_place_);
-    first_time_ = select(first, pressing_.time, first_time_);
-    estimator_.add_where(counts, T(pressing_.place - first_place_), T(pressing_.time - first_time_), pressing_.force,
-                         estimation_.forgetting);
-    pressing_.counts = select(due, o, pressing_.counts);
+    first_position_ = select(first, contact_sample_.position, first_position_);
+    first_time_ = select(first, contact_sample_.time, first_time_);
+    estimator_.add_where(counts, T(contact_sample_.position - first_position_), T(contact_sample_.time - first_time_),
+                         contact_sample_.force, estimation_.forgetting);
+    contact_sample_.counts = select(due, o, contact_sample_.counts);
     samples_in_ = samples_in_ + select(counts, l, o);
-    const WallEstimate<T> answer = estimator_.answer();
-    const Mask told = samples_in_ >= T(8.0) && answer.condition < estimation_.largest_condition;
-    known_.identifiable = select(due, select(told, l, o), known_.identifiable);
-    known_.stiffness = select(due, select(told, answer.stiffness, o), known_.stiffness);
-    known_.wall_speed = select(due, select(told, answer.speed, o), known_.wall_speed);
+    const WallEstimate<T> answer = estimator_.solve();
+    const Mask is_valid = samples_in_ >= T(8.0) && answer.condition < estimation_.max_condition;
+    state_.identifiable = select(due, select(is_valid, l, o), state_.identifiable);
+    state_.stiffness = select(due, select(is_valid, answer.stiffness, o), state_.stiffness);
+    state_.wall_speed = select(due, select(is_valid, answer.speed, o), state_.wall_speed);
     if (digital_.sampling.on && asks_estimator(digital_.controller)) {
         T& assumed = digital_.controller.gains.assumed_stiffness;
-        assumed = select(due && told, answer.stiffness, assumed);
+        assumed = select(due && is_valid, answer.stiffness, assumed);
     }
     estimates_ = estimates_ + select(due, l, o);
     next_estimate_ = select(due, T(estimation_.start + estimates_ * estimation_.period), next_estimate_);
 }
 
-// By name: `template class` would also build, for no caller, what is inlined everywhere (ARM3R_INLINE).
-#define ARM3R_CONTROL_LOOP(...)                                                                                \
-    template void ControlLoop<__VA_ARGS__>::put(int, const Digital<double>&, const Estimation<double>&);       \
-    template void ControlLoop<__VA_ARGS__>::add_noise(const Mask&, Vec3<__VA_ARGS__>&) const;                  \
-    template Vec3<__VA_ARGS__> ControlLoop<__VA_ARGS__>::delayed_force(const Mask&, const Vec3<__VA_ARGS__>&); \
-    template void ControlLoop<__VA_ARGS__>::queue(const Mask&, const Vec3<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);  \
-    template void ControlLoop<__VA_ARGS__>::put_out(const Mask&, Vec3<__VA_ARGS__>&);                          \
-    template void ControlLoop<__VA_ARGS__>::ask_user(const Sensed<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);          \
-    template std::string ControlLoop<__VA_ARGS__>::complaint() const;                                          \
-    template void ControlLoop<__VA_ARGS__>::settle(const Mask&, const Sensed<__VA_ARGS__>&);                   \
-    template void ControlLoop<__VA_ARGS__>::keep_passive(const Mask&, const Arm<__VA_ARGS__>&,                 \
-                                                         const Sensed<__VA_ARGS__>&, Command<__VA_ARGS__>&);   \
-    template void ControlLoop<__VA_ARGS__>::estimate(const Mask&);
+// Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
+#define ARM3R_SAMPLED_CONTROLLER(...)                                                                                  \
+    template void SampledController<__VA_ARGS__>::load_lane(int, const DigitalController<double>&,                     \
+                                                            const Estimation<double>&);                                \
+    template void SampledController<__VA_ARGS__>::add_noise(const Mask&, Vec3<__VA_ARGS__>&) const;                    \
+    template Vec3<__VA_ARGS__> SampledController<__VA_ARGS__>::delayed_force(const Mask&, const Vec3<__VA_ARGS__>&);   \
+    template void SampledController<__VA_ARGS__>::enqueue(const Mask&, const Vec3<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);  \
+    template void SampledController<__VA_ARGS__>::apply_queued(const Mask&, Vec3<__VA_ARGS__>&);                       \
+    template void SampledController<__VA_ARGS__>::call_user_law(const Measurement<__VA_ARGS__>&, Vec3<__VA_ARGS__>&);  \
+    template std::string SampledController<__VA_ARGS__>::error_message() const;                                        \
+    template void SampledController<__VA_ARGS__>::update_reserve(const Mask&, const Measurement<__VA_ARGS__>&);        \
+    template void SampledController<__VA_ARGS__>::apply_brake(const Mask&, const Arm<__VA_ARGS__>&,                    \
+                                                              const Measurement<__VA_ARGS__>&, Command<__VA_ARGS__>&); \
+    template void SampledController<__VA_ARGS__>::estimate(const Mask&);
 
-ARM3R_CONTROL_LOOP(double)
+ARM3R_SAMPLED_CONTROLLER(double)
 #if !ARM3R_ONE_LANE
-ARM3R_CONTROL_LOOP(Pack<2>)
+ARM3R_SAMPLED_CONTROLLER(Pack<2>)
 #endif
 #if ARM3R_WIDE_PACKS
-ARM3R_CONTROL_LOOP(Pack<4>)
-ARM3R_CONTROL_LOOP(Pack<8>)
+ARM3R_SAMPLED_CONTROLLER(Pack<4>)
+ARM3R_SAMPLED_CONTROLLER(Pack<8>)
 #endif
 
 }  // namespace arm3r

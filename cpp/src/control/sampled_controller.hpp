@@ -1,8 +1,8 @@
 #pragma once
-// A digital controller beside an arm that never stops moving: what it reads, computes and holds between its samples, lane
-// by lane; docs/model.md, section 8. Sensors, law, reaction, limit, delay, hold, in this order. Three torques are told
-// apart (8.3): the law computes one, the controller puts one out behind the limit, and behind the delay it acts on the
-// joints. Slide convention.
+// A sampled controller for an arm that moves continuously, lane by lane: what it measures, computes and holds;
+// docs/model.md, section 8. The order is sensors, law, reaction, limit, delay, hold. There are three different torques
+// (8.3): that of the law, the output of the controller after the limit, and the one that acts on the joints after the
+// delay. Slide convention.
 
 #include <array>
 #include <limits>
@@ -18,16 +18,16 @@
 
 namespace arm3r {
 
-// What there is to sense at an instant.
+// The output of the plant at an instant.
 template <class T>
-struct Instant {
-    Sensed<T> seen;      // the truth, until a sample puts what the sensors read in its place
-    Vec3<T> f_filtered;  // N, behind the analog filter, if there is one
+struct PlantOutput {
+    Measurement<T> measurement;  // true values, until a sample replaces them by those of the sensors
+    Vec3<T> f_filtered;          // N, after the analog filter, if there is one
 };
 
-// What a digital controller knew at its last sample, and the estimator at its own.
+// The state of a sampled controller after its last sample, and of the estimator after its own.
 template <class T>
-struct Known {
+struct ControllerState {
     Vec3<T> q, qd, f_on_tip;  // measured
     Vec3<T> residual;         // N m
     T contact{0.0}, force_phase{0.0}, collision{0.0};
@@ -36,71 +36,72 @@ struct Known {
 };
 
 template <class T>
-class ControlLoop {
+class SampledController {
 public:
     using Mask = typename Lanes<T>::Mask;
 
     UserLaw user;
     LawFunction<T, T> law_function = nullptr;
 
-    // The controller of a run put into a lane; its first sample is at the start.
-    void put(int lane, const Digital<double>& from, const Estimation<double>& estimation);
+    // Loads the controller of a run into a lane; its first sample is at the start.
+    void load_lane(int lane, const DigitalController<double>& from, const Estimation<double>& estimation);
 
-    // The next instant, s, at which it samples or its torque changes; infinite where there is no such controller.
+    // The next instant, s, at which it samples or its torque changes; infinite if there is no such controller.
     ARM3R_INLINE T next() const { return min(min(next_sample_, next_output_), next_estimate_); }
 
-    // Those lanes for which it is time. `acting` is the torque that the joints feel from now on.
-    ARM3R_INLINE void attend(const Mask& due, const T& slack, const Arm<T>& arm, Instant<T>& now, Vec3<T>& acting) {
-        const T until = now.seen.t + slack;
-        if (estimation_.on) estimate_if_due(due && next_estimate_ < next_sample_ - slack, until, arm, now.seen);
+    // Updates the lanes that are due. `acting` is the torque that acts on the joints from now on.
+    ARM3R_INLINE void update(const Mask& due, const T& slack, const Arm<T>& arm, PlantOutput<T>& now, Vec3<T>& acting) {
+        const T until = now.measurement.t + slack;
+        if (estimation_.on) estimate_if_due(due && next_estimate_ < next_sample_ - slack, until, arm, now.measurement);
         const Mask samples = due && next_sample_ <= until;
         if (any(samples)) sample(samples, arm, now, acting);
         if (has_output_delay_) {
             const Mask outputs = due && next_output_ <= until;
-            if (any(outputs)) put_out(outputs, acting);
+            if (any(outputs)) apply_queued(outputs, acting);
         }
-        if (estimation_.on) estimate_if_due(due, until, arm, now.seen);
+        if (estimation_.on) estimate_if_due(due, until, arm, now.measurement);
     }
 
-    const Known<T>& known() const { return known_; }
+    const ControllerState<T>& controller_state() const { return state_; }
     bool is_on() const { return digital_.sampling.on; }
     const Controller<T>& controller() const { return digital_.controller; }
-    // When the next sample is due, s.
+    // The instant of the next sample, s.
     ARM3R_INLINE T next_sample() const { return next_sample_; }
     bool has_failed() const { return has_failed_; }
-    std::string complaint() const;  // about the user's law, once it has failed
+    std::string error_message() const;  // of the user's law, after it has failed
 
 private:
-    ARM3R_INLINE void sample(const Mask& due, const Arm<T>& arm, Instant<T>& now, Vec3<T>& acting) {
+    ARM3R_INLINE void sample(const Mask& due, const Arm<T>& arm, PlantOutput<T>& now, Vec3<T>& acting) {
         const Controller<T>& controller = digital_.controller;
-        Sensed<T>& sensed = now.seen;
+        Measurement<T>& sensed = now.measurement;
         if constexpr (Lanes<T>::count == 1)
-            if (controller.type == Controls::user) truth_ = {sensed.q, sensed.qd, sensed.f_on_tip};
-        sense(due, arm, now.f_filtered, sensed);
-        judge_contact(due, sensed);
-        if (estimation_.on) note_pressing(due, controller.model, sensed);
-        if (digital_.observer.on) observe(due, sensed);
+            if (controller.type == ControllerType::user) truth_ = {sensed.q, sensed.qd, sensed.f_on_tip};
+        measure(due, arm, now.f_filtered, sensed);
+        update_contact(due, sensed);
+        if (estimation_.on) sample_contact(due, controller.model, sensed);
+        if (digital_.observer.on) update_residual(due, sensed);
         start_memory(due, sensed);
-        if (keeps_reserve(controller)) settle(due, sensed);
+        if (has_reserve(controller)) update_reserve(due, sensed);
         Command<T> command;
         compute(controller, sensed, command);
         if (digital_.observer.reaction != Reaction::ignore) react(due, sensed, command);
-        if (keeps_reserve(controller)) keep_passive(due, arm, sensed, command);
-        const Vec3<T> output = actuated(arm, controller, known_.memory[0], command);
+        if (has_reserve(controller)) apply_brake(due, arm, sensed, command);
+        const Vec3<T> output = actuated(arm, controller, state_.memory[0], command);
         const T limit = memory_limit();
-        if (remembers()) Apart<T>::run([&]() ARM3R_INLINE_LAMBDA { remember(due, command, limit); });
-        deliver(due, output, acting);
-        if (digital_.observer.on) expect(due, sensed);
+        if (has_integrated_memory())
+            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { integrate_memory(due, command, limit); });
+        apply_output(due, output, acting);
+        if (digital_.observer.on) update_observer(due, sensed);
         count_ = count_ + select(due, T(1.0), T(0.0));
         next_sample_ = select(due, T(digital_.sampling.start + count_ * digital_.sampling.period), next_sample_);
     }
 
     // ---- sensors (8.1)
 
-    ARM3R_INLINE void sense(const Mask& due, const Arm<T>& arm, const Vec3<T>& f_filtered, Sensed<T>& sensed) {
+    ARM3R_INLINE void measure(const Mask& due, const Arm<T>& arm, const Vec3<T>& f_filtered, Measurement<T>& sensed) {
         const Sensors<T>& sensors = digital_.sensors;
         if (sensors.has_encoder) {
-            for (int i = 0; i < 3; ++i) sensed.q[i] = on_grid(sensed.q[i], sensors.encoder_step);
+            for (int i = 0; i < 3; ++i) sensed.q[i] = rounded_to_grid(sensed.q[i], sensors.encoder_step);
             sensed.pose = pose(sensed.q);
         }
         const bool estimates_rate = sensors.velocity != VelocityEstimate::exact;
@@ -108,26 +109,27 @@ private:
         if (sensors.has_analog_filter) sensed.f_on_tip = f_filtered;
         measure_force(due, arm, sensed.f_on_tip);
         if (!digital_.controller.ideal_cancellation) sensed.f_cancelled = sensed.f_on_tip;
-        if (Lanes<T>::count == 1 || estimates_rate) keep(due, sensed.q, known_.q), keep(due, sensed.qd, known_.qd);
-        if (Lanes<T>::count == 1) keep(due, sensed.f_on_tip, known_.f_on_tip);
+        if (Lanes<T>::count == 1 || estimates_rate)
+            assign_where(due, sensed.q, state_.q), assign_where(due, sensed.qd, state_.qd);
+        if (Lanes<T>::count == 1) assign_where(due, sensed.f_on_tip, state_.f_on_tip);
     }
 
-    ARM3R_INLINE static void keep(const Mask& due, const Vec3<T>& now, Vec3<T>& kept) {
+    ARM3R_INLINE static void assign_where(const Mask& due, const Vec3<T>& now, Vec3<T>& kept) {
         for (int i = 0; i < 3; ++i) kept[i] = select(due, now[i], kept[i]);
     }
 
-    ARM3R_INLINE static T on_grid(const T& x, const T& step) {
+    ARM3R_INLINE static T rounded_to_grid(const T& x, const T& step) {
         return select(step > T(0.0), T(nearest_integer(T(x / step)) * step), x);
     }
 
-    // Where there is no sample before, the rate is taken for known.
+    // At the first sample the rate is assumed to be known.
     ARM3R_INLINE Vec3<T> estimated_rate(const Vec3<T>& q, const Vec3<T>& qd) {
         const Mask first = count_ == T(0.0);
         Vec3<T> rate;
         for (int i = 0; i < 3; ++i) {
-            T difference = (q[i] - known_.q[i]) / digital_.sampling.period;
+            T difference = (q[i] - state_.q[i]) / digital_.sampling.period;
             if (digital_.sensors.velocity == VelocityEstimate::filtered)
-                difference = known_.qd[i] + digital_.sensors.velocity_share * (difference - known_.qd[i]);
+                difference = state_.qd[i] + digital_.sensors.velocity_share * (difference - state_.qd[i]);
             rate[i] = select(first, qd[i], difference);
         }
         return rate;
@@ -138,7 +140,7 @@ private:
         if (sensors.has_tool)
             for (int i = 0; i < 3; ++i) f[i] = f[i] + sensors.tool_mass * arm.gravity[i];
         if (sensors.has_resolution)
-            for (int i = 0; i < 3; ++i) f[i] = on_grid(f[i], sensors.resolution);
+            for (int i = 0; i < 3; ++i) f[i] = rounded_to_grid(f[i], sensors.resolution);
         if (sensors.has_bias) f = plus(f, sensors.bias);
         if (sensors.has_noise) add_noise(due, f);
         if (sensors.has_filter) {
@@ -155,196 +157,198 @@ private:
     [[gnu::noinline]] void add_noise(const Mask& due, Vec3<T>& f) const;
     [[gnu::noinline]] Vec3<T> delayed_force(const Mask& due, const Vec3<T>& f);
 
-    // ---- what it makes of them
+    // ---- contact, law, observer and reaction
 
-    // Contact is made above one measured force and lost below another (8.2).
-    ARM3R_INLINE void judge_contact(const Mask& due, Sensed<T>& sensed) {
+    // Contact begins above one measured force and ends below another (8.2).
+    ARM3R_INLINE void update_contact(const Mask& due, Measurement<T>& sensed) {
         const Controller<T>& controller = digital_.controller;
         const T f = dot(sensed.n, sensed.f_on_tip), o(0.0), l(1.0);
-        const T least = select(known_.contact > o, controller.gains.contact_off, controller.gains.contact_on);
+        const T least = select(state_.contact > o, controller.gains.contact_off, controller.gains.contact_on);
         const T touching = select(f > least, l, o);
-        known_.contact = select(due, touching, known_.contact);
+        state_.contact = select(due, touching, state_.contact);
         T phase = l;
-        if (controller.switching == Switching::in_contact) phase = known_.contact;
-        if (controller.switching == Switching::latched) phase = max(known_.force_phase, known_.contact);
-        known_.force_phase = select(due, phase, known_.force_phase);
-        sensed.contact = known_.contact;
-        sensed.force_phase = known_.force_phase;
+        if (controller.switching == Switching::in_contact) phase = state_.contact;
+        if (controller.switching == Switching::latched) phase = max(state_.force_phase, state_.contact);
+        state_.force_phase = select(due, phase, state_.force_phase);
+        sensed.contact = state_.contact;
+        sensed.force_phase = state_.force_phase;
         if (integrates_force(controller.type))
-            known_.memory[0] = select(due, T(known_.contact * known_.memory[0]), known_.memory[0]);
+            state_.memory[0] = select(due, T(state_.contact * state_.memory[0]), state_.memory[0]);
     }
 
-    ARM3R_INLINE void start_memory(const Mask& due, const Sensed<T>& sensed) {
+    ARM3R_INLINE void start_memory(const Mask& due, const Measurement<T>& sensed) {
         if (!has_law(digital_.controller.type)) return;
         const Mask first = due && count_ == T(0.0);
         if (!any(first)) return;
         const std::array<T, law_memory> start = memory_at_start(digital_.controller, sensed);
-        for (std::size_t i = 0; i < law_memory; ++i) known_.memory[i] = select(first, start[i], known_.memory[i]);
+        for (std::size_t i = 0; i < law_memory; ++i) state_.memory[i] = select(first, start[i], state_.memory[i]);
     }
 
-    ARM3R_INLINE void compute(const Controller<T>& controller, const Sensed<T>& sensed, Command<T>& command) {
+    ARM3R_INLINE void compute(const Controller<T>& controller, const Measurement<T>& sensed, Command<T>& command) {
         if (has_law(controller.type)) {
-            law_function(controller, sensed, known_.memory, command);
+            law_function(controller, sensed, state_.memory, command);
             return;
         }
         command.rates.fill(T(0.0));
-        command.per_integral = {T(0.0), T(0.0), T(0.0)};
-        if (controller.type == Controls::user) ask_user(sensed, command.tau);
-        else command.tau = control(controller, sensed.q, sensed.pose);
+        command.dtau_dintegral = {T(0.0), T(0.0), T(0.0)};
+        if (controller.type == ControllerType::user) call_user_law(sensed, command.tau);
+        else command.tau = feedforward_torque(controller, sensed.q, sensed.pose);
     }
 
-    [[gnu::noinline]] void ask_user(const Sensed<T>& sensed, Vec3<T>& tau);
+    [[gnu::noinline]] void call_user_law(const Measurement<T>& sensed, Vec3<T>& tau);
 
-    ARM3R_INLINE void observe(const Mask& due, const Sensed<T>& sensed) {  // (8.4)
+    ARM3R_INLINE void update_residual(const Mask& due, const Measurement<T>& sensed) {  // (8.4)
         const Vec3<T> p = momentum(digital_.controller.model, sensed.pose, sensed.qd);
         const Mask first = count_ == T(0.0);
         for (int i = 0; i < 3; ++i) expected_[i] = select(due && first, p[i], expected_[i]);
         const Vec3<T> r = residual(digital_.observer.gain, p, expected_);
-        for (int i = 0; i < 3; ++i) known_.residual[i] = select(due, r[i], known_.residual[i]);
-        judge_collision(due, sensed, r);
+        for (int i = 0; i < 3; ++i) state_.residual[i] = select(due, r[i], state_.residual[i]);
+        update_collision(due, sensed, r);
     }
 
-    ARM3R_INLINE void expect(const Mask& due, const Sensed<T>& sensed) {
+    ARM3R_INLINE void update_observer(const Mask& due, const Measurement<T>& sensed) {
         const Vec3<T> rate =
-            expected_rate(digital_.controller.model, sensed.pose, sensed.qd, mean_acting_, known_.residual);
+            expected_rate(digital_.controller.model, sensed.pose, sensed.qd, mean_acting_, state_.residual);
         for (int i = 0; i < 3; ++i)
             expected_[i] = expected_[i] + select(due, T(digital_.sampling.period * rate[i]), T(0.0));
     }
 
-    // A collision begins where a residual exceeds its threshold, and is over when all have stayed below half of it for a
-    // while. The reaction to it begins with the first and stays (8.5).
-    ARM3R_INLINE void judge_collision(const Mask& due, const Sensed<T>& sensed, const Vec3<T>& r) {
+    // A collision begins if a residual exceeds its threshold, and ends after all residuals have stayed below half of it
+    // for a while. The reaction starts with the first collision and does not end (8.5).
+    ARM3R_INLINE void update_collision(const Mask& due, const Measurement<T>& sensed, const Vec3<T>& r) {
         const Observer<T>& observer = digital_.observer;
         T share(0.0);
         for (int i = 0; i < 3; ++i) share = max(share, T(abs(r[i]) / observer.threshold[i]));
         const T o(0.0), l(1.0);
         quiet_since_ = select(due && share > T(0.5), sensed.t, quiet_since_);
         const Mask begins = due && share > l;
-        const Mask lasts = known_.collision > o && sensed.t - quiet_since_ < observer.hold;
-        known_.collision = select(due, select(begins || lasts, l, o), known_.collision);
+        const Mask lasts = state_.collision > o && sensed.t - quiet_since_ < observer.hold;
+        state_.collision = select(due, select(begins || lasts, l, o), state_.collision);
         const Mask reacts_now = begins && !(reacts_ > o);
-        for (int i = 0; i < 3; ++i) kept_pose_[i] = select(reacts_now, sensed.q[i], kept_pose_[i]);
+        for (int i = 0; i < 3; ++i) hold_pose_[i] = select(reacts_now, sensed.q[i], hold_pose_[i]);
         reacts_ = select(begins, l, reacts_);
     }
 
-    ARM3R_INLINE void react(const Mask& due, const Sensed<T>& sensed, Command<T>& command) {  // (8.6)
+    ARM3R_INLINE void react(const Mask& due, const Measurement<T>& sensed, Command<T>& command) {  // (8.6)
         const Observer<T>& observer = digital_.observer;
-        const Vec3<T>& r = known_.residual;
+        const Vec3<T>& r = state_.residual;
         Vec3<T> tau = gravity_torque(digital_.controller.model, sensed.pose);
         const bool keeps_pose = observer.reaction == Reaction::stop || observer.reaction == Reaction::retreat;
         for (int i = 0; i < 3; ++i) {
             if (observer.reaction == Reaction::reflex) tau[i] = tau[i] + observer.reflex_gain * r[i];
             if (keeps_pose)
-                tau[i] = tau[i] + (observer.joint_stiffness[i] * (kept_pose_[i] - sensed.q[i]) -
+                tau[i] = tau[i] + (observer.joint_stiffness[i] * (hold_pose_[i] - sensed.q[i]) -
                                    observer.joint_damping[i] * sensed.qd[i]);
             command.tau[i] = select(reacts_ > T(0.0), tau[i], command.tau[i]);
         }
         if (observer.reaction != Reaction::retreat) return;
         for (int i = 0; i < 3; ++i) {
             const T step = digital_.sampling.period * observer.retreat_gain * r[i];
-            kept_pose_[i] = kept_pose_[i] + select(due && reacts_ > T(0.0), step, T(0.0));
+            hold_pose_[i] = hold_pose_[i] + select(due && reacts_ > T(0.0), step, T(0.0));
         }
     }
 
-    // ---- the reserve of energy of a law that keeps one (8.8)
+    // ---- the energy reserve of a law that has one (8.8)
 
-    [[gnu::noinline]] void settle(const Mask& due, const Sensed<T>& sensed);
-    [[gnu::noinline]] void keep_passive(const Mask& due, const Arm<T>& arm, const Sensed<T>& sensed,
-                                        Command<T>& command);
-    T work_of_reference(const Vec3<T>& wanted) const;
-    T pending(const Mask& due, double still, Vec3<T>& acting) const;
-    Prospect<T> when_it_acts(const Mask& due, const Sensed<T>& sensed, const Vec3<T>& output) const;
+    [[gnu::noinline]] void update_reserve(const Mask& due, const Measurement<T>& sensed);
+    [[gnu::noinline]] void apply_brake(const Mask& due, const Arm<T>& arm, const Measurement<T>& sensed,
+                                       Command<T>& command);
+    T work_of_reference(const Vec3<T>& desired) const;
+    T pending_torque(const Mask& due, double still, Vec3<T>& acting) const;
+    Prediction<T> predict_at_actuation(const Mask& due, const Measurement<T>& sensed, const Vec3<T>& output) const;
 
-    ARM3R_INLINE Vec3<T> wanted_tip(const Sensed<T>& sensed) const {
+    ARM3R_INLINE Vec3<T> desired_tip(const Measurement<T>& sensed) const {
         const Controller<T>& controller = digital_.controller;
-        return wants_path(controller.type) ? wanted_at(controller.setpoint, sensed.t).position : none<T>();
+        return tracks_path(controller.type) ? desired_motion_at(controller.reference, sensed.t).position
+                                            : zero_vector<T>();
     }
 
-    // By Euler's rule; an integral of the force error ends its step at its limit (7.5). A reserve is settled instead. What
-    // a law does not remember has no rate. Without branches or loops, for g++ 12 (pack.hpp).
-    ARM3R_INLINE void remember(const Mask& due, const Command<T>& command, const T& limit) {
+    // Integrates the memory by Euler's rule; an integral of the force error is limited at the end of the step (7.5). A
+    // reserve is updated by update_reserve() instead. Unused memory has rate zero. There are no branches or loops
+    // because of g++ 12 (pack.hpp).
+    ARM3R_INLINE void integrate_memory(const Mask& due, const Command<T>& command, const T& limit) {
         const auto next = [&](std::size_t i) ARM3R_INLINE_LAMBDA {
-            return T(known_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0)));
+            return T(state_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0)));
         };
-        known_.memory = {max(min(next(0), limit), T(-limit)), next(1), next(2), next(3), next(4), next(5)};
+        state_.memory = {max(min(next(0), limit), T(-limit)), next(1), next(2), next(3), next(4), next(5)};
     }
 
-    ARM3R_INLINE bool remembers() const {
-        return memory_size(digital_.controller.type) > 0 && !keeps_reserve(digital_.controller);
+    ARM3R_INLINE bool has_integrated_memory() const {
+        return memory_size(digital_.controller.type) > 0 && !has_reserve(digital_.controller);
     }
 
     ARM3R_INLINE T memory_limit() const {
         return integrates_force(digital_.controller.type) ? digital_.controller.gains.integral_limit : T(never);
     }
 
-    // ---- the wall's stiffness, told from force and position in contact (8.7)
+    // ---- the wall's stiffness, estimated from force and position in contact (8.7)
 
-    // Before the sample of the same step where it is due before: a step of rk4 may end after both.
-    ARM3R_INLINE void estimate_if_due(const Mask& due, const T& until, const Arm<T>& arm, const Sensed<T>& seen) {
+    // The estimator comes before the sample if it is due before it: a step of rk4 may end after both.
+    ARM3R_INLINE void estimate_if_due(const Mask& due, const T& until, const Arm<T>& arm, const Measurement<T>& seen) {
         const Mask estimates = due && next_estimate_ <= until;
         if (!any(estimates)) return;
-        if (!is_on()) note_pressing(estimates, arm, seen);
+        if (!is_on()) sample_contact(estimates, arm, seen);
         estimate(estimates);
     }
 
-    // Force and position of one instant; a sampled controller has both from its sensors.
-    struct Pressing {
-        T time{0.0}, place{0.0}, force{0.0};  // s, m, N: of the tip and on it, along the normal
-        T counts{0.0};                        // 1: taken in contact and not estimated from yet
+    // Force and position at one instant; a sampled controller has both from its sensors.
+    struct ContactSample {
+        T time{0.0}, position{0.0}, force{0.0};  // s, m, N: of the tip and on it, along the normal
+        T counts{0.0};                           // 1: taken in contact and not yet used by the estimator
     };
 
-    ARM3R_INLINE void note_pressing(const Mask& due, const Arm<T>& arm, const Sensed<T>& seen) {
+    ARM3R_INLINE void sample_contact(const Mask& due, const Arm<T>& arm, const Measurement<T>& seen) {
         const T force = dot(seen.n, seen.f_on_tip), o(0.0), l(1.0);
         const bool judges = !is_on() || digital_.controller.switching != Switching::always;
         const Mask touches = judges ? seen.contact > o : force > o;
-        pressing_.time = select(due, seen.t, pressing_.time);
-        pressing_.place = select(due, T(-dot(seen.n, tip_position(arm, seen.pose))), pressing_.place);
-        pressing_.force = select(due, force, pressing_.force);
-        pressing_.counts = select(due, select(touches, l, o), pressing_.counts);
+        contact_sample_.time = select(due, seen.t, contact_sample_.time);
+        contact_sample_.position = select(due, T(-dot(seen.n, tip_position(arm, seen.pose))), contact_sample_.position);
+        contact_sample_.force = select(due, force, contact_sample_.force);
+        contact_sample_.counts = select(due, select(touches, l, o), contact_sample_.counts);
     }
 
     [[gnu::noinline]] void estimate(const Mask& due);
 
     // ---- delay and hold (8.3)
 
-    ARM3R_INLINE void deliver(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
-        if (has_output_delay_) return queue(due, output, acting);
-        keep(due, output, acting);
-        keep(due, output, mean_acting_);
+    ARM3R_INLINE void apply_output(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
+        if (has_output_delay_) return enqueue(due, output, acting);
+        assign_where(due, output, acting);
+        assign_where(due, output, mean_acting_);
     }
 
-    // Before the first torque has come through, it is the one that acts: the loop stood at rest before the start.
-    [[gnu::noinline]] void queue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting);
-    [[gnu::noinline]] void put_out(const Mask& due, Vec3<T>& acting);
+    // Until the first torque acts, its value acts too: the loop was at rest before the start.
+    [[gnu::noinline]] void enqueue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting);
+    [[gnu::noinline]] void apply_queued(const Mask& due, Vec3<T>& acting);
 
     double due_time(int lane, double sample) const;
 
     static constexpr double never = std::numeric_limits<double>::infinity();
 
-    Digital<T> digital_;
-    T count_{0.0}, outputs_done_{0.0};  // samples taken, torques that act or have acted
+    DigitalController<T> digital_;
+    T count_{0.0}, outputs_done_{0.0};  // number of samples, and of torques that have begun to act
     T next_sample_{never}, next_output_{never}, next_estimate_{never};
-    Known<T> known_;
-    Truth truth_;  // for a law of the user's own
-    Pressing pressing_;
+    ControllerState<T> state_;
+    GroundTruth truth_;  // for a law of the user's own
+    ContactSample contact_sample_;
     Estimation<T> estimation_;
     Estimator<T> estimator_;
-    T estimates_{0.0}, first_place_{0.0}, first_time_{0.0}, samples_in_{0.0};
-    Vec3<T> mean_acting_{};  // N m: of the torques that act from the last sample to the next one (8.3)
-    Vec3<T> filtered_{}, expected_{}, kept_pose_{};
+    T estimates_{0.0}, first_position_{0.0}, first_time_{0.0}, samples_in_{0.0};
+    Vec3<T> mean_acting_{};  // N m: mean of the torques that act from the last sample to the next one (8.3)
+    Vec3<T> filtered_{}, expected_{}, hold_pose_{};
     T quiet_since_{0.0}, reacts_{0.0};
-    Vec3<T> last_q_{}, last_qd_{}, last_wanted_{};  // rad, rad/s, m: at the last sample of a law with a reserve
-    T last_potential_{0.0};                         // J
-    // Of a delay that is no whole number of samples: the share of the period in which the torque before still acts, and
-    // by how much that differs from the next one, N m.
+    Vec3<T> last_q_{}, last_qd_{}, last_desired_{};  // rad, rad/s, m: at the last sample, for a law with a reserve
+    T last_potential_{0.0};                          // J
+    // For a delay that is not a whole number of samples: the fraction of the period in which the previous torque still
+    // acts, and its difference from the next one, N m.
     T early_share_{0.0};
     Vec3<T> early_torque_{};
     bool has_output_delay_ = false;
     bool has_failed_ = false;
     int user_status_ = 0;         // what the user's law returned
-    Vec3<double> user_torque_{};  // N m, slide: what it asked for
-    std::array<std::array<Vec3<double>, most_delay + 2>, Lanes<T>::count> outputs_;
-    std::array<std::array<Vec3<double>, most_force_delay + 2>, Lanes<T>::count> forces_;
+    Vec3<double> user_torque_{};  // N m, slide: its torque
+    std::array<std::array<Vec3<double>, max_delay + 2>, Lanes<T>::count> outputs_;
+    std::array<std::array<Vec3<double>, max_force_delay + 2>, Lanes<T>::count> forces_;
 };
 
 }  // namespace arm3r

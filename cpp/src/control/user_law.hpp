@@ -1,27 +1,27 @@
 #pragma once
-// A control law of the user's own.
+// A control law of the user.
 
 #include "arm3r/control/controllers.hpp"
 
 namespace arm3r {
 
 template <class T>
-struct Known;
+struct ControllerState;
 
-inline constexpr double largest_torque = 1e12;  // N m, that a law may ask for
+inline constexpr double max_torque = 1e12;  // N m, the maximum torque of a law
 
-// What is.
-struct Truth {
+// The true state, without sensor errors.
+struct GroundTruth {
     Vec3<double> q, qd, f_on_tip;  // rad, rad/s, N
 };
 
-// Called at samples only, in increasing time. What is, what the controller senses, and what it has made of it so far; tick:
-// samples before this one. Not 0: the run ends there. tau: N m. Slide convention.
+// Called at samples only, in order of time, with the true state, the measurements, and the state of the controller;
+// tick: number of samples before this one. If it does not return 0, the run ends. tau: N m. Slide convention.
 struct UserLaw {
-    int (*function)(void* user, double tick, const Truth& truth, const Sensed<double>& sensed,
-                    const Known<double>& known, Vec3<double>& tau) = nullptr;
+    int (*function)(void* user, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
+                    const ControllerState<double>& controller_state, Vec3<double>& tau) = nullptr;
     void* user = nullptr;
-    bool simscape = false;  // how messages write a torque
+    bool simscape = false;  // the convention of torques in messages
 };
 
 }  // namespace arm3r

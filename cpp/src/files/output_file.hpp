@@ -1,12 +1,12 @@
 #pragma once
-// Files that appear whole or not at all.
+// Files that are written completely or not at all.
 
 #include <string>
 #include <string_view>
 
 namespace arm3r {
 
-// A file in the making, under a temporary name beside its final one. Gone unless published.
+// A file that is being written, under a temporary name next to its final one. It is removed unless it is published.
 class OutputFile {
 public:
     explicit OutputFile(std::string path);  // throws Error ARM3R_E_OUTPUT, like all below
@@ -15,7 +15,7 @@ public:
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(std::string_view data);
-    void close();    // what was written has arrived
+    void close();    // all data have been written
     void publish();  // the final name now has it
 
 private:

@@ -54,7 +54,7 @@ const Node* find(const Node& root, const std::vector<Step>& steps) {
     return node;
 }
 
-Mark locate(const Node& root, const std::vector<Step>& steps) {
+SourceLocation locate(const Node& root, const std::vector<Step>& steps) {
     const Node* node = &root;
     for (const Step& step : steps) {
         const Node* next = child(*node, step);

@@ -18,8 +18,8 @@ std::vector<Step> parse_path(std::string_view path);  // throws Error ARM3R_E_IN
 
 const Node* find(const Node& root, const std::vector<Step>& steps);
 
-// Where the value at a path stands; where it is missing, the deepest section that is there.
-Mark locate(const Node& root, const std::vector<Step>& steps);
+// The location of the value at a path; if it is missing, that of the deepest existing section.
+SourceLocation locate(const Node& root, const std::vector<Step>& steps);
 
 std::string join(std::string_view prefix, std::string_view key);  // "a" + "b" = "a.b"
 std::string item(std::string_view path, std::size_t index);       // "a" + 1 = "a[1]"

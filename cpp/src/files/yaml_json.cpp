@@ -12,7 +12,7 @@ namespace {
 
 std::string field(const char* name, const std::string& value) { return ", \"" + std::string(name) + "\": " + value; }
 
-std::string place(const Mark& mark) {
+std::string place(const SourceLocation& mark) {
     return "\"line\": " + std::to_string(mark.line) + field("column", std::to_string(mark.column));
 }
 

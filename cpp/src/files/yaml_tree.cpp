@@ -15,8 +15,8 @@ namespace arm3r {
 
 namespace {
 
-constexpr std::size_t most_bytes = 1 << 20, most_nodes = 50'000, longest_scalar = 64 << 10, deepest = 64,
-                      most_open_brackets = 10'000, most_keys = 1000;
+constexpr std::size_t max_bytes = 1 << 20, max_nodes = 50'000, longest_scalar = 64 << 10, deepest = 64,
+                      max_open_brackets = 10'000, max_keys = 1000;
 
 [[noreturn]] void refuse(Problem problem) { throw Error(ARM3R_E_SCENARIO, std::vector{std::move(problem)}); }
 
@@ -30,7 +30,7 @@ public:
         }
     }
 
-    Mark mark(const YAML::Mark& mark) const {
+    SourceLocation mark(const YAML::SourceLocation& mark) const {
         const std::size_t line = std::min<std::size_t>(mark.line < 0 ? 0 : mark.line, lines_.size() - 1);
         const std::size_t bytes = std::min<std::size_t>(mark.column < 0 ? 0 : mark.column, lines_[line].size());
         if (line != line_ || bytes < bytes_) line_ = line, bytes_ = characters_ = 0;
@@ -41,14 +41,14 @@ public:
 
     std::string_view line(int number) const { return lines_[static_cast<std::size_t>(number) - 1]; }
 
-    // The byte that stands there, or 0.
-    char at(const YAML::Mark& mark) const {
+    // The byte at this place, or 0.
+    char at(const YAML::SourceLocation& mark) const {
         const std::string_view line = lines_[std::min<std::size_t>(std::max(mark.line, 0), lines_.size() - 1)];
         return mark.column >= 0 && std::size_t(mark.column) < line.size() ? line[std::size_t(mark.column)] : '\0';
     }
 
-    // Whether the quote that stands there has its end. The parser takes the end of the text for it.
-    bool is_closed(const YAML::Mark& mark) const {
+    // Whether the quote at this place is closed. The parser accepts the end of the text as its end.
+    bool is_closed(const YAML::SourceLocation& mark) const {
         const char quote = at(mark);
         const char* const first = lines_[std::size_t(mark.line)].data() + mark.column + 1;
         const char* const last = lines_.back().data() + lines_.back().size();
@@ -80,18 +80,20 @@ public:
         return {};
     }
 
-    void OnDocumentStart(const YAML::Mark&) override {}
+    void OnDocumentStart(const YAML::SourceLocation&) override {}
     void OnDocumentEnd() override {}
 
-    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { leaf(node(Node::nothing, mark, "", anchor)); }
+    void OnNull(const YAML::SourceLocation& mark, YAML::anchor_t anchor) override {
+        leaf(node(Node::nothing, mark, "", anchor));
+    }
 
-    void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-        const Node alias = node(Node::hole, mark, "", 0);
+    void OnAlias(const YAML::SourceLocation& mark, YAML::anchor_t) override {
+        const Node alias = node(Node::unset, mark, "", 0);
         problem(alias.mark, "yaml.alias", "anchors and aliases are not supported", "write the value out");
         leaf(alias);
     }
 
-    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+    void OnScalar(const YAML::SourceLocation& mark, const std::string& tag, YAML::anchor_t anchor,
                   const std::string& value) override {
         const bool is_tagged = lines_.at(mark) == '!';  // the parser gives quoted text the tag ! too
         Node scalar = node(Node::scalar, mark, tag == "!" && !is_tagged ? "" : tag, anchor);
@@ -106,13 +108,13 @@ public:
         leaf(std::move(scalar));
     }
 
-    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+    void OnSequenceStart(const YAML::SourceLocation& mark, const std::string& tag, YAML::anchor_t anchor,
                          YAML::EmitterStyle::value) override {
         open(node(Node::list, mark, tag, anchor), mark);
     }
     void OnSequenceEnd() override { close(); }
 
-    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+    void OnMapStart(const YAML::SourceLocation& mark, const std::string& tag, YAML::anchor_t anchor,
                     YAML::EmitterStyle::value) override {
         open(node(Node::map, mark, tag, anchor), mark);
     }
@@ -123,22 +125,22 @@ private:
         Node node;
         char bracket;  // that opened it; 0 where indentation did
         std::string key;
-        Mark key_mark;
+        SourceLocation key_mark;
         bool has_key = false;
     };
 
-    Node node(Node::Type type, const YAML::Mark& at, const std::string& tag, YAML::anchor_t anchor) {
+    Node node(Node::Type type, const YAML::SourceLocation& at, const std::string& tag, YAML::anchor_t anchor) {
         Node node;
         node.type = type;
         node.mark = lines_.mark(at);
-        if (++nodes_ > most_nodes) fatal(node.mark, "yaml.nodes", "more than 50000 values in one file", "");
+        if (++nodes_ > max_nodes) fatal(node.mark, "yaml.nodes", "more than 50000 values in one file", "");
         if (anchor) problem(node.mark, "yaml.anchor", "anchors and aliases are not supported", "write the value out");
         if (!tag.empty() && tag != "?")
             problem(node.mark, "yaml.tag", "tags are not supported", "take '" + tag + "' out");
         return node;
     }
 
-    void open(Node node, const YAML::Mark& at) {
+    void open(Node node, const YAML::SourceLocation& at) {
         if (stack_.size() == deepest) fatal(node.mark, "yaml.depth", "nesting deeper than 64", "");
         const char first = lines_.at(at);
         stack_.push_back({std::move(node), first == '[' || first == '{' ? first : '\0', {}, {}});
@@ -159,8 +161,8 @@ private:
 
     void take_key(Node node) {
         Frame& frame = stack_.back();
-        if (node.type != Node::scalar && node.type != Node::hole)
-            problem(node.mark, "yaml.key", "a key must be a word", "got " + shape_of(node));
+        if (node.type != Node::scalar && node.type != Node::unset)
+            problem(node.mark, "yaml.key", "a key must be a word", "got " + node_text(node));
         if (node.type == Node::scalar && node.text.empty())
             problem(node.mark, "yaml.key", "a key must be a word", "got an empty text");
         if (node.type == Node::scalar && node.text == "<<")
@@ -178,7 +180,7 @@ private:
             problem(node.key_mark, "yaml.duplicate_key",
                     "the key '" + node.key + "' stands here and on line " + std::to_string(first->key_mark.line),
                     "keep one of the two");
-        else if (frame.node.children.size() == most_keys)
+        else if (frame.node.children.size() == max_keys)
             fatal(node.key_mark, "yaml.keys", "more than 1000 keys in one map", "");
         else if (!node.key.empty() && node.key != "<<") frame.node.children.push_back(std::move(node));
         frame.has_key = false;
@@ -193,13 +195,13 @@ private:
         return path;
     }
 
-    void problem(Mark at, std::string code, std::string message, std::string hint) {
+    void problem(SourceLocation at, std::string code, std::string message, std::string hint) {
         document.problems.push_back(
             located({.code = std::move(code), .path = path(), .message = std::move(message), .hint = std::move(hint)},
                     at, file_));
     }
 
-    [[noreturn]] void fatal(Mark at, std::string code, std::string message, std::string got) const {
+    [[noreturn]] void fatal(SourceLocation at, std::string code, std::string message, std::string got) const {
         refuse(located({.code = std::move(code), .message = std::move(message), .got = std::move(got)}, at, file_));
     }
 
@@ -252,7 +254,7 @@ const Fault* fault_of(const std::string& message) {
 
 Problem syntax_problem(const YAML::Exception& error, const Lines& lines, const std::string& open_bracket,
                        const std::string& file) {
-    const Mark at = lines.mark(error.mark);
+    const SourceLocation at = lines.mark(error.mark);
     const auto has = [&](const char* word) { return error.msg.find(word) != std::string::npos; };
     Problem problem{.code = "yaml.syntax", .message = ""};
     if (has("anchor") || has("alias")) {
@@ -275,19 +277,21 @@ Problem syntax_problem(const YAML::Exception& error, const Lines& lines, const s
 class NoDocument : public YAML::EventHandler {
 public:
     NoDocument(const Lines& lines, const std::string& file) : lines_(lines), file_(file) {}
-    void OnDocumentStart(const YAML::Mark& mark) override {
+    void OnDocumentStart(const YAML::SourceLocation& mark) override {
         refuse(located({.code = "yaml.documents",
                         .message = "a second document starts here; one document per file",
                         .hint = "split the file at '---'"},
                        lines_.mark(mark), file_));
     }
     void OnDocumentEnd() override {}
-    void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-    void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-    void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-    void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+    void OnNull(const YAML::SourceLocation&, YAML::anchor_t) override {}
+    void OnAlias(const YAML::SourceLocation&, YAML::anchor_t) override {}
+    void OnScalar(const YAML::SourceLocation&, const std::string&, YAML::anchor_t, const std::string&) override {}
+    void OnSequenceStart(const YAML::SourceLocation&, const std::string&, YAML::anchor_t,
+                         YAML::EmitterStyle::value) override {}
     void OnSequenceEnd() override {}
-    void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+    void OnMapStart(const YAML::SourceLocation&, const std::string&, YAML::anchor_t,
+                    YAML::EmitterStyle::value) override {}
     void OnMapEnd() override {}
 
 private:
@@ -322,8 +326,8 @@ void check_characters(std::string_view text, const std::string& file) {
     }
 }
 
-// Whether a # stands there from which on no bracket of this line can be one of YAML's: a comment begins there or, since no
-// quote follows in the line, it lies within a text that goes on.
+// Whether a # at this place makes the brackets in the rest of the line irrelevant: either a comment begins there, or,
+// since no quote follows in the line, it is inside a longer text.
 bool begins_harmless_rest(std::string_view text, std::size_t at) {
     if (text[at] != '#' || (at > 0 && text[at - 1] != ' ' && text[at - 1] != '\t' && text[at - 1] != '\n'))
         return false;
@@ -331,8 +335,8 @@ bool begins_harmless_rest(std::string_view text, std::size_t at) {
     return rest.find_first_of("'\"") == rest.npos;
 }
 
-// The parser reads brackets to their end before it tells of the first. Where far more of them are open than ever may be,
-// in quotes or not, it is not asked.
+// The parser reads nested brackets to their end before it reports the first one. If far more brackets are open than is
+// allowed, in quotes or not, the parser is not called.
 void check_brackets(std::string_view text, const std::string& file) {
     std::size_t open = 0, line_begin = 0;
     int line = 1;
@@ -342,7 +346,7 @@ void check_brackets(std::string_view text, const std::string& file) {
         if (c == '\n') ++line, line_begin = at + 1;
         if (c == '[' || c == '{') ++open;
         if ((c == ']' || c == '}') && open > 0) --open;
-        if (open <= most_open_brackets) continue;
+        if (open <= max_open_brackets) continue;
         const std::size_t before = count_characters(text.substr(line_begin, at - line_begin));
         refuse(located({.code = "yaml.depth",
                         .message = "nesting deeper than 64: here " + std::to_string(open) + " brackets are open"},
@@ -352,7 +356,7 @@ void check_brackets(std::string_view text, const std::string& file) {
 
 }  // namespace
 
-Problem located(Problem problem, const Mark& at, const std::string& file) {
+Problem located(Problem problem, const SourceLocation& at, const std::string& file) {
     problem.file = at.edit ? at.edit->place : file;
     problem.line = at.line;
     problem.column = at.edit && at.column == 1 ? 0 : at.column;
@@ -367,7 +371,7 @@ const Node* Node::find(std::string_view name) const {
 
 Node* Node::find(std::string_view name) { return const_cast<Node*>(std::as_const(*this).find(name)); }
 
-std::string shape_of(const Node& node) {
+std::string node_text(const Node& node) {
     switch (node.type) {
         case Node::scalar: return node.quoted ? json_string(node.text) : node.text;
         case Node::list: return "a list of " + std::to_string(node.children.size());
@@ -377,10 +381,10 @@ std::string shape_of(const Node& node) {
 }
 
 std::string checked_text(std::string text, const std::string& file) {
-    if (text.size() > most_bytes)
+    if (text.size() > max_bytes)
         refuse({.code = "file.size",
                 .message = "larger than a scenario may be",
-                .got = "more than " + std::to_string(most_bytes) + " bytes",
+                .got = "more than " + std::to_string(max_bytes) + " bytes",
                 .allowed = "at most 1048576 bytes (1 MiB)",
                 .file = file});
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))

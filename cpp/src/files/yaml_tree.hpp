@@ -1,6 +1,6 @@
 #pragma once
-// YAML text as a tree of plain structs with marks, built from the parser's events. What a scenario must not use
-// (anchors, aliases, tags, merge keys, duplicate keys) is listed beside the tree.
+// YAML text as a tree of plain structs with source locations, built from the parser's events. What a scenario must not
+// use (anchors, aliases, tags, merge keys, duplicate keys) is listed beside the tree.
 
 #include <memory>
 #include <string>
@@ -13,10 +13,10 @@ namespace arm3r {
 
 // A value that was set by path.
 struct Edit {
-    std::string origin, place;  // "--set", "--set time.stop=5"
+    std::string origin, location;  // "--set", "--set time.stop=5"
 };
 
-struct Mark {
+struct SourceLocation {
     int line = 0, column = 0;               // from 1; in an edit only the column, of its value
     std::shared_ptr<const Edit> edit = {};  // null: in the file
 };
@@ -27,19 +27,19 @@ struct Node {
         scalar,
         list,
         map,
-        hole,  // says nothing: an item left open by an edit, or something already refused
+        unset,  // not set: an item left open by an edit, or something already refused
     };
     Type type = nothing;
     std::string key;   // in a map: its key
     std::string text;  // of a scalar
     bool quoted = false;
-    Mark key_mark, mark;
+    SourceLocation key_mark, mark;
     std::vector<Node> children;
     std::string note;  // printed as a comment
 
     const Node* find(std::string_view name) const;
     Node* find(std::string_view name);
-    const Mark& start() const { return key_mark.column ? key_mark : mark; }
+    const SourceLocation& start() const { return key_mark.column ? key_mark : mark; }
 };
 
 struct Document {
@@ -47,11 +47,11 @@ struct Document {
     std::vector<Problem> problems;
 };
 
-// The problem with its place: in `file`, or in an edit.
-Problem located(Problem problem, const Mark& at, const std::string& file);
+// The problem with its location: in `file`, or in an edit.
+Problem located(Problem problem, const SourceLocation& at, const std::string& file);
 
 // As messages show it: "a list of 3", "a map", "0.5" (as written), "nothing"
-std::string shape_of(const Node& node);
+std::string node_text(const Node& node);
 
 // Throws Error ARM3R_E_SCENARIO where the text cannot be read any further. The document may be empty (nothing).
 Document parse_yaml(const std::string& text, const std::string& file);

@@ -9,20 +9,20 @@
 
 namespace arm3r {
 
-inline constexpr double smallest_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
+inline constexpr double min_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
 
-// With room for a controller's memory, whether there is one or not.
+// The state with room for a controller's memory, whether there is one or not.
 using FullState = State<double, full_size>;
 
-// The solution within a step, for any method: an interpolant, or a power series in the seconds since its begin.
-struct Inside {
+// The dense output of a step, for any method: an interpolant, or a power series in the seconds since its start.
+struct DenseOutput {
     double t0 = 0, h = 0;
     int order = -1;                 // of the series; < 0: an interpolant
-    std::size_t size = state_size;  // components that there are
-    std::array<FullState, most_degree + 1> c;
+    std::size_t size = state_size;  // components in use
+    std::array<FullState, max_degree + 1> c;
 
     template <std::size_t N>
-    void take(const Interpolant<double, N>& from) {
+    void assign(const Interpolant<double, N>& from) {
         t0 = from.t0;
         h = from.h;
         order = -1;
@@ -30,7 +30,7 @@ struct Inside {
         for (std::size_t i = 0; i < from.c.size(); ++i) std::copy(from.c[i].begin(), from.c[i].end(), c[i].begin());
     }
 
-    // One component at theta, the share of the step: at one instant or at several side by side.
+    // One component at theta in [0, 1] of the step: at one instant or at several in one pack.
     template <class S>
     ARM3R_INLINE S component(std::size_t i, const S& theta) const {
         return order < 0 ? interpolated(c, i, theta) : summed(i, S(theta * h));

@@ -18,9 +18,9 @@
 namespace arm3r {
 namespace {
 
-// ---- what is recorded ------------------------------------------------------------------------------------------------
+// ---- the recorded formulas ------------------------------------------------------------------------------------------------
 
-// The states whose start is given: the wall, then the motion and the books. Functions of them join later.
+// The states with given initial values: the wall, the motion and the quadratures. Functions of them are added later.
 constexpr std::size_t wall_size = 9, given_size = wall_size + state_size;
 
 // Inputs: the squared angular frequency of the wall, its state, the motion, the numbers of the plant.
@@ -39,7 +39,7 @@ struct Recording {
         each_number([&](Expr& x) { x = tape.input(); }, plant);
 
         RightHandSide<Expr, Expr> rhs(plant);
-        rhs.touch = recipe.force ? Touch::pressed : Touch::none;
+        rhs.force_mode = recipe.force ? ContactForceMode::pressed : ContactForceMode::none;
         const Pose<Expr> p = rhs.pose_near(y);
         Indentation<Expr> felt;
         if (recipe.force) felt = indentation_at_rest(plant.wall, wall, tip_position(plant.arm, p));
@@ -48,7 +48,7 @@ struct Recording {
 
         for (const Expr& x : wall.velocity) tape.output(x);
         for (const Expr& x : wall.acceleration) tape.output(x);
-        for (const Expr& x : wall.velocity) tape.output(-(frequency_2 * x));  // zero unless the wall swings
+        for (const Expr& x : wall.velocity) tape.output(-(frequency_2 * x));  // zero unless the wall oscillates
         for (const Expr& x : dy) tape.output(x);
         for (std::size_t i = 0; i < 3; ++i) tape.output(tau[i] * y[3 + i]);
         if (!recipe.signals) return;
@@ -62,13 +62,13 @@ private:
         Plant<Expr> plant;
         plant.has_wall = plant.acts_on_arm = recipe.signals;
         plant.wall.motion = Motion::fixed;
-        plant.contact.law = Law::spring;
+        plant.contact.law = ContactLaw::spring;
         plant.controller.type = recipe.control;
         plant.controller.algorithm = Algorithm::closed_form;
         plant.arm.gravity_is_vertical = plant.controller.model.gravity_is_vertical = !recipe.azimuth;
         plant.arm.has_damping = recipe.damping;
         plant.arm.has_dry_friction = recipe.friction;
-        plant.arm.has_torque_limit = recipe.control == Controls::constant;
+        plant.arm.has_torque_limit = recipe.control == ControllerType::constant;
         return plant;
     }
 };
@@ -156,7 +156,7 @@ public:
         return function_with_start(op, a, -1);
     }
 
-    // The derivatives of the functions, from those of the given states; they join them.
+    // The derivatives of the functions, from those of the given states; they are added to the states.
     void differentiate(std::map<int, int>& derivatives) {
         for (std::size_t i = 0; i < functions_.size(); ++i) {
             const Function f = functions_[i];
@@ -236,7 +236,7 @@ struct System {
     Series series;
     std::vector<int> numbers;  // of the plant
     int frequency_2 = -1;
-    std::vector<int> given;   // states; one of the books is -1
+    std::vector<int> given;   // states; a quadrature is -1
     std::vector<int> rates;   // the derivatives of the given states
     std::vector<int> powers;  // of the torques
     std::vector<int> signals;
@@ -307,7 +307,7 @@ private:
 
 // ---- the printed kernel ----------------------------------------------------------------------------------------------
 
-constexpr std::size_t most_sums_at_once = 10;  // what the registers hold
+constexpr std::size_t max_sums_at_once = 10;  // what the registers hold
 
 std::string named(char kind, int i) { return kind + std::to_string(i); }
 
@@ -326,7 +326,7 @@ public:
              << "    ARM3R_INLINE static void expand(const Plant<T>& plant, [[maybe_unused]] const T& frequency_2,\n"
              << "                                    const T* given, int order, T (*c)[quantities]) {\n"
              << "        constexpr int rows = " << rows_.size() << ";\n"
-             << "        alignas(64) T r[(most_degree + 1) * rows];\n"
+             << "        alignas(64) T r[(max_degree + 1) * rows];\n"
              << "        const Numbers<T> numbers(plant);\n";
         print_first();
         out_ << "        for (;; ++k) {\n";
@@ -395,7 +395,7 @@ private:
         return text.str();
     }
 
-    // Of order k >= 1. Each adds what is known last at the end: the newest coefficients come as a chain.
+    // The coefficient of order k >= 1. The newest coefficients are added last, because they are computed last.
     std::string next(int i) const {
         const TapeNode& n = series_[i];
         const auto x = [](int operand) { return named('x', operand); };
@@ -423,7 +423,7 @@ private:
         auto waiting = sums.cbegin();
         for (const int i : nodes) {
             if (waiting != sums.cend() && i == *waiting) {
-                const auto last = std::min(sums.cend(), waiting + most_sums_at_once);
+                const auto last = std::min(sums.cend(), waiting + max_sums_at_once);
                 print_loop(indent, {waiting, last});
                 waiting = last;
             }
@@ -470,7 +470,7 @@ private:
             out_ << indent << named('x', i) << " = " << rate(system_.derivatives.at(i)) << ";\n";
     }
 
-    // What must be known, beside the states, for the coefficients of these nodes.
+    // The nodes, besides the states, whose coefficients these nodes need.
     std::vector<int> nodes_of(std::vector<int> roots) const {
         std::set<int> found;
         while (!roots.empty()) {

@@ -14,7 +14,7 @@ namespace {
 // The squared angular frequency of the wall, 1/s^2.
 template <class T>
 ARM3R_INLINE T frequency_2(const Wall<T>& wall) {
-    const T omega = two_pi * wall.swing.frequency;
+    const T omega = two_pi * wall.sinusoid.frequency;
     return wall.motion == Motion::sinusoid ? T(omega * omega) : T(0.0);
 }
 
@@ -74,7 +74,7 @@ Expand<T> expand_of(Kernel kernel) {
 Recipe needs(const Plant<double>& plant, bool pressed) {
     const Arm<double>& arm = plant.arm;
     const Controller<double>& controller = plant.controller;
-    const bool compensates = controller.type == Controls::gravity_compensation;
+    const bool compensates = controller.type == ControllerType::gravity_compensation;
     return {.control = controller.type,
             .damping = arm.has_damping,
             .azimuth = !arm.gravity_is_vertical || (compensates && !controller.model.gravity_is_vertical),
@@ -84,8 +84,8 @@ Recipe needs(const Plant<double>& plant, bool pressed) {
 }
 
 bool covers(const Recipe& recipe, const Recipe& needed) {
-    const bool controls =
-        recipe.control == needed.control || (needed.control == Controls::none && recipe.control == Controls::constant);
+    const bool controls = recipe.control == needed.control ||
+                          (needed.control == ControllerType::none && recipe.control == ControllerType::constant);
     return controls && recipe.damping >= needed.damping && recipe.azimuth >= needed.azimuth &&
            recipe.signals >= needed.signals && recipe.force >= needed.force && recipe.friction >= needed.friction;
 }
@@ -120,7 +120,7 @@ template void expand(Kernel, const Plant<Pack<8>>&, const Pack<8>&, const State<
 int order_of(double tol) {
     constexpr double each_order = 0x1.152aaa3bf81ccp-3;  // exp(-2)
     int order = 1;
-    for (double reached = 1; reached > tol && order < most_degree; reached *= each_order) ++order;
+    for (double reached = 1; reached > tol && order < max_degree; reached *= each_order) ++order;
     return std::max(order, 2);
 }
 

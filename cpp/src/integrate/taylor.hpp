@@ -1,5 +1,5 @@
 #pragma once
-// The motion as a power series in the time since an instant; docs/model.md (5.5). Its recurrences are derived from the
+// The motion as a Taylor series in the time since an instant; docs/model.md (5.5). Its recurrences are derived from the
 // recorded formulas when arm3r is built (derive_taylor.cpp).
 
 #include <limits>
@@ -11,26 +11,27 @@
 
 namespace arm3r {
 
-// Quantity j is the sum of c[i][j] h^i, i = 0..order, at h seconds after the instant: q, qd and the books, then depth,
-// across1, across2 where there is a wall, else zero; then the work of each torque from the instant on.
+// Quantity j is the sum of c[i][j] h^i, i = 0..order, at h seconds after the instant: q, qd and the quadratures, then
+// depth, across1, across2 if there is a wall, else zero; then the work of each torque since the instant.
 template <class T>
 struct Expansion {
     int order;
-    alignas(64) T c[most_degree + 1][quantities];
+    alignas(64) T c[max_degree + 1][quantities];
 };
 
 enum class Kernel : std::size_t {};  // a place in the list of recipes
 
-// For all that a plant has; `pressed`: the wall's force acts. With a stiffness of zero it moves the arm like no force.
+// The kernel for a plant. `pressed`: the wall's force acts. With a stiffness of zero its motion is that without a
+// force.
 Kernel kernel_of(const Plant<double>& plant, bool pressed);
 
-// 1 <= order <= most_degree. The plant has no more than the kernel; a control of type none has torque zero.
-// T: double, or Pack<2>, Pack<4>, Pack<8> up to widest_lanes().
+// 1 <= order <= max_degree. The plant has no more than the kernel; a control of type none has torque zero.
+// T: double, or Pack<2>, Pack<4>, Pack<8> up to max_lanes().
 template <class T>
 void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
             Expansion<T>& expansion);
 
-// The order that costs least for a tolerance of each step, 2 to most_degree.
+// The order that costs least for a tolerance of each step, 2 to max_degree.
 int order_of(double tol);
 
 // 1/x for a power of two, between 1/x and 2/x elsewhere.
@@ -40,8 +41,8 @@ ARM3R_INLINE T inverse_power(const T& x) {
         x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (std::int64_t{2046} << 52) - (i & (std::int64_t{2047} << 52)); });
 }
 
-// How far the last two orders let the series be trusted, s: infinite where they are zero. tol is relative where a
-// quantity of the state exceeds 1, absolute else and for the signals.
+// The step for which the last two orders are within the tolerance, s: infinite if they are zero. tol is relative where
+// a quantity of the state exceeds 1, else absolute, and absolute for the signals.
 template <class T>
 ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
     T before(0.0), last(0.0);
@@ -52,7 +53,7 @@ ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
     }
     const T infinite(std::numeric_limits<double>::infinity());
     const auto trusted = [&](const T& size, int k) ARM3R_INLINE_LAMBDA {
-        return select(size > T(0.0), rough_root(T(tol / size), k), infinite);
+        return select(size > T(0.0), approximate_root(T(tol / size), k), infinite);
     };
     return min(trusted(last, e.order), e.order > 1 ? trusted(before, e.order - 1) : infinite);
 }

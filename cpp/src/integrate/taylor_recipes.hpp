@@ -7,22 +7,23 @@
 
 namespace arm3r {
 
-// What is expanded: the state; where the tip is on the plate: depth, across1, across2; and the work of each torque since.
+// The expanded quantities: the state; the place of the tip relative to the plate: depth, across1, across2; and the work
+// of each torque.
 enum : std::size_t { signals_size = 3, works_at = state_size + signals_size, quantities = works_at + 3 };
 
-// What a motion is made of. `control`: a constant torque may also be none, with a torque of zero.
+// The features of a motion. `control`: a constant torque may also be none, with a torque of zero.
 struct Recipe {
-    Controls control = Controls::none;
-    bool damping = false;   // and the books of control and damping
+    ControllerType control = ControllerType::none;
+    bool damping = false;   // and the quadratures of control and damping
     bool azimuth = false;   // q1 matters: oblique gravity, or a wall
     bool signals = false;   // where the tip is on the plate
-    bool force = false;     // the contact law holds
+    bool force = false;     // the contact law acts
     bool friction = false;  // dry
 };
 
 // The cheapest first.
 inline constexpr std::array recipes = [] {
-    constexpr Controls torque = Controls::constant, gravity = Controls::gravity_compensation;
+    constexpr ControllerType torque = ControllerType::constant, gravity = ControllerType::gravity_compensation;
     return std::array{
         Recipe{},
         Recipe{torque, true},

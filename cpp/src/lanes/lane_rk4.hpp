@@ -1,7 +1,7 @@
 #pragma once
-// Runs that march by RK4 (5.1). Steps are never split: contact is decided at each stage, and located afterwards on the
-// cubic through the depths and their rates at both ends of the step. Where a formula of time jumps on the end of a step,
-// the step before sees the values before it (5.8).
+// Runs in lanes by RK4 (5.1). Steps are not split: each stage decides about contact, and contact changes are located
+// afterwards on the cubic through the depths and their rates at both ends of the step. If a formula of time jumps at
+// the end of a step, the step uses the values before the jump (5.8).
 
 #include "lanes/lane_run.hpp"
 #include "setup/time_instants.hpp"
@@ -9,66 +9,67 @@
 namespace arm3r {
 
 template <class T, std::size_t N = state_size>
-class FixedMarch : public March<T, N> {
-    using Base = March<T, N>;
+class LaneRk4 : public LaneRun<T, N> {
+    using Base = LaneRun<T, N>;
     using Mask = typename Base::Mask;
     using Y = typename Base::Y;
 
 public:
-    explicit FixedMarch(const Setup& any_lane) : Base(any_lane) {
-        if (this->plant_.acts_on_arm || senses_wall(this->plant_)) this->rhs_.touch = Touch::each_stage;
+    explicit LaneRk4(const Setup& any_lane) : Base(any_lane) {
+        if (this->plant_.acts_on_arm || senses_wall(this->plant_)) this->rhs_.force_mode = ContactForceMode::each_stage;
     }
 
-    void put(int lane, const Setup& setup) {
-        Base::put(lane, setup);
+    void load_lane(int lane, const Setup& setup) {
+        Base::load_lane(lane, setup);
         Lanes<T>::set(start_, lane, setup.start);
         Lanes<T>::set(step_, lane, setup.solver.step);
         Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
         Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
     }
 
-    // changed(lane, change) is told of each change of contact, before it is made.
+    // changed(lane, change) is called before each change of contact.
     template <class Changed>
     ARM3R_INLINE void step(Changed changed) {
         t0_ = this->t_;
-        if (Base::lanes == 1 || this->is_scored_) {
+        if (Base::lanes == 1 || this->has_performance_) {
             y0_ = this->y_;
             f0_ = this->f_;
         }
-        if (this->is_scored_) Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_passage(); });
+        if (this->has_performance_) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_segment(); });
         before_ = this->in_;
         const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
         const T t1 = select(is_last, this->stop_, aim);
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
         has_jump_ = any(next_jump_ <= t1);
-        if (has_jump_) see_before(t1);
+        if (has_jump_) apply_jumps(t1);
         const Y y1 = stepped();
-        const Mask finite = Base::is_finite(y1), moved = finite && this->alive_;
+        const Mask finite = Base::is_finite(y1), moved = finite && this->active_;
         this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + 4.0;
-        if (any(!finite && this->alive_)) diverge(finite);
-        if constexpr (Base::lanes == 1) remember_end();
+        if (any(!finite && this->active_)) stop_diverged_lanes(finite);
+        if constexpr (Base::lanes == 1) store_end();
         if (has_jump_) this->rhs_.latest = T(infinite);
         this->observe();
-        special_ = false;
-        if (this->plant_.has_wall) watch(moved, changed);
-        this->close_books();
-        if (this->is_scored_)
-            this->holds_torque() && !this->looks_.motion() ? score(trapezoid, moved) : score(simpson, moved);
-        this->judge_lanes();
+        eventful_ = false;
+        if (this->plant_.has_wall) detect_contact(moved, changed);
+        this->update_energy_balance();
+        if (this->has_performance_)
+            this->holds_torque() && !this->tracked_.motion() ? add_performance(trapezoid, moved)
+                                                             : add_performance(simpson, moved);
+        this->check_lanes();
     }
 
-    // The last step's begin, and derivatives at both ends: what an interpolant of a single run needs.
+    // The start of the last step, and the derivatives at both ends: a single run needs them for its dense output.
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
     FullState y0(int lane) const { return Base::state_of(y0_, lane); }
     FullState f0(int lane) const { return Base::state_of(f0_, lane); }
-    // Whether something may have jumped on the end of the last step, and the derivative there as the step saw it.
-    bool turns() const { return has_jump_ || was_due_; }
+    // Whether a formula may have jumped at the end of the last step, and the derivative there before the jump.
+    bool may_jump_at_end() const { return has_jump_ || was_due_; }
     FullState f1()
         requires std::same_as<T, double>
     {
-        if (!turns()) return Base::state_of(this->f_, 0);
+        if (!may_jump_at_end()) return Base::state_of(this->f_, 0);
         Y f1{};
         swap_before();
         this->rhs_(this->t_, this->y_, f1);
@@ -82,8 +83,8 @@ private:
         else return rk4_step_in_a_loop(this->rhs_, t0_, this->y_, this->f_, this->h_);
     }
 
-    // The jumps up to the end of the step: those that lie on it are not yet seen.
-    [[gnu::noinline]] void see_before(const T& t1) {
+    // Applies the jumps up to the end of the step; a jump exactly at the end is left to the next step.
+    [[gnu::noinline]] void apply_jumps(const T& t1) {
         for (int lane = 0; lane < Base::lanes; ++lane) {
             const double end = Lanes<T>::get(t1, lane);
             double jump = Lanes<T>::get(next_jump_, lane);
@@ -95,8 +96,8 @@ private:
         }
     }
 
-    // What the step saw, before a sample changes the torque or an estimate the law.
-    ARM3R_INLINE void remember_end() {
+    // Stores the torque and the law of the step before a sample or an estimate changes them.
+    ARM3R_INLINE void store_end() {
         was_due_ = this->is_controlled_ && any(this->is_due());
         torque_before_ = this->plant_.controller.torque;
         assumed_before_ = this->plant_.controller.gains.assumed_stiffness;
@@ -108,7 +109,7 @@ private:
         std::swap(this->rhs_.latest, latest_before_);
     }
 
-    [[gnu::noinline]] void diverge(const Mask& finite) {
+    [[gnu::noinline]] void stop_diverged_lanes(const Mask& finite) {
         for (int lane = 0; lane < Base::lanes; ++lane)
             if (this->is_running(lane) && !Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);
     }
@@ -125,46 +126,47 @@ private:
     };
 
     template <class Changed>
-    ARM3R_INLINE void watch(const Mask& moved, Changed& changed) {
+    ARM3R_INLINE void detect_contact(const Mask& moved, Changed& changed) {
         const T &h = this->h_, o(0.0);
         const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
-        Mask special = Base::select_mask(this->touching_ || this->embedded_, depth.low() <= o, depth.high() > o);
+        Mask eventful = Base::select_mask(this->touching_ || this->embedded_, depth.low() <= o, depth.high() > o);
         if (this->any_touching_) {
             if (this->is_elastic_)
-                special = special || (this->touching_ && depth.high() > max(this->deepest_, depth.fourth));
-            if (this->plant_.wall.has_outline) special = special || (this->touching_ && comes_near_edge());
-            const Mask plainly = this->touching_ && !special && moved;
+                eventful = eventful || (this->touching_ && depth.high() > max(this->max_depth_, depth.fourth));
+            if (this->plant_.wall.has_outline) eventful = eventful || (this->touching_ && is_near_edge());
+            const Mask uneventful = this->touching_ && !eventful && moved;
             if (this->is_elastic_) {
-                this->reach(plainly, depth.fourth, this->t_, this->deepest_);
-                this->depth_time_ = this->depth_time_ + select(plainly, T(h * depth.mean()), o);
+                this->update_peak_where(uneventful, depth.fourth, this->t_, this->max_depth_);
+                this->depth_time_ = this->depth_time_ + select(uneventful, T(h * depth.mean()), o);
             } else {
-                measure_damped(plainly);
+                measure_damped(uneventful);
             }
         }
-        special_ = special && moved;
-        if (any(special_)) settle(special_, changed);
+        eventful_ = eventful && moved;
+        if (any(eventful_)) resolve_contacts(eventful_, changed);
     }
 
-    // The force of a damped contact over the step; where it may turn within, one lane at a time.
-    ARM3R_INLINE void measure_damped(const Mask& plainly) {
+    // The force of a damped contact over the step; a lane in which it may have a maximum within the step is handled
+    // alone.
+    ARM3R_INLINE void measure_damped(const Mask& uneventful) {
         const T &h = this->h_, o(0.0);
         const Polynomial<T> depth =
             hermite_cubic(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
         const std::array<T, 5> force = Base::forces(this->plant_.contact, depth, h, o, T(1.0));
-        const Mask turns = plainly && range_of(through_five(force)).high > max(this->peak_, force[4]);
-        const Mask rises = plainly && !turns;
-        this->reach(rises, force[4], this->t_, this->peak_);
+        const Mask turns = uneventful && range_of(through_five(force)).high > max(this->peak_, force[4]);
+        const Mask rises = uneventful && !turns;
+        this->update_peak_where(rises, force[4], this->t_, this->peak_);
         this->impulse_ = this->impulse_ + select(rises, T(h * mean_of_five(force)), o);
         if (!any(turns)) return;
         for (int lane = 0; lane < Base::lanes; ++lane) {
             if (!Lanes<T>::is(turns, lane)) continue;
             std::array<double, 5> alone;
             for (int i = 0; i < 5; ++i) alone[i] = Lanes<T>::get(force[i], lane);
-            this->pass_damped(lane, alone, Lanes<T>::get(t0_, lane), this->h(lane));
+            this->add_damped_contact(lane, alone, Lanes<T>::get(t0_, lane), this->h(lane));
         }
     }
 
-    ARM3R_INLINE Mask comes_near_edge() const {
+    ARM3R_INLINE Mask is_near_edge() const {
         const Indentation<T>&a = before_, &b = this->in_;
         const T& h = this->h_;
         const Cubic across1(a.across1, T(h * a.slip1), b.across1, T(h * b.slip1));
@@ -175,14 +177,14 @@ private:
     }
 
     template <class Changed>
-    [[gnu::noinline]] void settle(const Mask& special, Changed& changed) {
-        bool anew = false;
+    [[gnu::noinline]] void resolve_contacts(const Mask& eventful, Changed& changed) {
+        bool is_stale = false;
         for (int lane = 0; lane < Base::lanes; ++lane)
-            if (this->is_running(lane) && Lanes<T>::is(special, lane) && settle_lane(lane, changed)) {
+            if (this->is_running(lane) && Lanes<T>::is(eventful, lane) && resolve_lane(lane, changed)) {
                 Lanes<T>::set(this->evaluations_, lane, Lanes<T>::get(this->evaluations_, lane) + 1);
-                anew = true;
+                is_stale = true;
             }
-        if (anew) this->evaluate_anew();
+        if (is_stale) this->reevaluate();
     }
 
     ContactSignals<double> signals_of(int lane) const {
@@ -197,59 +199,59 @@ private:
     }
 
     template <class Changed>
-    bool settle_lane(int lane, Changed& changed) {
+    bool resolve_lane(int lane, Changed& changed) {
         const Wall<double>& wall = this->setup(lane).plant.wall;
         const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane);
         const double resolution = event_resolution(this->t(lane), h);
         const ContactSignals<double> signals = signals_of(lane);
-        Inside inside;
-        if (this->is_scored_) inside = inside_of(lane);
+        DenseOutput dense;
+        if (this->has_performance_) dense = dense_output_of(lane);
         double from = 0;
-        bool anew = false;
+        bool is_stale = false;
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
-            this->pass(lane, signals.depth, t0, from, crossing->theta);
-            if (this->is_scored_) this->score_alone(lane, simpson, inside, from, crossing->theta);
+            this->add_contact(lane, signals.depth, t0, from, crossing->theta);
+            if (this->has_performance_) this->add_lane_performance(lane, simpson, dense, from, crossing->theta);
             from = crossing->theta;
-            const Change change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
+            const ContactChange change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
             changed(lane, change);
             this->change_mode(lane, change);
-            anew = true;
+            is_stale = true;
             if (this->outcome(lane) != ARM3R_RUN_OK || from >= 1) break;
         }
-        this->pass(lane, signals.depth, t0, from, 1.0);
-        if (this->is_scored_ && from < 1) this->score_alone(lane, simpson, inside, from, 1.0);
-        return anew;
+        this->add_contact(lane, signals.depth, t0, from, 1.0);
+        if (this->has_performance_ && from < 1) this->add_lane_performance(lane, simpson, dense, from, 1.0);
+        return is_stale;
     }
 
-    // ---- the score
+    // ---- performance
 
-    Inside inside_of(int lane) const {
-        Inside inside;
-        inside.take(
+    DenseOutput dense_output_of(int lane) const {
+        DenseOutput dense;
+        dense.assign(
             hermite(t0(lane), this->h(lane), y0(lane), f0(lane), this->y(lane), Base::state_of(this->f_, lane)));
-        return inside;
+        return dense;
     }
 
-    // The step as one passage, but where contact has changed in it.
+    // The step as one segment, except in lanes where the contact has changed.
     template <std::size_t n>
-    ARM3R_INLINE void score(const Rule<n>& rule, const Mask& moved) {
-        Mask closer = false;
-        Apart<T>::run([&]() ARM3R_INLINE_LAMBDA {
-            if (n == simpson.place.size()) see_middle();
-            this->end_passage(rule, this->h_);
-            closer = add_passage(this->looks_, rule, Mask(moved && !special_), this->passage_, this->tally_);
+    ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved) {
+        Mask unresolved = false;
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+            if (n == simpson.node.size()) sample_midpoint();
+            this->end_segment(rule, this->h_);
+            unresolved = add_segment(this->tracked_, rule, Mask(moved && !eventful_), this->segment_, this->sums_);
         });
-        if (any(closer)) look_closer(rule, closer);
+        if (any(unresolved)) refine_segment(rule, unresolved);
     }
 
     template <std::size_t n>
-    [[gnu::noinline]] void look_closer(const Rule<n>& rule, const Mask& closer) {
+    [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
         for (int lane = 0; lane < Base::lanes; ++lane)
-            if (Lanes<T>::is(closer, lane)) this->score_closely(lane, rule, inside_of(lane), 1.0);
+            if (Lanes<T>::is(unresolved, lane)) this->refine_lane_performance(lane, rule, dense_output_of(lane), 1.0);
     }
 
-    // On the cubic through both ends.
-    ARM3R_INLINE void see_middle() {
+    // The midpoint lies on the cubic through both ends.
+    ARM3R_INLINE void sample_midpoint() {
         const T &h = this->h_, t = t0_ + 0.5 * h;
         Y y;
         [[maybe_unused]] Y rates;
@@ -265,10 +267,10 @@ private:
         Vec3<T> tau;
         if constexpr (N == state_size) tau = this->torque_without_memory(q, p);
         else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
-        this->see(t, p, wall, in, tau, qd, this->passage_.sights[1]);
+        this->sample_performance(t, p, wall, in, tau, qd, this->segment_.samples[1]);
     }
 
-    Mask special_ = false;  // where contact may have changed in the step
+    Mask eventful_ = false;  // lanes whose contact may have changed in the step
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};

@@ -4,16 +4,16 @@
 namespace arm3r {
 namespace {
 
-// Whether the determinant of joints 2 and 3 can fall to rounding in some pose.
+// Whether the determinant of joints 2 and 3 can be as small as its rounding error in some pose.
 bool may_be_ill_conditioned(const Arm<double>& arm) {
     const Lumped<double>& l = arm.lumped;
     const double largest = (l.B2 + l.B3 + 2 * std::abs(l.B)) * (l.B3 + l.J3);
-    return !(smallest_lower_determinant(l).value > 64 * std::numeric_limits<double>::epsilon() * largest);
+    return !(min_lower_determinant(l).value > 64 * std::numeric_limits<double>::epsilon() * largest);
 }
 
 }  // namespace
 
-Structure structure_of(const Setup& setup) {
+BatchKey batch_key_of(const Setup& setup) {
     const Plant<double>& plant = setup.plant;
     const Arm<double>&arm = plant.arm, &model = plant.controller.model;
     return {setup.solver.method,
@@ -27,24 +27,24 @@ Structure structure_of(const Setup& setup) {
             plant.wall.rotation,
             plant.contact.law,
             plant.contact.has_friction,
-            setup.law(),
-            setup.law().setpoint,
+            setup.controller(),
+            setup.controller().reference,
             setup.digital.sampling,
             setup.digital.sensors,
             setup.digital.observer,
             setup.estimation,
-            plant.load.on,
+            plant.external_force.on,
             {arm.gravity_is_vertical, arm.has_damping, arm.has_dry_friction, arm.has_torque_limit,
              model.gravity_is_vertical, model.has_damping, model.has_dry_friction, model.has_torque_limit}};
 }
 
-ARM3R_MARCH(double)
+ARM3R_LANE_RUN(double)
 #if !ARM3R_ONE_LANE
-ARM3R_MARCH(Pack<2>)
+ARM3R_LANE_RUN(Pack<2>)
 #endif
 #if ARM3R_WIDE_PACKS
-ARM3R_MARCH(Pack<4>)
-ARM3R_MARCH(Pack<8>)
+ARM3R_LANE_RUN(Pack<4>)
+ARM3R_LANE_RUN(Pack<8>)
 #endif
 
 }  // namespace arm3r

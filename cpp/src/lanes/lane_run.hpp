@@ -1,7 +1,7 @@
 #pragma once
-// Runs that march side by side, each as if alone: T = double is one run, Pack<N> are N. What all methods share: clock,
-// state, contact, books and metrics of every lane. What is rare, a change of contact or the end of a run, is done
-// lane by lane in doubles, by the same functions for every T.
+// Runs in lanes, each with the same bits as alone: T = double is one run, Pack<N> are N. This class has what all
+// methods share: time, state, contact, energy balance and metrics of every lane. Rare events (a change of contact, the
+// end of a run) are handled lane by lane in doubles, by the same functions for every T.
 
 #include <algorithm>
 #include <array>
@@ -17,61 +17,62 @@
 
 namespace arm3r {
 
-// What is the same in all lanes, so that nothing that no lane needs is computed, and every lane rounds alike.
-struct Structure {
+// The choices that all runs of a lane group share, so that terms that no lane needs are not computed and every lane has
+// the same rounding.
+struct BatchKey {
     Solver::Method method;
     int order;  // of taylor
     bool has_wall, acts_on_arm, has_outline, may_be_ill_conditioned;
     Motion motion;
     int knots;  // of a table
     Rotation rotation;
-    Law law;
+    ContactLaw law;
     bool has_friction;  // of the wall
     ControllerChoices controller;
-    SetpointChoices setpoint;
+    ReferenceChoices reference;
     SamplingChoices sampling;
     SensorChoices sensors;
     ObserverChoices observer;
     EstimationChoices estimation;
-    bool has_load;
+    bool has_external_force;
     std::array<bool, 8> flags;  // of arm and model
 
-    bool operator==(const Structure&) const = default;
+    bool operator==(const BatchKey&) const = default;
 };
 
-Structure structure_of(const Setup& setup);
+BatchKey batch_key_of(const Setup& setup);
 
-// Of theta, for an instant near t in a step of h.
+// The resolution in theta of an instant near t in a step of h.
 inline double event_resolution(double t, double h) {
-    return std::max(finest_event, 4 * std::numeric_limits<double>::epsilon() * std::abs(t)) / h;
+    return std::max(event_time_tolerance, 4 * std::numeric_limits<double>::epsilon() * std::abs(t)) / h;
 }
 
 // N: state_size, or full_size where a continuous controller remembers something.
 template <class T, std::size_t N = state_size>
-class March {
+class LaneRun {
 public:
     using Mask = typename Lanes<T>::Mask;
     using Y = State<T, N>;
     static constexpr int lanes = Lanes<T>::count;
 
-    explicit March(const Setup& any_lane);
+    explicit LaneRun(const Setup& any_lane);
 
-    // Put a run into a lane. The lanes put in since then begin with the next call of begin().
-    void put(int lane, const Setup& setup);
-    ARM3R_INLINE void begin() {
-        look();
+    // Loads a run into a lane. The lanes loaded since the last call of start_lanes() start with the next one.
+    void load_lane(int lane, const Setup& setup);
+    ARM3R_INLINE void start_lanes() {
+        observe_outlined();
         for (int lane = 0; lane < lanes; ++lane)
-            if (is_new_[lane]) begin_lane(lane);
+            if (is_new_[lane]) start_lane(lane);
         if (N == full_size) start_memory();
-        begun_ = alive_;
-        if (is_controlled_ || N == full_size || any_embedded_) look();
+        started_ = active_;
+        if (is_controlled_ || N == full_size || any_embedded_) observe_outlined();
         for (bool& is_new : is_new_) is_new = false;
     }
 
-    // A law of the user's own, for the only lane.
-    void use(const UserLaw& law) { loop_.user = law; }
-    std::string complaint() const { return loop_.complaint(); }
-    const Known<T>& known() const { return loop_.known(); }
+    // A user's law, for a run with a single lane.
+    void set_user_law(const UserLaw& law) { sampled_.user = law; }
+    std::string error_message() const { return sampled_.error_message(); }
+    const ControllerState<T>& controller_state() const { return sampled_.controller_state(); }
     double contact(int lane) const { return Lanes<T>::get(rhs_.contact, lane); }
     double force_phase(int lane) const { return Lanes<T>::get(rhs_.force_phase, lane); }
     Vec3<double> torque(int lane) const {
@@ -79,12 +80,12 @@ public:
         return {Lanes<T>::get(tau[0], lane), Lanes<T>::get(tau[1], lane), Lanes<T>::get(tau[2], lane)};
     }
 
-    void retire(int lane);
+    void clear_lane(int lane);
     bool is_running(int lane) const { return running_[lane]; }
-    bool is_anyone_running() const { return any(alive_); }
+    bool any_running() const { return any(active_); }
     bool has_ended(int lane) const { return running_[lane] && (outcome_[lane] != ARM3R_RUN_OK || at_stop(lane)); }
-    ARM3R_INLINE bool someone_ended() const { return failed_ || any(alive_ && t_ >= stop_); }
-    void forget_failures() { failed_ = false; }
+    ARM3R_INLINE bool any_ended() const { return failed_ || any(active_ && t_ >= stop_); }
+    void clear_failures() { failed_ = false; }
 
     void stop_lane(int lane, arm3r_outcome outcome) {
         if (outcome_[lane] == ARM3R_RUN_OK) outcome_[lane] = outcome;
@@ -92,10 +93,10 @@ public:
     }
     Metrics metrics(int lane) const;
     double peak_force(int lane) const {  // N, normal
-        return is_elastic_ ? Lanes<T>::get(true_contact_.stiffness[0], lane) * Lanes<T>::get(deepest_, lane)
+        return is_elastic_ ? Lanes<T>::get(true_contact_.stiffness[0], lane) * Lanes<T>::get(max_depth_, lane)
                            : Lanes<T>::get(peak_, lane);
     }
-    Flows flows(int lane) const;
+    EnergyTotals totals(int lane) const;
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
         return {count(accepted_), count(rejected_), count(evaluations_)};
@@ -105,7 +106,7 @@ public:
     double t(int lane) const { return Lanes<T>::get(t_, lane); }
     double h(int lane) const { return Lanes<T>::get(h_, lane); }
     FullState y(int lane) const { return state_of(y_, lane); }
-    Mode mode(int lane) const { return mode_[lane]; }
+    ContactMode mode(int lane) const { return mode_[lane]; }
     double energy_at_start(int lane) const { return Lanes<T>::get(energy_at_start_, lane); }
     arm3r_outcome outcome(int lane) const { return outcome_[lane]; }
 
@@ -121,7 +122,7 @@ protected:
 
     // ---- one instant
 
-    // Pose, wall, indentation, derivative and energies at the present state.
+    // Evaluates pose, wall, indentation, derivative and energies at the present state.
     ARM3R_INLINE void observe() {
         if (needs_derivative_) {
             rhs_.begin_step(y_);
@@ -136,34 +137,34 @@ protected:
         }
         kinetic_ = kinetic_energy(plant_.arm, p_, qd);
         potential_ = potential_energy(plant_.arm, p_);
-        if (is_controlled_ && any(is_due())) control();
+        if (is_controlled_ && any(is_due())) update_controller();
         if (needs_derivative_) derive();
-        else if (is_scored_) tau_ = torque_without_memory({y_[0], y_[1], y_[2]}, p_);
+        else if (has_performance_) tau_ = torque_without_memory({y_[0], y_[1], y_[2]}, p_);
     }
-    void look();
+    void observe_outlined();
 
     ARM3R_INLINE Vec3<T> torque_without_memory(const Vec3<T>& q, const Pose<T>& p) const {
-        return limited(plant_.arm, arm3r::control(plant_.controller, q, p), plant_.controller.saturation);
+        return limited(plant_.arm, arm3r::feedforward_torque(plant_.controller, q, p), plant_.controller.saturation);
     }
 
-    // With a controller's memory it is long: once for all who ask.
+    // With a controller's memory the code is long, and is compiled once.
     ARM3R_INLINE void derive() {
         if constexpr (N == state_size) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
-        else Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_); });
+        else Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_); });
     }
 
     // ---- digital controllers
 
-    // A step ends where one of them has something to do: at the earliest of this and the end of the run.
-    ARM3R_INLINE T next_instant() const { return is_controlled_ ? min(stop_, loop_.next()) : stop_; }
+    // A step ends at the next event of the sampled controllers or at the end of the run.
+    ARM3R_INLINE T next_instant() const { return is_controlled_ ? min(stop_, sampled_.next()) : stop_; }
 
-    ARM3R_INLINE Mask is_due() const { return begun_ && loop_.next() <= t_ + slack_; }
-    void control();
+    ARM3R_INLINE Mask is_due() const { return started_ && sampled_.next() <= t_ + slack_; }
+    void update_controller();
 
-    // What they look at.
-    ARM3R_INLINE Instant<T> instant() const {
+    // The measurements for the sampled controllers.
+    ARM3R_INLINE PlantOutput<T> plant_output() const {
         const T o(0.0);
-        Vec3<T> f = none<T>(), n = none<T>();
+        Vec3<T> f = zero_vector<T>(), n = zero_vector<T>();
         T face = o, contact = o;
         if (plant_.has_wall) {
             f = force_on_tip();
@@ -171,111 +172,112 @@ protected:
             face = dot(n, wall_.position) + plant_.wall.face_offset;
             contact = select(dot(n, f) > o, T(1.0), o);
         }
-        if (plant_.load.on) f = plus(f, load_at(plant_.load, t_));
+        if (plant_.external_force.on) f = plus(f, external_force_at(plant_.external_force, t_));
         const Vec3<T> q(y_[0], y_[1], y_[2]), qd(y_[3], y_[4], y_[5]);
-        Instant<T> now{{t_, q, qd, p_, f, f, n, face, contact, o}, {}};
+        PlantOutput<T> now{{t_, q, qd, p_, f, f, n, face, contact, o}, {}};
         if constexpr (N == full_size) now.f_filtered = {y_[filter_at], y_[filter_at + 1], y_[filter_at + 2]};
         return now;
     }
 
-    // Contact as it is at this instant, known to the modes or not yet.
+    // The contact force at this instant, also where the contact mode has not changed yet.
     ARM3R_INLINE Vec3<T> force_on_tip() const {
         Mask pressed = in_.depth > T(0.0) && !embedded_;
         if (plant_.wall.has_outline) pressed = pressed && inside_outline(plant_.wall, in_) >= T(0.0);
-        if (!any(pressed)) return none<T>();
-        return only_where(pressed, contact_force(plant_.wall, wall_, true_contact_, in_, Grip::clipped)).on_tip;
+        if (!any(pressed)) return zero_vector<T>();
+        return only_where(pressed, contact_force(plant_.wall, wall_, true_contact_, in_, Clamping::clamped)).on_tip;
     }
 
-    // ---- the score
+    // ---- performance
 
-    // A step begins; contact, phase and a held torque are for all of it what they are now.
-    ARM3R_INLINE void begin_passage() {
-        passage_.start = t_;
-        passage_.touching = touching_;
-        phase_ = loop_.is_on() ? loop_.known().force_phase : rhs_.force_phase;
+    // Starts a segment; contact, phase and a held torque are constant within it.
+    ARM3R_INLINE void begin_segment() {
+        segment_.start = t_;
+        segment_.touching = touching_;
+        phase_ = sampled_.is_on() ? sampled_.controller_state().force_phase : rhs_.force_phase;
         for (int i = 0; i < 3; ++i) q_before_[i] = y_[i], tau_before_[i] = tau_[i];
-        see(t_, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, passage_.sights[0]);
+        sample_performance(t_, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[0]);
     }
 
-    // A sight of the present passage.
-    ARM3R_INLINE void see(const T& t, const Pose<T>& p, const WallState<T>& wall, const Indentation<T>& in,
-                          const Vec3<T>& tau, const Vec3<T>& qd, Sight<T>& sight) const {
-        const Controller<T>& law = loop_.is_on() ? loop_.controller() : plant_.controller;
-        see_motion(looks_, plant_, true_contact_, law, t, p, wall, in, passage_.touching, phase_, sight);
-        see_torque(plant_.arm, holds_torque() ? tau_before_ : tau, qd, sight);
+    // A sample of the present segment.
+    ARM3R_INLINE void sample_performance(const T& t, const Pose<T>& p, const WallState<T>& wall,
+                                         const Indentation<T>& in, const Vec3<T>& tau, const Vec3<T>& qd,
+                                         PerformanceSample<T>& sample) const {
+        const Controller<T>& controller = sampled_.is_on() ? sampled_.controller() : plant_.controller;
+        sample_motion(tracked_, plant_, true_contact_, controller, t, p, wall, in, segment_.touching, phase_, sample);
+        sample_torque(plant_.arm, holds_torque() ? tau_before_ : tau, qd, sample);
     }
 
-    // The present instant is the passage's last.
+    // The segment ends at the present instant.
     template <std::size_t n>
-    ARM3R_INLINE void end_passage(const Rule<n>& rule, const T& duration) {
-        passage_.duration = duration;
-        see(short_of(t_), p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, passage_.sights[n - 1]);
+    ARM3R_INLINE void end_segment(const Rule<n>& rule, const T& duration) {
+        segment_.duration = duration;
+        sample_performance(slightly_before(t_), p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[n - 1]);
         for (int i = 0; i < 3; ++i)
-            passage_.work[i] = holds_torque()
-                                   ? T(tau_before_[i] * (y_[i] - q_before_[i]))
-                                   : T(duration * mean_of(rule, passage_, [i](const Sight<T>& s) ARM3R_INLINE_LAMBDA {
-                                           return s.power[i];
-                                       }));
+            segment_.work[i] = holds_torque() ? T(tau_before_[i] * (y_[i] - q_before_[i]))
+                                              : T(duration * mean_of(rule, segment_,
+                                                                     [i](const PerformanceSample<T>& s)
+                                                                         ARM3R_INLINE_LAMBDA { return s.power[i]; }));
     }
 
-    bool holds_torque() const { return plant_.controller.type == Controls::constant; }
+    bool holds_torque() const { return plant_.controller.type == ControllerType::constant; }
 
-    // The same in doubles, at places of the step; the torque of a digital controller is the step's.
-    template <class See>
-    void with_view(int lane, const Inside& inside, See see) const {
+    // The same in doubles for one lane, as a function of theta; the torque of a sampled controller is that of the step.
+    template <class Visit>
+    void visit_step(int lane, const DenseOutput& dense, Visit visit) const {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
         Setup setup = setups_[lane];
         if (asks_estimator(plant_.controller))
             setup.plant.controller.gains.assumed_stiffness = get(plant_.controller.gains.assumed_stiffness);
         const Vec3<double> held{get(tau_before_[0]), get(tau_before_[1]), get(tau_before_[2])};
-        const double phase = loop_.is_on() ? get(phase_) : force_phase(lane);
-        see(StepView{setup, inside, mode_[lane] == Mode::contact, contact(lane), phase,
-                     holds_torque() ? &held : nullptr, short_of(t(lane))});
+        const double phase = sampled_.is_on() ? get(phase_) : force_phase(lane);
+        visit(StepView{setup, dense, mode_[lane] == ContactMode::contact, contact(lane), phase,
+                       holds_torque() ? &held : nullptr, slightly_before(t(lane))});
     }
 
-    // From place a to place b of the step in the lane's present mode.
+    // Adds the part of the step from theta = a to b, in the lane's present contact mode.
     template <std::size_t n>
-    void score_alone(int lane, const Rule<n>& rule, const Inside& inside, double a, double b) {
-        Tally<double> tally = tally_of(lane);
-        with_view(lane, inside, [&](const StepView& view) { add_alone(rule, view.pressed, view, a, b, tally); });
-        set_tally(lane, tally);
+    void add_lane_performance(int lane, const Rule<n>& rule, const DenseOutput& dense, double a, double b) {
+        PerformanceSums<double> sums = sums_of(lane);
+        visit_step(lane, dense, [&](const StepView& view) { add_whole_segment(rule, view.pressed, view, a, b, sums); });
+        set_sums(lane, sums);
     }
 
-    // What the last passage hides between its sights; it ends at place b of the step.
+    // Refines the last segment between its samples; it ends at theta = b.
     template <std::size_t n>
-    void score_closely(int lane, const Rule<n>& rule, const Inside& inside, double b) {
+    void refine_lane_performance(int lane, const Rule<n>& rule, const DenseOutput& dense, double b) {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-        Passage<double> passage{
-            get(passage_.start), get(passage_.duration), Lanes<T>::is(passage_.touching, lane), {}, {}};
+        Segment<double> segment{
+            get(segment_.start), get(segment_.duration), Lanes<T>::is(segment_.touching, lane), {}, {}};
         for (std::size_t j = 0; j < n; ++j) {
-            const Sight<T>& sight = passage_.sights[j];
-            passage.sights[j] = {get(sight.force), get(sight.force_wanted), get(sight.path_error_2),
-                                 get(sight.saturated), none<double>()};
+            const PerformanceSample<T>& sample = segment_.samples[j];
+            segment.samples[j] = {get(sample.force), get(sample.desired_force), get(sample.path_error_2),
+                                  get(sample.saturated), zero_vector<double>()};
         }
-        Tally<double> tally = tally_of(lane);
-        with_view(lane, inside, [&](StepView view) {
-            view.pressed = passage.touching;
-            look_closer(rule, passage, view, 0, b, tally);
+        PerformanceSums<double> sums = sums_of(lane);
+        visit_step(lane, dense, [&](StepView view) {
+            view.pressed = segment.touching;
+            refine_segment(rule, segment, view, 0, b, sums);
         });
-        set_tally(lane, tally);
+        set_sums(lane, sums);
     }
 
     ARM3R_INLINE T stored() const {
         if (!plant_.acts_on_arm) return T(0.0);
         const auto pressed = touching_ && in_.depth > T(0.0);
-        if (plant_.contact.law == Law::spring)
+        if (plant_.contact.law == ContactLaw::spring)
             return select(pressed, T(0.5 * true_contact_.stiffness[0] * in_.depth * in_.depth), T(0.0));
-        return select(pressed, T(push(true_contact_, in_).stored + stored_sideways(true_contact_, in_)), T(0.0));
+        return select(pressed, T(normal_force_law(true_contact_, in_).stored + stored_tangential(true_contact_, in_)),
+                      T(0.0));
     }
 
     // ---- after a step
 
-    // To `t1`, `y1` where `moved`; rates that are next to nothing become nothing.
+    // Moves to `t1`, `y1` where `moved`. Velocities below 1e-140 rad/s are set to 0 (subnormal numbers are slow).
     ARM3R_INLINE void accept(const Mask& moved, const T& t1, const Y& y1) {
         if (all(moved)) y_ = y1;
         else
             for (std::size_t i = 0; i < N; ++i) y_[i] = select(moved, y1[i], y_[i]);
-        for (std::size_t i = 3; i < motion_size; ++i) y_[i] = select(abs(y_[i]) < T(smallest_rate), T(0.0), y_[i]);
+        for (std::size_t i = 3; i < motion_size; ++i) y_[i] = select(abs(y_[i]) < T(min_rate), T(0.0), y_[i]);
         t_ = select(moved, t1, t_);
         accepted_ = accepted_ + select(moved, T(1.0), T(0.0));
     }
@@ -286,27 +288,27 @@ protected:
         return sum * 0.0 == T(0.0);
     }
 
-    ARM3R_INLINE void close_books() {
+    ARM3R_INLINE void update_energy_balance() {
         const T contact = stored();
         const T residual = ((kinetic_ + potential_ + contact) - energy_at_start_) -
                            (y_[work_of_actuators] + y_[work_of_wall] - y_[dissipated]);
         const T size = select(residual == residual, abs(residual), T(std::numeric_limits<double>::infinity()));
         residual_ = max(residual_, size);
-        exchanged_ =
-            max(max(max(exchanged_, abs(y_[work_of_actuators])), max(abs(y_[work_of_wall]), abs(y_[dissipated]))),
+        throughput_ =
+            max(max(max(throughput_, abs(y_[work_of_actuators])), max(abs(y_[work_of_wall]), abs(y_[dissipated]))),
                 max(kinetic_, abs(potential_ - potential_at_start_)));
-        held_ = max(held_, T(abs(kinetic_) + abs(potential_) + abs(contact)));
+        stored_max_ = max(stored_max_, T(abs(kinetic_) + abs(potential_) + abs(contact)));
     }
 
-    ARM3R_INLINE void judge_lanes() {
+    ARM3R_INLINE void check_lanes() {
         Mask bad = max(max(abs(y_[0]), abs(y_[1])), abs(y_[2])) > T(sincos_limit);
-        if (may_be_ill_conditioned_) bad = bad || !well_conditioned();
+        if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned();
         bad = bad || (accepted_ + rejected_ >= max_steps_ && t_ < stop_);
-        bad = bad && alive_;
+        bad = bad && active_;
         if (any(bad)) fail_lanes(bad);
     }
 
-    ARM3R_INLINE Mask well_conditioned() const {
+    ARM3R_INLINE Mask is_well_conditioned() const {
         const Mat3<T> M = mass_matrix(plant_.arm, p_);
         constexpr double epsilon = std::numeric_limits<double>::epsilon();
         return M(0, 0) > T(0.0) && T(M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2)) > T(8 * epsilon * M(1, 1) * M(2, 2));
@@ -314,18 +316,19 @@ protected:
 
     // ---- contact
 
-    // The depth from a to b within the step that began at t0 has been gone through.
-    void pass(int lane, const Polynomial<double>& depth, double t0, double a, double b);
-    void change_mode(int lane, const Change& change);
-    void pass_damped(int lane, const std::array<double, 5>& force, double t0, double duration);
+    // Adds the contact from a to b of the step that began at t0.
+    void add_contact(int lane, const Polynomial<double>& depth, double t0, double a, double b);
+    void change_mode(int lane, const ContactChange& change);
+    void add_damped_contact(int lane, const std::array<double, 5>& force, double t0, double duration);
 
     const Setup& setup(int lane) const { return setups_[lane]; }
 
-    // What change_mode() has changed is felt from here on.
-    void evaluate_anew();
+    // Evaluates the derivative again after change_mode().
+    void reevaluate();
 
-    // The change to `next` at place theta within the step, t seconds, where the signals stand.
-    Change change_of(int lane, const ContactSignals<double>& signals, double theta, double t, Mode next) const {
+    // The change to `next` at theta in the step, which is at t seconds, with the values of the signals there.
+    ContactChange change_of(int lane, const ContactSignals<double>& signals, double theta, double t,
+                            ContactMode next) const {
         const Indentation<double> in{value(signals.depth, theta),   0, value(signals.across1, theta),
                                      value(signals.across2, theta), 0, 0};
         return change_at(setups_[lane].plant, in, theta, t, mode_[lane], next);
@@ -333,13 +336,13 @@ protected:
 
     void fail_lanes(const Mask& bad);
 
-    // The depth or the force that `peak` is of, at t, where `here`.
-    ARM3R_INLINE void reach(const Mask& here, const T& value, const T& t, T& peak) {
+    // Updates `peak`, of the depth or of the force, and its time t, where `here`.
+    ARM3R_INLINE void update_peak_where(const Mask& here, const T& value, const T& t, T& peak) {
         peak_time_ = select(here && value > peak, t, peak_time_);
         peak = max_where(here, peak, value);
     }
 
-    // N, along a depth over the step h: at five places, from one end to the other.
+    // N: the normal force over the step h at five equidistant points of the depth.
     template <class P, class S>
     ARM3R_INLINE static std::array<S, 5> forces(const Contact<P>& contact, const Polynomial<S>& depth, const S& h,
                                                 const S& a, const S& b) {
@@ -353,48 +356,50 @@ protected:
     }
 
     Plant<T>
-        plant_;  // its contact is what the motion feels: no force in lanes that are embedded, or free where so decided
+        // its contact is the one that acts on the motion: without stiffness in embedded lanes, and, if
+        // only_contact_is_felt_, in free ones
+        plant_;
     RightHandSide<T, T> rhs_;
     bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
 
-    bool is_controlled_, is_scored_;
-    ControlLoop<T> loop_;
-    Looks looks_;
-    Tally<T> tally_;
-    Passage<T> passage_;
-    T phase_{0.0};                                           // of force control, in the passage
-    Vec3<T> q_before_ = none<T>(), tau_before_ = none<T>();  // rad, N m: at its begin
-    Contact<T> true_contact_;                                // in every mode: what sensors and the score read
+    bool is_controlled_, has_performance_;
+    SampledController<T> sampled_;
+    TrackedQuantities tracked_;
+    PerformanceSums<T> sums_;
+    Segment<T> segment_;
+    T phase_{0.0};                                                         // of force control, in the segment
+    Vec3<T> q_before_ = zero_vector<T>(), tau_before_ = zero_vector<T>();  // rad, N m: at the start of the segment
+    Contact<T> true_contact_;                                              // for sensors and performance, in every mode
 
-    T t_{0.0}, h_{0.0}, stop_{0.0}, slack_{0.0};  // slack: how early an instant counts as reached, s
+    T t_{0.0}, h_{0.0}, stop_{0.0}, slack_{0.0};  // slack: the tolerance with which an instant counts as reached, s
     Y y_{}, f_{};
     Pose<T> p_;
     WallState<T> wall_ = no_wall<T>();
     Indentation<T> in_{};
-    Vec3<T> tau_ = none<T>();  // N m, applied
+    Vec3<T> tau_ = zero_vector<T>();  // N m, applied
     T kinetic_, potential_;
 
-    Mask alive_ = false, begun_ = false, touching_ = false, embedded_ = false;
-    std::array<Mode, lanes> mode_{};
+    Mask active_ = false, started_ = false, touching_ = false, embedded_ = false;
+    std::array<ContactMode, lanes> mode_{};
     bool any_embedded_ = false, any_touching_ = false;
 
-    T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, exchanged_{0.0}, held_{0.0};
-    bool is_elastic_;                   // the force is the stiffness times the depth:
-    T deepest_{0.0}, depth_time_{0.0};  // m, m s
-    T peak_{0.0}, impulse_{0.0};        // N, N s: else
-    T peak_time_{0.0};                  // s
+    T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, throughput_{0.0}, stored_max_{0.0};
+    bool is_elastic_;                     // then the force is the stiffness times the depth:
+    T max_depth_{0.0}, depth_time_{0.0};  // m, m s
+    T peak_{0.0}, impulse_{0.0};          // N, N s: otherwise
+    T peak_time_{0.0};                    // s
     T accepted_{0.0}, rejected_{0.0}, evaluations_{0.0}, max_steps_{0.0};
 
 private:
     bool at_stop(int lane) const { return !(Lanes<T>::get(t_, lane) < Lanes<T>::get(stop_, lane)); }
-    void begin_lane(int lane);
+    void start_lane(int lane);
     void start_memory();
-    Tally<double> tally_of(int lane) const;
-    void set_tally(int lane, const Tally<double>& tally);
-    void tell_controller(int lane);
-    void set_mode(int lane, Mode mode);
+    PerformanceSums<double> sums_of(int lane) const;
+    void set_sums(int lane, const PerformanceSums<double>& sums);
+    void update_controller_contact(int lane);
+    void set_mode(int lane, ContactMode mode);
     double force_of(int lane) const;  // N, normal
-    void note_peak(int lane, double value, double t, T& peak);
+    void update_peak(int lane, double value, double t, T& peak);
     void set_running(int lane, bool running);
 
     std::array<Setup, lanes> setups_;

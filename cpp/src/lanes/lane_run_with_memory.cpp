@@ -2,13 +2,13 @@
 
 namespace arm3r {
 
-ARM3R_MARCH(double, full_size)
+ARM3R_LANE_RUN(double, full_size)
 #if !ARM3R_ONE_LANE
-ARM3R_MARCH(Pack<2>, full_size)
+ARM3R_LANE_RUN(Pack<2>, full_size)
 #endif
 #if ARM3R_WIDE_PACKS
-ARM3R_MARCH(Pack<4>, full_size)
-ARM3R_MARCH(Pack<8>, full_size)
+ARM3R_LANE_RUN(Pack<4>, full_size)
+ARM3R_LANE_RUN(Pack<8>, full_size)
 #endif
 
 }  // namespace arm3r

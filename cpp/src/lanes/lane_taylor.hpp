@@ -1,5 +1,5 @@
 #pragma once
-// Runs that march by Taylor series (5.5): each lane by steps of its own, which end where its contact changes.
+// Runs in lanes by Taylor series (5.5): each lane has its own step, which ends where its contact changes.
 
 #include "integrate/taylor.hpp"
 #include "lanes/lane_run.hpp"
@@ -7,12 +7,12 @@
 namespace arm3r {
 
 template <class T>
-class TaylorMarch : public March<T> {
-    using Base = March<T>;
+class LaneTaylor : public LaneRun<T> {
+    using Base = LaneRun<T>;
     using Mask = typename Base::Mask;
 
 public:
-    explicit TaylorMarch(const Setup& any_lane)
+    explicit LaneTaylor(const Setup& any_lane)
         : Base(any_lane),
           order_(order_of(any_lane.solver.tol)),
           free_kernel_(kernel_of(any_lane.plant, false)),
@@ -21,18 +21,18 @@ public:
         this->only_contact_is_felt_ = true;
     }
 
-    void put(int lane, const Setup& setup) {
-        Base::put(lane, setup);
+    void load_lane(int lane, const Setup& setup) {
+        Base::load_lane(lane, setup);
         Lanes<T>::set(tol_, lane, setup.solver.tol);
         Lanes<T>::set(max_step_, lane, setup.solver.max_step);
         Lanes<T>::set(this->slack_, lane, setup.clock_rounding());
     }
 
-    // changed(lane, change) is told of each change of contact, before it is made.
+    // changed(lane, change) is called before each change of contact.
     template <class Changed>
     ARM3R_INLINE void step(Changed changed) {
         t0_ = this->t_;
-        if (this->is_scored_) Apart<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_passage(); });
+        if (this->has_performance_) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_segment(); });
         const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
@@ -40,13 +40,13 @@ public:
         const T until = this->next_instant(), rest = until - t0_;
         is_last_ = wanted >= rest;
         this->h_ = select(is_last_, rest, wanted);
-        const Mask finite = is_finite(), stands = !is_last_ && this->h_ < smallest_step(t0_);
-        const Mask moved = this->alive_ && finite && !stands;
-        if (any(this->alive_ && !moved)) give_up(finite, stands);
+        const Mask finite = is_finite(), stalls = !is_last_ && this->h_ < min_step(t0_);
+        const Mask moved = this->active_ && finite && !stalls;
+        if (any(this->active_ && !moved)) stop_failed_lanes(finite, stalls);
 
         crosses_ = false;
         theta_ = T(1.0);
-        if (this->plant_.has_wall) watch(moved);
+        if (this->plant_.has_wall) detect_contact(moved);
         T h = this->h_, t1 = select(is_last_, until, T(t0_ + h));
         if (crosses_) {
             h = select(theta_ < T(1.0), T(theta_ * h), h);
@@ -57,30 +57,31 @@ public:
         this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->observe();
-        if (crosses_) cross(changed);
-        this->close_books();
-        if (this->is_scored_) this->looks_.motion() ? score(lobatto, moved, h) : score(trapezoid, moved, h);
-        this->judge_lanes();
+        if (crosses_) apply_changes(changed);
+        this->update_energy_balance();
+        if (this->has_performance_)
+            this->tracked_.motion() ? add_performance(lobatto, moved, h) : add_performance(trapezoid, moved, h);
+        this->check_lanes();
     }
 
-    // The solution within the last step.
-    Inside solution(int lane) const {
-        Inside inside;
-        inside.t0 = Lanes<T>::get(t0_, lane);
-        inside.h = this->h(lane);
-        inside.order = order_;
+    // The dense output of the last step.
+    DenseOutput dense_output(int lane) const {
+        DenseOutput dense;
+        dense.t0 = Lanes<T>::get(t0_, lane);
+        dense.h = this->h(lane);
+        dense.order = order_;
         for (int i = 0; i <= order_; ++i)
-            for (std::size_t j = 0; j < state_size; ++j) inside.c[i][j] = Lanes<T>::get(series_.c[i][j], lane);
-        return inside;
+            for (std::size_t j = 0; j < state_size; ++j) dense.c[i][j] = Lanes<T>::get(series_.c[i][j], lane);
+        return dense;
     }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
-    // Whether a sample may have changed something at the end of the last step.
-    bool turns() const { return this->is_controlled_ && any(is_last_); }
+    // Whether a sample may have changed the torque at the end of the last step.
+    bool may_jump_at_end() const { return this->is_controlled_ && any(is_last_); }
 
 private:
     enum Signal : std::size_t { depth = state_size, across1, across2, work1 };
 
-    ARM3R_INLINE static T smallest_step(const T& t) {
+    ARM3R_INLINE static T min_step(const T& t) {
         return 16 * std::numeric_limits<double>::epsilon() * max(abs(t), T(1e-3));
     }
 
@@ -90,8 +91,8 @@ private:
         return zero == T(0.0);
     }
 
-    // Far from rest dry friction looks constant, and no coefficient tells how suddenly it turns over where a joint stops:
-    // no step lets a rate change by more than half of it and the rate at which friction sets in (5.5).
+    // Far from rest dry friction is nearly constant, and no coefficient shows how suddenly it reverses where a joint
+    // stops. So no step may change a rate by more than half of it plus the friction velocity (5.5).
     ARM3R_INLINE void slow_before_friction(T& h) const {
         constexpr int halvings = 64;
         for (int n = 0; n < halvings; ++n) {
@@ -109,17 +110,17 @@ private:
         }
     }
 
-    [[gnu::noinline]] void give_up(const Mask& finite, const Mask& stands) {
+    [[gnu::noinline]] void stop_failed_lanes(const Mask& finite, const Mask& stalls) {
         for (int lane = 0; lane < Base::lanes; ++lane) {
             if (!this->is_running(lane)) continue;
             if (!Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);
-            else if (Lanes<T>::is(stands, lane)) this->stop_lane(lane, ARM3R_RUN_STEP_COLLAPSE);
+            else if (Lanes<T>::is(stalls, lane)) this->stop_lane(lane, ARM3R_RUN_STEP_COLLAPSE);
         }
     }
 
     // ---- contact
 
-    ARM3R_INLINE void watch(const Mask& moved) {
+    ARM3R_INLINE void detect_contact(const Mask& moved) {
         Polynomial<T> over_step{order_, {}};
         T power(1.0), low(0.0), high(0.0), end(0.0), mean(0.0);
         for (int i = 0; i <= order_; ++i, power = power * this->h_) {
@@ -130,26 +131,27 @@ private:
             end = end + term;
             mean = mean + reciprocals[i + 1] * term;
         }
-        Mask special = moved && is_eventful(low, high, high, end);
-        if (any(special)) special = special && looks_eventful(over_step);
+        Mask eventful = moved && is_eventful(low, high, high, end);
+        if (any(eventful)) eventful = eventful && is_eventful_by_bernstein(over_step);
         if (this->any_touching_) {
-            if (this->plant_.wall.has_outline) special = special || (moved && this->touching_ && comes_near_edge());
-            const Mask plainly = this->touching_ && !special && moved;
-            this->reach(plainly, end, T(t0_ + this->h_), this->deepest_);
-            this->depth_time_ = this->depth_time_ + select(plainly, T(this->h_ * mean), T(0.0));
+            if (this->plant_.wall.has_outline) eventful = eventful || (moved && this->touching_ && is_near_edge());
+            const Mask uneventful = this->touching_ && !eventful && moved;
+            this->update_peak_where(uneventful, end, T(t0_ + this->h_), this->max_depth_);
+            this->depth_time_ = this->depth_time_ + select(uneventful, T(this->h_ * mean), T(0.0));
         }
-        if (any(special)) settle(special);
+        if (any(eventful)) resolve_contacts(eventful);
     }
 
-    // Whether a depth between low and high, below `before_end` but for its end, may change the contact or its maximum.
+    // Whether a depth between low and high, which is below `before_end` except at its end, may change the contact or
+    // its maximum.
     ARM3R_INLINE Mask is_eventful(const T& low, const T& high, const T& before_end, const T& end) const {
         const T o(0.0);
         const Mask crosses = Base::select_mask(this->touching_ || this->embedded_, low <= o, high > o);
-        return crosses || (this->touching_ && before_end > max(this->deepest_, end));
+        return crosses || (this->touching_ && before_end > max(this->max_depth_, end));
     }
 
-    // The same seen more sharply, by Bernstein coefficients.
-    ARM3R_INLINE Mask looks_eventful(const Polynomial<T>& p) const {
+    // The same with the sharper bounds of the Bernstein coefficients.
+    ARM3R_INLINE Mask is_eventful_by_bernstein(const Polynomial<T>& p) const {
         const Coefficients<T> b = bernstein(p);
         T low = min(b[0], b[order_]), before_end = b[0];
         for (int i = 1; i < order_; ++i) {
@@ -159,11 +161,11 @@ private:
         return is_eventful(low, max(before_end, b[order_]), before_end, b[order_]);
     }
 
-    ARM3R_INLINE Mask comes_near_edge() const {
-        return reach_of(across1) >= this->plant_.wall.half1 || reach_of(across2) >= this->plant_.wall.half2;
+    ARM3R_INLINE Mask is_near_edge() const {
+        return max_abs_of(across1) >= this->plant_.wall.half1 || max_abs_of(across2) >= this->plant_.wall.half2;
     }
 
-    ARM3R_INLINE T reach_of(Signal signal) const {
+    ARM3R_INLINE T max_abs_of(Signal signal) const {
         T power(1.0), most = abs(series_.c[0][signal]);
         for (int i = 1; i <= order_; ++i) {
             power = power * this->h_;
@@ -172,22 +174,22 @@ private:
         return most;
     }
 
-    [[gnu::noinline]] void settle(const Mask& special) {
+    [[gnu::noinline]] void resolve_contacts(const Mask& eventful) {
         for (int lane = 0; lane < Base::lanes; ++lane)
-            if (this->is_running(lane) && Lanes<T>::is(special, lane)) settle_lane(lane);
+            if (this->is_running(lane) && Lanes<T>::is(eventful, lane)) resolve_lane(lane);
     }
 
-    void settle_lane(int lane) {
+    void resolve_lane(int lane) {
         const ContactSignals<double> signals{polynomial(lane, depth), polynomial(lane, across1),
                                              polynomial(lane, across2)};
         const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane), t = t0 + h;
         const auto crossing =
             next_crossing(this->setup(lane).plant.wall, signals, 0, this->mode(lane), event_resolution(t, h));
-        this->pass(lane, signals.depth, t0, 0, crossing ? crossing->theta : 1);
+        this->add_contact(lane, signals.depth, t0, 0, crossing ? crossing->theta : 1);
         if (!crossing) return;
         crosses_ = true;
         Lanes<T>::set(theta_, lane, crossing->theta);
-        crossings_[lane] = {true, this->change_of(lane, signals, crossing->theta, t, crossing->next)};
+        pending_changes_[lane] = {true, this->change_of(lane, signals, crossing->theta, t, crossing->next)};
     }
 
     Polynomial<double> polynomial(int lane, Signal signal) const {
@@ -199,9 +201,9 @@ private:
     }
 
     template <class Changed>
-    [[gnu::noinline]] void cross(Changed& changed) {
+    [[gnu::noinline]] void apply_changes(Changed& changed) {
         for (int lane = 0; lane < Base::lanes; ++lane) {
-            auto& [is_due, change] = crossings_[lane];
+            auto& [is_due, change] = pending_changes_[lane];
             if (!is_due) continue;
             is_due = false;
             change.t = this->t(lane);
@@ -210,22 +212,22 @@ private:
         }
     }
 
-    // ---- the score: a step is a passage of h seconds, which ends where contact changes
+    // ---- performance: a step is a segment of h seconds, which ends where contact changes
 
     template <std::size_t n>
-    ARM3R_INLINE void score(const Rule<n>& rule, const Mask& moved, const T& h) {
-        Mask closer = false;
-        Apart<T>::run([&]() ARM3R_INLINE_LAMBDA {
-            for (std::size_t j = 1; j + 1 < n; ++j) see_at(T(rule.place[j] * h), this->passage_.sights[j]);
-            this->end_passage(rule, h);
+    ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved, const T& h) {
+        Mask unresolved = false;
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+            for (std::size_t j = 1; j + 1 < n; ++j) sample_at(T(rule.node[j] * h), this->segment_.samples[j]);
+            this->end_segment(rule, h);
             if (!this->holds_torque())
-                for (int i = 0; i < 3; ++i) this->passage_.work[i] = value(series_, work1 + i, h);
-            closer = add_passage(this->looks_, rule, moved, this->passage_, this->tally_);
+                for (int i = 0; i < 3; ++i) this->segment_.work[i] = value(series_, work1 + i, h);
+            unresolved = add_segment(this->tracked_, rule, moved, this->segment_, this->sums_);
         });
-        if (any(closer)) look_closer(rule, closer);
+        if (any(unresolved)) refine_segment(rule, unresolved);
     }
 
-    ARM3R_INLINE void see_at(const T& seconds, Sight<T>& sight) const {
+    ARM3R_INLINE void sample_at(const T& seconds, PerformanceSample<T>& sample) const {
         Vec3<T> q, qd;
         for (std::size_t i = 0; i < 3; ++i) q[i] = value(series_, i, seconds), qd[i] = value(series_, 3 + i, seconds);
         const T t = t0_ + seconds;
@@ -236,18 +238,19 @@ private:
             wall = wall_at(this->plant_.wall, t);
             in = tip_indentation(this->plant_, wall, p, qd);
         }
-        this->see(t, p, wall, in, this->tau_before_, qd, sight);
+        this->sample_performance(t, p, wall, in, this->tau_before_, qd, sample);
     }
 
     template <std::size_t n>
-    [[gnu::noinline]] void look_closer(const Rule<n>& rule, const Mask& closer) {
+    [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
         for (int lane = 0; lane < Base::lanes; ++lane)
-            if (Lanes<T>::is(closer, lane)) this->score_closely(lane, rule, solution(lane), theta(lane));
+            if (Lanes<T>::is(unresolved, lane))
+                this->refine_lane_performance(lane, rule, dense_output(lane), theta(lane));
     }
 
-    struct Due {
+    struct PendingChange {
         bool is_due = false;
-        Change change{};
+        ContactChange change{};
     };
 
     const int order_;
@@ -255,7 +258,7 @@ private:
     T tol_{1e-9}, max_step_{1.0}, t0_{0.0}, theta_{1.0};
     Mask is_last_ = false;
     bool crosses_ = false;
-    std::array<Due, Base::lanes> crossings_{};
+    std::array<PendingChange, Base::lanes> pending_changes_{};
     Expansion<T> series_;
 };
 

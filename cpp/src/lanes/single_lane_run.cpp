@@ -1,4 +1,4 @@
-// Runs by the methods that march (march.hpp), with a single lane.
+// Runs by the methods of lane_run.hpp, with a single lane.
 
 #include "lanes/single_lane_run.hpp"
 #include "base/number_text.hpp"
@@ -11,90 +11,90 @@ namespace arm3r {
 namespace {
 
 template <std::size_t N>
-void solve_within(FixedMarch<double, N>& march, Inside& inside) {
-    inside.take(hermite(march.t0(0), march.h(0), march.y0(0), march.f0(0), march.y(0), march.f1()));
+void fill_dense_output(LaneRk4<double, N>& lane_run, DenseOutput& dense) {
+    dense.assign(hermite(lane_run.t0(0), lane_run.h(0), lane_run.y0(0), lane_run.f0(0), lane_run.y(0), lane_run.f1()));
 }
 
-void solve_within(const TaylorMarch<double>& march, Inside& inside) { inside = march.solution(0); }
+void fill_dense_output(const LaneTaylor<double>& lane_run, DenseOutput& dense) { dense = lane_run.dense_output(0); }
 
 template <std::size_t N>
-double place(const FixedMarch<double, N>&) {
+double end_theta(const LaneRk4<double, N>&) {
     return 1;
 }
-double place(const TaylorMarch<double>& march) { return march.theta(0); }
+double end_theta(const LaneTaylor<double>& lane_run) { return lane_run.theta(0); }
 
-FullState straight_on(const FullState& y) { return {y[3], y[4], y[5]}; }
+FullState initial_derivative(const FullState& y) { return {y[3], y[4], y[5]}; }
 
-template <class Marching>
-class MarchingRun : Recorder {
+template <class Integrator>
+class SingleLaneRun : RunRecorder {
 public:
-    MarchingRun(const Setup& setup, const RunOptions& options) : Recorder(setup, options), march_(setup_) {}
+    SingleLaneRun(const Setup& setup, const RunOptions& options) : RunRecorder(setup, options), lane_run_(setup_) {}
 
     Run run() {
-        march_.use(options_.user_law);
-        march_.put(0, setup_);
-        march_.begin();
-        tell_rows();
-        begin(march_.y(0), straight_on(march_.y(0)), march_.mode(0), march_.energy_at_start(0));
-        while (is_going_on() && !march_.has_ended(0))
+        lane_run_.set_user_law(options_.user_law);
+        lane_run_.load_lane(0, setup_);
+        lane_run_.start_lanes();
+        update_row_context();
+        start_rows(lane_run_.y(0), initial_derivative(lane_run_.y(0)), lane_run_.mode(0), lane_run_.energy_at_start(0));
+        while (is_running() && !lane_run_.has_ended(0))
             if (poll()) step();
-        know_solution();
-        return finish(march_.y(0), theta_, note_end());
+        update_dense_output();
+        return finish(lane_run_.y(0), theta_, set_end_metrics());
     }
 
 private:
     void step() {
-        is_known_ = false;
-        march_.step([&](int, const Change& change) {
-            know_solution();
-            note_change(change, inside_(change.theta));
+        has_dense_output_ = false;
+        lane_run_.step([&](int, const ContactChange& change) {
+            update_dense_output();
+            record_contact_change(change, dense_(change.theta));
         });
-        theta_ = place(march_);
-        run_.t_end = march_.t(0);
-        run_.steps = march_.steps(0);
-        const double until = march_.turns() ? run_.t_end - setup_.clock_rounding() : run_.t_end;
+        theta_ = end_theta(lane_run_);
+        run_.t_end = lane_run_.t(0);
+        run_.steps = lane_run_.steps(0);
+        const double until = lane_run_.may_jump_at_end() ? run_.t_end - setup_.clock_rounding() : run_.t_end;
         if (is_row_due(until)) {
-            know_solution();
+            update_dense_output();
             log_until(until);
         }
-        tell_rows();
+        update_row_context();
     }
 
-    // What holds from the end of the step on: a new torque, a new phase.
-    void tell_rows() {
-        note_known(march_.known());
-        contact_ = march_.contact(0);
-        force_phase_ = march_.force_phase(0);
+    // The values that hold from the end of the step on: a new torque, a new phase.
+    void update_row_context() {
+        store_controller_state(lane_run_.controller_state());
+        contact_ = lane_run_.contact(0);
+        force_phase_ = lane_run_.force_phase(0);
         if (!setup_.digital.sampling.on) return;
-        setup_.plant.controller.torque = march_.torque(0);
-        note_torque();
+        setup_.plant.controller.torque = lane_run_.torque(0);
+        record_torque();
     }
 
-    // The solution within the last step; it is asked for only where rows or events lie in the step.
-    void know_solution() {
-        if (!is_known_) solve_within(march_, inside_);
-        is_known_ = true;
+    // The dense output of the last step; it is computed only if rows or events lie in the step.
+    void update_dense_output() {
+        if (!has_dense_output_) fill_dense_output(lane_run_, dense_);
+        has_dense_output_ = true;
     }
 
-    Flows note_end() {
+    EnergyTotals set_end_metrics() {
         const arm3r_outcome asked = run_.outcome;
-        static_cast<Metrics&>(run_) = march_.metrics(0);
+        static_cast<Metrics&>(run_) = lane_run_.metrics(0);
         run_.outcome = asked;
-        const arm3r_outcome outcome = march_.outcome(0);
+        const arm3r_outcome outcome = lane_run_.outcome(0);
         if (outcome != ARM3R_RUN_OK) end(outcome, reason(outcome));
-        return march_.flows(0);
+        return lane_run_.totals(0);
     }
 
     std::string reason(arm3r_outcome outcome) const {
         const double t = run_.t_end;
         switch (outcome) {
-            case ARM3R_RUN_BUDGET: return steps_used_up(t);
-            case ARM3R_RUN_EVENT_STORM: return event_storm(t);
-            case ARM3R_RUN_CONTROLLER: return march_.complaint();
+            case ARM3R_RUN_BUDGET: return step_budget_message(t);
+            case ARM3R_RUN_EVENT_STORM: return event_storm_message(t);
+            case ARM3R_RUN_CONTROLLER: return lane_run_.error_message();
             case ARM3R_RUN_ILL_CONDITIONED:
                 return "the mass matrix is no longer positive definite to rounding" + at_time(t);
             case ARM3R_RUN_STEP_COLLAPSE:
-                return "the step fell to " + shortest(march_.h(0)) + " s" + at_time(t) +
+                return "the step fell to " + shortest(lane_run_.h(0)) + " s" + at_time(t) +
                        ": the motion changes faster than the clock resolves";
             default: return divergence(t);
         }
@@ -107,17 +107,17 @@ private:
         return "the motion is no longer finite after t = " + shortest(t) + " s";
     }
 
-    Marching march_;
+    Integrator lane_run_;
     double theta_ = 0;
-    bool is_known_ = true;
+    bool has_dense_output_ = true;
 };
 
 }  // namespace
 
-Run run_marching(const Setup& setup, const RunOptions& options) {
-    if (setup.solver.method == Solver::taylor) return MarchingRun<TaylorMarch<double>>(setup, options).run();
-    if (has_memory(setup.plant)) return MarchingRun<FixedMarch<double, full_size>>(setup, options).run();
-    return MarchingRun<FixedMarch<double>>(setup, options).run();
+Run run_in_lane(const Setup& setup, const RunOptions& options) {
+    if (setup.solver.method == Solver::taylor) return SingleLaneRun<LaneTaylor<double>>(setup, options).run();
+    if (has_memory(setup.plant)) return SingleLaneRun<LaneRk4<double, full_size>>(setup, options).run();
+    return SingleLaneRun<LaneRk4<double>>(setup, options).run();
 }
 
 }  // namespace arm3r

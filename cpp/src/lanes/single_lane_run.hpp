@@ -6,6 +6,6 @@
 
 namespace arm3r {
 
-Run run_marching(const Setup& setup, const RunOptions& options);
+Run run_in_lane(const Setup& setup, const RunOptions& options);
 
 }  // namespace arm3r

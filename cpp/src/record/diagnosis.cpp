@@ -10,8 +10,8 @@ namespace arm3r {
 namespace {
 
 constexpr int changes_per_block = 4;
-constexpr double least_swing = 1;    // of the largest torque: it turned back by half its size
-constexpr double least_growth = 10;  // from the first block that swung to the last one
+constexpr double min_swing = 1;    // relative to the largest torque: the torque changed back by half its size
+constexpr double min_growth = 10;  // growth from the first oscillating block to the last one
 constexpr double close_to_singular = 1e-3;
 
 double rounded(double x) { return nearest_integer(1000 * x) / 1000; }
@@ -22,7 +22,7 @@ double determinant(const Arm<double>& arm, const Vec3<double>& q) {  // of J, m^
 }
 
 // No pose has a larger one.
-double largest_determinant(const Arm<double>& arm) {
+double max_determinant(const Arm<double>& arm) {
     const double a2 = arm.link2.length, a3 = arm.link3.length;
     return a2 * a3 * (a2 + a3);
 }
@@ -37,7 +37,7 @@ const char* accuracy_advice(const Solver& solver) {
     }
 }
 
-void TorqueSwings::add(double t, const Vec3<double>& tau) {
+void TorqueOscillation::add(double t, const Vec3<double>& tau) {
     if (block_.changes == 0) block_ = {.first = last_, .way = {0, 0, 0}, .begin = t, .largest = 0, .changes = 0};
     for (int i = 0; i < 3; ++i) {
         block_.way[i] += std::abs(tau[i] - last_[i]);
@@ -47,11 +47,11 @@ void TorqueSwings::add(double t, const Vec3<double>& tau) {
     if (++block_.changes == changes_per_block) close(t);
 }
 
-void TorqueSwings::close(double t) {
+void TorqueOscillation::close(double t) {
     double swing = 0;
     for (int i = 0; i < 3; ++i) swing += block_.way[i] - std::abs(last_[i] - block_.first[i]);
     block_.changes = 0;
-    if (!(swing > least_swing * block_.largest)) {
+    if (!(swing > min_swing * block_.largest)) {
         since_ = -1;
         return;
     }
@@ -63,8 +63,8 @@ void TorqueSwings::close(double t) {
     last_swing_ = swing;
 }
 
-std::optional<std::string> TorqueSwings::complaint(double period) const {
-    if (since_ < 0 || !(last_swing_ > least_growth * first_swing_)) return std::nullopt;
+std::optional<std::string> TorqueOscillation::error_message(double period) const {
+    if (since_ < 0 || !(last_swing_ > min_growth * first_swing_)) return std::nullopt;
     const double samples = std::max(1.0, (until_ - since_) / period - changes_per_block);
     const double growth = exp(log(last_swing_ / first_swing_) / samples);
     return "the sampled loop is unstable: from t = " + shortest(since_) + " s on the torque swings to and fro, and " +
@@ -73,14 +73,14 @@ std::optional<std::string> TorqueSwings::complaint(double period) const {
 }
 
 std::optional<std::string> singular_pose(const Setup& setup, const Run& run, const Vec3<double>& q) {
-    if (!inverts_jacobian(setup.law())) return std::nullopt;
-    const Arm<double>& model = setup.law().model;
+    if (!inverts_jacobian(setup.controller())) return std::nullopt;
+    const Arm<double>& model = setup.controller().model;
     double closest = determinant(model, q), before = closest, when = run.t_end;
     bool passes = false;
     for (std::size_t row = run.rows; row-- > 0 && !passes;) {
         const auto angle = [&](std::size_t joint) { return run.column(joint)[row]; };  // the columns begin with t and q
         const Vec3<double> there(angle(1), angle(2), angle(3));
-        const double here = determinant(model, setup.simscape ? flipped(there) : there);
+        const double here = determinant(model, setup.simscape ? change_convention(there) : there);
         passes = (here < 0) != (before < 0);
         if (passes || std::abs(here) < std::abs(closest)) {
             closest = here;
@@ -88,7 +88,7 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
         }
         before = here;
     }
-    const double share = std::abs(closest) / largest_determinant(model);
+    const double share = std::abs(closest) / max_determinant(model);
     if (!passes && !(share < close_to_singular)) return std::nullopt;
     return "the law inverts the Jacobian, and the arm " + std::string(passes ? "passed" : "came close to") +
            " a singular pose at t = " + shortest(when) + " s, where det J = " + shortest(closest) + " m^3 is " +

@@ -1,6 +1,6 @@
 #pragma once
-// What lies behind a run that ended badly, where it can be seen from outside: a sampled loop that is unstable, or a pose in
-// which a law finds no inverse of the Jacobian. Each cause is one sentence with its instant and its number.
+// The probable cause of a run that ended badly: an unstable sampled loop, or a pose in which the Jacobian of a law has
+// no inverse. Each cause is one sentence with its instant and its number.
 
 #include <optional>
 #include <string>
@@ -10,18 +10,19 @@
 
 namespace arm3r {
 
-// Whether the torque of a sampled loop goes to and fro between its samples, and how fast that grows.
-class TorqueSwings {
+// Detects whether the torque of a sampled loop oscillates between its samples, and how fast that grows.
+class TorqueOscillation {
 public:
-    // The torque that acts from t on; called as often as one likes.
-    void note(double t, const Vec3<double>& tau) {
+    // The torque that acts from t on; may be called several times with the same one.
+    void include(double t, const Vec3<double>& tau) {
         if (tau[0] != last_[0] || tau[1] != last_[1] || tau[2] != last_[2]) add(t, tau);
     }
 
-    std::optional<std::string> complaint(double period) const;
+    std::optional<std::string> error_message(double period) const;
 
 private:
-    // Of some changes of the torque, N m: the sum of their sizes over all joints less that of their sums, and the largest torque.
+    // Statistics of a few changes of the torque, N m: the sum of the changes of all joints less that of their net
+    // change, and the largest torque.
     struct Block {
         Vec3<double> first{0, 0, 0}, way{0, 0, 0};
         double begin = 0, largest = 0;
@@ -33,14 +34,15 @@ private:
 
     Vec3<double> last_{0, 0, 0};
     Block block_;
-    double since_ = -1, until_ = -1, first_swing_ = 0, last_swing_ = 0;  // of the blocks in a row that swung; < 0: none
+    // of the consecutive blocks that oscillated; < 0: none
+    double since_ = -1, until_ = -1, first_swing_ = 0, last_swing_ = 0;
 };
 
-// How to have the motion followed more closely.
+// Advice on how to make the solution more accurate.
 const char* accuracy_advice(const Solver& solver);
 
-// Where a law that inverts the Jacobian came closest to a pose without an inverse, in the rows or at the end, if that is
-// close. q: rad, slide.
+// Describes the pose nearest to a singularity, in the rows or at the end, for a law that inverts the Jacobian; empty if
+// it is not near. q: rad, slide.
 std::optional<std::string> singular_pose(const Setup& setup, const Run& run, const Vec3<double>& q);
 
 }  // namespace arm3r

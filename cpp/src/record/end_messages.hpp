@@ -5,7 +5,7 @@
 
 namespace arm3r {
 
-std::string steps_used_up(double t);
-std::string event_storm(double t);
+std::string step_budget_message(double t);
+std::string event_storm_message(double t);
 
 }  // namespace arm3r

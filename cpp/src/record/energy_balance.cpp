@@ -8,16 +8,16 @@
 namespace arm3r {
 namespace {
 
-constexpr double loosest_strict_tolerance = 1e-6;
+constexpr double max_strict_tolerance = 1e-6;
 
-double stock(const Energies& energies) {
+double stored_energy(const Energies& energies) {
     return std::abs(energies.kinetic) + std::abs(energies.potential) + std::abs(energies.contact);
 }
 
-// The accuracy that the solver was asked for; a fixed step promises none.
+// The tolerance of the solver; a fixed step promises none.
 double tolerance(const Solver& solver) {
     switch (solver.method) {
-        case Solver::rk4: return loosest_strict_tolerance;
+        case Solver::rk4: return max_strict_tolerance;
         case Solver::taylor: return solver.tol;
         default: return solver.rtol;
     }
@@ -25,30 +25,30 @@ double tolerance(const Solver& solver) {
 
 }  // namespace
 
-double balance_limit(const Solver& solver, const Flows& flows) {
-    return 100 * tolerance(solver) * flows.exchanged + 1e-12 * flows.held + 0x1p-46 * flows.leverage;
+double balance_limit(const Solver& solver, const EnergyTotals& totals) {
+    return 100 * tolerance(solver) * totals.throughput + 1e-12 * totals.stored + 0x1p-46 * totals.force_times_reach;
 }
 
 bool is_strict(const Solver& solver) {
-    return solver.method != Solver::rk4 && tolerance(solver) <= loosest_strict_tolerance;
+    return solver.method != Solver::rk4 && tolerance(solver) <= max_strict_tolerance;
 }
 
-std::optional<std::string> balance_complaint(const Solver& solver, const Flows& flows) {
-    const double limit = balance_limit(solver, flows);
-    if (flows.residual <= limit) return std::nullopt;
-    return "the energy balance does not close: " + shortest(flows.residual) + " J are left over, the limit is " +
+std::optional<std::string> balance_error(const Solver& solver, const EnergyTotals& totals) {
+    const double limit = balance_limit(solver, totals);
+    if (totals.residual <= limit) return std::nullopt;
+    return "the energy balance does not close: " + shortest(totals.residual) + " J are left over, the limit is " +
            shortest(limit) + " J";
 }
 
-Ledger::Ledger(const Plant<double>& plant, double t, const FullState& y, Mode mode)
-    : start_(energies(plant, t, y, mode)), flows_{0, stock(start_), 0} {}
+EnergyBalance::EnergyBalance(const Plant<double>& plant, double t, const FullState& y, ContactMode mode)
+    : start_(energies(plant, t, y, mode)), totals_{0, stored_energy(start_), 0} {}
 
-void Ledger::close(const Plant<double>& plant, double t, const FullState& y, Mode mode) {
+void EnergyBalance::update(const Plant<double>& plant, double t, const FullState& y, ContactMode mode) {
     const Energies now = energies(plant, t, y, mode);
-    note_residual(flows_.residual, energy_residual(y, now.sum(), start_.sum()));
-    flows_.exchanged = std::max({flows_.exchanged, std::abs(y[work_of_actuators]), std::abs(y[work_of_wall]),
-                                 std::abs(y[dissipated]), now.kinetic, std::abs(now.potential - start_.potential)});
-    flows_.held = std::max(flows_.held, stock(now));
+    include_residual(totals_.residual, energy_residual(y, now.sum(), start_.sum()));
+    totals_.throughput = std::max({totals_.throughput, std::abs(y[work_of_actuators]), std::abs(y[work_of_wall]),
+                                   std::abs(y[dissipated]), now.kinetic, std::abs(now.potential - start_.potential)});
+    totals_.stored = std::max(totals_.stored, stored_energy(now));
 }
 
 }  // namespace arm3r

@@ -1,5 +1,5 @@
 #pragma once
-// The energy books of a run, and what they say about it; docs/model.md (4.9).
+// The energy balance of a run and its evaluation; docs/model.md (4.9).
 
 #include <algorithm>
 #include <cmath>
@@ -13,42 +13,42 @@
 
 namespace arm3r {
 
-// J, over a run so far: the largest flow, the largest stock, and the largest residual; and the largest force of the wall
-// times the arm's reach, of which the rounding of a place makes an energy.
-struct Flows {
-    double exchanged = 0, held = 0, residual = 0, leverage = 0;
+// J, maxima over the run so far: the energy throughput, the stored energy, and the residual; and the largest wall force
+// times the length of the arm, by which a rounding error of the position becomes an energy.
+struct EnergyTotals {
+    double throughput = 0, stored = 0, residual = 0, force_times_reach = 0;
 };
 
-inline double leverage(const Plant<double>& plant, double peak_force) {
+inline double force_times_reach(const Plant<double>& plant, double peak_force) {
     return plant.acts_on_arm ? peak_force * (plant.arm.link2.length + plant.arm.link3.length) : 0;
 }
 
-// What the residual may be at the end, and whether more is the run's outcome or only a warning.
-double balance_limit(const Solver& solver, const Flows& flows);
+// The limit of the residual at the end, and whether a larger one is an outcome of the run or only a warning.
+double balance_limit(const Solver& solver, const EnergyTotals& totals);
 bool is_strict(const Solver& solver);
 
-// Why the balance does not close, or nothing.
-std::optional<std::string> balance_complaint(const Solver& solver, const Flows& flows);
+// The message if the balance is not closed, or nothing.
+std::optional<std::string> balance_error(const Solver& solver, const EnergyTotals& totals);
 
-class Ledger {
+class EnergyBalance {
 public:
-    Ledger() = default;
-    Ledger(const Plant<double>& plant, double t, const FullState& y, Mode mode);
+    EnergyBalance() = default;
+    EnergyBalance(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
 
     double energy_at_start() const { return start_.sum(); }  // J
 
-    // After each step: note what the balance leaves over, and the largest flows.
-    void close(const Plant<double>& plant, double t, const FullState& y, Mode mode);
+    // Updates the residual and the totals after each step.
+    void update(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
 
-    const Flows& flows() const { return flows_; }
+    const EnergyTotals& totals() const { return totals_; }
 
 private:
     Energies start_{};
-    Flows flows_;
+    EnergyTotals totals_;
 };
 
-// A residual that is not a number is the largest of all.
-inline void note_residual(double& largest, double residual) {
+// A residual that is NaN counts as infinite.
+inline void include_residual(double& largest, double residual) {
     const double size = std::isnan(residual) ? std::numeric_limits<double>::infinity() : std::abs(residual);
     largest = std::max(largest, size);
 }

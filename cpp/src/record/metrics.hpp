@@ -1,5 +1,5 @@
 #pragma once
-// What is told of a run in numbers, one each: the summary of a single run, and a row of a batch's table.
+// The summary numbers of a run, in a single run's summary and as a row of a batch's table.
 
 #include <string_view>
 #include <vector>

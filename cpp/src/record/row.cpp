@@ -2,7 +2,7 @@
 
 namespace arm3r {
 
-Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode mode) {
+Energies energies(const Plant<double>& plant, double t, const FullState& y, ContactMode mode) {
     const Pose<double> p = pose(angles(y));
     double stored = 0;
     if (plant.acts_on_arm && is_touching(mode)) {
@@ -12,9 +12,9 @@ Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode
     return {kinetic_energy(plant.arm, p, rates(y)), potential_energy(plant.arm, p), stored};
 }
 
-Row sample(const Scene& scene, double t, const FullState& y, double theta) {
-    Sampled<double> row;
-    sample_into(scene, t, y, theta, row);
+Row make_row(const RowContext& context, double t, const FullState& y, double theta) {
+    RowValues<double> row;
+    fill_row(context, t, y, theta, row);
     return {row.value, row.link_behind_wall > 0};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// One row: everything about one instant, from t and the state at that instant alone. Nothing is remembered.
+// A row: all columns at one instant, from t and the state at that instant alone. Nothing is stored between rows.
 
 #include <algorithm>
 #include <array>
@@ -12,23 +12,25 @@
 
 namespace arm3r {
 
-// As it goes out: without negative zeros.
-inline std::array<double, 3> plain(const Vec3<double>& v) { return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}; }
+// The vector without negative zeros, as users see it.
+inline std::array<double, 3> without_negative_zero(const Vec3<double>& v) {
+    return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0};
+}
 
 struct Energies {
     double kinetic, potential, contact;  // J
     double sum() const { return kinetic + potential + contact; }
 };
 
-Energies energies(const Plant<double>& plant, double t, const FullState& y, Mode mode);
+Energies energies(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
 
-// What the balance leaves over (4.9).
+// The residual of the energy balance (4.9).
 template <class T>
 ARM3R_INLINE T energy_residual(const State<T, full_size>& y, const T& energy, double energy_at_start) {
     return (energy - energy_at_start) - (y[work_of_actuators] + y[work_of_wall] - y[dissipated]);
 }
 
-// J since the start: the dissipated energy in parts (4.9). `at_edges` is known from the changes of contact.
+// The parts of the dissipated energy since the start, J (4.9). `at_edges` is the sum over the changes of contact.
 template <class P, class T>
 ARM3R_INLINE std::array<T, 4> dissipated_parts(const Plant<P>& plant, const State<T, full_size>& y, double at_edges) {
     const T joints = y[dissipated_in_joints], friction = y[dissipated_in_friction], edges(at_edges);
@@ -36,7 +38,7 @@ ARM3R_INLINE std::array<T, 4> dissipated_parts(const Plant<P>& plant, const Stat
     return {joints, contact, friction, edges};
 }
 
-// The columns of columns.cpp in their order, wall columns included; joint vectors in the convention of the faces.
+// The columns of columns.cpp in their order, wall columns included; joint vectors in the arm's convention.
 constexpr std::size_t column_count = 72, residual_column = 45, parts_column = 68;
 
 struct Row {
@@ -44,31 +46,31 @@ struct Row {
     bool link_behind_wall;  // the elbow, or a link that is not in contact itself, lies behind the plate
 };
 
-// What all rows within a step have in common.
-struct Scene {
+// The data that all rows within a step share.
+struct RowContext {
     const Plant<double>& plant;
     bool simscape;
     double energy_at_start;
-    Mode mode;
-    const Inside& inside;  // the tip position is differentiated along it (5.4)
-    const Controller<double>& law;
-    bool is_sampled;              // the law is a digital controller's
-    const Known<double>& known;   // to it
-    double contact, force_phase;  // to a continuous one
-    double lost_at_edges;         // J, so far
+    ContactMode mode;
+    const DenseOutput& dense;  // the tip position is differentiated along it (5.4)
+    const Controller<double>& controller;
+    bool is_sampled;                                  // the law is a digital controller's
+    const ControllerState<double>& controller_state;  // of the sampled controller
+    double contact, force_phase;                      // of a continuous one
+    double lost_at_edges;                             // J, so far
 };
 
-// `theta` is where t lies within the step.
-Row sample(const Scene& scene, double t, const FullState& y, double theta);
+// `theta` is the place of t within the step.
+Row make_row(const RowContext& context, double t, const FullState& y, double theta);
 
-// Eight rows on the solution within the step, side by side: value[column][row], the same bits as one by one.
-constexpr int together = 8;
+// Eight rows of the dense output of a step, computed together: value[column][row], with the same bits as one by one.
+constexpr int rows_per_block = 8;
 
 struct RowBlock {
-    alignas(64) double value[column_count][together];
-    int first_link_behind_wall;  // the row where Row::link_behind_wall first holds; `together` for none
+    alignas(64) double value[column_count][rows_per_block];
+    int first_link_behind_wall;  // the first row with link_behind_wall, or `rows_per_block`
 };
 
-void sample_together(const Scene& scene, const double* t, RowBlock& rows);
+void make_row_block(const RowContext& context, const double* t, RowBlock& rows);
 
 }  // namespace arm3r

@@ -10,13 +10,13 @@
 namespace arm3r {
 namespace {
 
-// Whether the law follows a point by joint angles, which end where the arm is stretched.
+// Whether the law tracks a point by joint angles, which are limited by the reach of the arm.
 bool follows_point(const Controller<double>& law) {
-    return law.type == Controls::admittance && law.inner == Inner::joint_pd;
+    return law.type == ControllerType::admittance && law.inner == Inner::joint_pd;
 }
 
-// 0 but for infinities and what is no number.
-double nothing_of(double value) { return 0.0 * value; }
+// 0 for a finite number, else NaN.
+double zero_or_nan(double value) { return 0.0 * value; }
 
 }  // namespace
 
@@ -27,50 +27,50 @@ void RowLog::reserve() {
     run_.reserve(columns_of(setup_), rows + 1);  // and the end
 }
 
-void RowLog::log(const Scene& scene, double t, const FullState& y, double theta) {
-    const Row row = sample(scene, t, y, theta);
+void RowLog::log(const RowContext& context, double t, const FullState& y, double theta) {
+    const Row row = make_row(context, t, y, theta);
     double* cell = run_.data.get() + run_.rows;
     double nothing = 0;
     for (const std::size_t column : run_.columns) {
         *cell = row.value[column];
-        nothing += nothing_of(*cell);
+        nothing += zero_or_nan(*cell);
         cell += run_.capacity;
     }
-    if (nothing != 0) return end_without(row, t);
+    if (nothing != 0) return end_at_bad_row(row, t);
     run_.rows += 1;
-    note_residual(run_.energy_residual_max, row.value[residual_column]);
-    if (row.link_behind_wall) note_link_behind_wall(t);
-    if (follows_point(scene.law)) note_reach(scene, t, y);
+    include_residual(run_.energy_residual_max, row.value[residual_column]);
+    if (row.link_behind_wall) record_link_behind_wall(t);
+    if (follows_point(context.controller)) check_workspace(context, t, y);
 }
 
-void RowLog::log_together(const Scene& scene) {
-    double t[together];
-    for (int i = 0; i < together; ++i) t[i] = time_of(run_.rows + i);
+void RowLog::log_block(const RowContext& context) {
+    double t[rows_per_block];
+    for (int i = 0; i < rows_per_block; ++i) t[i] = time_of(run_.rows + i);
     RowBlock rows;
-    sample_together(scene, t, rows);
+    make_row_block(context, t, rows);
     double* cells = run_.data.get() + run_.rows;
     double nothing = 0;
     for (const std::size_t column : run_.columns) {
-        std::copy_n(rows.value[column], together, cells);
-        for (const double value : rows.value[column]) nothing += nothing_of(value);
+        std::copy_n(rows.value[column], rows_per_block, cells);
+        for (const double value : rows.value[column]) nothing += zero_or_nan(value);
         cells += run_.capacity;
     }
-    if (nothing != 0) return log_one_by_one(scene, t);
-    run_.rows += together;
-    for (const double residual : rows.value[residual_column]) note_residual(run_.energy_residual_max, residual);
-    if (rows.first_link_behind_wall < together) note_link_behind_wall(t[rows.first_link_behind_wall]);
-    if (!follows_point(scene.law)) return;
-    for (const double at : t) note_reach(scene, at, scene.inside((at - scene.inside.t0) / scene.inside.h));
+    if (nothing != 0) return log_one_by_one(context, t);
+    run_.rows += rows_per_block;
+    for (const double residual : rows.value[residual_column]) include_residual(run_.energy_residual_max, residual);
+    if (rows.first_link_behind_wall < rows_per_block) record_link_behind_wall(t[rows.first_link_behind_wall]);
+    if (!follows_point(context.controller)) return;
+    for (const double at : t) check_workspace(context, at, context.dense((at - context.dense.t0) / context.dense.h));
 }
 
-void RowLog::log_one_by_one(const Scene& scene, std::span<const double> t) {
+void RowLog::log_one_by_one(const RowContext& context, std::span<const double> t) {
     for (std::size_t i = 0; i < t.size() && run_.outcome == ARM3R_RUN_OK; ++i) {
-        const double theta = (t[i] - scene.inside.t0) / scene.inside.h;
-        log(scene, t[i], scene.inside(theta), theta);
+        const double theta = (t[i] - context.dense.t0) / context.dense.h;
+        log(context, t[i], context.dense(theta), theta);
     }
 }
 
-void RowLog::end_without(const Row& row, double t) {
+void RowLog::end_at_bad_row(const Row& row, double t) {
     if (run_.outcome != ARM3R_RUN_OK) return;
     const auto is_bad = [&](std::size_t column) { return !std::isfinite(row.value[column]); };
     const std::size_t bad = *std::find_if(run_.columns.begin(), run_.columns.end(), is_bad);
@@ -78,13 +78,13 @@ void RowLog::end_without(const Row& row, double t) {
     run_.message = std::string(column_table()[bad].name) + " is not a finite number at t = " + shortest(t) + " s";
 }
 
-void RowLog::note_link_behind_wall(double t) {
+void RowLog::record_link_behind_wall(double t) {
     if (run_.link_behind_wall_since < 0) run_.link_behind_wall_since = t;
 }
 
-void RowLog::note_reach(const Scene& scene, double t, const FullState& y) {
-    const double* point = scene.is_sampled ? scene.known.memory.data() : y.data() + law_at;
-    const double beyond = beyond_reach(scene.law.model, Vec3<double>(point[0], point[1], point[2]));
+void RowLog::check_workspace(const RowContext& context, double t, const FullState& y) {
+    const double* point = context.is_sampled ? context.controller_state.memory.data() : y.data() + law_at;
+    const double beyond = workspace_excess(context.controller.model, Vec3<double>(point[0], point[1], point[2]));
     if (!(beyond > 0)) return;
     if (run_.out_of_reach_since < 0) run_.out_of_reach_since = t;
     run_.out_of_reach_by = std::max(run_.out_of_reach_by, beyond);

@@ -1,6 +1,6 @@
 #pragma once
-// The rows of a run: when they stand, and where they go. The memory is taken before the first step. All that changes is
-// the run's own.
+// The rows of a run: their instants and their memory, which is allocated before the first step. All that changes
+// belongs to the run.
 
 #include "record/energy_balance.hpp"
 
@@ -10,39 +10,39 @@ class RowLog {
 public:
     RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {}
 
-    // Takes the memory of all rows; refuse_too_large() (size_cap.hpp) has seen to it that they are not too many.
+    // Allocates the memory of all rows; refuse_too_large() (size_limits.hpp) has checked that they are not too many.
     void reserve();
 
-    // All rows before `until`, from the solution within the step, while go_on() holds.
-    template <class GoOn>
-    void log_until(double until, const Scene& scene, GoOn go_on) {
-        while (stands_before(run_.rows + together - 1, until) && go_on()) log_together(scene);
-        while (stands_before(run_.rows, until) && go_on()) {
-            const double t = time_of(run_.rows), theta = (t - scene.inside.t0) / scene.inside.h;
-            log(scene, t, scene.inside(theta), theta);
+    // Writes all rows before `until`, from the dense output of the step, while keep_going() holds.
+    template <class KeepGoing>
+    void log_until(double until, const RowContext& context, KeepGoing keep_going) {
+        while (stands_before(run_.rows + rows_per_block - 1, until) && keep_going()) log_block(context);
+        while (stands_before(run_.rows, until) && keep_going()) {
+            const double t = time_of(run_.rows), theta = (t - context.dense.t0) / context.dense.h;
+            log(context, t, context.dense(theta), theta);
         }
     }
 
     bool is_due(double until) const { return stands_before(run_.rows, until); }
 
-    // A row with a number that is not finite is not written: it ends the run.
-    void log(const Scene& scene, double t, const FullState& y, double theta);
+    // Writes a row. A row with a number that is not finite is not written: it ends the run.
+    void log(const RowContext& context, double t, const FullState& y, double theta);
 
-    // Of the last row, s; the start where there is none.
+    // The time of the last row, s; the start of the run if there is none.
     double last_time() const { return run_.rows ? run_.data[run_.rows - 1] : setup_.start; }
 
 private:
     double time_of(std::size_t row) const { return setup_.start + double(row) * setup_.log_every; }
-    // The end of the run is a row of its own; so is its beginning, however long the interval.
+    // The start and the end of the run always have a row, however long the interval is.
     bool stands_before(std::size_t row, double until) const {
         const double t = time_of(row);
         return t < until && (row == 0 || t < setup_.stop - 1e-9 * setup_.log_every);
     }
-    void log_together(const Scene& scene);
-    void log_one_by_one(const Scene& scene, std::span<const double> t);
-    void note_link_behind_wall(double t);
-    void note_reach(const Scene& scene, double t, const FullState& y);
-    void end_without(const Row& row, double t);
+    void log_block(const RowContext& context);
+    void log_one_by_one(const RowContext& context, std::span<const double> t);
+    void record_link_behind_wall(double t);
+    void check_workspace(const RowContext& context, double t, const FullState& y);
+    void end_at_bad_row(const Row& row, double t);
 
     const Setup& setup_;
     Run& run_;

@@ -44,27 +44,27 @@ struct Metrics {
     double work_of_actuators = 0, work_of_wall = 0, dissipated = 0;  // J
     std::array<double, 4> dissipated_parts{};                        // J: in joints, contact, friction, at edges
     Steps steps;
-    // What a controller is judged by (score.hpp); NaN where it does not apply.
+    // Metrics of the controller (performance.hpp); NaN where they do not apply.
     double force_error_rms = unknown, force_error_peak = unknown, overshoot = unknown;  // N
     double settling_time = unknown;                                                     // s
     double path_error_rms = unknown, path_error_max = unknown;                          // m
     double saturation_share = 0;
     std::array<double, 3> work{};                                        // J, of each torque
     double stiffness_estimate = unknown, wall_speed_estimate = unknown;  // N/m, m/s
-    double stiff_steps = 0;                                              // accepted by the stiff method
+    double stiff_steps = 0;                                              // accepted steps of the stiff method
 };
 
 struct Run : Metrics, RowTable {
     std::string message;  // why, when the outcome is not ok; "" else
     std::vector<Event> events;
     std::vector<std::string> warnings;
-    std::string method;                    // that of the scenario
-    std::string choices;                   // of method auto: what it took when, and why
+    std::string method;                    // the method of the scenario
+    std::string choices;                   // of method auto: which method it used when, and why
     std::array<double, 3> torque_limit{};  // N m; may be inf
     double energy_residual_max = 0;        // J, over steps and rows
     double elapsed_s = 0;                  // wall clock
-    bool has_user_law = false;             // what it does is not known from the scenario
-    // What the rows showed; s, and < 0: never.
+    bool has_user_law = false;             // the scenario does not determine what the law does
+    // Observations in the rows; s, and < 0: never.
     double link_behind_wall_since = -1;  // of a link other than at its tip
     double out_of_reach_since = -1;      // of the point that an inner joint loop follows
     double out_of_reach_by = 0;          // m, at most

@@ -69,8 +69,8 @@ public:
     }
 
 private:
-    void problem(const Mark& at, std::string_view key, std::string code, std::string message, std::string got = {},
-                 std::string allowed = {}, std::string hint = {}) {
+    void problem(const SourceLocation& at, std::string_view key, std::string code, std::string message,
+                 std::string got = {}, std::string allowed = {}, std::string hint = {}) {
         problems_.push_back(located({.code = "check." + std::move(code),
                                      .path = key.empty() ? path_ : join(path_, key),
                                      .message = std::move(message),
@@ -82,7 +82,7 @@ private:
 
     bool read_subject(Check& check) {
         if (node_.type != Node::map) {
-            problem(node_.mark, "", "type", "a check is a map", shape_of(node_), "",
+            problem(node_.mark, "", "type", "a check is a map", node_text(node_), "",
                     "{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}");
             return false;
         }
@@ -117,16 +117,16 @@ private:
 
     std::string word(const std::string& key, const Words& words, std::string code) {
         const Node* node = node_.find(key);
-        if (!node || node->type == Node::hole) return {};
+        if (!node || node->type == Node::unset) return {};
         if (node->type == Node::scalar && is_in(words, node->text)) return node->text;
-        problem(node->mark, key, std::move(code), "must be one of the words", shape_of(*node), listed(in_short(words)),
+        problem(node->mark, key, std::move(code), "must be one of the words", node_text(*node), listed(in_short(words)),
                 did_you_mean(node->text, words));
         return {};
     }
 
     std::optional<double> number(const std::string& key, bool whole = false) {
         const Node* node = node_.find(key);
-        if (!node || node->type == Node::hole) return {};
+        if (!node || node->type == Node::unset) return {};
         NumberFault fault{"number.type", "expects a number", ""};
         if (node->type == Node::scalar && node->quoted)
             fault = {"number.quoted", "a number has no quotes", "write " + node->text};
@@ -135,7 +135,7 @@ private:
         problems_.push_back(located({.code = fault.code,
                                      .path = join(path_, key),
                                      .message = fault.message,
-                                     .got = shape_of(*node),
+                                     .got = node_text(*node),
                                      .hint = fault.hint},
                                     node->mark, file_));
         return {};
@@ -222,8 +222,8 @@ private:
     void read_name(Check& check) {
         const Node* node = node_.find("name");
         if (node && node->type == Node::scalar && !node->text.empty()) check.name = node->text;
-        else if (node && node->type != Node::hole)
-            problem(node->mark, "name", "name", "must be a text", shape_of(*node));
+        else if (node && node->type != Node::unset)
+            problem(node->mark, "name", "name", "must be a text", node_text(*node));
         else check.name = subject_text(check);
     }
 
@@ -298,7 +298,7 @@ std::vector<double> event_times(const Run& run, const std::string& type) {
     return times;
 }
 
-// Whether only the whole run can tell.
+// Whether the check needs the whole run.
 bool needs_all(const Check& check) {
     return check.subject == Check::column ? !check.of.empty() : check.subject != Check::event;
 }
@@ -353,11 +353,11 @@ CheckResult evaluate_one(const Check& check, const Run& run, std::span<const dou
 std::vector<Check> read_checks(const Node& list, std::span<const double> params, std::span<const std::size_t> columns,
                                const std::string& file, std::vector<Problem>& problems) {
     std::vector<Check> checks;
-    if (list.type != Node::list && list.type != Node::hole)
+    if (list.type != Node::list && list.type != Node::unset)
         problems.push_back(located({.code = "check.type",
                                     .path = "checks",
                                     .message = "expects a list of checks",
-                                    .got = shape_of(list),
+                                    .got = node_text(list),
                                     .hint = "checks: [{name: ..., column: tip_x, at: 10, equals: 1, abs: 1e-6}]"},
                                    list.mark, file));
     if (list.type != Node::list) return checks;

@@ -33,8 +33,8 @@ struct CheckResult {
     std::string reason;
 };
 
-// The checks of a list; what is wrong in it goes to `problems`. `params` tells which rows there will be, `columns` which
-// columns (places in column_table()).
+// Reads a list of checks; its errors are added to `problems`. `params` determine the rows of the run, `columns` are its
+// columns (indices into column_table()).
 std::vector<Check> read_checks(const Node& list, std::span<const double> params, std::span<const std::size_t> columns,
                                const std::string& file, std::vector<Problem>& problems);
 

@@ -17,8 +17,8 @@ namespace arm3r {
 
 namespace {
 
-// What only a run of its own has.
-constexpr std::string_view largest_residual = "energy_residual_max", wall_clock = "elapsed_s";
+// Numbers that only a single run has.
+constexpr std::string_view max_residual = "energy_residual_max", wall_clock = "elapsed_s";
 
 const char* type_name(const Event& event) { return event.type == Event::make ? "make" : "break"; }
 
@@ -113,7 +113,7 @@ double last(const Run& run, std::string_view name) {
     return values.empty() ? NAN : values.back();
 }
 
-// From when to when; a run that starts at 0 s is as long as its end is late.
+// The time span of the run; the start is left out if it is 0 s.
 std::string span_text(const Run& run) {
     const std::span<const double> t = column(run, "t");
     const bool starts_at_zero = t.empty() || t.front() == 0;
@@ -147,7 +147,7 @@ std::string force_line(const Run& run) {
                                      rounded(run.peak_force, 10) + " N");
 }
 
-// How a controller did, where there was one.
+// The metrics of a controller, if there is one.
 std::string score_lines(const Run& run) {
     std::string out;
     if (!std::isnan(run.force_error_rms)) {
@@ -205,13 +205,13 @@ std::string elapsed_text(double seconds) {
 
 std::vector<std::string> summary_number_names() {
     std::vector<std::string> names = each(summary_table(), [](const SummaryNumber& n) { return std::string(n.name); });
-    names.emplace_back(largest_residual);
+    names.emplace_back(max_residual);
     names.emplace_back(wall_clock);
     return names;
 }
 
 double summary_number(const Run& run, std::string_view name) {
-    if (name == largest_residual) return run.energy_residual_max;
+    if (name == max_residual) return run.energy_residual_max;
     if (name == wall_clock) return run.elapsed_s;
     for (const SummaryNumber& number : summary_table())
         if (number.name == name) return number.of(run);

@@ -10,7 +10,7 @@
 
 namespace arm3r {
 
-// What a summary is made of.
+// The parts of a summary.
 struct Results {
     const Run& run;
     const std::string& name;

@@ -1,4 +1,4 @@
-// Runs by adaptive steps (5.2), one at a time.
+// Runs with adaptive steps (5.2), one at a time.
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +24,9 @@ namespace {
 using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr int looks_per_step = 9;
+constexpr int samples_per_step = 9;
 
-// The state at the start.
+// The initial state.
 FullState start_of(const Setup& setup) {
     FullState y{};
     for (int i = 0; i < 3; ++i) {
@@ -36,96 +36,99 @@ FullState start_of(const Setup& setup) {
     return y;
 }
 
-// A step that was taken, as far as the next one depends on it.
-struct Taken {
+// The last step, as far as the next one depends on it.
+struct LastStep {
     double h, error;
     bool crosses, was_last;
-    bool goes_on;  // but for a new torque
-    bool at_jump;  // of a formula of time alone
+    bool continues;  // the method can continue without a restart, unless the torque is new
+    bool at_jump;    // the step ends at a jump of a formula of time
 };
 
-// All that changes in the course of a run, beside what its recorder and its stepper keep: a copy goes on by itself.
+// All that changes in a run, except in its recorder and its stepper. A copy continues as the original would.
 struct Progress {
-    struct Present {
+    struct RunState {
         FullState y{};
         double h = 0;
-        double theta = 0;  // where the present instant lies in the last step
+        double theta = 0;  // the present instant within the last step
         bool just_rejected = false;
-        bool trial_was_finite = true;  // the last one that was rejected
+        bool trial_was_finite = true;  // of the last rejected step
         double touching_since = 0, events = 0;
         Peak peak{};
-        bool waits = true, has_set_off = false;  // at a sample not yet attended; the first one is behind
-        Taken taken{};
+        bool is_waiting = true, has_started = false;  // the run waits at a sample; the first sample has been taken
+        LastStep last_step{};
     };
 
-    explicit Progress(const Setup& setup) : now_{start_of(setup)} {}
+    explicit Progress(const Setup& setup) : state_{start_of(setup)} {}
 
-    ControlLoop<double> loop_;
-    Tally<double> tally_;
-    Present now_;
-    Ledger ledger_;
+    SampledController<double> sampled_;
+    PerformanceSums<double> sums_;
+    RunState state_;
+    EnergyBalance balance_;
 };
 
 // N: state_size, or full_size where a continuous controller remembers something.
 template <std::size_t N>
-class AdaptiveRun : public Stepwise, Recorder, Progress {
+class AdaptiveRun : public InteractiveRun, RunRecorder, Progress {
     using Y = State<double, N>;
 
 public:
     AdaptiveRun(const Setup& setup, const RunOptions& options)
-        : Recorder(setup, options), Progress(setup_), stepper_(setup_), watch_(setup_.plant, looks_per_step) {
-        mode_ = watch_.mode_at_start(setup_.start, now_.y);
-        ledger_ = Ledger(setup_.plant, setup_.start, now_.y, mode_);
-        loop_.put(0, setup_.digital, setup_.estimation);
-        loop_.user = options.user_law;
+        : RunRecorder(setup, options), Progress(setup_), stepper_(setup_), search_(setup_.plant, samples_per_step) {
+        mode_ = search_.mode_at_start(setup_.start, state_.y);
+        balance_ = EnergyBalance(setup_.plant, setup_.start, state_.y, mode_);
+        sampled_.load_lane(0, setup_.digital, setup_.estimation);
+        sampled_.user = options.user_law;
         start();
     }
 
     AdaptiveRun(const AdaptiveRun& other)
-        : Recorder(other), Progress(other), stepper_(setup_, other.stepper_), watch_(setup_.plant, looks_per_step) {}
+        : RunRecorder(other),
+          Progress(other),
+          stepper_(setup_, other.stepper_),
+          search_(setup_.plant, samples_per_step) {}
 
-    bool is_over() const override { return !now_.waits; }
-    void use(const UserLaw& law) override { loop_.user = law; }
+    bool is_over() const override { return !state_.is_waiting; }
+    void set_user_law(const UserLaw& law) override { sampled_.user = law; }
 
-    void go_on() override {
-        now_.waits = false;
-        if (now_.has_set_off) settle();
-        else set_off();
-        while (is_going_on() && run_.t_end < setup_.stop) {
+    void advance() override {
+        state_.is_waiting = false;
+        if (state_.has_started) finish_step();
+        else initialise();
+        while (is_running() && run_.t_end < setup_.stop) {
             if (double(run_.steps.accepted + run_.steps.rejected) >= setup_.solver.max_steps)
-                end(ARM3R_RUN_BUDGET, steps_used_up(run_.t_end));
+                end(ARM3R_RUN_BUDGET, step_budget_message(run_.t_end));
             else if (poll() && step()) {
-                if (stand_at_sample()) return;
-                settle();
+                if (stops_at_sample()) return;
+                finish_step();
             }
         }
     }
 
-    void show(const UserLaw& law) const override {
-        ControlLoop<double> rehearsal = loop_;
+    void preview(const UserLaw& law) const override {
+        SampledController<double> rehearsal = sampled_;
         rehearsal.user = law;
         Vec3<double> held;
-        Instant<double> now = instant();
-        rehearsal.attend(true, setup_.clock_rounding(), setup_.plant.arm, now, held);
+        PlantOutput<double> now = plant_output();
+        rehearsal.update(true, setup_.clock_rounding(), setup_.plant.arm, now, held);
     }
 
-    std::unique_ptr<Stepwise> copy() const override { return std::make_unique<AdaptiveRun>(*this); }
+    std::unique_ptr<InteractiveRun> copy() const override { return std::make_unique<AdaptiveRun>(*this); }
 
-    Run so_far() const override { return AdaptiveRun(*this).conclude(); }
+    Run snapshot() const override { return AdaptiveRun(*this).conclude(); }
 
     Run conclude() override {
         if (!is_over()) end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(run_.t_end));
-        note_end();
-        Flows flows = ledger_.flows();
-        flows.leverage = leverage(setup_.plant, run_.peak_force);
-        return finish(now_.y, now_.theta, flows);
+        set_end_metrics();
+        EnergyTotals totals = balance_.totals();
+        totals.force_times_reach = force_times_reach(setup_.plant, run_.peak_force);
+        return finish(state_.y, state_.theta, totals);
     }
 
 private:
-    // The components that there are.
+    // The components in use.
     Y moving() const {
         Y y;
-        std::copy_n(now_.y.begin(), N, y.begin());
+        std::copy_n(state_.y.begin(), N, y.begin());
         return y;
     }
 
@@ -134,133 +137,136 @@ private:
     WallState<double> wall_now() const { return wall_at(setup_.plant.wall, run_.t_end); }
 
     Indentation<double> indentation_now() const {
-        return tip_indentation(setup_.plant, wall_now(), pose(angles(now_.y)), rates(now_.y));
+        return tip_indentation(setup_.plant, wall_now(), pose(angles(state_.y)), rates(state_.y));
     }
 
     double force_now() const {
-        return mode_ == Mode::contact ? normal_force(setup_.plant.contact, indentation_now()) : 0;
+        return mode_ == ContactMode::contact ? normal_force(setup_.plant.contact, indentation_now()) : 0;
     }
 
-    // The solution up to place b within the step has been gone through in the present mode.
-    void note_passage(double b) {
-        if (mode_ == Mode::contact) run_.impulse += watch_.impulse(inside_, 0, b);
+    // Adds the impulse of the last step up to theta = b, in the present contact mode.
+    void add_impulse(double b) {
+        if (mode_ == ContactMode::contact) run_.impulse += search_.impulse(dense_, 0, b);
     }
 
-    void change_mode(const Change& change) {
-        now_.y[work_of_wall] += change.gained;
-        now_.y[dissipated] += change.lost;
-        if (change.makes()) note_event(Event::make, change.t);
-        if (change.breaks()) note_event(Event::brk, change.t);
-        note_change(change, now_.y);
-        if (has_memory(setup_.plant)) tell_controller();
+    void change_mode(const ContactChange& change) {
+        state_.y[work_of_wall] += change.gained;
+        state_.y[dissipated] += change.lost;
+        if (change.makes()) count_event(Event::make, change.t);
+        if (change.breaks()) count_event(Event::brk, change.t);
+        record_contact_change(change, state_.y);
+        if (has_memory(setup_.plant)) update_controller_contact();
     }
 
-    // A continuous controller sees contact as it is; its integral starts anew with each (7.4).
-    void tell_controller() {
+    // A continuous controller knows the true contact; its integral is reset when contact ends (7.4).
+    void update_controller_contact() {
         const Controller<double>& controller = setup_.plant.controller;
         contact_ = is_touching(mode_) ? 1 : 0;
         if (controller.switching == Switching::always) force_phase_ = 1;
         else if (controller.switching == Switching::in_contact) force_phase_ = contact_;
         else force_phase_ = std::max(force_phase_, contact_);
-        if (contact_ == 0 && integrates_force(controller.type)) now_.y[law_at] = 0;
+        if (contact_ == 0 && integrates_force(controller.type)) state_.y[law_at] = 0;
     }
 
-    void note_event(Event::Type type, double t) {
+    void count_event(Event::Type type, double t) {
         if (type == Event::make) {
             run_.contacts += 1;
             if (run_.contacts == 1) run_.first_contact = t;
-            now_.touching_since = t;
+            state_.touching_since = t;
         } else {
             if (std::isnan(run_.first_release)) run_.first_release = t;
-            run_.contact_time += t - now_.touching_since;
+            run_.contact_time += t - state_.touching_since;
         }
-        if (++now_.events > most_events) end(ARM3R_RUN_EVENT_STORM, event_storm(t));
+        if (++state_.events > max_events) end(ARM3R_RUN_EVENT_STORM, event_storm_message(t));
     }
 
     // ---- start
 
     void start() {
-        if (is_touching(mode_)) note_event(Event::make, setup_.start);
-        now_.peak = {force_now(), setup_.start};
+        if (is_touching(mode_)) count_event(Event::make, setup_.start);
+        state_.peak = {force_now(), setup_.start};
         start_memory();
     }
 
-    void set_off() {
-        now_.has_set_off = true;
-        attend();
+    void initialise() {
+        state_.has_started = true;
+        update_controller();
         derive();
-        now_.h = first_step();
+        state_.h = first_step();
         FullState f{};
         std::copy_n(stepper_.f0().begin(), N, f.begin());
-        begin(now_.y, f, mode_, ledger_.energy_at_start());
+        start_rows(state_.y, f, mode_, balance_.energy_at_start());
     }
 
     void start_memory() {
         if constexpr (N == full_size) {
-            tell_controller();
+            update_controller_contact();
             const Plant<double>& plant = setup_.plant;
-            const Sensed<double> truth = instant().seen;
-            for (int i = 0; i < 3; ++i) now_.y[filter_at + i] = truth.f_on_tip[i];
-            stepper_.set(touch(), contact_, force_phase_, infinite);
-            const Sensed<double> sensed = stepper_.right_hand_side().sense(truth.t, wall_now(), truth.pose, truth.q,
-                                                                           truth.qd, truth.f_on_tip, moving());
+            const Measurement<double> truth = plant_output().measurement;
+            for (int i = 0; i < 3; ++i) state_.y[filter_at + i] = truth.f_on_tip[i];
+            stepper_.set(force_mode(), contact_, force_phase_, infinite);
+            const Measurement<double> sensed = stepper_.right_hand_side().measure(
+                truth.t, wall_now(), truth.pose, truth.q, truth.qd, truth.f_on_tip, moving());
             if (has_law(plant.controller.type)) {
                 const auto memory = memory_at_start(plant.controller, sensed);
-                std::copy(memory.begin(), memory.end(), now_.y.begin() + law_at);
+                std::copy(memory.begin(), memory.end(), state_.y.begin() + law_at);
             }
             const Vec3<double> p = momentum(plant.controller.model, truth.pose, truth.qd);
-            for (int i = 0; i < 3; ++i) now_.y[observer_at + i] = p[i];
+            for (int i = 0; i < 3; ++i) state_.y[observer_at + i] = p[i];
         }
     }
 
-    // What a digital controller looks at.
-    Instant<double> instant() const {
+    // The plant's output for a sampled controller.
+    PlantOutput<double> plant_output() const {
         const Plant<double>& plant = setup_.plant;
-        const Pose<double> p = pose(angles(now_.y));
+        const Pose<double> p = pose(angles(state_.y));
         Vec3<double> f(0, 0, 0), n(0, 0, 0);
         double face = 0, contact = 0;
         if (plant.has_wall) {
             const WallState<double> wall = wall_now();
-            if (mode_ == Mode::contact) {
-                const Indentation<double> in = tip_indentation(plant, wall, p, rates(now_.y));
-                f = only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Grip::clipped)).on_tip;
+            if (mode_ == ContactMode::contact) {
+                const Indentation<double> in = tip_indentation(plant, wall, p, rates(state_.y));
+                f = only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Clamping::clamped))
+                        .on_tip;
             }
             n = normal(plant.wall, wall);
             face = dot(n, wall.position) + plant.wall.face_offset;
             contact = dot(n, f) > 0 ? 1 : 0;
         }
-        if (plant.load.on) f = plus(f, load_at(plant.load, run_.t_end));
-        Instant<double> now{{run_.t_end, angles(now_.y), rates(now_.y), p, f, f, n, face, contact, 0}, {}};
+        if (plant.external_force.on) f = plus(f, external_force_at(plant.external_force, run_.t_end));
+        PlantOutput<double> now{{run_.t_end, angles(state_.y), rates(state_.y), p, f, f, n, face, contact, 0}, {}};
         if constexpr (N == full_size)
-            now.f_filtered = {now_.y[filter_at], now_.y[filter_at + 1], now_.y[filter_at + 2]};
+            now.f_filtered = {state_.y[filter_at], state_.y[filter_at + 1], state_.y[filter_at + 2]};
         return now;
     }
 
-    // Whatever a digital controller has to do now; whether its torque may have changed.
-    bool attend() {
-        if (loop_.next() > run_.t_end + setup_.clock_rounding() || !is_going_on()) return false;
-        Instant<double> now = instant();
-        loop_.attend(true, setup_.clock_rounding(), setup_.plant.arm, now, setup_.plant.controller.torque);
-        note_torque();
-        note_known(loop_.known());
-        if (loop_.has_failed()) end(ARM3R_RUN_CONTROLLER, loop_.complaint());
-        if (loop_.user.function && options_.time_limit > 0) read_clock();
+    // Updates a sampled controller if it is due. Returns whether its torque may have changed.
+    bool update_controller() {
+        if (sampled_.next() > run_.t_end + setup_.clock_rounding() || !is_running()) return false;
+        PlantOutput<double> now = plant_output();
+        sampled_.update(true, setup_.clock_rounding(), setup_.plant.arm, now, setup_.plant.controller.torque);
+        record_torque();
+        store_controller_state(sampled_.controller_state());
+        if (sampled_.has_failed()) end(ARM3R_RUN_CONTROLLER, sampled_.error_message());
+        if (sampled_.user.function && options_.time_limit > 0) read_clock();
         return true;
     }
 
-    // Whether the controller has to be asked before the run goes on.
-    bool stand_at_sample() {
-        return now_.waits = is_going_on() && loop_.next_sample() <= run_.t_end + setup_.clock_rounding();
+    // Whether the run must wait for the controller's torque.
+    bool stops_at_sample() {
+        return state_.is_waiting = is_running() && sampled_.next_sample() <= run_.t_end + setup_.clock_rounding();
     }
 
-    Touch touch() const {
-        return mode_ == Mode::contact ? Touch::pressed : mode_ == Mode::separated ? Touch::released : Touch::none;
+    ContactForceMode force_mode() const {
+        return mode_ == ContactMode::contact     ? ContactForceMode::pressed
+               : mode_ == ContactMode::separated ? ContactForceMode::released
+                                                 : ContactForceMode::none;
     }
 
-    // The derivative at the present instant, from where the next step goes.
+    // The derivative at the present instant, where the next step starts.
     void derive() {
-        stepper_.set(touch(), contact_, force_phase_, infinite);
-        stepper_.begin(run_.t_end, moving());
+        stepper_.set(force_mode(), contact_, force_phase_, infinite);
+        stepper_.set_start(run_.t_end, moving());
     }
 
     // ---- steps
@@ -269,7 +275,7 @@ private:
         double largest = 0;
         for (std::size_t i = 0; i < N; i = i + 1 == motion_size ? state_size : i + 1)
             largest =
-                std::max(largest, std::abs(v[i]) / (setup_.solver.atol + setup_.solver.rtol * std::abs(now_.y[i])));
+                std::max(largest, std::abs(v[i]) / (setup_.solver.atol + setup_.solver.rtol * std::abs(state_.y[i])));
         return largest;
     }
 
@@ -287,38 +293,38 @@ private:
         return std::min(100 * trial, by_slope);
     }
 
-    // In which time the fastest link angle turns as far as a step may, at its present rate and acceleration. Motions without
-    // an error of their own, a spin without gravity, a compensated drift, would take steps in which the wall passes unseen
-    // and the work of a turning torque is badly summed.
+    // The time in which the fastest link angle turns by the maximum allowed per step, at its present rate and
+    // acceleration. Motions without an error estimate of their own (a spin without gravity, a compensated drift) would
+    // otherwise take steps in which the wall passes unnoticed and the work of a turning torque is inaccurate.
     double turning_time() const {
         const double turn = std::min(0.25 * pi, fifth_root(1e5 * setup_.solver.rtol));
         const auto fastest = [](const auto& v) {
             return std::max({std::abs(v[3]), std::abs(v[4]), std::abs(v[4] + v[5])});
         };
-        return std::min(turn / fastest(now_.y), std::sqrt(2 * turn / fastest(stepper_.f0())));
+        return std::min(turn / fastest(state_.y), std::sqrt(2 * turn / fastest(stepper_.f0())));
     }
 
-    double largest_step() const {  // (5.2)
+    double max_step() const {  // (5.2)
         const Plant<double>& plant = setup_.plant;
         double h = std::min(setup_.solver.max_step, turning_time());
-        if (plant.has_wall) h = std::min(h, longest_look(plant.wall));
+        if (plant.has_wall) h = std::min(h, max_wall_step(plant.wall));
         if (!stepper_.is_stiff() && plant.acts_on_arm && is_touching(mode_)) {
             const Indentation<double> in = indentation_now();
-            const double quarter = contact_time(plant, wall_now(), pose(angles(now_.y)), in);
+            const double quarter = contact_time(plant, wall_now(), pose(angles(state_.y)), in);
             h = std::min({h, quarter, time_to_break(plant.contact, in, quarter, setup_.solver.rtol)});
         }
         return h;
     }
 
-    // Where a step ends at the latest, and what changes there.
-    struct Bound {
+    // The latest end of the step and the reasons for it.
+    struct StepEnd {
         double t;                       // s
-        bool is_knot, is_jump, is_due;  // of a formula of time alone, that formula jumps; the controller is due
-        double latest;                  // s, what is seen of such formulas before (5.8)
+        bool is_knot, is_jump, is_due;  // a formula of time changes, or jumps; the controller is due
+        double latest;                  // s, where formulas of time are evaluated at the latest (5.8)
     };
 
-    Bound bound() const {
-        const double knot = next_knot(setup_, run_.t_end), due = loop_.next(), rounding = setup_.clock_rounding();
+    StepEnd step_end() const {
+        const double knot = next_knot(setup_, run_.t_end), due = sampled_.next(), rounding = setup_.clock_rounding();
         const double first = std::min({knot, due, setup_.stop});
         const double t = knot <= std::min(first + rounding, setup_.stop) ? knot : first;
         const bool is_knot = t == knot, is_jump = t == next_jump(setup_, run_.t_end);
@@ -326,156 +332,157 @@ private:
         return {t, is_knot, is_jump, due <= t + rounding, has_sides ? just_before(t) : infinite};
     }
 
-    // Whether a step was taken; the rest of it is settle().
+    // Returns whether a step was accepted; finish_step() completes it.
     bool step() {
-        const Bound bound = this->bound();
-        const double rest = bound.t - run_.t_end, wanted = std::min(now_.h, largest_step());
+        const StepEnd step_end = this->step_end();
+        const double rest = step_end.t - run_.t_end, wanted = std::min(state_.h, max_step());
         const bool last = wanted >= rest - setup_.clock_rounding();
-        const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // no sliver of a step at the end
+        const double h = last ? rest : rest < 2 * wanted ? 0.5 * rest : wanted;  // avoids a very short last step
         if (h < 16 * epsilon * std::max(std::abs(run_.t_end), 1e-3) && !last) {
             collapse(h);
             return false;
         }
-        stepper_.set(touch(), contact_, force_phase_, last ? bound.latest : infinite);
+        stepper_.set(force_mode(), contact_, force_phase_, last ? step_end.latest : infinite);
         const Y y = moving();
         const double error = stepper_.attempt(run_.t_end, y, h);
         if (!(error < 1)) {
             reject(h, error);
             return false;
         }
-        stepper_.interpolate(run_.t_end, y, h, inside_);
-        const std::optional<Crossing> crossing = watch_.next(inside_, 0, mode_, now_.peak);
+        stepper_.interpolate(run_.t_end, y, h, dense_);
+        const std::optional<Crossing> crossing = search_.next(dense_, 0, mode_, state_.peak);
         const double theta = crossing ? crossing->theta : 1;
-        const double t1 = crossing ? run_.t_end + theta * h : last ? bound.t : run_.t_end + h;
-        const bool reached = t1 == bound.t;
-        log_until(reached && (bound.is_jump || bound.is_due) ? t1 - setup_.clock_rounding() : t1);
-        if (!is_going_on()) return false;
-        note_passage(theta);
-        if (is_scored_) score_passage(theta, t1);
-        now_.theta = theta;
-        if (crossing) now_.y = state_at_crossing(y, h, theta);
-        else std::copy_n(stepper_.end().begin(), N, now_.y.begin());
+        const double t1 = crossing ? run_.t_end + theta * h : last ? step_end.t : run_.t_end + h;
+        const bool reached = t1 == step_end.t;
+        log_until(reached && (step_end.is_jump || step_end.is_due) ? t1 - setup_.clock_rounding() : t1);
+        if (!is_running()) return false;
+        add_impulse(theta);
+        if (has_performance_) add_performance(theta, t1);
+        state_.theta = theta;
+        if (crossing) state_.y = state_at_crossing(y, h, theta);
+        else std::copy_n(stepper_.end().begin(), N, state_.y.begin());
         const bool came_to_rest = accept(t1);
         if (crossing) change_mode(change_at(setup_.plant, indentation_now(), theta, t1, mode_, crossing->next));
-        now_.taken = {h,
-                      error,
-                      crossing.has_value(),
-                      last,
-                      !(crossing || came_to_rest || (reached && bound.is_knot)),
-                      reached && bound.is_jump};
+        state_.last_step = {h,
+                            error,
+                            crossing.has_value(),
+                            last,
+                            !(crossing || came_to_rest || (reached && step_end.is_knot)),
+                            reached && step_end.is_jump};
         return true;
     }
 
-    // The solution within a step of RODAS4 has one order less than its end, which is not enough for the works: these are taken
-    // from a second step, which ends at the crossing (5.6).
+    // The dense output of RODAS4 has one order less than the end of its step, which is not accurate enough for the
+    // works: these come from a second step, which ends at the crossing (5.6).
     FullState state_at_crossing(const Y& start, double h, double theta) {
-        FullState y = inside_(theta);
+        FullState y = dense_(theta);
         if (stepper_.is_stiff() && std::isfinite(stepper_.attempt(run_.t_end, start, theta * h)))
-            std::copy_n(stepper_.end().begin() + motion_size, ledger_size, y.begin() + motion_size);
+            std::copy_n(stepper_.end().begin() + motion_size, quadrature_count, y.begin() + motion_size);
         return y;
     }
 
-    void settle() {
-        const bool new_torque = attend();
-        stepper_.set(touch(), contact_, force_phase_, infinite);
-        stepper_.accept(run_.t_end, moving(), now_.taken.h, now_.taken.goes_on && !new_torque);
-        ledger_.close(setup_.plant, run_.t_end, now_.y, mode_);
-        const double factor = stepper_.factor(now_.taken.error);
-        now_.h = std::max(now_.taken.h, now_.taken.was_last ? now_.h : 0.0) *
-                 (now_.just_rejected ? std::min(factor, 1.0) : factor);
-        now_.just_rejected = false;
-        if (now_.taken.at_jump) now_.h = std::min(now_.h, first_step());
+    void finish_step() {
+        const bool new_torque = update_controller();
+        stepper_.set(force_mode(), contact_, force_phase_, infinite);
+        stepper_.accept(run_.t_end, moving(), state_.last_step.h, state_.last_step.continues && !new_torque);
+        balance_.update(setup_.plant, run_.t_end, state_.y, mode_);
+        const double factor = stepper_.factor(state_.last_step.error);
+        state_.h = std::max(state_.last_step.h, state_.last_step.was_last ? state_.h : 0.0) *
+                   (state_.just_rejected ? std::min(factor, 1.0) : factor);
+        state_.just_rejected = false;
+        if (state_.last_step.at_jump) state_.h = std::min(state_.h, first_step());
     }
 
     void reject(double h, double error) {
         run_.steps.rejected += 1;
-        now_.just_rejected = true;
-        now_.trial_was_finite = std::isfinite(error);
-        now_.h = now_.trial_was_finite ? h * std::min(1.0, stepper_.factor(error)) : 0.1 * h;
+        state_.just_rejected = true;
+        state_.trial_was_finite = std::isfinite(error);
+        state_.h = state_.trial_was_finite ? h * std::min(1.0, stepper_.factor(error)) : 0.1 * h;
     }
 
     void collapse(double h) {
-        if (now_.trial_was_finite)
+        if (state_.trial_was_finite)
             end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(run_.t_end) +
                                              " s: the motion changes faster than the clock resolves");
         else end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(run_.t_end) + " s");
     }
 
-    // Returns whether a rate that was next to nothing has been made nothing.
+    // Velocities below 1e-140 rad/s are set to 0 (subnormal numbers are slow). Returns whether one was.
     bool accept(double t1) {
         bool came_to_rest = false;
         for (std::size_t i = 3; i < motion_size; ++i) {
-            if (now_.y[i] == 0 || std::abs(now_.y[i]) >= smallest_rate) continue;
-            now_.y[i] = 0;
+            if (state_.y[i] == 0 || std::abs(state_.y[i]) >= min_rate) continue;
+            state_.y[i] = 0;
             came_to_rest = true;
         }
         run_.t_end = t1;
         run_.steps.accepted += 1;
         for (int i = 0; i < 3; ++i)
-            if (std::abs(now_.y[i]) > sincos_limit)
+            if (std::abs(state_.y[i]) > sincos_limit)
                 end(ARM3R_RUN_DIVERGED,
                     "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(run_.t_end) + " s");
-        if (!well_conditioned())
+        if (!is_well_conditioned())
             end(ARM3R_RUN_ILL_CONDITIONED,
                 "the mass matrix is no longer positive definite to rounding at t = " + shortest(run_.t_end) + " s");
         return came_to_rest;
     }
 
-    bool well_conditioned() const {
-        const Mat3<double> M = mass_matrix(setup_.plant.arm, pose(angles(now_.y)));
+    bool is_well_conditioned() const {
+        const Mat3<double> M = mass_matrix(setup_.plant.arm, pose(angles(state_.y)));
         return M(0, 0) > 0 && M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2) > 8 * epsilon * M(1, 1) * M(2, 2);
     }
 
-    // ---- score
+    // ---- performance
 
-    // From the begin of the step to place b in it, at t1.
-    void score_passage(double b, double t1) {
+    // The part of the step from its start to theta = b, which is the instant t1.
+    void add_performance(double b, double t1) {
         const bool is_sampled = setup_.digital.sampling.on;
         const StepView view{setup_,
-                            inside_,
-                            mode_ == Mode::contact,
+                            dense_,
+                            mode_ == ContactMode::contact,
                             contact_,
-                            is_sampled ? loop_.known().force_phase : force_phase_,
+                            is_sampled ? sampled_.controller_state().force_phase : force_phase_,
                             is_sampled ? &setup_.plant.controller.torque : nullptr,
-                            short_of(t1)};
-        if (is_sampled && !Looks(setup_).motion()) add_alone(trapezoid, is_touching(mode_), view, 0, b, tally_);
-        else add_alone(boole, is_touching(mode_), view, 0, b, tally_);
+                            slightly_before(t1)};
+        if (is_sampled && !TrackedQuantities(setup_).motion())
+            add_whole_segment(trapezoid, is_touching(mode_), view, 0, b, sums_);
+        else add_whole_segment(boole, is_touching(mode_), view, 0, b, sums_);
     }
 
-    void note_end() {
+    void set_end_metrics() {
         run_.steps.evaluations = stepper_.evaluations();
-        run_.q = joints_out(angles(now_.y));
-        run_.qd = joints_out(rates(now_.y));
-        run_.tip = plain(tip_position(setup_.plant.arm, pose(angles(now_.y))));
-        note_energies(now_.y, setup_.plant, lost_at_edges_, run_);
-        if (is_touching(mode_)) run_.contact_time += run_.t_end - now_.touching_since;
-        run_.peak_force = now_.peak.force;
-        if (run_.contacts > 0) run_.peak_force_time = now_.peak.t;
+        run_.q = joints_out(angles(state_.y));
+        run_.qd = joints_out(rates(state_.y));
+        run_.tip = without_negative_zero(tip_position(setup_.plant.arm, pose(angles(state_.y))));
+        note_energies(state_.y, setup_.plant, lost_at_edges_, run_);
+        if (is_touching(mode_)) run_.contact_time += run_.t_end - state_.touching_since;
+        run_.peak_force = state_.peak.force;
+        if (run_.contacts > 0) run_.peak_force_time = state_.peak.t;
         run_.final_force = force_now();
-        if (is_scored_) tell_score(tally_, setup_, run_);
+        if (has_performance_) write_performance(sums_, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());
         run_.choices = stepper_.choices();
-        if (known_.identifiable > 0) {
-            run_.stiffness_estimate = known_.stiffness;
-            run_.wall_speed_estimate = known_.wall_speed;
+        if (controller_state_.identifiable > 0) {
+            run_.stiffness_estimate = controller_state_.stiffness;
+            run_.wall_speed_estimate = controller_state_.wall_speed;
         }
     }
 
     Stepper<N> stepper_;
-    ContactWatch watch_;
-    const bool is_scored_ = setup_.is_scored();
+    ContactSearch search_;
+    const bool has_performance_ = setup_.has_performance();
 };
 
 }  // namespace
 
-std::unique_ptr<Stepwise> begin_stepwise(const Setup& setup, const RunOptions& options) {
+std::unique_ptr<InteractiveRun> start_interactive_run(const Setup& setup, const RunOptions& options) {
     if (has_memory(setup.plant)) return std::make_unique<AdaptiveRun<full_size>>(setup, options);
     return std::make_unique<AdaptiveRun<state_size>>(setup, options);
 }
 
 Run run_adaptively(const Setup& setup, const RunOptions& options) {
-    const std::unique_ptr<Stepwise> run = begin_stepwise(setup, options);
-    while (!run->is_over()) run->go_on();
+    const std::unique_ptr<InteractiveRun> run = start_interactive_run(setup, options);
+    while (!run->is_over()) run->advance();
     return run->conclude();
 }
 

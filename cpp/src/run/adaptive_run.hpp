@@ -6,6 +6,6 @@
 namespace arm3r {
 
 Run run_adaptively(const Setup& setup, const RunOptions& options);
-std::unique_ptr<Stepwise> begin_stepwise(const Setup& setup, const RunOptions& options);
+std::unique_ptr<InteractiveRun> start_interactive_run(const Setup& setup, const RunOptions& options);
 
 }  // namespace arm3r

@@ -1,6 +1,6 @@
 #pragma once
-// A run that stands at each sample of its controller until it is told to go on. A copy goes on as the original would, bit
-// for bit.
+// A run that stops at each sample of its controller until advance() is called. A copy continues as the original would,
+// bit for bit.
 
 #include <memory>
 
@@ -8,25 +8,25 @@
 
 namespace arm3r {
 
-class Stepwise {
+class InteractiveRun {
 public:
-    virtual ~Stepwise() = default;
+    virtual ~InteractiveRun() = default;
 
     virtual bool is_over() const = 0;
-    // From the sample where it stands, or from the start, to the next one or to the end of the run.
-    virtual void go_on() = 0;
-    virtual void use(const UserLaw& law) = 0;
-    // Calls a law as the present sample would, to no effect.
-    virtual void show(const UserLaw& law) const = 0;
-    virtual std::unique_ptr<Stepwise> copy() const = 0;
-    // The run as it is now; and as it is, but it is over then.
-    virtual Run so_far() const = 0;
+    // Advances from the present sample, or from the start, to the next one or to the end of the run.
+    virtual void advance() = 0;
+    virtual void set_user_law(const UserLaw& law) = 0;
+    // Calls a law as the present sample would, without an effect on the run.
+    virtual void preview(const UserLaw& law) const = 0;
+    virtual std::unique_ptr<InteractiveRun> copy() const = 0;
+    // A copy of the run up to now; and the run itself, which is then over.
+    virtual Run snapshot() const = 0;
     virtual Run conclude() = 0;
 
 protected:
-    Stepwise() = default;
-    Stepwise(const Stepwise&) = default;
-    Stepwise& operator=(const Stepwise&) = delete;
+    InteractiveRun() = default;
+    InteractiveRun(const InteractiveRun&) = default;
+    InteractiveRun& operator=(const InteractiveRun&) = delete;
 };
 
 }  // namespace arm3r

@@ -14,7 +14,8 @@ Vec3<double> torque_at(const StepView& view, double t, const FullState& y, const
     if (view.held) return *view.held;
     const Plant<double>& plant = view.setup.plant;
     const Vec3<double> q = angles(y);
-    if (!has_memory(plant)) return limited(plant.arm, control(plant.controller, q, p), plant.controller.saturation);
+    if (!has_memory(plant))
+        return limited(plant.arm, feedforward_torque(plant.controller, q, p), plant.controller.saturation);
     RightHandSide<double, double> rhs(plant);
     rhs.law_function = compiled_law<double, double>();
     rhs.contact = view.contact;
@@ -23,9 +24,9 @@ Vec3<double> torque_at(const StepView& view, double t, const FullState& y, const
     return rhs.torque(t, wall, p, q, arm3r::rates(y), f_on_tip, y, rates);
 }
 
-// Where f is largest between a and b, which it rises from and falls to: by golden sections.
+// The maximum of f between a and b by golden sections; f rises from a and falls to b.
 template <class F>
-Maximum summit(F f, double a, double b) {
+Maximum find_maximum(F f, double a, double b) {
     constexpr double golden = 0.6180339887498949;
     constexpr int cuts = 48;
     double x = b - golden * (b - a), y = a + golden * (b - a), at_x = f(x), at_y = f(y);
@@ -39,9 +40,9 @@ Maximum summit(F f, double a, double b) {
     return at_x < at_y ? Maximum{y, at_y} : Maximum{x, at_x};
 }
 
-// Where f comes down to zero, above which it is at a and not at b.
+// The zero of f between a and b; f is positive at a and not at b.
 template <class F>
-double descent(F f, double a, double b) {
+double find_zero(F f, double a, double b) {
     constexpr int halvings = 50;
     for (int i = 0; i < halvings; ++i) {
         const double middle = 0.5 * (a + b);
@@ -50,114 +51,113 @@ double descent(F f, double a, double b) {
     return b;
 }
 
-// One passage, at the places of its rule and between them; places are shares of the passage.
+// Refines one segment between the nodes of its rule. Positions are fractions of the segment.
 template <std::size_t n>
-class CloserLook {
+class SegmentRefinement {
 public:
-    CloserLook(const Rule<n>& rule, const Passage<double>& passage, const StepView& view, double a, double b)
-        : rule_(rule), passage_(passage), view_(view), a_(a), b_(b) {}
+    SegmentRefinement(const Rule<n>& rule, const Segment<double>& segment, const StepView& view, double a, double b)
+        : rule_(rule), segment_(segment), view_(view), a_(a), b_(b) {}
 
-    void judge(const Looks& looks, Tally<double>& tally) const {
-        if (looks.force) {
-            if (passage_.touching) judge_force(tally);
-            judge_rest(tally);
+    void refine(const TrackedQuantities& tracked, PerformanceSums<double>& sums) const {
+        if (tracked.force) {
+            if (segment_.touching) refine_force(sums);
+            refine_settling(sums);
         }
-        if (looks.path) include_summits(&path_error_2_of, 0, tally.largest_path_2);
-        if (looks.limits) judge_limits(tally);
+        if (tracked.path) include_maxima(&path_error_2_of, 0, sums.max_path_2);
+        if (tracked.limits) refine_saturation(sums);
     }
 
 private:
-    using Quantity = double (*)(const Sight<double>&);
+    using Quantity = double (*)(const PerformanceSample<double>&);
 
-    static double path_error_2_of(const Sight<double>& sight) { return sight.path_error_2; }
-    static double shortfall_of(const Sight<double>& sight) { return miss_of(sight); }
-    static double excess_of(const Sight<double>& sight) { return -miss_of(sight); }
-    static double unrest(const Sight<double>& sight) { return unrest_of(sight); }
+    static double path_error_2_of(const PerformanceSample<double>& sample) { return sample.path_error_2; }
+    static double shortfall_of(const PerformanceSample<double>& sample) { return force_error_of(sample); }
+    static double excess_of(const PerformanceSample<double>& sample) { return -force_error_of(sample); }
+    static double band_excess(const PerformanceSample<double>& sample) { return band_excess_of(sample); }
 
-    Sight<double> at(double place) const { return view_(a_ + (b_ - a_) * place); }
+    PerformanceSample<double> at(double place) const { return view_(a_ + (b_ - a_) * place); }
     auto along(Quantity quantity) const {
         return [this, quantity](double place) { return quantity(at(place)); };
     }
-    double known(Quantity quantity, std::size_t j) const { return quantity(passage_.sights[j]); }
+    double sampled(Quantity quantity, std::size_t j) const { return quantity(segment_.samples[j]); }
 
-    // Summits after `from` that exceed the largest value so far.
-    void include_summits(Quantity quantity, double from, double& largest) const {
+    // Includes maxima after `from` that exceed the largest value so far.
+    void include_maxima(Quantity quantity, double from, double& largest) const {
         for (std::size_t j = 1; j + 1 < n; ++j)
-            if (rule_.place[j + 1] > from && top_around(rule_, passage_, quantity, j) > largest)
+            if (rule_.node[j + 1] > from && peak_bound_around(rule_, segment_, quantity, j) > largest)
                 largest = std::max(
-                    largest, summit(along(quantity), std::max(from, rule_.place[j - 1]), rule_.place[j + 1]).value);
+                    largest, find_maximum(along(quantity), std::max(from, rule_.node[j - 1]), rule_.node[j + 1]).value);
     }
 
-    void judge_force(Tally<double>& tally) const {
-        include_summits(&excess_of, 0, tally.overshoot);
+    void refine_force(PerformanceSums<double>& sums) const {
+        include_maxima(&excess_of, 0, sums.overshoot);
         double from = 0;
-        if (!(tally.reached > 0)) {
-            const std::optional<double> reached = first_reach();
+        if (!(sums.reached > 0)) {
+            const std::optional<double> reached = first_time_reached();
             if (!reached) return;
             from = *reached;
-            tally.reached = 1;
+            sums.reached = 1;
             for (std::size_t j = 0; j < n; ++j)
-                if (rule_.place[j] >= from)
-                    tally.largest_miss = std::max(tally.largest_miss, std::abs(known(&shortfall_of, j)));
+                if (rule_.node[j] >= from)
+                    sums.max_force_error = std::max(sums.max_force_error, std::abs(sampled(&shortfall_of, j)));
         }
-        include_summits(&shortfall_of, from, tally.largest_miss);
-        include_summits(&excess_of, from, tally.largest_miss);
+        include_maxima(&shortfall_of, from, sums.max_force_error);
+        include_maxima(&excess_of, from, sums.max_force_error);
     }
 
-    // Where the force first is what is wanted.
-    std::optional<double> first_reach() const {
+    // The first position at which the force reaches the desired one.
+    std::optional<double> first_time_reached() const {
         for (std::size_t j = 0; j < n; ++j) {
-            if (known(&shortfall_of, j) <= 0)
-                return j == 0 ? 0 : descent(along(&shortfall_of), rule_.place[j - 1], rule_.place[j]);
-            if (j == 0 || j + 1 == n || top_around(rule_, passage_, &excess_of, j) < 0) continue;
-            const Maximum top = summit(along(&excess_of), rule_.place[j - 1], rule_.place[j + 1]);
-            if (top.value >= 0) return descent(along(&shortfall_of), rule_.place[j - 1], top.place);
+            if (sampled(&shortfall_of, j) <= 0)
+                return j == 0 ? 0 : find_zero(along(&shortfall_of), rule_.node[j - 1], rule_.node[j]);
+            if (j == 0 || j + 1 == n || peak_bound_around(rule_, segment_, &excess_of, j) < 0) continue;
+            const Maximum top = find_maximum(along(&excess_of), rule_.node[j - 1], rule_.node[j + 1]);
+            if (top.value >= 0) return find_zero(along(&shortfall_of), rule_.node[j - 1], top.position);
         }
         return std::nullopt;
     }
 
-    // Until when the force is outside its band, if it is inside at the end.
-    void judge_rest(Tally<double>& tally) const {
-        if (known(&unrest, n - 1) > 0) return;
+    // The last instant at which the force is outside its band, if it is inside at the end.
+    void refine_settling(PerformanceSums<double>& sums) const {
+        if (sampled(&band_excess, n - 1) > 0) return;
         const auto note = [&](double from, double to) {
-            tally.unsettled_until = passage_.start + passage_.duration * descent(along(&unrest), from, to);
+            sums.unsettled_until = segment_.start + segment_.duration * find_zero(along(&band_excess), from, to);
         };
         for (std::size_t j = n - 1; j-- > 0;) {
-            if (known(&unrest, j) > 0) return note(rule_.place[j], rule_.place[j + 1]);
-            if (j == 0 || !(top_around(rule_, passage_, &unrest, j) > 0)) continue;
-            const Maximum top = summit(along(&unrest), rule_.place[j - 1], rule_.place[j + 1]);
-            if (top.value > 0) return note(top.place, rule_.place[j + 1]);
+            if (sampled(&band_excess, j) > 0) return note(rule_.node[j], rule_.node[j + 1]);
+            if (j == 0 || !(peak_bound_around(rule_, segment_, &band_excess, j) > 0)) continue;
+            const Maximum top = find_maximum(along(&band_excess), rule_.node[j - 1], rule_.node[j + 1]);
+            if (top.value > 0) return note(top.position, rule_.node[j + 1]);
         }
     }
 
-    // What add_passage() leaves out: a passage in part of which a torque is at its limit.
-    void judge_limits(Tally<double>& tally) const {
-        const auto saturated = [](const Sight<double>& sight) { return sight.saturated; };
-        if (highest_of<n>(passage_, saturated) == -highest_of<n>(passage_, [](const auto& s) { return -s.saturated; }))
-            return;
+    // The saturated time of a segment in part of which a torque is at its limit, which add_segment() leaves out.
+    void refine_saturation(PerformanceSums<double>& sums) const {
+        const auto saturated = [](const PerformanceSample<double>& sample) { return sample.saturated; };
+        if (max_of<n>(segment_, saturated) == -max_of<n>(segment_, [](const auto& s) { return -s.saturated; })) return;
         double share = 0;
         for (std::size_t j = 1; j < n; ++j) {
-            const double before = passage_.sights[j - 1].saturated, after = passage_.sights[j].saturated;
-            const double from = rule_.place[j - 1], to = rule_.place[j];
+            const double before = segment_.samples[j - 1].saturated, after = segment_.samples[j].saturated;
+            const double from = rule_.node[j - 1], to = rule_.node[j];
             const auto is_as_before = [&](double place) { return at(place).saturated == before ? 1.0 : -1.0; };
-            const double change = before == after ? to : descent(is_as_before, from, to);
+            const double change = before == after ? to : find_zero(is_as_before, from, to);
             share += before * (change - from) + after * (to - change);
         }
-        tally.saturated_time += passage_.duration * share;
+        sums.saturated_time += segment_.duration * share;
     }
 
     const Rule<n>& rule_;
-    const Passage<double>& passage_;
+    const Segment<double>& segment_;
     const StepView& view_;
     const double a_, b_;
 };
 
 }  // namespace
 
-Sight<double> StepView::operator()(double theta) const {
+PerformanceSample<double> StepView::operator()(double theta) const {
     const Plant<double>& plant = setup.plant;
-    const double t = std::min(inside.t0 + theta * inside.h, latest);
-    const FullState y = inside(theta);
+    const double t = std::min(dense.t0 + theta * dense.h, latest);
+    const FullState y = dense(theta);
     const Pose<double> p = pose(angles(y));
     WallState<double> wall = no_wall<double>();
     Indentation<double> in{};
@@ -165,55 +165,59 @@ Sight<double> StepView::operator()(double theta) const {
     if (plant.has_wall) {
         wall = wall_at(plant.wall, t);
         in = tip_indentation(plant, wall, p, rates(y));
-        if (pressed) f_on_tip = contact_force(plant.wall, wall, plant.contact, in, Grip::clipped).on_tip;
+        if (pressed) f_on_tip = contact_force(plant.wall, wall, plant.contact, in, Clamping::clamped).on_tip;
     }
-    if (plant.load.on) f_on_tip = plus(f_on_tip, load_at(plant.load, t));
-    Sight<double> sight;
-    see_motion(Looks(setup), plant, plant.contact, setup.law(), t, p, wall, in, pressed, force_phase, sight);
-    see_torque(plant.arm, torque_at(*this, t, y, p, wall, f_on_tip), rates(y), sight);
-    return sight;
+    if (plant.external_force.on) f_on_tip = plus(f_on_tip, external_force_at(plant.external_force, t));
+    PerformanceSample<double> sample;
+    sample_motion(TrackedQuantities(setup), plant, plant.contact, setup.controller(), t, p, wall, in, pressed,
+                  force_phase, sample);
+    sample_torque(plant.arm, torque_at(*this, t, y, p, wall, f_on_tip), rates(y), sample);
+    return sample;
 }
 
 template <std::size_t n>
-void look_closer(const Rule<n>& rule, const Passage<double>& passage, const StepView& view, double a, double b,
-                 Tally<double>& tally) {
-    CloserLook<n>(rule, passage, view, a, b).judge(Looks(view.setup), tally);
+void refine_segment(const Rule<n>& rule, const Segment<double>& segment, const StepView& view, double a, double b,
+                    PerformanceSums<double>& sums) {
+    SegmentRefinement<n>(rule, segment, view, a, b).refine(TrackedQuantities(view.setup), sums);
 }
 
 template <std::size_t n>
-void add_alone(const Rule<n>& rule, bool touching, const StepView& view, double a, double b, Tally<double>& tally) {
-    const Inside& inside = view.inside;
-    Passage<double> passage{inside.t0 + a * inside.h, (b - a) * inside.h, touching, {}, {}};
-    for (std::size_t j = 0; j < n; ++j) passage.sights[j] = view(a + (b - a) * rule.place[j]);
+void add_whole_segment(const Rule<n>& rule, bool touching, const StepView& view, double a, double b,
+                       PerformanceSums<double>& sums) {
+    const DenseOutput& dense = view.dense;
+    Segment<double> segment{dense.t0 + a * dense.h, (b - a) * dense.h, touching, {}, {}};
+    for (std::size_t j = 0; j < n; ++j) segment.samples[j] = view(a + (b - a) * rule.node[j]);
     for (std::size_t i = 0; i < 3; ++i)
-        passage.work[i] =
-            view.held ? (*view.held)[i] * (inside.component(i, b) - inside.component(i, a))
-                      : passage.duration * mean_of(rule, passage, [i](const Sight<double>& s) { return s.power[i]; });
-    if (add_passage(Looks(view.setup), rule, true, passage, tally)) look_closer(rule, passage, view, a, b, tally);
+        segment.work[i] =
+            view.held ? (*view.held)[i] * (dense.component(i, b) - dense.component(i, a))
+                      : segment.duration *
+                            mean_of(rule, segment, [i](const PerformanceSample<double>& s) { return s.power[i]; });
+    if (add_segment(TrackedQuantities(view.setup), rule, true, segment, sums))
+        refine_segment(rule, segment, view, a, b, sums);
 }
 
-void tell_score(const Tally<double>& tally, const Setup& setup, Metrics& m) {
-    const Controller<double>& controller = setup.law();
+void write_performance(const PerformanceSums<double>& sums, const Setup& setup, Metrics& m) {
+    const Controller<double>& controller = setup.controller();
     const double duration = m.t_end - setup.start;
-    if (wants_force(controller.type) && m.contacts > 0) {
-        if (tally.touching_time > 0) m.force_error_rms = std::sqrt(tally.miss_2 / tally.touching_time);
-        const bool is_constant = controller.setpoint.pressing == Pressing::constant;
-        m.overshoot = is_constant ? std::max(0.0, m.peak_force - controller.setpoint.force) : tally.overshoot;
-        if (tally.reached > 0) m.force_error_peak = std::max(tally.largest_miss, m.overshoot);
-        if (tally.unsettled_until < m.t_end) m.settling_time = std::max(0.0, tally.unsettled_until - m.first_contact);
+    if (tracks_force(controller.type) && m.contacts > 0) {
+        if (sums.touching_time > 0) m.force_error_rms = std::sqrt(sums.force_error_2 / sums.touching_time);
+        const bool is_constant = controller.reference.force_profile == ForceProfile::constant;
+        m.overshoot = is_constant ? std::max(0.0, m.peak_force - controller.reference.force) : sums.overshoot;
+        if (sums.reached > 0) m.force_error_peak = std::max(sums.max_force_error, m.overshoot);
+        if (sums.unsettled_until < m.t_end) m.settling_time = std::max(0.0, sums.unsettled_until - m.first_contact);
     }
-    if (wants_path(controller.type) && duration > 0) {
-        m.path_error_rms = std::sqrt(tally.path_2 / duration);
-        m.path_error_max = std::sqrt(tally.largest_path_2);
+    if (tracks_path(controller.type) && duration > 0) {
+        m.path_error_rms = std::sqrt(sums.path_2 / duration);
+        m.path_error_max = std::sqrt(sums.max_path_2);
     }
-    m.saturation_share = duration > 0 ? tally.saturated_time / duration : 0;
-    for (std::size_t i = 0; i < 3; ++i) m.work[i] = tally.work[i];
+    m.saturation_share = duration > 0 ? sums.saturated_time / duration : 0;
+    for (std::size_t i = 0; i < 3; ++i) m.work[i] = sums.work[i];
 }
 
-#define ARM3R_RULE(n)                                                                                  \
-    template void look_closer(const Rule<n>&, const Passage<double>&, const StepView&, double, double, \
-                              Tally<double>&);                                                         \
-    template void add_alone(const Rule<n>&, bool, const StepView&, double, double, Tally<double>&);
+#define ARM3R_RULE(n)                                                                                     \
+    template void refine_segment(const Rule<n>&, const Segment<double>&, const StepView&, double, double, \
+                                 PerformanceSums<double>&);                                               \
+    template void add_whole_segment(const Rule<n>&, bool, const StepView&, double, double, PerformanceSums<double>&);
 ARM3R_RULE(2)
 ARM3R_RULE(3)
 ARM3R_RULE(5)

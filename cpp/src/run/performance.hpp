@@ -1,6 +1,7 @@
 #pragma once
-// How well a controller did, in numbers, lane by lane; docs/model.md (8.10). A passage is a piece of a step in which nothing
-// jumps. It is looked at where a rule of quadrature asks for it, and anywhere else where a peak or a limit lies between.
+// Metrics of a controller's performance, lane by lane; docs/model.md (8.10). A segment is a part of a step without
+// jumps. It is sampled at the nodes of a quadrature rule, and elsewhere too if a maximum or a limit may lie between
+// them.
 
 #include <array>
 #include <limits>
@@ -12,30 +13,30 @@
 
 namespace arm3r {
 
-// What is looked at, at one instant.
+// The sampled quantities at one instant.
 template <class T>
-struct Sight {
-    T force{0.0}, force_wanted{0.0};        // N, normal
+struct PerformanceSample {
+    T force{0.0}, desired_force{0.0};       // N, normal
     T path_error_2{0.0};                    // m^2: of the tip; where force is controlled, along the wall only
     T saturated{0.0};                       // 1 where a torque is at its limit
     Vec3<T> power{T(0.0), T(0.0), T(0.0)};  // W, of each torque
 };
 
-// What is worth a look: what a law wants, and limits that there are.
-struct Looks {
+// The quantities that the metrics need: those that the law tracks, and torque limits if there are any.
+struct TrackedQuantities {
     bool force, path, limits;
 
-    explicit Looks(const Setup& setup)
-        : force(wants_force(setup.law().type)),
-          path(wants_path(setup.law().type)),
+    explicit TrackedQuantities(const Setup& setup)
+        : force(tracks_force(setup.controller().type)),
+          path(tracks_path(setup.controller().type)),
           limits(setup.plant.arm.has_torque_limit) {}
     bool motion() const { return force || path; }
 };
 
-// Quadrature over [0, 1] from values at both ends and between.
+// A quadrature rule on [0, 1] with nodes at both ends and between.
 template <std::size_t n>
 struct Rule {
-    std::array<double, n> place, weight;
+    std::array<double, n> node, weight;
 };
 inline constexpr Rule<2> trapezoid{{0, 1}, {0.5, 0.5}};
 inline constexpr Rule<3> simpson{{0, 0.5, 1}, {1.0 / 6, 4.0 / 6, 1.0 / 6}};
@@ -44,191 +45,197 @@ inline constexpr Rule<7> lobatto{
     {0, 0.08488805186071657, 0.2655756032646429, 0.5, 0.7344243967353571, 0.9151119481392834, 1},
     {1.0 / 42, 0.13841302368078295, 0.21587269060493133, 128.0 / 525, 0.21587269060493133, 0.13841302368078295,
      1.0 / 42}};
-inline constexpr std::size_t most_sights = 7;
+inline constexpr std::size_t max_segment_samples = 7;
 
 template <class T>
-struct Passage {
+struct Segment {
     using Mask = typename Lanes<T>::Mask;
 
     T start{0.0}, duration{0.0};  // s
-    Mask touching = false;        // contact lasts
-    std::array<Sight<T>, most_sights> sights;
+    Mask touching = false;        // in contact during the segment
+    std::array<PerformanceSample<T>, max_segment_samples> samples;
     Vec3<T> work{T(0.0), T(0.0), T(0.0)};  // J, of each torque
 };
 
-// Just before t: the end of a passage, where a formula of time may jump, is seen from within.
+// An instant just before t: the end of a segment, where a formula of time may jump, is evaluated before the jump.
 template <class T>
-ARM3R_INLINE T short_of(const T& t) {
+ARM3R_INLINE T slightly_before(const T& t) {
     return t - std::numeric_limits<double>::epsilon() * abs(t);
 }
 
-// ---- what there is to see
+// ---- samples
 
-// Square of the tip's distance from its reference; of angles, where they put the tip of the true arm.
+// The squared distance of the tip from its reference; joint angles are converted by the true arm.
 template <class P, class L, class T>
 ARM3R_INLINE T path_error_2(const Arm<P>& arm, const Controller<L>& controller, const T& t, const Vec3<T>& tip,
                             const Vec3<T>& n, const T& force_phase) {
-    const Wanted<T> wanted = wanted_at(controller.setpoint, t);
-    const Vec3<T> goal = controller.setpoint.in_joints ? tip_position(arm, pose(wanted.position)) : wanted.position;
+    const DesiredMotion<T> desired = desired_motion_at(controller.reference, t);
+    const Vec3<T> goal = controller.reference.in_joints ? tip_position(arm, pose(desired.position)) : desired.position;
     const Vec3<T> off = minus(tip, goal);
-    const T across = wants_force(controller.type) ? T(force_phase * dot(n, off)) : T(0.0);
+    const T across = tracks_force(controller.type) ? T(force_phase * dot(n, off)) : T(0.0);
     return max(T(0.0), T(dot(off, off) - across * across));
 }
 
-// Force and path; `pressed`: where the law of the contact holds.
+// Force and path error. `pressed`: where the contact law acts.
 template <class P, class L, class T, class M>
-ARM3R_INLINE void see_motion(const Looks& looks, const Plant<P>& plant, const Contact<P>& contact,
-                             const Controller<L>& law, const T& t, const Pose<T>& p, const WallState<T>& wall,
-                             const Indentation<T>& in, const M& pressed, const T& force_phase, Sight<T>& sight) {
+ARM3R_INLINE void sample_motion(const TrackedQuantities& tracked, const Plant<P>& plant, const Contact<P>& contact,
+                                const Controller<L>& controller, const T& t, const Pose<T>& p, const WallState<T>& wall,
+                                const Indentation<T>& in, const M& pressed, const T& force_phase,
+                                PerformanceSample<T>& sample) {
     const T o(0.0);
-    if (looks.force) {
-        sight.force = select(pressed, max(o, push(contact, in).total), o);
-        sight.force_wanted = force_wanted_at(law.setpoint, t);
+    if (tracked.force) {
+        sample.force = select(pressed, max(o, normal_force_law(contact, in).total), o);
+        sample.desired_force = desired_force_at(controller.reference, t);
     }
-    if (looks.path)
-        sight.path_error_2 =
-            path_error_2(plant.arm, law, t, tip_position(plant.arm, p), normal(plant.wall, wall), force_phase);
+    if (tracked.path)
+        sample.path_error_2 =
+            path_error_2(plant.arm, controller, t, tip_position(plant.arm, p), normal(plant.wall, wall), force_phase);
 }
 
 template <class P, class T>
-ARM3R_INLINE void see_torque(const Arm<P>& arm, const Vec3<T>& tau, const Vec3<T>& qd, Sight<T>& sight) {
-    for (int i = 0; i < 3; ++i) sight.power[i] = tau[i] * qd[i];
+ARM3R_INLINE void sample_torque(const Arm<P>& arm, const Vec3<T>& tau, const Vec3<T>& qd,
+                                PerformanceSample<T>& sample) {
+    for (int i = 0; i < 3; ++i) sample.power[i] = tau[i] * qd[i];
     if (!arm.has_torque_limit) return;
-    sight.saturated = T(0.0);
-    for (int i = 0; i < 3; ++i) sight.saturated = select(abs(tau[i]) >= arm.torque_limit[i], T(1.0), sight.saturated);
+    sample.saturated = T(0.0);
+    for (int i = 0; i < 3; ++i) sample.saturated = select(abs(tau[i]) >= arm.torque_limit[i], T(1.0), sample.saturated);
 }
 
-// ---- what becomes of it
+// ---- sums over the run
 
 template <class T>
-struct Tally {
-    T touching_time{0.0}, miss_2{0.0}, reached{0.0}, largest_miss{0.0}, overshoot{0.0};
+struct PerformanceSums {
+    T touching_time{0.0}, force_error_2{0.0}, reached{0.0}, max_force_error{0.0}, overshoot{0.0};
     T unsettled_until{-std::numeric_limits<double>::infinity()};  // s
-    T path_2{0.0}, largest_path_2{0.0}, saturated_time{0.0};
+    T path_2{0.0}, max_path_2{0.0}, saturated_time{0.0};
     Vec3<T> work{T(0.0), T(0.0), T(0.0)};
 };
 
-template <class F, class... Tallies>
-ARM3R_INLINE void each_tally_number(F f, Tallies&... t) {
-    f(t.touching_time...), f(t.miss_2...), f(t.reached...), f(t.largest_miss...), f(t.overshoot...);
-    f(t.unsettled_until...), f(t.path_2...), f(t.largest_path_2...), f(t.saturated_time...);
+template <class F, class... Sums>
+ARM3R_INLINE void each_sum(F f, Sums&... t) {
+    f(t.touching_time...), f(t.force_error_2...), f(t.reached...), f(t.max_force_error...), f(t.overshoot...);
+    f(t.unsettled_until...), f(t.path_2...), f(t.max_path_2...), f(t.saturated_time...);
     f(t.work[0]...), f(t.work[1]...), f(t.work[2]...);
 }
 
-inline constexpr double settled_share = 0.05;
+inline constexpr double settling_band = 0.05;
 
 template <class T>
-ARM3R_INLINE T miss_of(const Sight<T>& sight) {
-    return sight.force_wanted - sight.force;
+ARM3R_INLINE T force_error_of(const PerformanceSample<T>& sample) {
+    return sample.desired_force - sample.force;
 }
-// Above zero where the force is not within its band.
+// Positive where the force is outside its band.
 template <class T>
-ARM3R_INLINE T unrest_of(const Sight<T>& sight) {
-    return abs(miss_of(sight)) - settled_share * abs(sight.force_wanted);
+ARM3R_INLINE T band_excess_of(const PerformanceSample<T>& sample) {
+    return abs(force_error_of(sample)) - settling_band * abs(sample.desired_force);
 }
 
-// How high a quantity may rise around place j of a rule: to the top of the parabola through it and its two neighbours, and
-// as far again above the highest of them. Minus infinity where the parabola has no top between them.
+// A bound for a quantity around node j of a rule: the maximum of the parabola through the node and its two neighbours,
+// plus its height above the highest of them. Minus infinity if the parabola has no maximum between them.
 template <std::size_t n, class T, class F>
-ARM3R_INLINE T top_around(const Rule<n>& rule, const Passage<T>& passage, F quantity, std::size_t j) {
-    const double before = rule.place[j] - rule.place[j - 1], after = rule.place[j + 1] - rule.place[j];
-    const T a = quantity(passage.sights[j - 1]), b = quantity(passage.sights[j]), c = quantity(passage.sights[j + 1]);
+ARM3R_INLINE T peak_bound_around(const Rule<n>& rule, const Segment<T>& segment, F quantity, std::size_t j) {
+    const double before = rule.node[j] - rule.node[j - 1], after = rule.node[j + 1] - rule.node[j];
+    const T a = quantity(segment.samples[j - 1]), b = quantity(segment.samples[j]),
+            c = quantity(segment.samples[j + 1]);
     const T rise = (b - a) * (1 / before), fall = (c - b) * (1 / after);
     const T bend = (fall - rise) * (1 / (before + after));
-    const T slope = rise - bend * before;  // at the first of the three
+    const T slope = rise - bend * before;  // at the first of the three nodes
     const auto turns = slope > T(0.0) && fall + bend * after < T(0.0);
     const T top = a - slope * slope / (4.0 * select(turns, bend, T(-1.0)));
     return select(turns, T(2.0 * top - max(a, max(b, c))), T(-std::numeric_limits<double>::infinity()));
 }
 
 template <std::size_t n, class T, class F>
-ARM3R_INLINE T top_between(const Rule<n>& rule, const Passage<T>& passage, F quantity) {
+ARM3R_INLINE T peak_bound(const Rule<n>& rule, const Segment<T>& segment, F quantity) {
     T highest(-std::numeric_limits<double>::infinity());
-    for (std::size_t j = 1; j + 1 < n; ++j) highest = max(highest, top_around(rule, passage, quantity, j));
+    for (std::size_t j = 1; j + 1 < n; ++j) highest = max(highest, peak_bound_around(rule, segment, quantity, j));
     return highest;
 }
 
 template <std::size_t n, class T, class F>
-ARM3R_INLINE T mean_of(const Rule<n>& rule, const Passage<T>& passage, F quantity) {
+ARM3R_INLINE T mean_of(const Rule<n>& rule, const Segment<T>& segment, F quantity) {
     T sum(0.0);
-    for (std::size_t j = 0; j < n; ++j) sum = sum + rule.weight[j] * quantity(passage.sights[j]);
+    for (std::size_t j = 0; j < n; ++j) sum = sum + rule.weight[j] * quantity(segment.samples[j]);
     return sum;
 }
 
 template <std::size_t n, class T, class F>
-ARM3R_INLINE T highest_of(const Passage<T>& passage, F quantity) {
-    T most = quantity(passage.sights[0]);
-    for (std::size_t j = 1; j < n; ++j) most = max(most, T(quantity(passage.sights[j])));
+ARM3R_INLINE T max_of(const Segment<T>& segment, F quantity) {
+    T most = quantity(segment.samples[0]);
+    for (std::size_t j = 1; j < n; ++j) most = max(most, T(quantity(segment.samples[j])));
     return most;
 }
 
-// Adds a passage, where `moved`; returns where it has to be looked at more closely (look_closer).
+// Adds a segment where `moved`. Returns the lanes in which it must be refined (refine_segment).
 template <std::size_t n, class T, class M>
-ARM3R_INLINE M add_passage(const Looks& looks, const Rule<n>& rule, const M& moved, const Passage<T>& passage,
-                           Tally<T>& tally) {
-    const T o(0.0), dt = select(moved, passage.duration, o);
-    for (int i = 0; i < 3; ++i) tally.work[i] = tally.work[i] + select(moved, passage.work[i], o);
-    M closer = false;
-    if (looks.force) {
-        const auto miss = [](const Sight<T>& s) ARM3R_INLINE_LAMBDA { return miss_of(s); };
-        const auto excess = [](const Sight<T>& s) ARM3R_INLINE_LAMBDA { return T(-miss_of(s)); };
-        const auto unrest = [](const Sight<T>& s) ARM3R_INLINE_LAMBDA { return unrest_of(s); };
-        const auto square = [](const Sight<T>& s) ARM3R_INLINE_LAMBDA { return T(miss_of(s) * miss_of(s)); };
-        const auto in_touch = moved && passage.touching, after = in_touch && tally.reached > o;
-        const T most = highest_of<n>(passage, excess), least = highest_of<n>(passage, miss);
-        tally.touching_time = tally.touching_time + select(in_touch, dt, o);
-        tally.miss_2 = tally.miss_2 + select(in_touch, T(dt * mean_of(rule, passage, square)), o);
-        tally.overshoot = max_where(in_touch, tally.overshoot, most);
-        tally.largest_miss = max_where(after, tally.largest_miss, max(most, least));
-        const auto ends_unsettled = moved && unrest_of(passage.sights[n - 1]) > o;
-        tally.unsettled_until = select(ends_unsettled, T(passage.start + passage.duration), tally.unsettled_until);
-        const T top = top_between(rule, passage, excess);
-        closer = closer || (in_touch && (top > tally.overshoot || (!(tally.reached > o) && max(most, top) >= o)));
-        closer = closer || (after && max(top, top_between(rule, passage, miss)) > tally.largest_miss);
-        const T unrest_within = max(highest_of<n>(passage, unrest), top_between(rule, passage, unrest));
-        closer = closer || (moved && !ends_unsettled && unrest_within > o);
+ARM3R_INLINE M add_segment(const TrackedQuantities& tracked, const Rule<n>& rule, const M& moved,
+                           const Segment<T>& segment, PerformanceSums<T>& sums) {
+    const T o(0.0), dt = select(moved, segment.duration, o);
+    for (int i = 0; i < 3; ++i) sums.work[i] = sums.work[i] + select(moved, segment.work[i], o);
+    M unresolved = false;
+    if (tracked.force) {
+        const auto shortfall = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return force_error_of(s); };
+        const auto excess = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return T(-force_error_of(s)); };
+        const auto band_excess = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return band_excess_of(s); };
+        const auto square = [](const PerformanceSample<T>& s)
+                                ARM3R_INLINE_LAMBDA { return T(force_error_of(s) * force_error_of(s)); };
+        const auto in_touch = moved && segment.touching, after = in_touch && sums.reached > o;
+        const T most = max_of<n>(segment, excess), least = max_of<n>(segment, shortfall);
+        sums.touching_time = sums.touching_time + select(in_touch, dt, o);
+        sums.force_error_2 = sums.force_error_2 + select(in_touch, T(dt * mean_of(rule, segment, square)), o);
+        sums.overshoot = max_where(in_touch, sums.overshoot, most);
+        sums.max_force_error = max_where(after, sums.max_force_error, max(most, least));
+        const auto ends_unsettled = moved && band_excess_of(segment.samples[n - 1]) > o;
+        sums.unsettled_until = select(ends_unsettled, T(segment.start + segment.duration), sums.unsettled_until);
+        const T top = peak_bound(rule, segment, excess);
+        unresolved = unresolved || (in_touch && (top > sums.overshoot || (!(sums.reached > o) && max(most, top) >= o)));
+        unresolved = unresolved || (after && max(top, peak_bound(rule, segment, shortfall)) > sums.max_force_error);
+        const T band_excess_within = max(max_of<n>(segment, band_excess), peak_bound(rule, segment, band_excess));
+        unresolved = unresolved || (moved && !ends_unsettled && band_excess_within > o);
     }
-    if (looks.path) {
-        const auto square = [](const Sight<T>& s) ARM3R_INLINE_LAMBDA { return s.path_error_2; };
-        tally.path_2 = tally.path_2 + dt * mean_of(rule, passage, square);
-        tally.largest_path_2 = max_where(moved, tally.largest_path_2, highest_of<n>(passage, square));
-        closer = closer || (moved && top_between(rule, passage, square) > tally.largest_path_2);
+    if (tracked.path) {
+        const auto square = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.path_error_2; };
+        sums.path_2 = sums.path_2 + dt * mean_of(rule, segment, square);
+        sums.max_path_2 = max_where(moved, sums.max_path_2, max_of<n>(segment, square));
+        unresolved = unresolved || (moved && peak_bound(rule, segment, square) > sums.max_path_2);
     }
-    if (looks.limits) {
-        const auto saturated = [](const Sight<T>& s) ARM3R_INLINE_LAMBDA { return s.saturated; };
-        const T share = mean_of(rule, passage, saturated);
+    if (tracked.limits) {
+        const auto saturated = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.saturated; };
+        const T share = mean_of(rule, segment, saturated);
         const auto changes = moved && share > T(0.0) && share < T(1 - 1e-9);
-        tally.saturated_time = tally.saturated_time + select(changes, o, T(dt * passage.sights[0].saturated));
-        closer = closer || changes;
+        sums.saturated_time = sums.saturated_time + select(changes, o, T(dt * segment.samples[0].saturated));
+        unresolved = unresolved || changes;
     }
-    return closer;
+    return unresolved;
 }
 
 // ---- one lane, in doubles
 
-// What there is to see within a step in one mode of contact, at any share theta of the step.
+// Performance samples at any theta of a step, in one contact mode.
 struct StepView {
     const Setup& setup;
-    const Inside& inside;
-    bool pressed = false;                                     // the law of the contact holds
-    double contact = 0;                                       // as a continuous controller takes it
-    double force_phase = 0;                                   // of whatever controller there is
-    const Vec3<double>* held = nullptr;                       // N m, the torque of a digital one
-    double latest = std::numeric_limits<double>::infinity();  // s: formulas of time alone hold until then
+    const DenseOutput& dense;
+    bool pressed = false;                // the contact law acts
+    double contact = 0;                  // as a continuous controller knows it
+    double force_phase = 0;              // of either kind of controller
+    const Vec3<double>* held = nullptr;  // N m, the torque of a sampled controller
+    // s: formulas of time are evaluated at this instant at the latest
+    double latest = std::numeric_limits<double>::infinity();
 
-    Sight<double> operator()(double theta) const;
+    PerformanceSample<double> operator()(double theta) const;
 };
 
-// What lies between the places of a rule; the passage goes from place a to place b of the step.
+// Refines a segment between the nodes of its rule; it goes from theta = a to b of the step.
 template <std::size_t n>
-void look_closer(const Rule<n>& rule, const Passage<double>& passage, const StepView& view, double a, double b,
-                 Tally<double>& tally);
+void refine_segment(const Rule<n>& rule, const Segment<double>& segment, const StepView& view, double a, double b,
+                    PerformanceSums<double>& sums);
 
-// The passage from place a to place b of the step, all of it.
+// Adds the whole segment from theta = a to b of the step.
 template <std::size_t n>
-void add_alone(const Rule<n>& rule, bool touching, const StepView& view, double a, double b, Tally<double>& tally);
+void add_whole_segment(const Rule<n>& rule, bool touching, const StepView& view, double a, double b,
+                       PerformanceSums<double>& sums);
 
-// Into the metrics.
-void tell_score(const Tally<double>& tally, const Setup& setup, Metrics& metrics);
+// Writes the sums into the metrics.
+void write_performance(const PerformanceSums<double>& sums, const Setup& setup, Metrics& metrics);
 
 }  // namespace arm3r

@@ -18,66 +18,66 @@ const Setup& small_enough(const Setup& setup, bool rows) {
 
 }  // namespace
 
-Recorder::Recorder(const Setup& setup, const RunOptions& options)
+RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
     : setup_(small_enough(setup, options.rows)), options_(options) {
     run_.t_end = setup_.start;
-    run_.has_user_law = setup_.law().type == Controls::user;
+    run_.has_user_law = setup_.controller().type == ControllerType::user;
     if (!options.rows) return;
-    rows().reserve();
+    row_log().reserve();
     run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
-    run_.torque_limit = plain(setup_.plant.arm.torque_limit);
-    run_.events.reserve(static_cast<std::size_t>(most_events));
-    run_.warnings = likely_slips(setup);
+    run_.torque_limit = without_negative_zero(setup_.plant.arm.torque_limit);
+    run_.events.reserve(static_cast<std::size_t>(max_events));
+    run_.warnings = scenario_warnings(setup);
 }
 
-void Recorder::begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start) {
+void RunRecorder::start_rows(const FullState& y, const FullState& f, ContactMode mode, double energy_at_start) {
     mode_ = mode;
     energy_at_start_ = energy_at_start;
     if (is_touching(mode)) record(Event::make, setup_.start, y);
     constexpr double a_moment = 1e-3;  // s
     FullState ahead;
     for (std::size_t i = 0; i < full_size; ++i) ahead[i] = y[i] + a_moment * f[i];
-    inside_.take(hermite(setup_.start, a_moment, y, f, ahead, f));
+    dense_.assign(hermite(setup_.start, a_moment, y, f, ahead, f));
     if (options_.rows && setup_.stop > setup_.start)
-        rows().log(scene(), setup_.start, y, 0.0);  // whatever becomes of the first step
+        row_log().log(row_context(), setup_.start, y, 0.0);  // whatever becomes of the first step
 }
 
-void Recorder::note_change(const Change& change, const FullState& y) {
+void RunRecorder::record_contact_change(const ContactChange& change, const FullState& y) {
     log_until(change.t);
-    inside_.c[0][work_of_wall] += change.gained;  // for the rows of this step that are still to come
-    inside_.c[0][dissipated] += change.lost;
+    dense_.c[0][work_of_wall] += change.gained;  // for the rows of this step that are still to come
+    dense_.c[0][dissipated] += change.lost;
     lost_at_edges_ += change.lost_at_edge();
     if (change.makes()) record(Event::make, change.t, y);
     if (change.breaks()) record(Event::brk, change.t, y);
     mode_ = change.to;
 }
 
-void Recorder::record(Event::Type type, double t, const FullState& y) {
-    if (options_.rows && double(run_.events.size()) < most_events)
+void RunRecorder::record(Event::Type type, double t, const FullState& y) {
+    if (options_.rows && double(run_.events.size()) < max_events)
         run_.events.push_back({type, t, joints_out(angles(y)), joints_out(rates(y)),
-                               plain(tip_position(setup_.plant.arm, pose(angles(y))))});
+                               without_negative_zero(tip_position(setup_.plant.arm, pose(angles(y))))});
 }
 
-std::array<double, 3> Recorder::joints_out(const Vec3<double>& v) const {
-    return plain(setup_.simscape ? flipped(v) : v);
+std::array<double, 3> RunRecorder::joints_out(const Vec3<double>& v) const {
+    return without_negative_zero(setup_.simscape ? change_convention(v) : v);
 }
 
-std::string Recorder::at_time(double t) const { return " at t = " + shortest(t) + " s"; }
+std::string RunRecorder::at_time(double t) const { return " at t = " + shortest(t) + " s"; }
 
-void Recorder::end(arm3r_outcome outcome, std::string message) {
+void RunRecorder::end(arm3r_outcome outcome, std::string message) {
     if (run_.outcome != ARM3R_RUN_OK) return;
     run_.outcome = outcome;
     run_.message = std::move(message);
 }
 
-bool Recorder::poll() {
+bool RunRecorder::poll() {
     const bool stop = (options_.stop && *options_.stop) || (options_.should_stop && *options_.should_stop);
     if (stop) end(ARM3R_RUN_STOPPED, "stopped" + at_time(run_.t_end));
     if (++polls_ % 256 == 0) read_clock();
-    return is_going_on();
+    return is_running();
 }
 
-void Recorder::read_clock() {
+void RunRecorder::read_clock() {
     const double elapsed = stopwatch_.seconds();
     if (options_.time_limit > 0 && elapsed > options_.time_limit)
         end(ARM3R_RUN_BUDGET,
@@ -90,25 +90,25 @@ void Recorder::read_clock() {
     if (answer > 0) end(ARM3R_RUN_STOPPED, "stopped" + at_time(run_.t_end));
 }
 
-// What can be seen of the cause of a bad end, and else what may help.
-void Recorder::explain(const FullState& y) {
+// Adds the cause of a bad end to the message, if it is known, or else advice.
+void RunRecorder::explain(const FullState& y) {
     const auto is = [&](arm3r_outcome outcome) { return run_.outcome == outcome; };
     const bool is_numerical = is(ARM3R_RUN_DIVERGED) || is(ARM3R_RUN_ENERGY) || is(ARM3R_RUN_STEP_COLLAPSE);
     if (!is_numerical && !is(ARM3R_RUN_EVENT_STORM) && !is(ARM3R_RUN_BUDGET)) return;
     std::optional<std::string> cause;
-    if (setup_.digital.sampling.on) cause = swings_.complaint(setup_.digital.sampling.period);
+    if (setup_.digital.sampling.on) cause = oscillation_.error_message(setup_.digital.sampling.period);
     if (!cause) cause = singular_pose(setup_, run_, angles(y));
     if (cause) run_.message += "; " + *cause;
     else if (is(ARM3R_RUN_ENERGY)) run_.message += std::string("; ") + accuracy_advice(setup_.solver);
 }
 
-Run Recorder::finish(const FullState& y, double theta, const Flows& flows) {
-    if (is_going_on()) {
+Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& totals) {
+    if (is_running()) {
         log_until(run_.t_end);
-        if (options_.rows) rows().log(scene(), run_.t_end, y, theta);
-        if (const std::optional<std::string> complaint = balance_complaint(setup_.solver, flows)) {
-            if (is_strict(setup_.solver)) end(ARM3R_RUN_ENERGY, *complaint);
-            else run_.warnings.push_back(*complaint + "; " + accuracy_advice(setup_.solver));
+        if (options_.rows) row_log().log(row_context(), run_.t_end, y, theta);
+        if (const std::optional<std::string> error_message = balance_error(setup_.solver, totals)) {
+            if (is_strict(setup_.solver)) end(ARM3R_RUN_ENERGY, *error_message);
+            else run_.warnings.push_back(*error_message + "; " + accuracy_advice(setup_.solver));
         }
     }
     explain(y);
@@ -120,9 +120,9 @@ Run Recorder::finish(const FullState& y, double theta, const Flows& flows) {
             "the point that the admittance gives its joint loop is out of the arm's reach from t = " +
             shortest(run_.out_of_reach_since) + " s on, by at most " + shortest(run_.out_of_reach_by) +
             " m; the arm is stretched towards it");
-    run_.t_end = std::max(run_.t_end, rows().last_time());
-    run_.ledger_residual = flows.residual;
-    run_.energy_residual_max = std::max(run_.energy_residual_max, flows.residual);
+    run_.t_end = std::max(run_.t_end, row_log().last_time());
+    run_.ledger_residual = totals.residual;
+    run_.energy_residual_max = std::max(run_.energy_residual_max, totals.residual);
     run_.elapsed_s = stopwatch_.seconds();
     return std::move(run_);
 }

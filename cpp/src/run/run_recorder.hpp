@@ -1,5 +1,5 @@
 #pragma once
-// What every method of simulation shares: the rows, events and messages of a run, and the questions whether to go on.
+// What every method of simulation shares: the rows, events and messages of a run, and when it stops.
 
 #include <chrono>
 
@@ -9,18 +9,18 @@
 
 namespace arm3r {
 
-inline constexpr double most_events = 4096;
+inline constexpr double max_events = 4096;
 
-// The time since it was made; a copy starts anew.
+// The time since it was made; a copy starts at zero.
 class Stopwatch {
 public:
     Stopwatch() = default;
     Stopwatch(const Stopwatch&) {}
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
 
 private:
     using Clock = std::chrono::steady_clock;
-    const Clock::time_point begun_ = Clock::now();
+    const Clock::time_point started_ = Clock::now();
 };
 
 inline void note_energies(const FullState& y, const Plant<double>& plant, double lost_at_edges, Metrics& metrics) {
@@ -30,78 +30,80 @@ inline void note_energies(const FullState& y, const Plant<double>& plant, double
     metrics.dissipated_parts = dissipated_parts(plant, y, lost_at_edges);
 }
 
-// A copy goes on by itself: no member refers to another one.
-class Recorder {
+// A copy continues by itself: no member refers to another one.
+class RunRecorder {
 public:
     // Throws Error where the run is too large.
-    Recorder(const Setup& setup, const RunOptions& options);
-    Recorder(const Recorder&) = default;
-    Recorder& operator=(const Recorder&) = delete;
+    RunRecorder(const Setup& setup, const RunOptions& options);
+    RunRecorder(const RunRecorder&) = default;
+    RunRecorder& operator=(const RunRecorder&) = delete;
 
 protected:
-    // The first row, and the present mode. Before the first step the solution is a straight line.
-    void begin(const FullState& y, const FullState& f, Mode mode, double energy_at_start);
+    // Writes the first row and sets the present mode. Before the first step the dense output is a straight line.
+    void start_rows(const FullState& y, const FullState& f, ContactMode mode, double energy_at_start);
 
-    // Whether there are rows before t still to log.
-    bool is_row_due(double t) { return options_.rows && rows().is_due(t); }
-    // All rows before t, from the solution within the last step.
+    // Whether there is a row before t that is not written yet.
+    bool is_row_due(double t) { return options_.rows && row_log().is_due(t); }
+    // Writes all rows before t, from the dense output of the last step.
     void log_until(double t) {
-        if (options_.rows) rows().log_until(t, scene(), [this] { return poll(); });
+        if (options_.rows) row_log().log_until(t, row_context(), [this] { return poll(); });
     }
 
-    // What a digital controller and the estimator know from now on; a continuous law takes the wall for so stiff.
-    void note_known(const Known<double>& known) {
-        known_ = known;
+    // The state of the sampled controller and of the estimator from now on; a continuous law uses the estimated
+    // stiffness.
+    void store_controller_state(const ControllerState<double>& controller_state) {
+        controller_state_ = controller_state;
         Controller<double>& law = setup_.plant.controller;
-        if (asks_estimator(law) && known.identifiable > 0) law.gains.assumed_stiffness = known.stiffness;
+        if (asks_estimator(law) && controller_state.identifiable > 0)
+            law.gains.assumed_stiffness = controller_state.stiffness;
     }
 
-    // The torque of a digital controller that acts from now on.
-    void note_torque() { swings_.note(run_.t_end, setup_.plant.controller.torque); }
+    // The torque of a sampled controller that acts from now on.
+    void record_torque() { oscillation_.include(run_.t_end, setup_.plant.controller.torque); }
 
-    // A change of contact at place theta within the last step: its rows before, the event, and what it cost.
-    void note_change(const Change& change, const FullState& y);
+    // Records a change of contact at theta in the last step: the rows before it, the event, and its energy.
+    void record_contact_change(const ContactChange& change, const FullState& y);
 
     void end(arm3r_outcome outcome, std::string message);
-    bool is_going_on() const { return run_.outcome == ARM3R_RUN_OK; }
-    // Whether to go on; the clock is read now and then only.
+    bool is_running() const { return run_.outcome == ARM3R_RUN_OK; }
+    // Whether the run continues; the clock is read now and then only.
     bool poll();
     void read_clock();
 
-    // The last row, the verdict of the books, and what is left to say.
-    Run finish(const FullState& y, double theta, const Flows& flows);
+    // Writes the last row, checks the energy balance, and adds messages and warnings.
+    Run finish(const FullState& y, double theta, const EnergyTotals& totals);
 
     std::array<double, 3> joints_out(const Vec3<double>& v) const;
     std::string at_time(double t) const;  // " at t = 1.5 s"
 
     Stopwatch stopwatch_;
-    Setup setup_;  // of its plant, a digital controller changes the torque
+    Setup setup_;  // a sampled controller changes the torque of its plant
     const RunOptions options_;
     Run run_;  // its t_end is the present time
-    Mode mode_ = Mode::free;
-    Inside inside_;                         // the solution within the last step
-    Known<double> known_;                   // to a digital controller
-    double contact_ = 0, force_phase_ = 0;  // to a continuous one
-    double lost_at_edges_ = 0;              // J, by springs that lose the tip across an edge of the plate
+    ContactMode mode_ = ContactMode::free;
+    DenseOutput dense_;                         // the solution within the last step
+    ControllerState<double> controller_state_;  // of a sampled controller
+    double contact_ = 0, force_phase_ = 0;      // of a continuous one
+    double lost_at_edges_ = 0;                  // J, by springs that lose the tip across an edge of the plate
 
 private:
-    RowLog rows() { return {setup_, run_}; }
-    Scene scene() const {
+    RowLog row_log() { return {setup_, run_}; }
+    RowContext row_context() const {
         return {setup_.plant,
                 setup_.simscape,
                 energy_at_start_,
                 mode_,
-                inside_,
-                setup_.law(),
+                dense_,
+                setup_.controller(),
                 setup_.digital.sampling.on,
-                known_,
+                controller_state_,
                 contact_,
                 force_phase_,
                 lost_at_edges_};
     }
     void explain(const FullState& y);
     void record(Event::Type type, double t, const FullState& y);
-    TorqueSwings swings_;
+    TorqueOscillation oscillation_;
     double energy_at_start_ = 0;
     unsigned polls_ = 0;
     double next_report_ = 0;

@@ -23,7 +23,7 @@ bool is_in(const Words& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// What people write elsewhere, in small letters without underscores, and the keys that are called so here.
+// Names that other programs use, in small letters without underscores, and the keys with that meaning here.
 struct Synonyms {
     Words typed, keys;
 };
@@ -53,7 +53,7 @@ std::string simplified(std::string_view name) {
     return out;
 }
 
-// Keys of this section by their names, else, where somebody writes about time, whole paths.
+// Keys of this section by their names; for names of time also whole paths.
 Words synonyms_of(std::string_view name, std::string_view section, std::span<const double> params) {
     const Words there = names_there(section, params);
     const bool is_about_time = section.empty() || section == "time" || section == "solver";
@@ -70,7 +70,7 @@ Words synonyms_of(std::string_view name, std::string_view section, std::span<con
     return found;
 }
 
-// Where the keys of this name stand in the schema, the controller's copies left out.
+// The sections of the schema with a key of this name, except the copies in controller.model.
 Words sections_of(std::string_view name) {
     Words sections;
     for (const Key& key : schema()) {
@@ -85,7 +85,7 @@ Words sections_of(std::string_view name) {
     return sections;
 }
 
-// Whole paths of the keys whose last name is nearest to this one, the controller's copies left out.
+// The paths of the keys whose last name is nearest to this one, except the copies in controller.model.
 Words paths_like(const std::string& name) {
     Words names, paths;
     for (const Key& key : schema()) names.push_back(last_name(key.path));
@@ -113,7 +113,7 @@ std::vector<std::string> names_there(std::string_view section, std::span<const d
     return names;
 }
 
-std::string meant_key(const Node& map, const Node& node, std::string_view section, std::span<const double> params) {
+std::string suggested_key(const Node& map, const Node& node, std::string_view section, std::span<const double> params) {
     const Node* before = &node == &map.children.front() ? nullptr : &node - 1;
     if (before && node.type == Node::nothing && is_digits(node.key))
         return "use a point: " + before->text + "." + node.key;

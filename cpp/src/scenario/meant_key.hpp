@@ -1,5 +1,5 @@
 #pragma once
-// What an unknown key of a scenario most likely is meant to be.
+// Suggests which key of a scenario an unknown key stands for.
 
 #include <span>
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace arm3r {
 
-// Names that stand directly below a section for the choices made in `params`.
+// Names of keys directly below a section, for the choices made in `params`.
 std::vector<std::string> names_there(std::string_view section, std::span<const double> params);
 
-// A sentence for the child `node` of `map`, which stands at `section`; "" where nothing is near.
-std::string meant_key(const Node& map, const Node& node, std::string_view section, std::span<const double> params);
+// A sentence for the child `node` of `map` in `section`; "" if no key is near.
+std::string suggested_key(const Node& map, const Node& node, std::string_view section, std::span<const double> params);
 
 }  // namespace arm3r

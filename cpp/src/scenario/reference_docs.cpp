@@ -254,8 +254,8 @@ events that there are can be judged; every other check fails.
 
 // ---- template
 
-void take_docs(Node& node, const std::string& path) {
-    for (Node& child : node.children) take_docs(child, join(path, child.key));
+void add_docs(Node& node, const std::string& path) {
+    for (Node& child : node.children) add_docs(child, join(path, child.key));
     const Key* key = find_key(path);
     if (!key) return;
     const std::string unit = key->unit.empty() ? "" : unit_text(*key) + ": ";
@@ -312,7 +312,7 @@ std::string columns_markdown() {
 std::string scenario_template() {
     Node tree = resolve(read_scenario("format: 1\nwall: {}\nchecks: []\n", "scenario")).tree;
     std::erase_if(tree.children, [](const Node& node) { return node.key == "name"; });
-    for (Node& section : tree.children) take_docs(section, section.key);
+    for (Node& section : tree.children) add_docs(section, section.key);
     tree.children.front().note = "version of this format; the only key that must be given";
     return "# A scenario with every default written out. Delete what you do not change.\n" + to_yaml(tree, true);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Everything that can be said about scenarios and columns, said by the schema and the column table themselves.
+// The reference pages of scenarios and columns, generated from the schema and the column table.
 
 #include <string>
 

@@ -48,7 +48,7 @@ std::string expected(const Key& key, std::span<const double> params) {
     }
 }
 
-// Text as a file name: what cannot stand in one becomes _.
+// Text as a file name: forbidden characters become _.
 std::string as_name(std::string_view file) {
     std::string_view stem = file.substr(file.rfind('/') + 1);
     if (const std::size_t dot = stem.rfind('.'); dot != stem.npos && dot > 0) stem = stem.substr(0, dot);
@@ -84,8 +84,8 @@ public:
             add_broken_rules();
             if (const Node* checks = root_.find("checks"))
                 result_.checks = read_checks(*checks, result_.params, columns(), scenario_.file, problems_);
-        } else if (root_.type != Node::hole) {
-            problem(root_.mark, {"scenario.type", "", "a scenario is a map of keys", shape_of(root_), "",
+        } else if (root_.type != Node::unset) {
+            problem(root_.mark, {"scenario.type", "", "a scenario is a map of keys", node_text(root_), "",
                                  "start with `format: 1`"});
         }
         finish();
@@ -95,7 +95,7 @@ public:
     }
 
 private:
-    void problem(const Mark& at, Problem problem) {
+    void problem(const SourceLocation& at, Problem problem) {
         problems_.push_back(arm3r::located(std::move(problem), at, scenario_.file));
     }
 
@@ -122,7 +122,7 @@ private:
         const auto value = node->type == Node::scalar && !node->quoted ? read_number(node->text, {.whole = true}, fault)
                                                                        : std::nullopt;
         if (!value)
-            problem(node->mark, {"scenario.format", "format", "expects a whole number", shape_of(*node), "1", ""});
+            problem(node->mark, {"scenario.format", "format", "expects a whole number", node_text(*node), "1", ""});
         else if (*value != format)
             throw Error(
                 ARM3R_E_FORMAT,
@@ -135,14 +135,14 @@ private:
     void read_name() {
         const Node* node = root_.find("name");
         result_.name = as_name(scenario_.file);
-        if (!node || node->type == Node::hole) return;
+        if (!node || node->type == Node::unset) return;
         const std::string& text = node->text;
         const bool usable = node->type == Node::scalar && !text.empty() && text.size() <= 200 &&
                             text.find('/') == text.npos && text[0] != '.' && text[0] != '-' &&
                             visible(text, 200) == text;
         if (usable) result_.name = text;
         else
-            problem(node->mark, {"scenario.name", "name", "a name must serve as a file name", shape_of(*node),
+            problem(node->mark, {"scenario.name", "name", "a name must serve as a file name", node_text(*node),
                                  "1 to 200 characters without / and control characters, not starting with . or -", ""});
     }
 
@@ -155,7 +155,7 @@ private:
             std::copy(fallback.begin(), fallback.end(), at(key));
             const Node* node = find(root_, parse_path(key.path));
             if (node && key.kind == Kind::choice) read_word(key, *node);
-            if (node && key.kind == Kind::section && (node->type == Node::map || node->type == Node::hole)) {
+            if (node && key.kind == Kind::section && (node->type == Node::map || node->type == Node::unset)) {
                 *at(key) = 1;
                 set_origin(key, *node);
             }
@@ -163,14 +163,14 @@ private:
     }
 
     void read_word(const Key& key, const Node& node) {
-        if (node.type == Node::hole) return;
+        if (node.type == Node::unset) return;
         const auto word = std::find(key.choices.begin(), key.choices.end(), node.text);
         if (node.type == Node::scalar && word != key.choices.end()) {
             *at(key) = static_cast<double>(word - key.choices.begin());
             return set_origin(key, node);
         }
         unknown_choices_.insert(key.path);
-        problem(node.mark, {"scenario.unknown_word", key.path, "must be one of the words", shape_of(node),
+        problem(node.mark, {"scenario.unknown_word", key.path, "must be one of the words", node_text(node),
                             listed(key.choices), did_you_mean(node.text, key.choices)});
     }
 
@@ -181,7 +181,7 @@ private:
             const std::string path = join(section, node.key);
             const Key* key = find_key(path);
             if (key && key->kind != Kind::section) read_value(*key, node);
-            else if (key && !key_exists(*key, result_.params)) not_here(*key, node);
+            else if (key && !key_exists(*key, result_.params)) refuse_other_choice(*key, node);
             else if (node.key.find_first_of(".[") == std::string::npos && is_section(path)) read_subsection(node, path);
             else if (path != "format" && path != "name" && path != "checks") unknown_key(map, node, section);
         }
@@ -189,18 +189,18 @@ private:
 
     void read_subsection(const Node& node, const std::string& path) {
         if (node.type == Node::map) return read_section(node, path);
-        if (node.type == Node::hole) return;
+        if (node.type == Node::unset) return;
         std::string hint = node.type == Node::nothing ? "write `" + node.key + ": {}`, or leave it out" : "";
         if (const Key* choice = node.type == Node::scalar ? choice_with(path, node.text) : nullptr)
             hint = "write `" + node.key + ": {" + last_name(choice->path) + ": " + node.text + "}`";
         problem(node.type == Node::nothing ? node.key_mark : node.mark,
-                {"scenario.type", path, "expects a map", shape_of(node), "keys " + listed(names_here(path)), hint});
+                {"scenario.type", path, "expects a map", node_text(node), "keys " + listed(names_here(path)), hint});
     }
 
     void unknown_key(const Node& map, const Node& node, const std::string& section) {
         problem(node.key_mark, {"scenario.unknown_key", join(section, node.key),
                                 section.empty() ? "no such key" : "no such key in " + section, "",
-                                listed(names_here(section)), meant_key(map, node, section, result_.params)});
+                                listed(names_here(section)), suggested_key(map, node, section, result_.params)});
     }
 
     // All that there are where a choice is not known.
@@ -208,7 +208,7 @@ private:
         return unknown_choices_.empty() ? names_there(section, result_.params) : names_below(section);
     }
 
-    // The choice of this section whose word stands there alone: `controller: joint_pd`.
+    // The choice of this section whose word was written alone: `controller: joint_pd`.
     static const Key* choice_with(const std::string& section, const std::string& word) {
         const auto found = std::find_if(schema().begin(), schema().end(), [&](const Key& key) {
             return key.path == join(section, last_name(key.path)) && key.kind == Kind::choice &&
@@ -218,8 +218,8 @@ private:
     }
 
     void read_value(const Key& key, const Node& node) {
-        if (node.type == Node::hole || unknown_choices_.contains(key.path)) return;
-        if (!key_exists(key, result_.params)) return not_here(key, node);
+        if (node.type == Node::unset || unknown_choices_.contains(key.path)) return;
+        if (!key_exists(key, result_.params)) return refuse_other_choice(key, node);
         if (key.kind == Kind::choice) return;
         if (key.kind == Kind::flag) return read_flag(key, node);
         if (is_number_here(key, node)) return read_single(key, node);
@@ -227,15 +227,15 @@ private:
             std::fill_n(at(key), key.size, std::numeric_limits<double>::infinity());
             return set_origin(key, node);
         }
-        const std::size_t fewest = key.form == Form::list ? key.fewest : key.size;
-        if (is_list_here(key) && node.type == Node::list && node.children.size() >= fewest &&
+        const std::size_t min_size = key.form == Form::list ? key.min_size : key.size;
+        if (is_list_here(key) && node.type == Node::list && node.children.size() >= min_size &&
             node.children.size() <= key.size)
             return read_list(key, node);
         wrong_shape(key, node);
     }
 
     // A key of another choice: "`section` belongs to shape brick; here the shape is cylinder".
-    void not_here(const Key& key, const Node& node) {
+    void refuse_other_choice(const Key& key, const Node& node) {
         const Key* missing = &key;
         while (std::find(missing->when.begin(), missing->when.end(), choice_of(result_.params, missing->when_key)) !=
                missing->when.end())
@@ -269,7 +269,7 @@ private:
         if (is_list_here(key) && node.type == Node::list && node.children.size() > key.size)
             hint = "a comma parts the items; in a number use a point";
         problem(node.mark,
-                {"scenario.type", key.path, "expects " + expected(key, result_.params), shape_of(node), "", hint});
+                {"scenario.type", key.path, "expects " + expected(key, result_.params), node_text(node), "", hint});
     }
 
     bool is_number_here(const Key& key, const Node& node) const {
@@ -290,7 +290,7 @@ private:
     void read_flag(const Key& key, const Node& node) {
         const bool is_true = node.text == "true";
         if (node.type != Node::scalar || node.quoted || (!is_true && node.text != "false"))
-            return problem(node.mark, {"scenario.type", key.path, "expects true or false", shape_of(node), "",
+            return problem(node.mark, {"scenario.type", key.path, "expects true or false", node_text(node), "",
                                        flag_hint(node.text)});
         *at(key) = is_true;
         set_origin(key, node);
@@ -313,7 +313,7 @@ private:
     void read_list(const Key& key, const Node& node) {
         if (key.form == Form::list) std::fill_n(at(key), key.size, unset);
         for (std::size_t i = 0; i < node.children.size(); ++i)
-            if (node.children[i].type != Node::hole)
+            if (node.children[i].type != Node::unset)
                 read_number_into(key, node.children[i], item(key.path, i), at(key)[static_cast<long>(i)]);
         set_origin(key, node);
     }
@@ -328,7 +328,7 @@ private:
             if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
         }
         if (key.form == Form::vector_or_word && is_infinity(node)) fault.hint = "write " + key.word + ", not a list";
-        problem(node.mark, {fault.code, path, fault.message, shape_of(node), "", fault.hint});
+        problem(node.mark, {fault.code, path, fault.message, node_text(node), "", fault.hint});
         return false;
     }
 
@@ -344,10 +344,10 @@ private:
 
     void add_warnings() {
         if (find(root_, parse_path("controller.gravity"))) return;
-        if (const auto slip = slip_of_default_gravity(result_.setup)) result_.warnings.push_back(*slip);
+        if (const auto warning = default_gravity_warning(result_.setup)) result_.warnings.push_back(*warning);
     }
 
-    // Of the run; all that there are where it cannot be known, because something else is wrong.
+    // The columns of the run; all columns if they cannot be known because something else is wrong.
     std::vector<std::size_t> columns() const {
         if (keeps_rules_ && unknown_choices_.empty()) return columns_of(result_.setup);
         std::vector<std::size_t> all(column_table().size());
@@ -363,7 +363,9 @@ private:
         });
     }
 
-    Mark place(const std::string& path) const { return path.empty() ? root_.mark : locate(root_, parse_path(path)); }
+    SourceLocation place(const std::string& path) const {
+        return path.empty() ? root_.mark : locate(root_, parse_path(path));
+    }
 
     // ---- origins, and the tree of everything
 

@@ -19,8 +19,8 @@ struct Scenario {
 // Syntax only; what the text says is judged by resolve().
 Scenario read_scenario(std::string text, std::string file);
 
-// Put a value (YAML) at a path; null takes away what stands there. A new choice drops the keys of the old one.
-// `origin`: what messages and provenance call the edit.
+// Sets the value (YAML) at a path; null removes it. A new choice drops the keys of the old one. `origin`: the name of
+// the edit in messages and provenance.
 void set(Scenario& scenario, std::string_view path, const std::string& value, const std::string& origin);
 
 struct Resolved {
@@ -28,7 +28,7 @@ struct Resolved {
     std::vector<double> params;
     Setup setup;  // of the parameters
     std::vector<Check> checks;
-    std::vector<std::string> warnings;  // likely slips that the numbers alone do not show
+    std::vector<std::string> warnings;  // probable mistakes that the numbers alone do not show
     Node tree;                          // every value there is, each with its origin as note
 };
 

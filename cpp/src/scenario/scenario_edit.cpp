@@ -19,13 +19,13 @@ namespace {
 
 // ---- the value, and where it stands
 
-void place_in(const std::shared_ptr<const Edit>& edit, Node& node) {
+void mark_as_edit(const std::shared_ptr<const Edit>& edit, Node& node) {
     node.mark = {0, node.mark.column, edit};
     node.key_mark = {0, node.key_mark.column, edit};
-    for (Node& child : node.children) place_in(edit, child);
+    for (Node& child : node.children) mark_as_edit(edit, child);
 }
 
-std::vector<Problem> placed_in(const Edit& edit, std::string_view path, std::vector<Problem> problems) {
+std::vector<Problem> with_edit_location(const Edit& edit, std::string_view path, std::vector<Problem> problems) {
     for (Problem& problem : problems) {
         const bool inside_value = !problem.file.empty();
         if (inside_value) problem.path = below(path, problem.path);
@@ -38,18 +38,18 @@ std::vector<Problem> placed_in(const Edit& edit, std::string_view path, std::vec
 
 Document read_value(const std::string& value, const std::shared_ptr<const Edit>& edit) {
     Document document = parse_yaml(checked_text(value, edit->place), edit->place);
-    place_in(edit, document.root);
+    mark_as_edit(edit, document.root);
     return document;
 }
 
 // `null` and nothing else: an empty value is more likely an empty variable.
-bool takes_out(const Document& document, const std::string& value, std::string_view path) {
+bool is_removal(const Document& document, const std::string& value, std::string_view path) {
     if (document.root.type != Node::nothing) return false;
     if (value == "null") return true;
     refuse(path, "path.value", "there is no value", "write one, or `null` to take out what stands there");
 }
 
-// ---- the way to a path
+// ---- finding a path
 
 // A list of which only single items are set: the others keep their defaults.
 std::vector<Node> open_items(const std::string& path, std::size_t index) {
@@ -60,18 +60,18 @@ std::vector<Node> open_items(const std::string& path, std::size_t index) {
     if (key && (key->form == Form::number_or_vector || key->form == Form::by_choice))
         refuse(item(path, index), "path.list", "`" + path + "` can be a single number, and no list stands there",
                "give the whole list: " + path + " = [x, y, z]");
-    Node hole;
-    hole.type = Node::hole;
-    return std::vector<Node>(key ? key->size : 0, hole);
+    Node unset;
+    unset.type = Node::unset;
+    return std::vector<Node>(key ? key->size : 0, unset);
 }
 
-Node& child(Node& node, const std::string& path, const std::string& name, const Mark& place) {
-    if (node.type == Node::nothing || node.type == Node::hole) node.type = Node::map;
+Node& child(Node& node, const std::string& path, const std::string& name, const SourceLocation& place) {
+    if (node.type == Node::nothing || node.type == Node::unset) node.type = Node::map;
     if (node.type != Node::map)
-        refuse(join(path, name), "path.section", "`" + path + "` is " + shape_of(node) + ", not a section", "");
+        refuse(join(path, name), "path.section", "`" + path + "` is " + node_text(node) + ", not a section", "");
     if (Node* found = node.find(name)) return *found;
     Node fresh;
-    fresh.type = Node::hole;
+    fresh.type = Node::unset;
     fresh.key = name;
     fresh.key_mark = fresh.mark = place;
     node.children.push_back(fresh);
@@ -81,12 +81,12 @@ Node& child(Node& node, const std::string& path, const std::string& name, const 
 Node& child(Node& node, const std::string& path, std::size_t index) {
     if (path.ends_with(']') && is_known(path))
         refuse(item(path, index), "path.list", "`" + path + "` is a number, not a list", "");
-    if (node.type == Node::nothing || node.type == Node::hole) {
+    if (node.type == Node::nothing || node.type == Node::unset) {
         node.children = open_items(path, index);
         node.type = Node::list;
     }
     if (node.type != Node::list)
-        refuse(item(path, index), "path.list", "`" + path + "` is " + shape_of(node) + ", not a list",
+        refuse(item(path, index), "path.list", "`" + path + "` is " + node_text(node) + ", not a list",
                "give the whole list: " + path + " = [...]");
     const Key* key = find_key(path);
     if (index == node.children.size() && (!key || index < key->size)) node.children.emplace_back();
@@ -95,7 +95,7 @@ Node& child(Node& node, const std::string& path, std::size_t index) {
     return node.children[index];
 }
 
-Node& reach(Node& root, const std::vector<Step>& steps, const Mark& place) {
+Node& reach(Node& root, const std::vector<Step>& steps, const SourceLocation& place) {
     Node* node = &root;
     std::string walked;
     for (const Step& step : steps) {
@@ -105,7 +105,7 @@ Node& reach(Node& root, const std::vector<Step>& steps, const Mark& place) {
     return *node;
 }
 
-// ---- taking out
+// ---- removing
 
 void remove(Node& root, const std::vector<Step>& steps) {
     const std::vector<Step> parent(steps.begin(), steps.end() - 1);
@@ -147,14 +147,14 @@ void apply(Document& scenario, std::string_view path, const std::string& value,
            const std::shared_ptr<const Edit>& edit) {
     const std::vector<Step> steps = parse_path(path);
     Document document = read_value(value, edit);
-    if (takes_out(document, value, path)) return remove_known(scenario.root, path, steps);
+    if (is_removal(document, value, path)) return remove_known(scenario.root, path, steps);
 
-    const Mark place{0, 1, edit};
+    const SourceLocation place{0, 1, edit};
     Node& node = reach(scenario.root, steps, place);
     document.root.key = node.key;
     document.root.key_mark = place;
     node = std::move(document.root);
-    const std::vector<Problem> problems = placed_in(*edit, path, std::move(document.problems));
+    const std::vector<Problem> problems = with_edit_location(*edit, path, std::move(document.problems));
     scenario.problems.insert(scenario.problems.end(), problems.begin(), problems.end());
 
     const Key* key = find_key(path);
@@ -169,7 +169,7 @@ void set(Scenario& scenario, std::string_view path, const std::string& value, co
     try {
         apply(scenario.document, path, value, edit);
     } catch (const Error& error) {
-        throw Error(error.status(), placed_in(*edit, path, error.problems()));
+        throw Error(error.status(), with_edit_location(*edit, path, error.problems()));
     }
 }
 

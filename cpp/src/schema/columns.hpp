@@ -6,13 +6,13 @@
 
 namespace arm3r {
 
-// What a run must have for a column to be there.
+// The condition for a column to exist.
 enum class Need {
     nothing,
     wall,
-    force_reference,  // a law that wants a force
-    path,             // a law that wants positions of the tip
-    joint_path,       // or joint angles
+    force_reference,  // a law that tracks a force
+    path,             // a law that tracks a path of the tip
+    joint_path,       // a law that tracks a path in joint angles
     observer,
     estimator,
     tank,
@@ -26,7 +26,7 @@ struct Column {
 };
 
 std::string_view need_text(Need need);  // "only with a wall"; "" for nothing
-std::string_view need_hint(Need need);  // "add `wall: {}`": how a run comes to have it
+std::string_view need_hint(Need need);  // "add `wall: {}`": how a run gets the column
 
 const std::vector<Column>& column_table();
 

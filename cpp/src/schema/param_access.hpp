@@ -1,5 +1,5 @@
 #pragma once
-// The flat parameters under names that the compiler knows: each is looked up once in a process, however many runs read it.
+// The flat parameters by names that are known at compile time: each name is looked up once in a process.
 
 #include <algorithm>
 
@@ -34,7 +34,7 @@ Vec3<double> vector_at(std::span<const double> params) {
     return {at<path>(params, 0), at<path>(params, 1), at<path>(params, 2)};
 }
 
-// Whether `word` is what the choice at `path` stands at.
+// Whether the choice at `path` is `word`.
 template <Name path, Name word>
 bool is(std::span<const double> params) {
     static const double index = choice_index(known_key(path), word);

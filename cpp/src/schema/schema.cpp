@@ -26,7 +26,7 @@ constexpr Bounds a_mass{1e-9, 1e9};
 constexpr Bounds a_density{1e-3, 1e6};
 constexpr Bounds an_instant{-1e9, 1e9};
 constexpr Bounds no_bounds{-1e300, 1e300};
-constexpr std::size_t table_size = most_knots;
+constexpr std::size_t table_size = max_knots;
 
 Key number(std::string path, std::vector<double> fallback, Source source, Bounds bounds, std::string unit,
            std::string doc) {
@@ -66,10 +66,10 @@ Key with_form(Form form, Key key, std::string word = {}) {
     return key;
 }
 
-Key list_of(std::size_t fewest, std::size_t most, Key key) {
+Key list_of(std::size_t min_size, std::size_t most, Key key) {
     key.form = Form::list;
     key.size = most;
-    key.fewest = fewest;
+    key.min_size = min_size;
     key.fallback.assign(most, unset);
     return key;
 }
@@ -95,14 +95,15 @@ Key or_infinite(Key key) {
     return key;
 }
 
-// The keys that a shape takes, for any link. The shape itself stands before them.
+// The keys of a shape, for any link. The key of the shape itself comes before them.
 void append_shape(std::vector<Key>& keys, const std::string& link) {
     const std::string shape = link + ".shape";
     keys.push_back(where(shape, {"brick"},
                          number(link + ".section", {0.01, 0.01}, Source::inferred, a_length, "m",
                                 "Brick: height along y, width along z of the link's axes.")));
-    keys.push_back(where(shape, {"cylinder"},
-                         needed(number(link + ".radius", {unset}, Source::ours, a_length, "m", "Cylinder: radius."))));
+    keys.push_back(
+        where(shape, {"cylinder"},
+              needed(number(link + ".radius", {unset}, Source::ours, a_length, "m", "Radius of the cylinder."))));
     keys.push_back(where(shape, {"brick", "cylinder"},
                          number(link + ".density", {7850}, Source::inferred, a_density, "kg/m^3",
                                 "Density; not used when the mass is given.")));
@@ -177,18 +178,20 @@ void append_paths(std::vector<Key>& keys) {
                                         number("wall.motion.t", {}, Source::ours, an_instant, "s",
                                                "Instants of the table, increasing; before and after them the wall "
                                                "stands still.")))));
-    keys.push_back(where(type, {"table"},
-                         needed(list_of(2, table_size,
-                                        number("wall.motion.s", {}, Source::ours, {-1e3, 1e3}, "m",
-                                               "Where the wall is at these instants; in between quintics.")))));
+    keys.push_back(where(
+        type, {"table"},
+        needed(list_of(
+            2, table_size,
+            number("wall.motion.s", {}, Source::ours, {-1e3, 1e3}, "m",
+                   "Position of the wall along its direction at the instants wall.motion.t; quintics in between.")))));
     keys.push_back(where(type, {"table"},
                          needed(list_of(2, table_size,
                                         number("wall.motion.v", {}, Source::ours, {-1e4, 1e4}, "m/s",
-                                               "Its velocity at these instants.")))));
+                                               "Velocity of the wall at the instants wall.motion.t.")))));
     keys.push_back(where(type, {"table"},
                          needed(list_of(2, table_size,
                                         number("wall.motion.a", {}, Source::ours, {-1e6, 1e6}, "m/s^2",
-                                               "Its acceleration at these instants.")))));
+                                               "Acceleration of the wall at the instants wall.motion.t.")))));
     keys.push_back(where(
         type, {"sinusoid", "ramp", "table"},
         derived("the normal", number("wall.motion.direction", {unset, unset, unset}, Source::ours, any_position, "",
@@ -202,10 +205,11 @@ void append_rotation(std::vector<Key>& keys) {
                           "How the plate turns about the origin of its frame; at t = 0 it stands as `normal` says."));
     keys.push_back(where(type, {"constant", "sinusoid"},
                          needed(number("wall.rotation.axis", {unset, unset, unset}, Source::ours, any_position, "",
-                                       "About what it turns, in base axes; normalised on reading."))));
-    keys.push_back(where(type, {"constant"},
-                         needed(of_kind(Kind::angle, number("wall.rotation.rate", {unset}, Source::ours, {-1e4, 1e4},
-                                                            "rad/s", "How fast it turns; 10 deg means 10 deg/s.")))));
+                                       "Axis about which the wall turns, in base axes; normalised on reading."))));
+    keys.push_back(
+        where(type, {"constant"},
+              needed(of_kind(Kind::angle, number("wall.rotation.rate", {unset}, Source::ours, {-1e4, 1e4}, "rad/s",
+                                                 "Angular rate of the wall; 10 deg means 10 deg/s.")))));
     keys.push_back(
         where(type, {"sinusoid"},
               needed(of_kind(Kind::angle, number("wall.rotation.amplitude", {unset}, Source::ours, {-100, 100}, "rad",
@@ -257,7 +261,7 @@ void append_contact(std::vector<Key>& keys) {
     keys.push_back(number("wall.contact.friction.coefficient", {0}, Source::lecture, {0, 1e3}, "",
                           "mu: friction along the plate is -mu f_n v_t/sqrt(v_t^2 + slip_velocity^2)."));
     keys.push_back(number("wall.contact.friction.slip_velocity", {1e-3}, Source::ours, {1e-9, 1e4}, "m/s",
-                          "Speed at which that friction sets in."));
+                          "Sliding speed at which the friction of the wall sets in."));
 }
 
 void append_wall(std::vector<Key>& keys) {
@@ -275,11 +279,13 @@ void append_wall(std::vector<Key>& keys) {
                           "How far the contact face lies in front of the frame."));
     keys.push_back(choice("wall.motion.type", {"constant", "fixed", "sinusoid", "ramp", "table"}, Source::lecture,
                           "How the wall moves: its point is wall.point + s(t) direction, but for constant."));
-    keys.push_back(
-        where("wall.motion.type", {"constant"},
-              with_form(Form::number_or_vector,
-                        number("wall.motion.velocity", {0.05, unset, unset}, Source::lecture, {-1e4, 1e4}, "m/s",
-                               "Along the normal, positive towards the arm; or a vector in base axes."))));
+    keys.push_back(where(
+        "wall.motion.type", {"constant"},
+        with_form(
+            Form::number_or_vector,
+            number(
+                "wall.motion.velocity", {0.05, unset, unset}, Source::lecture, {-1e4, 1e4}, "m/s",
+                "Velocity of the wall: a number along its normal, positive towards the arm, or a vector in base axes."))));
     keys.push_back(where("wall.motion.type", {"sinusoid"},
                          needed(number("wall.motion.amplitude", {unset}, Source::ours, {-1e3, 1e3}, "m",
                                        "Amplitude A of s = A sin(2 pi f t + phase) - A sin(phase)."))));
@@ -309,29 +315,29 @@ Words laws_that(Holds holds) {
 }
 
 const Words laws = laws_that([](const LawProperties&) { return true; });
-const Words with_a_torque = laws_that([](const LawProperties& law) { return law.type != Controls::none; });
+const Words with_a_torque = laws_that([](const LawProperties& law) { return law.type != ControllerType::none; });
 const Words with_a_model = laws_that([](const LawProperties& law) { return law.has_model; });
 const Words with_a_path = laws_that([](const LawProperties& law) { return law.follows_path; });
 const Words with_a_sensor =
-    laws_that([](const LawProperties& law) { return law.has_model || law.type == Controls::user; });
+    laws_that([](const LawProperties& law) { return law.has_model || law.type == ControllerType::user; });
 const Words of_force = laws_that([](const LawProperties& law) { return law.takes_force; });
 const Words controlling_force = laws_that([](const LawProperties& law) { return law.controls_force; });
 const Words integrating_force = laws_that([](const LawProperties& law) { return law.integrates_force; });
 
 Key for_laws(Words which, Key key) { return where("controller.type", std::move(which), std::move(key)); }
 
-// Keys that depend on nothing else exist for these laws only.
+// A key that exists for these laws only.
 void append_for_laws(std::vector<Key>& keys, const Words& which, std::vector<Key> some) {
     for (Key& key : some) keys.push_back(key.when_key.empty() ? for_laws(which, std::move(key)) : std::move(key));
 }
 
-// A default of its own for some laws.
+// A key with a default of its own for some laws.
 Key but(std::map<std::string, std::vector<double>> fallback_for, Key key) {
     key.fallback_for = std::move(fallback_for);
     return key;
 }
 
-// A gain of each axis, or one for all three.
+// A gain per axis, or one for all three.
 Key gain(const std::string& name, double fallback, std::string unit, std::string doc) {
     return with_form(Form::number_or_vector, number("controller." + name, {fallback, unset, unset}, Source::ours,
                                                     not_negative, std::move(unit), std::move(doc)));
@@ -427,19 +433,23 @@ void append_force_loop(std::vector<Key>& keys) {
         for_laws(integrating_force, one_gain("force_mass", 1, {1e-6, 1e9}, "kg", "Apparent mass along the normal.")));
     keys.push_back(for_laws({"operational_space", "hybrid"},
                             one_gain("force_damping", 70, not_negative, "N s/m", "Damping along the normal.")));
-    keys.push_back(for_laws(integrating_force, one_gain("force_gain", 0.5, not_negative, "", "Of the force error.")));
+    keys.push_back(for_laws(integrating_force,
+                            one_gain("force_gain", 0.5, not_negative, "", "Proportional gain of the force error.")));
     keys.push_back(
         for_laws(integrating_force, but({{"parallel", {6}}}, one_gain("force_integral_gain", 5, not_negative, "1/s",
-                                                                      "Of the integral of the force error."))));
+                                                                      "Gain of the integral of the force error."))));
     keys.push_back(for_laws(integrating_force,
                             or_infinite(one_gain("integral_limit", infinite, not_negative, "N s",
-                                                 "The integral of the force error stays within it, either way."))));
+                                                 "Limit of the integral of the force error, in both directions."))));
+    keys.push_back(for_laws(
+        integrating_force,
+        choice(
+            "controller.anti_windup", {"none", "conditional", "back_calculation"}, Source::ours,
+            "How the integral of the force error behaves while a torque is at its limit: it continues, waits, or runs back.")));
     keys.push_back(
-        for_laws(integrating_force,
-                 choice("controller.anti_windup", {"none", "conditional", "back_calculation"}, Source::ours,
-                        "What the integral does while a torque is at its limit: goes on, waits, or runs back.")));
-    keys.push_back(where("controller.anti_windup", {"back_calculation"},
-                         one_gain("tracking_time", 0.1, {1e-6, 1e6}, "s", "How fast the integral runs back.")));
+        where("controller.anti_windup", {"back_calculation"},
+              one_gain("tracking_time", 0.1, {1e-6, 1e6}, "s",
+                       "Time constant with which back-calculation returns the integral of the force error.")));
     keys.push_back(for_laws(
         controlling_force,
         choice(
@@ -447,9 +457,10 @@ void append_force_loop(std::vector<Key>& keys) {
             "When force is controlled: while there is contact, from the first contact on, or from the start; else the tip keeps to the reference in all directions.")));
     keys.push_back(where("controller.switching", {"in_contact", "latched"},
                          one_gain("contact_on", 1, not_negative, "N",
-                                  "A sampled controller takes the contact for made above this measured force.")));
+                                  "Measured force above which a sampled controller assumes that contact has begun.")));
     keys.push_back(where("controller.switching", {"in_contact", "latched"},
-                         one_gain("contact_off", 0.5, not_negative, "N", "And for lost below this one.")));
+                         one_gain("contact_off", 0.5, not_negative, "N",
+                                  "Measured force below which a sampled controller assumes that contact has ended.")));
 }
 
 void append_special_laws(std::vector<Key>& keys) {
@@ -457,36 +468,41 @@ void append_special_laws(std::vector<Key>& keys) {
         for_laws({"admittance"},
                  choice("controller.inner", {"exact", "position", "joint_pd"}, Source::ours,
                         "Inner loop: exact tracking with feedforward, position tracking without, or joint PD.")));
-    keys.push_back(where("controller.inner", {"position"},
-                         one_gain("inner_bandwidth", 50, {1e-6, 1e6}, "rad/s", "w of the inner position loop.")));
-    keys.push_back(where("controller.inner", {"position"},
-                         one_gain("inner_damping_ratio", 1, not_negative, "", "z of the inner position loop.")));
+    keys.push_back(
+        where("controller.inner", {"position"},
+              one_gain("inner_bandwidth", 50, {1e-6, 1e6}, "rad/s", "Bandwidth w of the inner position loop.")));
+    keys.push_back(
+        where("controller.inner", {"position"},
+              one_gain("inner_damping_ratio", 1, not_negative, "", "Damping ratio z of the inner position loop.")));
     keys.push_back(for_laws({"adaptive_reference"},
                             choice("controller.adaptation", {"integral", "indirect"}, Source::ours,
                                    "The reference integrates the force error, or is computed from a wall stiffness.")));
     keys.push_back(where("controller.adaptation", {"integral"},
-                         one_gain("reference_gain", 0.02, not_negative, "m/(N s)", "k_r of the integral.")));
+                         one_gain("reference_gain", 0.02, not_negative, "m/(N s)",
+                                  "Gain k_r with which the reference integrates the force error.")));
     keys.push_back(
         where("controller.adaptation", {"indirect"},
               needed(one_gain("assumed_stiffness", unset, {1e-3, 1e12}, "N/m",
                               "The wall stiffness that the reference is computed from; an estimator replaces it."))));
     keys.push_back(for_laws({"energy_tank"}, one_gain("stiffness_amplitude", 120, not_negative, "N/m",
-                                                      "Of the stiffness that varies as a sine.")));
-    keys.push_back(
-        for_laws({"energy_tank"}, one_gain("stiffness_frequency", 6.25, not_negative, "Hz", "Of that sine.")));
-    keys.push_back(
-        for_laws({"energy_tank"}, flag("controller.tank", true, "Whether the tank pays for the variation.")));
+                                                      "Amplitude of the sinusoidal variation of the stiffness.")));
+    keys.push_back(for_laws({"energy_tank"}, one_gain("stiffness_frequency", 6.25, not_negative, "Hz",
+                                                      "Frequency of the sinusoidal variation of the stiffness.")));
+    keys.push_back(for_laws(
+        {"energy_tank"},
+        flag("controller.tank", true, "Whether the energy of the tank limits the variation of the stiffness.")));
     const std::pair<const char*, std::pair<double, const char*>> levels[] = {
-        {"tank_energy", {0.05, "In the tank at the start."}},
-        {"tank_low", {0.01, "Nothing is paid below it."}},
-        {"tank_high", {0.03, "Everything is paid above it."}},
-        {"tank_capacity", {5, "The tank takes no more."}}};
+        {"tank_energy", {0.05, "Energy in the tank at the start."}},
+        {"tank_low", {0.01, "Energy of the tank below which the stiffness does not vary."}},
+        {"tank_high", {0.03, "Energy of the tank above which the stiffness varies fully."}},
+        {"tank_capacity", {5, "Maximum energy of the tank."}}};
     for (const auto& [name, level] : levels)
         keys.push_back(for_laws({"energy_tank"}, one_gain(name, level.first, not_negative, "J", level.second)));
     keys.push_back(for_laws({"virtual_wall"}, number("controller.plane_point", {1.75, 0, 0}, Source::ours, any_position,
                                                      "m", "A point of the virtual wall's face.")));
-    keys.push_back(for_laws({"virtual_wall"}, number("controller.plane_normal", {-1, 0, 0}, Source::ours, any_position,
-                                                     "", "From the virtual wall towards the arm.")));
+    keys.push_back(
+        for_laws({"virtual_wall"}, number("controller.plane_normal", {-1, 0, 0}, Source::ours, any_position, "",
+                                          "Direction from the virtual wall towards the arm; normalised on reading.")));
     keys.push_back(for_laws({"virtual_wall"}, flag("controller.passivity_control", false,
                                                    "Whether a brake takes the energy that samples and delay would "
                                                    "create. It acts outside the wall too, where it pulls.")));
@@ -496,7 +512,7 @@ void append_controller(std::vector<Key>& keys) {
     keys.push_back(choice("controller.type", laws, Source::ours, "The control law."));
     keys.push_back(
         for_laws({"constant"}, needed(number("controller.torque", {unset, unset, unset}, Source::ours, {-1e12, 1e12},
-                                             "N m", "The torque, in the arm's convention."))));
+                                             "N m", "The constant torque, in the arm's convention."))));
     keys.push_back(for_laws(
         with_a_model,
         with_form(
@@ -535,45 +551,52 @@ std::vector<Key> reference_keys() {
         return where("reference.type", std::move(types), std::move(key));
     };
     keys.push_back(choice("reference.type", {"hold", "point", "line", "minimum_jerk", "circle", "sinusoid", "table"},
-                          Source::ours, "Where the controller wants the arm: hold keeps the start."));
-    keys.push_back(in({"point", "line", "minimum_jerk"},
-                      derived("not given", number("reference.tip", {unset, unset, unset}, Source::ours, any_position,
-                                                  "m", "Where the tip is wanted, base axes, at the end of a line."))));
+                          Source::ours, "The desired motion of the arm: hold keeps it where it starts."));
+    keys.push_back(
+        in({"point", "line", "minimum_jerk"},
+           derived("not given",
+                   number("reference.tip", {unset, unset, unset}, Source::ours, any_position, "m",
+                          "Desired position of the tip, base axes; for a line or minimum_jerk the one at its end."))));
     keys.push_back(
         in({"point", "line", "minimum_jerk"},
            derived("not given",
                    of_kind(Kind::angle, number("reference.q", {unset, unset, unset}, Source::ours, {-1e5, 1e5}, "rad",
-                                               "The joint angles that are wanted, in place of tip.")))));
+                                               "Desired joint angles, in place of reference.tip.")))));
     keys.push_back(in({"line", "minimum_jerk", "circle", "sinusoid"},
                       number("reference.start", {0}, Source::ours, an_instant, "s", "When the motion begins.")));
     keys.push_back(in({"line", "minimum_jerk"},
                       number("reference.duration", {1}, Source::ours, {1e-9, 1e9}, "s", "How long the motion takes.")));
     keys.push_back(in({"circle"}, number("reference.radius", {0.1}, Source::ours, {0, 1e6}, "m",
-                                         "Of a circle on the wall's face through the tip's start.")));
+                                         "Radius of a circle on the wall's face through the tip's start.")));
+    keys.push_back(in({"circle"}, number("reference.period", {4}, Source::ours, {1e-9, 1e9}, "s",
+                                         "Time of one turn of the circle.")));
     keys.push_back(
-        in({"circle"}, number("reference.period", {4}, Source::ours, {1e-9, 1e9}, "s", "Time of one turn.")));
-    keys.push_back(in({"circle"}, number("reference.turns", {1}, Source::ours, {1e-3, 1e6}, "",
-                                         "How many turns, begun and ended at rest by a minimum-jerk law.")));
+        in({"circle"}, number("reference.turns", {1}, Source::ours, {1e-3, 1e6}, "",
+                              "Number of turns of the circle, which begin and end at rest by a minimum-jerk law.")));
     keys.push_back(
-        in({"sinusoid"}, derived("not given", number("reference.tip_amplitude", {unset, unset, unset}, Source::ours,
-                                                     any_position, "m", "Of the tip about its start."))));
+        in({"sinusoid"},
+           derived("not given", number("reference.tip_amplitude", {unset, unset, unset}, Source::ours, any_position,
+                                       "m", "Amplitude of the tip's sinusoid about its start, base axes."))));
     keys.push_back(in(
         {"sinusoid"},
         derived("not given",
-                of_kind(Kind::angle, number("reference.q_amplitude", {unset, unset, unset}, Source::ours, {-1e5, 1e5},
-                                            "rad", "Of the joints about their start, in place of it.")))));
-    keys.push_back(
-        in({"sinusoid"}, number("reference.frequency", {0.5}, Source::ours, {0, 1e4}, "Hz", "Of the sine.")));
+                of_kind(Kind::angle,
+                        number("reference.q_amplitude", {unset, unset, unset}, Source::ours, {-1e5, 1e5}, "rad",
+                               "Amplitude of the joints' sinusoid about their start, in place of tip_amplitude.")))));
+    keys.push_back(in({"sinusoid"}, number("reference.frequency", {0.5}, Source::ours, {0, 1e4}, "Hz",
+                                           "Frequency of the sinusoid.")));
     const auto column = [&](const char* path, Bounds bounds, const char* unit, const char* doc) {
         keys.push_back(
             in({"table"}, needed(list_of(2, table_size, number(path, {}, Source::ours, bounds, unit, doc)))));
     };
     column("reference.t", an_instant, "s",
-           "Instants of the table, increasing; before and after them the tip is to stay.");
+           "Instants of the table, increasing; before the first and after the last one the reference is at rest.");
     column("reference.x", any_position, "m",
-           "Where the tip is wanted at these instants, base axes; in between it moves with as little jerk as can be.");
-    column("reference.y", any_position, "m", "Likewise.");
-    column("reference.z", any_position, "m", "Likewise.");
+           "Desired x of the tip at the instants reference.t, base axes; in between it moves with minimum jerk.");
+    column("reference.y", any_position, "m",
+           "Desired y of the tip at the instants reference.t, base axes; in between it moves with minimum jerk.");
+    column("reference.z", any_position, "m",
+           "Desired z of the tip at the instants reference.t, base axes; in between it moves with minimum jerk.");
     return keys;
 }
 
@@ -583,57 +606,63 @@ std::vector<Key> force_reference_keys() {
         return where("reference.force.type", std::move(types), std::move(key));
     };
     keys.push_back(choice("reference.force.type", {"constant", "step", "ramp", "sinusoid"}, Source::ours,
-                          "The pressing force that is wanted, along the wall's normal."));
-    keys.push_back(
-        for_laws(of_force, but({{"admittance", {0}}},
-                               number("reference.force.value", {20}, Source::ours, {-1e9, 1e9}, "N",
-                                      "The force; of a step or ramp the one at the end, of a sinusoid the mean."))));
-    keys.push_back(in({"step", "ramp"},
-                      number("reference.force.initial", {0}, Source::ours, {-1e9, 1e9}, "N", "The force before.")));
-    keys.push_back(
-        in({"step", "ramp"}, number("reference.force.start", {1}, Source::ours, an_instant, "s", "When it changes.")));
-    keys.push_back(
-        in({"ramp"}, number("reference.force.duration", {1}, Source::ours, {1e-9, 1e9}, "s", "How long it changes.")));
-    keys.push_back(
-        in({"sinusoid"}, number("reference.force.amplitude", {2}, Source::ours, {-1e9, 1e9}, "N", "About the mean.")));
-    keys.push_back(
-        in({"sinusoid"}, number("reference.force.frequency", {2}, Source::ours, {0, 1e4}, "Hz", "Of the sine.")));
+                          "The desired pressing force as a function of time, along the wall's normal."));
+    keys.push_back(for_laws(
+        of_force, but({{"admittance", {0}}},
+                      number("reference.force.value", {20}, Source::ours, {-1e9, 1e9}, "N",
+                             "The desired force; for a step or ramp the one after it, for a sinusoid the mean."))));
+    keys.push_back(in({"step", "ramp"}, number("reference.force.initial", {0}, Source::ours, {-1e9, 1e9}, "N",
+                                               "The desired force before the step or ramp.")));
+    keys.push_back(in({"step", "ramp"}, number("reference.force.start", {1}, Source::ours, an_instant, "s",
+                                               "When the desired force begins to change.")));
+    keys.push_back(in({"ramp"}, number("reference.force.duration", {1}, Source::ours, {1e-9, 1e9}, "s",
+                                       "How long the ramp of the desired force takes.")));
+    keys.push_back(in({"sinusoid"}, number("reference.force.amplitude", {2}, Source::ours, {-1e9, 1e9}, "N",
+                                           "Amplitude of the desired force about its mean.")));
+    keys.push_back(in({"sinusoid"}, number("reference.force.frequency", {2}, Source::ours, {0, 1e4}, "Hz",
+                                           "Frequency of the desired force's sinusoid.")));
     return keys;
 }
 
 std::vector<Key> sampling_keys() {
     std::vector<Key> keys;
-    keys.push_back(of_kind(Kind::section, number("sampling", {0}, Source::ours, no_bounds, "",
-                                                 "A digital controller. Absent: it computes continuously.")));
-    keys.push_back(number("sampling.rate", {1000}, Source::ours, {1e-3, 1e6}, "Hz",
-                          "How often it computes; its torque is held in between."));
-    keys.push_back(number("sampling.delay", {0}, Source::ours, {0, 64}, "samples",
-                          "From reading the sensors to the torque, whole and fractional samples."));
-    keys.push_back(of_kind(Kind::integer, number("sampling.seed", {1}, Source::ours, {0, 9007199254740991}, "",
-                                                 "Of the sensors' noise: the same seed gives the same bits.")));
-    keys.push_back(of_kind(Kind::section, number("sensors", {0}, Source::ours, no_bounds, "",
-                                                 "What the controller reads is not what is. Absent: it is.")));
-    keys.push_back(of_kind(Kind::integer, number("sensors.encoder.counts", {0}, Source::ours, {0, 1e9}, "",
-                                                 "Counts of a turn that each joint's encoder rounds to; 0: exact.")));
-    keys.push_back(choice("sensors.velocity.estimate", {"exact", "difference", "filtered"}, Source::ours,
-                          "Joint rates: known, the difference of two samples, or that difference behind a low-pass."));
     keys.push_back(
-        where("sensors.velocity.estimate", {"filtered"},
-              number("sensors.velocity.cutoff", {50}, Source::ours, {1e-6, 1e6}, "Hz", "Of that low-pass.")));
+        of_kind(Kind::section, number("sampling", {0}, Source::ours, no_bounds, "",
+                                      "Sampling of the controller. Absent: the controller computes continuously.")));
+    keys.push_back(number("sampling.rate", {1000}, Source::ours, {1e-3, 1e6}, "Hz",
+                          "How often the controller computes; its torque is held in between."));
+    keys.push_back(number("sampling.delay", {0}, Source::ours, {0, 64}, "samples",
+                          "Delay from reading the sensors to the torque, in whole and fractional samples."));
+    keys.push_back(of_kind(Kind::integer, number("sampling.seed", {1}, Source::ours, {0, 9007199254740991}, "",
+                                                 "Seed of the sensors' noise: the same seed gives the same bits.")));
+    keys.push_back(
+        of_kind(Kind::section, number("sensors", {0}, Source::ours, no_bounds, "",
+                                      "Errors of the controller's sensors. Absent: it reads the true values.")));
+    keys.push_back(of_kind(Kind::integer, number("sensors.encoder.counts", {0}, Source::ours, {0, 1e9}, "",
+                                                 "Counts per turn to which each joint's encoder rounds; 0: exact.")));
+    keys.push_back(choice(
+        "sensors.velocity.estimate", {"exact", "difference", "filtered"}, Source::ours,
+        "How joint rates are measured: exactly, as the difference of two samples, or as that difference after a low-pass."));
+    keys.push_back(where("sensors.velocity.estimate", {"filtered"},
+                         number("sensors.velocity.cutoff", {50}, Source::ours, {1e-6, 1e6}, "Hz",
+                                "Cutoff frequency of the low-pass on the joint rates.")));
     keys.push_back(number("sensors.force.noise", {0}, Source::ours, not_negative, "N",
-                          "Standard deviation of each component in each sample."));
+                          "Standard deviation of the noise in each component of the measured force, in each sample."));
     keys.push_back(number("sensors.force.bias", {0, 0, 0}, Source::ours, {-1e9, 1e9}, "N",
-                          "Added to the force on the tip, base axes."));
-    keys.push_back(number("sensors.force.resolution", {0}, Source::ours, not_negative, "N",
-                          "Each component is rounded to a multiple of it; 0: exact."));
-    keys.push_back(derived("no filter", number("sensors.force.analog_cutoff", {unset}, Source::ours, {1e-6, 1e6}, "Hz",
-                                               "First-order low-pass before sampling.")));
-    keys.push_back(derived("no filter", number("sensors.force.cutoff", {unset}, Source::ours, {1e-6, 1e6}, "Hz",
-                                               "First-order digital low-pass on the samples.")));
+                          "Constant error that is added to the measured force, base axes."));
+    keys.push_back(
+        number("sensors.force.resolution", {0}, Source::ours, not_negative, "N",
+               "Resolution of the measured force: each component is rounded to a multiple of it; 0: exact."));
+    keys.push_back(
+        derived("no filter", number("sensors.force.analog_cutoff", {unset}, Source::ours, {1e-6, 1e6}, "Hz",
+                                    "Cutoff frequency of a first-order low-pass on the force before sampling.")));
+    keys.push_back(derived("no filter",
+                           number("sensors.force.cutoff", {unset}, Source::ours, {1e-6, 1e6}, "Hz",
+                                  "Cutoff frequency of a first-order digital low-pass on the samples of the force.")));
     keys.push_back(number("sensors.force.delay", {0}, Source::ours, {0, 256}, "samples",
-                          "Of the force's samples, whole and fractional."));
+                          "Delay of the measured force, in whole and fractional samples."));
     keys.push_back(number("sensors.force.tool_mass", {0}, Source::ours, {0, 1e9}, "kg",
-                          "Of a tool beyond the sensor, whose weight it reads too."));
+                          "Mass of a tool beyond the force sensor, which measures its weight too."));
     return keys;
 }
 
@@ -642,50 +671,56 @@ void append_observer(std::vector<Key>& keys) {
     keys.push_back(of_kind(Kind::section, number("observer", {0}, Source::ours, no_bounds, "",
                                                  "Momentum observer of the external torque. Absent: none.")));
     keys.push_back(vector(number("observer.gain", {50, unset, unset}, Source::ours, {0, 1e6, true}, "1/s",
-                                 "K_O: the pole of the first-order filter.")));
+                                 "Gain K_O of the momentum observer: the pole of its first-order filter.")));
     keys.push_back(vector(number("observer.threshold", {0.5, unset, unset}, Source::ours, not_negative, "N m",
-                                 "A collision is where a residual exceeds it.")));
-    keys.push_back(number("observer.hold", {0.02}, Source::ours, {0, 1e6}, "s",
-                          "How long all residuals must stay below half of it for the collision to be over."));
+                                 "Residual above which there is a collision.")));
+    keys.push_back(
+        number("observer.hold", {0.02}, Source::ours, {0, 1e6}, "s",
+               "How long all residuals must stay below half of observer.threshold until the collision is over."));
     keys.push_back(choice(
         "observer.reaction", {"ignore", "stop", "float", "reflex", "retreat"}, Source::ours,
-        "From a collision on: nothing, hold the pose, compensate gravity alone, push with the residual, or retreat."));
-    keys.push_back(
-        where("observer.reaction", {"reflex"},
-              number("observer.reflex_gain", {1}, Source::ours, not_negative, "", "K_R of tau = tau_g + K_R r.")));
+        "Reaction from a collision on: none, hold the pose, only compensate gravity, push with the residual, or retreat."));
+    keys.push_back(where("observer.reaction", {"reflex"},
+                         number("observer.reflex_gain", {1}, Source::ours, not_negative, "",
+                                "Gain K_R of the reflex tau = tau_g + K_R r.")));
     keys.push_back(where("observer.reaction", {"retreat"},
                          number("observer.retreat_gain", {0.1}, Source::ours, not_negative, "rad/(N m s)",
-                                "K_Q: rate of the joint reference per residual.")));
+                                "Gain K_Q of the retreat: rate of the joint reference per residual.")));
     keys.push_back(where("observer.reaction", {"stop", "retreat"},
                          number("observer.joint_stiffness", {200, 200, 100}, Source::ours, not_negative, "N m/rad",
-                                "Kp of the PD that holds the pose.")));
+                                "Kp of the PD controller that holds the pose after a collision.")));
     keys.push_back(where("observer.reaction", {"stop", "retreat"},
                          number("observer.joint_damping", {30, 30, 10}, Source::ours, not_negative, "N m s/rad",
-                                "Kd of the PD that holds the pose.")));
+                                "Kd of the PD controller that holds the pose after a collision.")));
     keys.push_back(
         of_kind(Kind::section, number("estimator", {0}, Source::ours, no_bounds, "",
                                       "Recursive least squares of the wall's stiffness and speed. Absent: none.")));
     keys.push_back(number(
         "estimator.rate", {500}, Source::ours, {1e-3, 1e6}, "Hz",
-        "How often it takes a sample; beside a controller without `sampling`, rk4 needs a whole number of steps in between."));
-    keys.push_back(
-        number("estimator.forgetting", {0.995}, Source::ours, {0.5, 1}, "", "Weight of a sample per later one."));
+        "How often the estimator takes a sample; with a controller without `sampling`, rk4 needs a whole number of steps in between."));
+    keys.push_back(number("estimator.forgetting", {0.995}, Source::ours, {0.5, 1}, "",
+                          "Forgetting factor: the weight of a sample is multiplied by it at each later one."));
     keys.push_back(
         choice("estimator.wall", {"moving", "fixed"}, Source::ours, "Whether the wall's speed is estimated too."));
-    keys.push_back(number("estimator.start", {0}, Source::ours, an_instant, "s", "When the first sample is taken."));
+    keys.push_back(
+        number("estimator.start", {0}, Source::ours, an_instant, "s", "When the estimator takes its first sample."));
     keys.push_back(number("estimator.largest_condition", {1e8}, Source::ours, {1, 1e15}, "",
-                          "Condition number above which the answer is: not identifiable."));
+                          "Condition number of the data above which the wall is not identifiable."));
 }
 
 void append_push(std::vector<Key>& keys) {
     keys.push_back(of_kind(
         Kind::section,
-        number("push", {0}, Source::ours, no_bounds, "",
-               "A force on the tip from outside, beside the wall's; a force sensor reads it too. Absent: none.")));
-    keys.push_back(number("push.force", {0, 0, 0}, Source::ours, {-1e9, 1e9}, "N", "On the tip, base axes."));
-    keys.push_back(number("push.start", {0}, Source::ours, an_instant, "s", "When it begins."));
-    keys.push_back(number("push.rise", {0}, Source::ours, {0, 1e9}, "s", "How long it grows, in proportion to time."));
-    keys.push_back(or_infinite(number("push.duration", {infinite}, Source::ours, {0, 1e9}, "s", "How long it lasts.")));
+        number(
+            "push", {0}, Source::ours, no_bounds, "",
+            "An external force on the tip, beside that of the wall; a force sensor measures it too. Absent: none.")));
+    keys.push_back(
+        number("push.force", {0, 0, 0}, Source::ours, {-1e9, 1e9}, "N", "The external force on the tip, base axes."));
+    keys.push_back(number("push.start", {0}, Source::ours, an_instant, "s", "When the external force begins."));
+    keys.push_back(number("push.rise", {0}, Source::ours, {0, 1e9}, "s",
+                          "How long the external force grows linearly before it is constant."));
+    keys.push_back(or_infinite(
+        number("push.duration", {infinite}, Source::ours, {0, 1e9}, "s", "How long the external force lasts.")));
 }
 
 void append_solver(std::vector<Key>& keys) {
@@ -701,16 +736,16 @@ void append_solver(std::vector<Key>& keys) {
     keys.push_back(where("solver.method", {"taylor"},
                          number("solver.tol", {1e-9}, Source::ours, {1e-15, 1e-2}, "rad, rad/s",
                                 "Tolerance of a step: absolute below 1, relative above.")));
-    keys.push_back(where(
-        "solver.method", {"dopri5", "taylor", "rodas4", "auto"},
-        derived("no limit", number("solver.max_step", {unset}, Source::ours, {1e-12, 1e9}, "s", "Largest step."))));
-    keys.push_back(
-        where("solver.method", {"rk4"}, number("solver.step", {1e-3}, Source::ours, {1e-12, 1e9}, "s", "The step.")));
+    keys.push_back(where("solver.method", {"dopri5", "taylor", "rodas4", "auto"},
+                         derived("no limit", number("solver.max_step", {unset}, Source::ours, {1e-12, 1e9}, "s",
+                                                    "Maximum step size."))));
+    keys.push_back(where("solver.method", {"rk4"},
+                         number("solver.step", {1e-3}, Source::ours, {1e-12, 1e9}, "s", "Step size of rk4.")));
     keys.push_back(of_kind(Kind::integer, number("solver.max_steps", {1e7}, Source::ours, {1, 1e9}, "",
                                                  "Accepted and rejected steps after which the run ends as `budget`.")));
 }
 
-// Three numbers, and those of another unit, must be given.
+// Laws with three stiffnesses, or with another unit, have no default.
 double default_stiffness(std::span<const double> params, double otherwise) {
     const std::string& law = choice_of(params, "wall.contact.law");
     if (law == "diagonal" || law == "hunt_crossley") return unset;
@@ -839,7 +874,7 @@ std::size_t param_index(std::string_view name) {
 }
 
 std::string list_sizes(const Key& key) {
-    return (key.form == Form::list ? std::to_string(key.fewest) + " to " : "") + std::to_string(key.size);
+    return (key.form == Form::list ? std::to_string(key.min_size) + " to " : "") + std::to_string(key.size);
 }
 
 bool takes_list(const Key& key, std::span<const double> params) { return choice_of(params, key.when_key) == key.word; }

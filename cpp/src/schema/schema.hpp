@@ -55,7 +55,7 @@ struct Key {
     std::vector<std::string> choices = {};
     std::map<std::string, std::vector<double>> fallback_for = {};  // by the choice at when_key, where it differs
     std::string word = {};               // for vector_or_word: "infinite"; for by_choice: that which takes a list
-    std::size_t fewest = 0;              // for list
+    std::size_t min_size = 0;            // for list
     std::string when_key = {};           // the key exists only where the choice at this path ...
     std::vector<std::string> when = {};  // ... is one of these words
     bool required = false;               // must be given (where it exists at all)
@@ -68,9 +68,9 @@ struct Key {
 // Every key, in the order of the reference page. `name` (text), `format` and `checks` are the reader's own.
 const std::vector<Key>& schema();
 const Key* find_key(std::string_view path);
-const Key& known_key(std::string_view path);  // for paths that stand in the code
+const Key& known_key(std::string_view path);  // for paths that are written in the code
 std::size_t param_count();
-const Key& key_at(std::size_t index);            // whose number stands there in the flat array
+const Key& key_at(std::size_t index);            // the key whose number has this index in the flat array
 std::string param_name(std::size_t index);       // "initial.q[1]"
 std::size_t param_index(std::string_view name);  // throws Error ARM3R_E_INDEX, with the nearest right name
 std::vector<double> param_defaults();

@@ -16,9 +16,9 @@ void set_choices(std::span<const double> params, Controller<double>& controller)
     controller.inner = choice_at<"controller.inner", Inner>(params);
     controller.adaptation = choice_at<"controller.adaptation", Adaptation>(params);
     controller.compensates_gravity =
-        controller.type != Controls::joint_pd || flag_at<"controller.compensate_gravity">(params);
+        controller.type != ControllerType::joint_pd || flag_at<"controller.compensate_gravity">(params);
     const bool may_leave_force =
-        controller.type == Controls::computed_torque || controller.type == Controls::resolved_acceleration;
+        controller.type == ControllerType::computed_torque || controller.type == ControllerType::resolved_acceleration;
     controller.cancels_force = !may_leave_force || flag_at<"controller.cancel_force">(params);
     controller.ideal_cancellation = flag_at<"controller.ideal_cancellation">(params);
     controller.has_tank = flag_at<"controller.tank">(params);
@@ -49,7 +49,7 @@ void set_force_gains(std::span<const double> params, Gains<double>& gains) {
 void set_special_gains(std::span<const double> params, Gains<double>& gains) {
     gains.inner_bandwidth = at<"controller.inner_bandwidth">(params);
     gains.inner_damping_ratio = at<"controller.inner_damping_ratio">(params);
-    gains.reference = at<"controller.reference_gain">(params);
+    gains.reference_gain = at<"controller.reference_gain">(params);
     gains.assumed_stiffness = at<"controller.assumed_stiffness">(params);
     gains.stiffness_amplitude = at<"controller.stiffness_amplitude">(params);
     gains.stiffness_frequency = at<"controller.stiffness_frequency">(params);
@@ -67,26 +67,26 @@ void set_special_gains(std::span<const double> params, Gains<double>& gains) {
 
 bool inverts_jacobian(const Controller<double>& controller) {
     switch (controller.type) {
-        case Controls::resolved_acceleration:
-        case Controls::shaped_impedance:
-        case Controls::operational_space:
-        case Controls::parallel:
-        case Controls::adaptive_reference: return true;
-        case Controls::impedance: return is_moving(controller.setpoint.path);
-        case Controls::hybrid: return controller.variant != Variant::jacobian_transpose;
-        case Controls::admittance: return controller.inner != Inner::joint_pd;
+        case ControllerType::resolved_acceleration:
+        case ControllerType::shaped_impedance:
+        case ControllerType::operational_space:
+        case ControllerType::parallel:
+        case ControllerType::adaptive_reference: return true;
+        case ControllerType::impedance: return is_moving(controller.reference.path);
+        case ControllerType::hybrid: return controller.variant != Variant::jacobian_transpose;
+        case ControllerType::admittance: return controller.inner != Inner::joint_pd;
         default: return false;
     }
 }
 
 void set_controller(std::span<const double> params, Controller<double>& controller) {
-    controller.type = controls_of(params);
+    controller.type = controller_type_of(params);
     controller.algorithm = choice_at<"controller.algorithm", Algorithm>(params);
     controller.saturation = choice_at<"controller.saturation", Saturation>(params);
     controller.torque = {0, 0, 0};
-    if (controller.type == Controls::constant)
+    if (controller.type == ControllerType::constant)
         controller.torque = to_slide(params, vector_at<"controller.torque">(params));
-    set_force_gains(params, controller.gains);  // in samples, every controller judges contact
+    set_force_gains(params, controller.gains);  // a sampled controller of any type detects contact
     if (!has_law(controller.type)) return;
     set_choices(params, controller);
     set_motion_gains(params, controller.gains);

@@ -8,7 +8,7 @@
 namespace arm3r {
 namespace {
 
-// The angle, whole turns added, that is next to another.
+// The angle plus whole turns that is nearest to another.
 double next_to(double near, double angle) {
     constexpr double turn = 2 * std::numbers::pi;
     return angle + turn * nearest_integer((near - angle) / turn);
@@ -16,7 +16,7 @@ double next_to(double near, double angle) {
 
 Vec3<double> tip_of(const Arm<double>& arm, const Vec3<double>& q) { return tip_position(arm, pose(q)); }
 
-// reference.tip or reference.q, whichever is given, in the space in which the law works.
+// reference.tip or reference.q, whichever is given, in the space of the law.
 Vec3<double> target_of(std::span<const double> params, const Arm<double>& model, const Vec3<double>& start_q,
                        bool in_joints) {
     const Vec3<double> tip = vector_at<"reference.tip">(params);
@@ -26,24 +26,24 @@ Vec3<double> target_of(std::span<const double> params, const Arm<double>& model,
 }
 
 // On the wall's face, or across the x axis where there is no wall: turning from e1 to e2, about the pressing direction.
-void set_circle(std::span<const double> params, const Setup& setup, Setpoint<double>& wanted) {
+void set_circle(std::span<const double> params, const Setup& setup, Reference<double>& reference) {
     const double radius = at<"reference.radius">(params);
     const Vec3<double> e1 = setup.plant.has_wall ? setup.plant.wall.e1 : Vec3<double>(0, 1, 0);
     const Vec3<double> e2 = setup.plant.has_wall ? setup.plant.wall.e2 : Vec3<double>(0, 0, 1);
-    wanted.across1 = {radius * e1[0], radius * e1[1], radius * e1[2]};
-    wanted.across2 = {radius * e2[0], radius * e2[1], radius * e2[2]};
-    wanted.turns = at<"reference.turns">(params);
-    wanted.duration = at<"reference.period">(params) * wanted.turns;
+    reference.across1 = {radius * e1[0], radius * e1[1], radius * e1[2]};
+    reference.across2 = {radius * e2[0], radius * e2[1], radius * e2[2]};
+    reference.turns = at<"reference.turns">(params);
+    reference.duration = at<"reference.period">(params) * reference.turns;
 }
 
-void set_sinusoid(std::span<const double> params, Setpoint<double>& wanted) {
-    wanted.amplitude = wanted.in_joints ? to_slide(params, vector_at<"reference.q_amplitude">(params))
-                                        : vector_at<"reference.tip_amplitude">(params);
-    wanted.frequency = at<"reference.frequency">(params);
+void set_sinusoid(std::span<const double> params, Reference<double>& reference) {
+    reference.amplitude = reference.in_joints ? to_slide(params, vector_at<"reference.q_amplitude">(params))
+                                              : vector_at<"reference.tip_amplitude">(params);
+    reference.frequency = at<"reference.frequency">(params);
 }
 
 template <Name column>
-void set_curve(std::span<const double> params, int knots, Table<double>& curve) {
+void set_curve(std::span<const double> params, int knots, QuinticTable<double>& curve) {
     const auto count = static_cast<std::size_t>(knots);
     for (std::size_t i = 0; i < count; ++i) {
         curve.t[i] = at<"reference.t">(params, i);
@@ -54,57 +54,57 @@ void set_curve(std::span<const double> params, int knots, Table<double>& curve) 
                          {curve.a.data(), count});
 }
 
-void set_table(std::span<const double> params, Setpoint<double>& wanted) {
-    while (wanted.knots < most_knots && !std::isnan(at<"reference.t">(params, std::size_t(wanted.knots))))
-        ++wanted.knots;
-    wanted.table = std::make_shared<std::array<Table<double>, 3>>();
-    auto& [x, y, z] = *wanted.table;
-    set_curve<"reference.x">(params, wanted.knots, x);
-    set_curve<"reference.y">(params, wanted.knots, y);
-    set_curve<"reference.z">(params, wanted.knots, z);
-    wanted.start = x.t[0];
-    wanted.duration = x.t[std::size_t(wanted.knots) - 1] - wanted.start;
+void set_table(std::span<const double> params, Reference<double>& reference) {
+    while (reference.knots < max_knots && !std::isnan(at<"reference.t">(params, std::size_t(reference.knots))))
+        ++reference.knots;
+    reference.table = std::make_shared<std::array<QuinticTable<double>, 3>>();
+    auto& [x, y, z] = *reference.table;
+    set_curve<"reference.x">(params, reference.knots, x);
+    set_curve<"reference.y">(params, reference.knots, y);
+    set_curve<"reference.z">(params, reference.knots, z);
+    reference.start = x.t[0];
+    reference.duration = x.t[std::size_t(reference.knots) - 1] - reference.start;
 }
 
-void set_pressing(std::span<const double> params, Setpoint<double>& wanted) {
-    wanted.pressing = choice_at<"reference.force.type", Pressing>(params);
-    wanted.force = at<"reference.force.value">(params);
-    wanted.force_before = at<"reference.force.initial">(params);
-    wanted.force_start = at<"reference.force.start">(params);
-    wanted.force_duration = at<"reference.force.duration">(params);
-    wanted.force_amplitude = at<"reference.force.amplitude">(params);
-    wanted.force_frequency = at<"reference.force.frequency">(params);
+void set_force_profile(std::span<const double> params, Reference<double>& reference) {
+    reference.force_profile = choice_at<"reference.force.type", ForceProfile>(params);
+    reference.force = at<"reference.force.value">(params);
+    reference.force_before = at<"reference.force.initial">(params);
+    reference.force_start = at<"reference.force.start">(params);
+    reference.force_duration = at<"reference.force.duration">(params);
+    reference.force_amplitude = at<"reference.force.amplitude">(params);
+    reference.force_frequency = at<"reference.force.frequency">(params);
 }
 
 bool is_aimed(Path path) { return path == Path::point || path == Path::line || path == Path::minimum_jerk; }
 
 }  // namespace
 
-Reach<double> joints_at(const Arm<double>& arm, const Vec3<double>& tip, const Vec3<double>& near) {
+IkResult<double> joints_at(const Arm<double>& arm, const Vec3<double>& tip, const Vec3<double>& near) {
     const Pose<double> p = pose(near);
     const double S3 = sin_q3(p);
     const bool front = radius(arm, p) >= 0;
-    Reach<double> reach = inverse_kinematics(arm, tip, front, front == (S3 <= 0));
-    for (int i = 0; i < 3; ++i) reach.q[i] = next_to(near[i], reach.q[i]);
-    return reach;
+    IkResult<double> solution = inverse_kinematics(arm, tip, front, front == (S3 <= 0));
+    for (int i = 0; i < 3; ++i) solution.q[i] = next_to(near[i], solution.q[i]);
+    return solution;
 }
 
-void set_setpoint(std::span<const double> params, const Setup& setup, Setpoint<double>& wanted) {
+void set_reference(std::span<const double> params, const Setup& setup, Reference<double>& reference) {
     const Controller<double>& controller = setup.plant.controller;
-    wanted.in_joints = is_in_joints(controller.type);
-    wanted.from = wanted.in_joints ? setup.q : tip_of(controller.model, setup.q);
-    wanted.to = wanted.from;
-    wanted.across1 = wanted.across2 = wanted.amplitude = {0, 0, 0};
-    wanted.turns = wanted.frequency = 0;
-    wanted.path = wants_path(controller.type) ? choice_at<"reference.type", Path>(params) : Path::hold;
-    wanted.start = at<"reference.start">(params);
-    wanted.duration = at<"reference.duration">(params);
-    if (is_aimed(wanted.path)) wanted.to = target_of(params, controller.model, setup.q, wanted.in_joints);
-    if (wanted.path == Path::circle) set_circle(params, setup, wanted);
-    if (wanted.path == Path::sinusoid) set_sinusoid(params, wanted);
-    if (wanted.path == Path::table) set_table(params, wanted);
-    wanted.end = wanted.start + wanted.duration;
-    set_pressing(params, wanted);
+    reference.in_joints = is_in_joints(controller.type);
+    reference.from = reference.in_joints ? setup.q : tip_of(controller.model, setup.q);
+    reference.to = reference.from;
+    reference.across1 = reference.across2 = reference.amplitude = {0, 0, 0};
+    reference.turns = reference.frequency = 0;
+    reference.path = tracks_path(controller.type) ? choice_at<"reference.type", Path>(params) : Path::hold;
+    reference.start = at<"reference.start">(params);
+    reference.duration = at<"reference.duration">(params);
+    if (is_aimed(reference.path)) reference.to = target_of(params, controller.model, setup.q, reference.in_joints);
+    if (reference.path == Path::circle) set_circle(params, setup, reference);
+    if (reference.path == Path::sinusoid) set_sinusoid(params, reference);
+    if (reference.path == Path::table) set_table(params, reference);
+    reference.end = reference.start + reference.duration;
+    set_force_profile(params, reference);
 }
 
 }  // namespace arm3r

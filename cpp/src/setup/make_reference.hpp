@@ -5,11 +5,11 @@
 
 namespace arm3r {
 
-// What the controller of `setup` wants; its model, the wall and the start must be there.
-void set_setpoint(std::span<const double> params, const Setup& setup, Setpoint<double>& wanted);
+// Sets the reference of the controller of `setup`; its model, the wall and the initial state must be set before.
+void set_reference(std::span<const double> params, const Setup& setup, Reference<double>& reference);
 
-// The joint angles that bring the tip of `arm` to a point (m, base axes): those of the branch that the pose `near` is of, in
-// the turn next to it. Meaningless where |cos_q3| > 1.
-Reach<double> joints_at(const Arm<double>& arm, const Vec3<double>& tip, const Vec3<double>& near);
+// The joint angles that bring the tip of `arm` to a point (m, base axes): on the branch of the pose `near`, and within
+// half a turn of it. Undefined where |cos_q3| > 1.
+IkResult<double> joints_at(const Arm<double>& arm, const Vec3<double>& tip, const Vec3<double>& near);
 
 }  // namespace arm3r

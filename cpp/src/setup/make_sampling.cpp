@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Of a new sample in a first-order low-pass of samples (8.1).
+// The weight of a new sample in a first-order low-pass of samples (8.1).
 double share_of(double cutoff, double period) { return 1 - exp(-2 * pi * cutoff * period); }
 
 }  // namespace
@@ -73,18 +73,18 @@ Estimation<double> make_estimation(std::span<const double> params) {
     estimation.period = 1 / at<"estimator.rate">(params);
     estimation.start = std::max(at<"estimator.start">(params), at<"time.start">(params));
     estimation.forgetting = at<"estimator.forgetting">(params);
-    estimation.largest_condition = at<"estimator.largest_condition">(params);
+    estimation.max_condition = at<"estimator.largest_condition">(params);
     return estimation;
 }
 
-TipLoad<double> make_load(std::span<const double> params) {
-    TipLoad<double> load;
-    load.on = true;
-    load.force = vector_at<"push.force">(params);
-    load.start = at<"push.start">(params);
-    load.rise = at<"push.rise">(params);
-    load.end = load.start + at<"push.duration">(params);
-    return load;
+ExternalForce<double> make_external_force(std::span<const double> params) {
+    ExternalForce<double> external_force;
+    external_force.on = true;
+    external_force.force = vector_at<"push.force">(params);
+    external_force.start = at<"push.start">(params);
+    external_force.rise = at<"push.rise">(params);
+    external_force.end = external_force.start + at<"push.duration">(params);
+    return external_force;
 }
 
 }  // namespace arm3r

@@ -9,6 +9,6 @@ Sampling<double> make_sampling(std::span<const double> params);
 Sensors<double> make_sensors(std::span<const double> params);
 Observer<double> make_observer(std::span<const double> params);
 Estimation<double> make_estimation(std::span<const double> params);
-TipLoad<double> make_load(std::span<const double> params);
+ExternalForce<double> make_external_force(std::span<const double> params);
 
 }  // namespace arm3r

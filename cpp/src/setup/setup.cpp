@@ -18,7 +18,7 @@ namespace {
 using std::numbers::pi;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// One number x stands for (x along `axis`), three for themselves.
+// A single number x stands for x times `axis`, three numbers for the vector.
 template <Name path>
 Vec3<double> vector_along(std::span<const double> params, const Vec3<double>& axis) {
     const Vec3<double> given = vector_at<path>(params);
@@ -27,7 +27,7 @@ Vec3<double> vector_along(std::span<const double> params, const Vec3<double>& ax
 
 double given_or(double given, double otherwise) { return std::isnan(given) ? otherwise : given; }
 
-// What a shape says of mass and inertia, with `mass` in place of density*volume where it is given.
+// Mass and inertia of a shape, with `mass` in place of density*volume if it is given.
 struct Solid {
     double mass;
     Vec3<double> inertia;  // x along the length
@@ -51,9 +51,9 @@ Solid solid_of(std::span<const double> params, double length) {
     return {given, {0, across, across}};
 }
 
-Turret<double> turret_of(std::span<const double> params) {
-    const Turret<double> given{at<"arm.link1.mass">(params), at<"arm.link1.com">(params),
-                               at<"arm.link1.inertia_axial">(params)};
+BaseLink<double> base_link_of(std::span<const double> params) {
+    const BaseLink<double> given{at<"arm.link1.mass">(params), at<"arm.link1.com">(params),
+                                 at<"arm.link1.inertia_axial">(params)};
     if (is<"arm.link1.shape", "explicit">(params)) return given;
     const double length = at<"arm.link1.length">(params);
     const Solid solid = solid_of<"arm.link1">(params, length);
@@ -80,10 +80,10 @@ void finish(Arm<double>& arm) {
         std::isfinite(arm.torque_limit[0]) || std::isfinite(arm.torque_limit[1]) || std::isfinite(arm.torque_limit[2]);
 }
 
-// The controller's copy, with the gravity that it compensates.
+// The controller's model of the arm, with the gravity that it compensates.
 void set_model(std::span<const double> params, const Arm<double>& plant_arm, Arm<double>& model) {
     model = model_differs(params) ? make_arm(with_model(params)) : plant_arm;
-    if (!has_model(controls_of(params))) return;
+    if (!has_model(controller_type_of(params))) return;
     model.gravity = vector_along<"controller.gravity">(params, {0, 0, -1});
     finish(model);
 }
@@ -108,13 +108,13 @@ Vec3<double> normalised(const Vec3<double>& v) {
 }
 
 template <Name section>
-Swing<double> swing_of(std::span<const double> params) {
+Sinusoid<double> sinusoid_of(std::span<const double> params) {
     return {at<section + ".amplitude">(params), at<section + ".frequency">(params), at<section + ".phase">(params)};
 }
 
-Table<double> table_of(std::span<const double> params) {
-    Table<double> table;
-    for (int i = 0; i < most_knots; ++i) {
+QuinticTable<double> table_of(std::span<const double> params) {
+    QuinticTable<double> table;
+    for (int i = 0; i < max_knots; ++i) {
         const auto item = static_cast<std::size_t>(i);
         table.t[i] = at<"wall.motion.t">(params, item);
         table.s[i] = at<"wall.motion.s">(params, item);
@@ -131,11 +131,11 @@ void set_motion(Wall<double>& wall, std::span<const double> params) {
     if (wall.motion == Motion::constant) wall.velocity = vector_along<"wall.motion.velocity">(params, wall.n);
     const Vec3<double> direction = vector_at<"wall.motion.direction">(params);
     wall.direction = std::isnan(direction[0]) ? wall.n : normalised(direction);
-    if (wall.motion == Motion::sinusoid) wall.swing = swing_of<"wall.motion">(params);
+    if (wall.motion == Motion::sinusoid) wall.sinusoid = sinusoid_of<"wall.motion">(params);
     if (wall.motion == Motion::ramp)
         wall.ramp = {at<"wall.motion.distance">(params), at<"wall.motion.start">(params),
                      at<"wall.motion.duration">(params)};
-    if (wall.motion == Motion::table) wall.table = std::make_shared<Table<double>>(table_of(params));
+    if (wall.motion == Motion::table) wall.table = std::make_shared<QuinticTable<double>>(table_of(params));
 }
 
 void set_rotation(Wall<double>& wall, std::span<const double> params) {
@@ -143,7 +143,7 @@ void set_rotation(Wall<double>& wall, std::span<const double> params) {
     wall.axis = {0, 0, 0};
     if (wall.rotation != Rotation::none) wall.axis = normalised(vector_at<"wall.rotation.axis">(params));
     if (wall.rotation == Rotation::constant) wall.turn_rate = at<"wall.rotation.rate">(params);
-    if (wall.rotation == Rotation::sinusoid) wall.turn_swing = swing_of<"wall.rotation">(params);
+    if (wall.rotation == Rotation::sinusoid) wall.turn_sinusoid = sinusoid_of<"wall.rotation">(params);
 }
 
 Wall<double> make_wall(std::span<const double> params) {
@@ -164,14 +164,14 @@ Wall<double> make_wall(std::span<const double> params) {
     return wall;
 }
 
-Law law_of(std::span<const double> params) {
-    if (is<"wall.contact.law", "diagonal">(params)) return Law::diagonal;
-    if (is<"wall.contact.law", "kelvin_voigt">(params)) return Law::kelvin_voigt;
-    if (is<"wall.contact.law", "hunt_crossley">(params)) return Law::hunt_crossley;
-    return Law::spring;
+ContactLaw law_of(std::span<const double> params) {
+    if (is<"wall.contact.law", "diagonal">(params)) return ContactLaw::diagonal;
+    if (is<"wall.contact.law", "kelvin_voigt">(params)) return ContactLaw::kelvin_voigt;
+    if (is<"wall.contact.law", "hunt_crossley">(params)) return ContactLaw::hunt_crossley;
+    return ContactLaw::spring;
 }
 
-// The mass that the tip shows to the wall at the start, kg.
+// The effective mass of the tip towards the wall at the start, kg.
 double mass_at_start(const Setup& setup) {
     const Wall<double>& wall = setup.plant.wall;
     return effective_mass(setup.plant.arm, pose(setup.q), normal(wall, wall_at(wall, setup.start)));
@@ -193,9 +193,9 @@ Contact<double> make_contact(std::span<const double> params, double mass) {
     const Vec3<double> k = vector_at<"wall.contact.stiffness">(params);
     Contact<double> contact{};
     contact.law = law_of(params);
-    contact.stiffness = contact.law == Law::diagonal ? k : Vec3<double>(k[0], 0, 0);
-    if (contact.law == Law::kelvin_voigt) contact.damping = damping_of(params, k[0], mass);
-    if (contact.law == Law::hunt_crossley) {
+    contact.stiffness = contact.law == ContactLaw::diagonal ? k : Vec3<double>(k[0], 0, 0);
+    if (contact.law == ContactLaw::kelvin_voigt) contact.damping = damping_of(params, k[0], mass);
+    if (contact.law == ContactLaw::hunt_crossley) {
         contact.exponent = at<"wall.contact.exponent">(params);
         contact.dissipation = dissipation_of(params);
     }
@@ -249,7 +249,7 @@ std::vector<double> with_model(std::span<const double> params) {
 Arm<double> make_arm(std::span<const double> params) {
     Arm<double> arm;
     arm.base_height = at<"arm.base_height">(params);
-    arm.link1 = turret_of(params);
+    arm.link1 = base_link_of(params);
     arm.link2 = link_of<"arm.link2">(params);
     arm.link3 = link_of<"arm.link3">(params);
     arm.payload = at<"arm.payload.mass">(params);
@@ -263,23 +263,25 @@ Arm<double> make_arm(std::span<const double> params) {
     return arm;
 }
 
-// What stands between controller and arm. Of a digital controller the plant sees but a torque that changes now and then.
-static void put_between(std::span<const double> params, Setup& setup) {
+// Sets sensors, observer and sampling. With sampling, `digital.controller` becomes the controller of the scenario, and
+// the plant's own controller becomes a constant torque, which the sampled controller sets at its samples.
+static void wire_sampling(std::span<const double> params, Setup& setup) {
     Plant<double>& plant = setup.plant;
-    Digital<double>& digital = setup.digital;
+    DigitalController<double>& digital = setup.digital;
     if (at<"sensors">(params) != 0) plant.sensors = digital.sensors = make_sensors(params);
     if (at<"observer">(params) != 0) digital.observer = make_observer(params);
-    if (at<"sampling">(params) != 0 || plant.controller.type == Controls::user) {  // which computes sample by sample
+    // a user's law computes sample by sample
+    if (at<"sampling">(params) != 0 || plant.controller.type == ControllerType::user) {
         digital.sampling = make_sampling(params);
         digital.controller = plant.controller;
-        static_cast<ControllerChoices&>(plant.controller) = {.type = Controls::constant};
+        static_cast<ControllerChoices&>(plant.controller) = {.type = ControllerType::constant};
         plant.controller.torque = {0, 0, 0};
         plant.controller.model = plant.arm;
     } else {
         plant.observer = digital.observer;
     }
-    plant.needs_azimuth = has_law(setup.law().type) || setup.digital.sampling.on || setup.observes() ||
-                          setup.estimation.on || plant.load.on;
+    plant.needs_azimuth = has_law(setup.controller().type) || setup.digital.sampling.on || setup.observes() ||
+                          setup.estimation.on || plant.external_force.on;
 }
 
 Setup make_setup(std::span<const double> params) {
@@ -295,13 +297,13 @@ Setup make_setup(std::span<const double> params) {
     setup.plant.contact = make_contact(params, mass_at_start(setup));
     setup.plant.acts_on_arm = setup.plant.has_wall && at<"wall.acts_on_arm">(params) != 0;
     setup.qd = to_slide(params, vector_at<"initial.qd">(params));
-    if (has_law(setup.plant.controller.type)) set_setpoint(params, setup, setup.plant.controller.setpoint);
+    if (has_law(setup.plant.controller.type)) set_reference(params, setup, setup.plant.controller.reference);
     setup.solver = make_solver(params);
     setup.stop = at<"time.stop">(params);
     setup.log_every = at<"time.log_every">(params);
-    if (at<"push">(params) != 0) setup.plant.load = make_load(params);
+    if (at<"push">(params) != 0) setup.plant.external_force = make_external_force(params);
     if (at<"estimator">(params) != 0) setup.estimation = make_estimation(params);
-    put_between(params, setup);
+    wire_sampling(params, setup);
     set_jumps_on_clock(setup);
     return setup;
 }

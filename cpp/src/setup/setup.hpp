@@ -1,5 +1,5 @@
 #pragma once
-// From the flat parameters to the typed things that a run works on. Slide convention from here on.
+// Makes typed data from the flat parameters. All of it is in the slide convention.
 
 #include <span>
 #include <string>
@@ -12,28 +12,28 @@ namespace arm3r {
 
 struct Solver {
     enum Method { dopri5, rk4, taylor, rodas4, automatic } method;
-    double rtol, atol;      // of the adaptive methods but taylor
+    double rtol, atol;      // of the adaptive methods except taylor
     double tol;             // of taylor
     double max_step, step;  // s; max_step may be inf
     double max_steps;
 
-    bool marches() const { return method == rk4 || method == taylor; }  // in lanes too (march.hpp)
+    bool runs_in_lanes() const { return method == rk4 || method == taylor; }  // also in lanes (lane_run.hpp)
 };
 
 struct Setup {
-    bool simscape;  // how q, qd and torques are written at the faces
+    bool simscape;  // the convention of q, qd and torques of input and output
     Plant<double> plant;
-    Digital<double> digital;  // on: the plant's own controller is the torque that this one holds
+    DigitalController<double> digital;  // if it is on, the plant's own controller is the torque that this one holds
     Estimation<double> estimation;
     Vec3<double> q, qd;  // at the start
     Solver solver;
     double start, stop, log_every;  // s
 
-    const Controller<double>& law() const { return digital.sampling.on ? digital.controller : plant.controller; }
+    const Controller<double>& controller() const { return digital.sampling.on ? digital.controller : plant.controller; }
     bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }
-    bool is_scored() const { return law().type != Controls::none; }
+    bool has_performance() const { return controller().type != ControllerType::none; }
 
-    // Instants nearer to each other than this, s, are the same but for rounding.
+    // Instants that differ by less than this, s, are equal except for rounding.
     double clock_rounding() const;
 };
 
@@ -48,7 +48,7 @@ struct Replacement {
 };
 const std::vector<Replacement>& model_numbers();
 
-// The same parameters with whatever controller.model says in the place of the plant's arm, and whether it says anything.
+// The same parameters with the numbers of controller.model in place of the plant's arm, and whether there are any.
 std::vector<double> with_model(std::span<const double> params);
 bool model_differs(std::span<const double> params);
 

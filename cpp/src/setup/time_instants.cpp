@@ -11,25 +11,25 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 template <class Load, class Visit>
-void each_jump_of_load(Load& load, Visit visit) {
-    if (!load.on) return;
-    if (!(load.rise > 0)) visit(load.start);
-    visit(load.end);
+void each_jump_of_external_force(Load& external_force, Visit visit) {
+    if (!external_force.on) return;
+    if (!(external_force.rise > 0)) visit(external_force.start);
+    visit(external_force.end);
 }
 
 template <class W, class Visit>
 void each_jump_of_wall(W& wall, Visit visit) {
     if (wall.motion != Motion::table) return;
-    Table<double>& table = *wall.table;
+    QuinticTable<double>& table = *wall.table;
     for (const int end : {0, table.knots - 1})
         if (table.v[end] != 0) visit(table.t[end]);
 }
 
 template <class S, class Visit>
-void each_jump_of_setpoint(S& setpoint, Visit visit) {
-    if (setpoint.path == Path::line || setpoint.path == Path::sinusoid) visit(setpoint.start);
-    if (setpoint.path == Path::line) visit(setpoint.end);
-    if (setpoint.pressing == Pressing::step) visit(setpoint.force_start);
+void each_jump_of_reference(S& reference, Visit visit) {
+    if (reference.path == Path::line || reference.path == Path::sinusoid) visit(reference.start);
+    if (reference.path == Path::line) visit(reference.end);
+    if (reference.force_profile == ForceProfile::step) visit(reference.force_start);
 }
 
 }  // namespace
@@ -54,16 +54,17 @@ double next_knot(const Setup& setup, double t) {
     const auto consider = [&](double knot) {
         if (knot > t) next = std::min(next, knot);
     };
-    if (plant.load.on) {
-        const TipLoad<double>& load = plant.load;
-        for (const double knot : {load.start, load.start + load.rise, load.end}) consider(knot);
+    if (plant.external_force.on) {
+        const ExternalForce<double>& external_force = plant.external_force;
+        for (const double knot : {external_force.start, external_force.start + external_force.rise, external_force.end})
+            consider(knot);
     }
     if (!has_law(plant.controller.type)) return next;
-    const Setpoint<double>& setpoint = plant.controller.setpoint;
-    if (is_moving(setpoint.path)) consider(setpoint.start), consider(setpoint.end);
-    for (int i = 0; i < setpoint.knots; ++i) consider((*setpoint.table)[0].t[std::size_t(i)]);
-    if (setpoint.pressing == Pressing::step || setpoint.pressing == Pressing::ramp)
-        consider(setpoint.force_start), consider(setpoint.force_start + setpoint.force_duration);
+    const Reference<double>& reference = plant.controller.reference;
+    if (is_moving(reference.path)) consider(reference.start), consider(reference.end);
+    for (int i = 0; i < reference.knots; ++i) consider((*reference.table)[0].t[std::size_t(i)]);
+    if (reference.force_profile == ForceProfile::step || reference.force_profile == ForceProfile::ramp)
+        consider(reference.force_start), consider(reference.force_start + reference.force_duration);
     return next;
 }
 
@@ -73,9 +74,9 @@ double next_jump(const Setup& setup, double t) {
     const auto consider = [&](double jump) {
         if (jump > t) next = std::min(next, jump);
     };
-    each_jump_of_load(plant.load, consider);
+    each_jump_of_external_force(plant.external_force, consider);
     if (plant.has_wall) each_jump_of_wall(plant.wall, consider);
-    if (has_law(plant.controller.type)) each_jump_of_setpoint(plant.controller.setpoint, consider);
+    if (has_law(plant.controller.type)) each_jump_of_reference(plant.controller.reference, consider);
     return next;
 }
 
@@ -91,15 +92,15 @@ double Setup::clock_rounding() const {
 void set_jumps_on_clock(Setup& setup) {
     const bool has_grid = setup.solver.method == Solver::rk4, has_samples = setup.digital.sampling.on;
     const double period = has_grid ? setup.solver.step : has_samples ? setup.digital.sampling.period : infinite;
-    const auto settle = [&](double& jump) {
+    const auto snap = [&](double& jump) {
         const double count = nearest_integer((jump - setup.start) / period);
         for (const double instant : {setup.start + (count > 0 ? count * period : 0), setup.stop})
             if (std::abs(jump - instant) <= setup.clock_rounding()) jump = instant;
     };
-    each_jump_of_load(setup.plant.load, settle);
-    if (setup.plant.has_wall) each_jump_of_wall(setup.plant.wall, settle);
+    each_jump_of_external_force(setup.plant.external_force, snap);
+    if (setup.plant.has_wall) each_jump_of_wall(setup.plant.wall, snap);
     Controller<double>& law = has_samples ? setup.digital.controller : setup.plant.controller;
-    each_jump_of_setpoint(law.setpoint, settle);
+    each_jump_of_reference(law.reference, snap);
 }
 
 }  // namespace arm3r

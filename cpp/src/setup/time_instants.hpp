@@ -1,20 +1,24 @@
 #pragma once
-// The instants at which formulas of time alone change: of the wall's course, the setpoint, a push; docs/model.md (5.8).
+// The instants at which formulas of time change: of the wall's motion, the reference, an external force; docs/model.md
+// (5.8).
 
 #include "setup/setup.hpp"
 
 namespace arm3r {
 
-// The next instant after t at which the wall's course changes its formula; infinite for none.
+// The next instant after t at which the formula of the wall's motion changes; infinite for none.
 double next_knot(const Wall<double>& wall, double t);
 
-// The next instant after t, s, at which a formula of time alone changes: of the wall's course, the setpoint, a load.
+// The next instant after t, s, at which a formula of time changes: of the wall's motion, the reference, an external
+// force.
 double next_knot(const Setup& setup, double t);
-// The next at which what it gives jumps, so that the steps before and after see different values; and the instant before.
+// The next instant at which the value of such a formula jumps, so that the steps before and after it use different
+// values; and the instant before.
 double next_jump(const Setup& setup, double t);
 double just_before(double t);
 
-// Jumps that lie on a sample, on the end of a fixed step or of the run, but for rounding, are put there to the bit.
+// Moves jumps that differ from a sample, or from the end of a fixed step or of the run, by rounding only exactly onto
+// it.
 void set_jumps_on_clock(Setup& setup);
 
 }  // namespace arm3r

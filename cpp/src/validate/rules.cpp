@@ -13,9 +13,9 @@ namespace arm3r {
 namespace {
 
 using std::numbers::pi;
-constexpr double deepest_start = 0.1;      // m
-constexpr double smallest_inertia = 1e-9;  // kg m^2
-constexpr double shortest_period = 1e-14;  // of time.start: 45 to 90 units in its last place
+constexpr double max_start_depth = 0.1;  // m
+constexpr double min_inertia = 1e-9;     // kg m^2
+constexpr double min_period = 1e-14;     // of time.start: 45 to 90 units in its last place
 
 std::string degrees(double angle) { return shortest(std::round(angle * 180 / pi * 100) / 100) + " deg"; }
 
@@ -23,10 +23,10 @@ std::string at_pose(const WorstPose& pose) {
     return "at q2 = " + degrees(pose.q2) + ", q3 = " + degrees(pose.q3) + ", any q1";
 }
 
-void check_mass_matrix(const Arm<double>& arm, Findings& findings) {
-    const WorstPose M11 = smallest_M11(arm.lumped);
-    if (M11.value < smallest_inertia)
-        findings.add([&] {
+void check_mass_matrix(const Arm<double>& arm, ProblemList& problem_list) {
+    const WorstPose M11 = min_M11(arm.lumped);
+    if (M11.value < min_inertia)
+        problem_list.add([&] {
             return Problem{
                 .code = "scenario.singular_mass_matrix",
                 .path = "arm.link1.inertia_axial",
@@ -37,9 +37,9 @@ void check_mass_matrix(const Arm<double>& arm, Findings& findings) {
                 .hint =
                     "give arm.link1.inertia_axial or arm.armature[0]; slender links have no inertia about their own axis"};
         });
-    const WorstPose lower = smallest_lower_determinant(arm.lumped);
+    const WorstPose lower = min_lower_determinant(arm.lumped);
     if (lower.value <= 0)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.singular_mass_matrix",
                            .path = "arm.link3.inertia",
                            .message = "the mass matrix is singular: the determinant of joints 2 and 3 falls to " +
@@ -49,12 +49,12 @@ void check_mass_matrix(const Arm<double>& arm, Findings& findings) {
         });
 }
 
-void check_start(const Setup& setup, Findings& findings) {
+void check_start(const Setup& setup, ProblemList& problem_list) {
     const Plant<double>& plant = setup.plant;
     const Pose<double> p = pose(setup.q);
     const Indentation<double> in = tip_indentation(plant, wall_at(plant.wall, setup.start), p, setup.qd);
-    if (in.depth > deepest_start && inside_outline(plant.wall, in) >= 0)
-        findings.add([&] {
+    if (in.depth > max_start_depth && inside_outline(plant.wall, in) >= 0)
+        problem_list.add([&] {
             return Problem{.code = "scenario.starts_inside_wall",
                            .path = "wall.point",
                            .message = "the tip starts deep inside the wall",
@@ -64,10 +64,10 @@ void check_start(const Setup& setup, Findings& findings) {
         });
 }
 
-void check_time(std::span<const double> params, Findings& findings) {
+void check_time(std::span<const double> params, ProblemList& problem_list) {
     const double start = at<"time.start">(params), stop = at<"time.stop">(params);
     if (stop < start)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.range",
                            .path = "time.stop",
                            .message = "the run ends before it starts",
@@ -77,11 +77,11 @@ void check_time(std::span<const double> params, Findings& findings) {
         });
 }
 
-// A period that is to be counted from an instant must be longer than the spacing of the doubles about it.
-void check_spacing(const char* path, double period, double start, Findings& findings) {
-    const double least = shortest_period * std::abs(start);
+// A period that is added to an instant must be longer than the spacing of the doubles near it.
+void check_spacing(const char* path, double period, double start, ProblemList& problem_list) {
+    const double least = min_period * std::abs(start);
     if (period < least)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.clock",
                            .path = path,
                            .message = "time.start is too late for so short a period",
@@ -91,16 +91,17 @@ void check_spacing(const char* path, double period, double start, Findings& find
         });
 }
 
-void check_clock(const Setup& setup, Findings& findings) {
-    check_spacing("time.log_every", setup.log_every, setup.start, findings);
-    if (setup.solver.method == Solver::rk4) check_spacing("solver.step", setup.solver.step, setup.start, findings);
-    if (setup.digital.sampling.on) check_spacing("sampling.rate", setup.digital.sampling.period, setup.start, findings);
+void check_clock(const Setup& setup, ProblemList& problem_list) {
+    check_spacing("time.log_every", setup.log_every, setup.start, problem_list);
+    if (setup.solver.method == Solver::rk4) check_spacing("solver.step", setup.solver.step, setup.start, problem_list);
+    if (setup.digital.sampling.on)
+        check_spacing("sampling.rate", setup.digital.sampling.period, setup.start, problem_list);
 }
 
 // A damped law takes one number that says how much it damps, or a restitution to find it from.
-void check_damping(const std::string& name, double given, bool has_restitution, Findings& findings) {
+void check_damping(const std::string& name, double given, bool has_restitution, ProblemList& problem_list) {
     if (std::isnan(given) != has_restitution)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = has_restitution ? "scenario.conflict" : "scenario.missing_key",
                            .path = "wall.contact." + name,
                            .message = has_restitution ? "restitution says already how much the contact damps"
@@ -111,15 +112,15 @@ void check_damping(const std::string& name, double given, bool has_restitution, 
         });
 }
 
-void check_law(std::span<const double> params, Findings& findings) {
+void check_law(std::span<const double> params, ProblemList& problem_list) {
     const bool has_restitution = !std::isnan(at<"wall.contact.restitution">(params));
     if (is<"wall.contact.law", "kelvin_voigt">(params))
-        check_damping("damping", at<"wall.contact.damping">(params), has_restitution, findings);
+        check_damping("damping", at<"wall.contact.damping">(params), has_restitution, problem_list);
     if (!is<"wall.contact.law", "hunt_crossley">(params)) return;
-    check_damping("dissipation", at<"wall.contact.dissipation">(params), has_restitution, findings);
+    check_damping("dissipation", at<"wall.contact.dissipation">(params), has_restitution, problem_list);
     const bool has_speed = !std::isnan(at<"wall.contact.impact_speed">(params));
     if (has_speed != has_restitution)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = has_speed ? "scenario.conflict" : "scenario.missing_key",
                            .path = "wall.contact.impact_speed",
                            .message = has_speed ? "this is the speed of a restitution, and none is given"
@@ -130,11 +131,11 @@ void check_law(std::span<const double> params, Findings& findings) {
         });
 }
 
-// A power series cannot pass the corner at which a changing torque meets its limit.
-void check_corners(const Setup& setup, Findings& findings) {
+// A Taylor series cannot pass the corner at which a changing torque reaches its limit.
+void check_corners(const Setup& setup, ProblemList& problem_list) {
     if (setup.solver.method == Solver::taylor && setup.plant.arm.has_torque_limit && !setup.digital.sampling.on &&
-        setup.law().type == Controls::gravity_compensation)
-        findings.add([] {
+        setup.controller().type == ControllerType::gravity_compensation)
+        problem_list.add([] {
             return Problem{.code = "scenario.corner",
                            .path = "solver.method",
                            .message =
@@ -146,12 +147,12 @@ void check_corners(const Setup& setup, Findings& findings) {
         });
 }
 
-// Its recurrences are those of the closed form.
-void check_algorithm(const Setup& setup, Findings& findings) {
-    const Controller<double>& controller = setup.law();
-    if (setup.solver.method == Solver::taylor && controller.type == Controls::gravity_compensation &&
+// The recurrences are those of the closed form.
+void check_algorithm(const Setup& setup, ProblemList& problem_list) {
+    const Controller<double>& controller = setup.controller();
+    if (setup.solver.method == Solver::taylor && controller.type == ControllerType::gravity_compensation &&
         controller.algorithm == Algorithm::recursion && !setup.digital.sampling.on)
-        findings.add([] {
+        problem_list.add([] {
             return Problem{.code = "scenario.no_series",
                            .path = "controller.algorithm",
                            .message = "taylor has no series of the Newton-Euler recursion",
@@ -161,7 +162,8 @@ void check_algorithm(const Setup& setup, Findings& findings) {
         });
 }
 
-// Why the recurrences of the wall do not hold: they are those of a wall that slides evenly or swings, and of a spring.
+// The reason why there is no Taylor series for a wall: the recurrences are those of a wall that moves evenly or as a
+// sinusoid, and of a spring.
 struct NoSeries {
     const char *path, *of, *allowed;
 };
@@ -174,7 +176,7 @@ std::optional<NoSeries> without_series(const Plant<double>& plant) {
         return NoSeries{"wall.rotation.type", "a wall that turns", "none with solver.method: taylor"};
     if (is_damped(plant.contact.law))
         return NoSeries{"wall.contact.law", "a damped contact", "spring or diagonal with solver.method: taylor"};
-    if (plant.acts_on_arm && plant.contact.law == Law::diagonal)
+    if (plant.acts_on_arm && plant.contact.law == ContactLaw::diagonal)
         return NoSeries{"wall.contact.law", "springs along the plate", "spring where the wall acts on the arm"};
     if (plant.acts_on_arm && plant.contact.has_friction)
         return NoSeries{"wall.contact.friction.coefficient", "friction on the wall",
@@ -182,10 +184,10 @@ std::optional<NoSeries> without_series(const Plant<double>& plant) {
     return std::nullopt;
 }
 
-void check_series(const Setup& setup, Findings& findings) {
+void check_series(const Setup& setup, ProblemList& problem_list) {
     if (setup.solver.method != Solver::taylor || !setup.plant.has_wall) return;
     if (const std::optional<NoSeries> reason = without_series(setup.plant))
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.no_series",
                            .path = reason->path,
                            .message = std::string("taylor has no series of ") + reason->of,
@@ -196,7 +198,7 @@ void check_series(const Setup& setup, Findings& findings) {
 
 }  // namespace
 
-WorstPose smallest_M11(const Lumped<double>& l) {  // (3.10)
+WorstPose min_M11(const Lumped<double>& l) {  // (3.10)
     const double B = std::abs(l.B), toward = l.B > 0 ? -1 : 1;
     WorstPose worst{l.A1, pi / 2, 0};
     const auto consider = [&](double form, double C2, double C23) {
@@ -208,33 +210,33 @@ WorstPose smallest_M11(const Lumped<double>& l) {  // (3.10)
     return worst;
 }
 
-WorstPose smallest_lower_determinant(const Lumped<double>& l) {  // (3.10)
+WorstPose min_lower_determinant(const Lumped<double>& l) {  // (3.10)
     const double coupling = std::abs(l.B) + l.J3;
     return {(l.B2 + l.J3) * (l.B3 + l.J3) - coupling * coupling, 0, l.B > 0 ? pi : 0};
 }
 
-std::optional<Setup> check_setup(std::span<const double> params, Findings& findings) {
-    check_time(params, findings);
-    check_direction<"wall.normal">(params, findings);
-    check_direction<"wall.motion.direction">(params, findings);
-    check_direction<"wall.rotation.axis">(params, findings);
+std::optional<Setup> check_setup(std::span<const double> params, ProblemList& problem_list) {
+    check_time(params, problem_list);
+    check_direction<"wall.normal">(params, problem_list);
+    check_direction<"wall.motion.direction">(params, problem_list);
+    check_direction<"wall.rotation.axis">(params, problem_list);
     if (is<"wall.motion.type", "table">(params))
         check_table<"wall.motion.t", "wall.motion.s", "wall.motion.v", "wall.motion.a">(
-            params, "give position, velocity and acceleration at every instant", findings);
-    check_controller_keys(params, findings);
-    check_sampling_keys(params, findings);
-    if (at<"wall">(params) != 0) check_law(params, findings);
-    if (!findings.none()) return {};
+            params, "give position, velocity and acceleration at every instant", problem_list);
+    check_controller_keys(params, problem_list);
+    check_sampling_keys(params, problem_list);
+    if (at<"wall">(params) != 0) check_law(params, problem_list);
+    if (!problem_list.empty()) return {};
     const Setup setup = make_setup(params);
-    check_clock(setup, findings);
-    check_corners(setup, findings);
-    check_algorithm(setup, findings);
-    check_series(setup, findings);
-    check_controller(params, setup, findings);
-    check_sampling(params, setup, findings);
-    check_mass_matrix(setup.plant.arm, findings);
-    if (findings.none() && setup.plant.has_wall) check_start(setup, findings);
-    return findings.none() ? std::optional(setup) : std::nullopt;
+    check_clock(setup, problem_list);
+    check_corners(setup, problem_list);
+    check_algorithm(setup, problem_list);
+    check_series(setup, problem_list);
+    check_controller(params, setup, problem_list);
+    check_sampling(params, setup, problem_list);
+    check_mass_matrix(setup.plant.arm, problem_list);
+    if (problem_list.empty() && setup.plant.has_wall) check_start(setup, problem_list);
+    return problem_list.empty() ? std::optional(setup) : std::nullopt;
 }
 
 }  // namespace arm3r

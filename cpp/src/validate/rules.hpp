@@ -12,21 +12,21 @@ namespace arm3r {
 
 // What no single key can break: the mass matrix over the whole workspace (3.10), the start, what a method cannot do.
 // The setup, where no rule is broken.
-std::optional<Setup> check_setup(std::span<const double> params, Findings& findings);
+std::optional<Setup> check_setup(std::span<const double> params, ProblemList& problem_list);
 
 // Smallest M11 and smallest determinant of the lower block over all poses, and the link angles where they occur (3.10).
 struct WorstPose {
     double value;
     double q2, q3;  // rad, slide
 };
-WorstPose smallest_M11(const Lumped<double>& lumped);
-WorstPose smallest_lower_determinant(const Lumped<double>& lumped);
+WorstPose min_M11(const Lumped<double>& lumped);
+WorstPose min_lower_determinant(const Lumped<double>& lumped);
 
 template <Name path>
-void check_direction(std::span<const double> params, Findings& findings) {
+void check_direction(std::span<const double> params, ProblemList& problem_list) {
     const Vec3<double> given = vector_at<path>(params);
     if (sqrt(dot(given, given)) < 1e-9)
-        findings.add([] {
+        problem_list.add([] {
             return Problem{.code = "scenario.range",
                            .path = std::string(path),
                            .message = "a direction needs a length",
@@ -38,15 +38,15 @@ void check_direction(std::span<const double> params, Findings& findings) {
 template <Name path>
 std::size_t length_of(std::span<const double> params) {
     std::size_t length = 0;
-    while (length < most_knots && !std::isnan(at<path>(params, length))) ++length;
+    while (length < max_knots && !std::isnan(at<path>(params, length))) ++length;
     return length;
 }
 
 template <Name column, Name t>
-void check_length(std::span<const double> params, const char* hint, Findings& findings) {
+void check_length(std::span<const double> params, const char* hint, ProblemList& problem_list) {
     const std::size_t length = length_of<column>(params), knots = length_of<t>(params);
     if (length != knots)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.table",
                            .path = std::string(column),
                            .message = "not as long as " + std::string(t),
@@ -56,14 +56,14 @@ void check_length(std::span<const double> params, const char* hint, Findings& fi
         });
 }
 
-// The lists of a table say one thing each of the same instants, in their order.
+// The lists of a table must have the same length, and its instants must increase.
 template <Name t, Name... columns>
-void check_table(std::span<const double> params, const char* hint, Findings& findings) {
-    (check_length<columns, t>(params, hint, findings), ...);
+void check_table(std::span<const double> params, const char* hint, ProblemList& problem_list) {
+    (check_length<columns, t>(params, hint, problem_list), ...);
     for (std::size_t i = 1; i < length_of<t>(params); ++i) {
         const double before = at<t>(params, i - 1), here = at<t>(params, i);
         if (!(before < here))
-            findings.add([&] {
+            problem_list.add([&] {
                 return Problem{.code = "scenario.table",
                                .path = std::string(t) + "[" + std::to_string(i) + "]",
                                .message = "the instants of a table must increase",
@@ -73,12 +73,12 @@ void check_table(std::span<const double> params, const char* hint, Findings& fin
     }
 }
 
-// Of the controller and its reference: what the keys alone tell, before there is a Setup, and what shows in it.
-void check_controller_keys(std::span<const double> params, Findings& findings);
-void check_controller(std::span<const double> params, const Setup& setup, Findings& findings);
+// Rules of the controller and its reference: those of the keys alone, and those of the Setup.
+void check_controller_keys(std::span<const double> params, ProblemList& problem_list);
+void check_controller(std::span<const double> params, const Setup& setup, ProblemList& problem_list);
 
-// Of sampling, sensors, observer and push, and of the methods that go with them.
-void check_sampling_keys(std::span<const double> params, Findings& findings);
-void check_sampling(std::span<const double> params, const Setup& setup, Findings& findings);
+// Rules of sampling, sensors, observer and external force, and of the methods that support them.
+void check_sampling_keys(std::span<const double> params, ProblemList& problem_list);
+void check_sampling(std::span<const double> params, const Setup& setup, ProblemList& problem_list);
 
 }  // namespace arm3r

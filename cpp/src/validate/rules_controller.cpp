@@ -8,19 +8,19 @@
 namespace arm3r {
 namespace {
 
-constexpr double smallest_sine = 1e-3;  // of the elbow angle, and of r/(a2 + a3), at the start of a law that inverts J
+constexpr double min_sine = 1e-3;  // of the elbow angle, and of r/(a2 + a3), at the start of a law that inverts J
 
 bool is_given(const Vec3<double>& v) { return !std::isnan(v[0]); }
 
 std::string type_of(std::span<const double> params) { return choice_of(params, "controller.type"); }
 
-// ---- what is wanted
+// ---- the reference
 
-// Of two keys that say the same thing in two ways, exactly one.
+// Exactly one of two keys with the same meaning must be given.
 void need_one_of(const char* path, bool has_it, const char* other, bool has_other, const std::string& of,
-                 Findings& findings) {
+                 ProblemList& problem_list) {
     if (has_it != has_other) return;
-    findings.add([&] {
+    problem_list.add([&] {
         return Problem{.code = has_it ? "scenario.conflict" : "scenario.missing_key",
                        .path = path,
                        .message = has_it ? std::string(other) + " says it already" : of + " needs a target",
@@ -29,14 +29,15 @@ void need_one_of(const char* path, bool has_it, const char* other, bool has_othe
     });
 }
 
-void check_aim(std::span<const double> params, const std::string& reference, Findings& findings) {
+void check_aim(std::span<const double> params, const std::string& reference, ProblemList& problem_list) {
     if (reference == "point" || reference == "line" || reference == "minimum_jerk")
         need_one_of("reference.tip", is_given(vector_at<"reference.tip">(params)), "reference.q",
-                    is_given(vector_at<"reference.q">(params)), "reference.type " + reference, findings);
+                    is_given(vector_at<"reference.q">(params)), "reference.type " + reference, problem_list);
 }
 
-// A sinusoid swings in the law's own space, and each of the two amplitudes is of one space.
-void check_amplitude(std::span<const double> params, const std::string& reference, bool in_joints, Findings& findings) {
+// A sinusoid is in the space of the law, joints or tip, and each of the two amplitudes belongs to one space.
+void check_amplitude(std::span<const double> params, const std::string& reference, bool in_joints,
+                     ProblemList& problem_list) {
     if (reference != "sinusoid") return;
     const char *right = "reference.tip_amplitude", *wrong = "reference.q_amplitude";
     if (in_joints) std::swap(right, wrong);
@@ -44,7 +45,7 @@ void check_amplitude(std::span<const double> params, const std::string& referenc
     const bool has_q = is_given(vector_at<"reference.q_amplitude">(params));
     const std::string space = in_joints ? "joint angles" : "positions of the tip";
     if (in_joints ? has_tip : has_q)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.conflict",
                            .path = wrong,
                            .message = "controller.type " + type_of(params) + " works in " + space,
@@ -52,7 +53,7 @@ void check_amplitude(std::span<const double> params, const std::string& referenc
                            .hint = std::string("give ") + right + " in its place"};
         });
     else if (in_joints ? !has_q : !has_tip)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.missing_key",
                            .path = right,
                            .message = "a sinusoid in " + space + " needs its amplitude",
@@ -61,10 +62,10 @@ void check_amplitude(std::span<const double> params, const std::string& referenc
 }
 
 void check_path_of_tip(std::span<const double> params, const std::string& reference, bool in_joints,
-                       Findings& findings) {
+                       ProblemList& problem_list) {
     const bool is_of_tip = reference == "circle" || reference == "table";
     if (in_joints && is_of_tip)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.conflict",
                            .path = "reference.type",
                            .message = "a " + reference + " is a path of the tip, and controller.type " +
@@ -75,17 +76,17 @@ void check_path_of_tip(std::span<const double> params, const std::string& refere
         });
 }
 
-void check_target(std::span<const double> params, const Setup& setup, Findings& findings) {
-    const Controller<double>& controller = setup.law();
+void check_target(std::span<const double> params, const Setup& setup, ProblemList& problem_list) {
+    const Controller<double>& controller = setup.controller();
     const Vec3<double> tip = vector_at<"reference.tip">(params);
-    const Path path = controller.setpoint.path;
+    const Path path = controller.reference.path;
     const bool is_aimed = path == Path::point || path == Path::line || path == Path::minimum_jerk;
-    if (!controller.setpoint.in_joints || !is_aimed || !is_given(tip)) return;
+    if (!controller.reference.in_joints || !is_aimed || !is_given(tip)) return;
     const Arm<double>& model = controller.model;
     const double a2 = model.link2.length, a3 = model.link3.length, up = tip[2] - model.base_height;
     const double aside = hypot2(tip[0], tip[1]), distance = hypot2(aside, up);
     if (std::abs(joints_at(model, tip, setup.q).cos_q3) > 1 + 1e-12)
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.out_of_reach",
                            .path = "reference.tip",
                            .message = "no joint angles bring the tip there",
@@ -94,7 +95,7 @@ void check_target(std::span<const double> params, const Setup& setup, Findings& 
                            .hint = "move the target, or give reference.q"};
         });
     else if (aside < 1e-9 * (a2 + a3))
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.singular",
                            .path = "reference.tip",
                            .message = "above or below joint 1 every angle of it brings the tip to the same place",
@@ -104,16 +105,16 @@ void check_target(std::span<const double> params, const Setup& setup, Findings& 
         });
 }
 
-// ---- where the law can work
+// ---- singular poses and the wall
 
-void check_pose(std::span<const double> params, const Setup& setup, Findings& findings) {
-    if (!inverts_jacobian(setup.law())) return;
-    const Arm<double>& model = setup.law().model;
+void check_pose(std::span<const double> params, const Setup& setup, ProblemList& problem_list) {
+    if (!inverts_jacobian(setup.controller())) return;
+    const Arm<double>& model = setup.controller().model;
     const Pose<double> p = pose(setup.q);
     const double S3 = sin_q3(p), r = radius(model, p);
-    const double smallest_r = smallest_sine * (model.link2.length + model.link3.length);
+    const double min_r = min_sine * (model.link2.length + model.link3.length);
     const auto refuse = [&](const std::string& message, const std::string& got, const std::string& allowed) {
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.singular",
                            .path = "initial.q",
                            .message = "controller.type " + type_of(params) + " inverts the Jacobian, which is " +
@@ -123,26 +124,26 @@ void check_pose(std::span<const double> params, const Setup& setup, Findings& fi
                            .hint = "start from another pose, or use a law without an inverse, such as stiffness"};
         });
     };
-    if (std::abs(S3) < smallest_sine)
-        refuse("the elbow is straight or folded", "sin(q3) = " + shortest(S3),
-               "|sin(q3)| >= " + shortest(smallest_sine));
-    if (std::abs(r) < smallest_r)
+    if (std::abs(S3) < min_sine)
+        refuse("the elbow is straight or folded", "sin(q3) = " + shortest(S3), "|sin(q3)| >= " + shortest(min_sine));
+    if (std::abs(r) < min_r)
         refuse("the tip stands on the axis of joint 1", shortest(std::abs(r)) + " m from the axis",
-               "at least " + shortest(smallest_r) + " m");
+               "at least " + shortest(min_r) + " m");
 }
 
-void check_wall(std::span<const double> params, const Setup& setup, Findings& findings) {
+void check_wall(std::span<const double> params, const Setup& setup, ProblemList& problem_list) {
     if (setup.plant.has_wall) return;
     const auto refuse = [&](const char* path, const std::string& who) {
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.needs_wall",
                            .path = path,
                            .message = who + ", and there is no wall",
                            .hint = "add a wall section; `wall: {}` is the lecture's"};
         });
     };
-    if (wants_force(setup.law().type)) refuse("controller.type", type_of(params) + " controls the force on a wall");
-    if (setup.law().type == Controls::admittance && setup.law().setpoint.force != 0)
+    if (tracks_force(setup.controller().type))
+        refuse("controller.type", type_of(params) + " controls the force on a wall");
+    if (setup.controller().type == ControllerType::admittance && setup.controller().reference.force != 0)
         refuse("reference.force.value", "this is a force on the wall");
     if (setup.estimation.on) refuse("estimator", "it estimates the stiffness of the wall");
 }
@@ -150,9 +151,9 @@ void check_wall(std::span<const double> params, const Setup& setup, Findings& fi
 // ---- gains
 
 void check_order(const char* path, double low, const char* other, double high, bool may_be_equal, const char* unit,
-                 Findings& findings) {
+                 ProblemList& problem_list) {
     if (may_be_equal ? low <= high : low < high) return;
-    findings.add([&] {
+    problem_list.add([&] {
         return Problem{.code = "scenario.order",
                        .path = path,
                        .message = std::string("must lie ") + (may_be_equal ? "not above " : "below ") + other,
@@ -161,31 +162,31 @@ void check_order(const char* path, double low, const char* other, double high, b
     });
 }
 
-void check_levels(const Controller<double>& controller, Findings& findings) {
+void check_levels(const Controller<double>& controller, ProblemList& problem_list) {
     const Gains<double>& gains = controller.gains;
-    if (controller.type == Controls::energy_tank && controller.has_tank) {
+    if (controller.type == ControllerType::energy_tank && controller.has_tank) {
         check_order("controller.tank_low", gains.tank_low, "controller.tank_high", gains.tank_high, false, "J",
-                    findings);
+                    problem_list);
         check_order("controller.tank_high", gains.tank_high, "controller.tank_capacity", gains.tank_capacity, true, "J",
-                    findings);
+                    problem_list);
         check_order("controller.tank_energy", gains.tank_energy, "controller.tank_capacity", gains.tank_capacity, true,
-                    "J", findings);
+                    "J", problem_list);
     }
-    if (wants_force(controller.type) && controller.switching != Switching::always)
+    if (tracks_force(controller.type) && controller.switching != Switching::always)
         check_order("controller.contact_off", gains.contact_off, "controller.contact_on", gains.contact_on, true, "N",
-                    findings);
+                    problem_list);
 }
 
-// An indirect reference is shifted until the spring presses with the wanted force: where the spring is to press, it needs
-// a stiffness (7.18).
-void check_compliance(const Setup& setup, Findings& findings) {
-    const Controller<double>& law = setup.law();
-    if (law.type != Controls::adaptive_reference || law.adaptation != Adaptation::indirect) return;
+// An indirect reference is shifted until the spring presses with the desired force, which needs a stiffness in the
+// direction of the force (7.18).
+void check_compliance(const Setup& setup, ProblemList& problem_list) {
+    const Controller<double>& law = setup.controller();
+    if (law.type != ControllerType::adaptive_reference || law.adaptation != Adaptation::indirect) return;
     const Wall<double>& wall = setup.plant.wall;
     for (int i = 0; i < 3; ++i) {
         const bool presses = wall.rotation != Rotation::none || wall.n[i] != 0;
         if (!presses || law.gains.stiffness[i] > 0) continue;
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.needs_stiffness",
                            .path = "controller.stiffness",
                            .message =
@@ -202,26 +203,26 @@ void check_compliance(const Setup& setup, Findings& findings) {
 
 }  // namespace
 
-void check_controller_keys(std::span<const double> params, Findings& findings) {
-    const Controls type = controls_of(params);
-    if (type == Controls::virtual_wall) check_direction<"controller.plane_normal">(params, findings);
-    if (!wants_path(type)) return;
+void check_controller_keys(std::span<const double> params, ProblemList& problem_list) {
+    const ControllerType type = controller_type_of(params);
+    if (type == ControllerType::virtual_wall) check_direction<"controller.plane_normal">(params, problem_list);
+    if (!tracks_path(type)) return;
     const std::string& reference = choice_of(params, "reference.type");
-    check_aim(params, reference, findings);
-    check_amplitude(params, reference, is_in_joints(type), findings);
-    check_path_of_tip(params, reference, is_in_joints(type), findings);
+    check_aim(params, reference, problem_list);
+    check_amplitude(params, reference, is_in_joints(type), problem_list);
+    check_path_of_tip(params, reference, is_in_joints(type), problem_list);
     if (reference == "table")
         check_table<"reference.t", "reference.x", "reference.y", "reference.z">(
-            params, "give all three coordinates at every instant", findings);
+            params, "give all three coordinates at every instant", problem_list);
 }
 
-void check_controller(std::span<const double> params, const Setup& setup, Findings& findings) {
-    check_wall(params, setup, findings);
-    if (!has_law(setup.law().type)) return;
-    check_target(params, setup, findings);
-    check_pose(params, setup, findings);
-    check_levels(setup.law(), findings);
-    check_compliance(setup, findings);
+void check_controller(std::span<const double> params, const Setup& setup, ProblemList& problem_list) {
+    check_wall(params, setup, problem_list);
+    if (!has_law(setup.controller().type)) return;
+    check_target(params, setup, problem_list);
+    check_pose(params, setup, problem_list);
+    check_levels(setup.controller(), problem_list);
+    check_compliance(setup, problem_list);
 }
 
 }  // namespace arm3r

@@ -1,4 +1,4 @@
-// The rules of what stands between the arm and its controller: samples, sensors, observer, and a push from outside.
+// The rules of samples, sensors, observer and an external force.
 
 #include "base/number_text.hpp"
 #include "setup/make_controller.hpp"
@@ -7,11 +7,11 @@
 namespace arm3r {
 namespace {
 
-// A section that goes with controllers that compute.
+// A section that needs a controller that computes.
 template <Name section>
-void need_computing(std::span<const double> params, Findings& findings) {
+void need_computing(std::span<const double> params, ProblemList& problem_list) {
     if (at<section>(params) == 0 || key_exists(known_key(section), params)) return;
-    findings.add([&] {
+    problem_list.add([&] {
         return Problem{.code = "scenario.other_choice",
                        .path = std::string(section),
                        .message = "controller.type " + choice_of(params, "controller.type") +
@@ -20,10 +20,10 @@ void need_computing(std::span<const double> params, Findings& findings) {
     });
 }
 
-// What there is only sample by sample.
-void need_samples(bool has_it, const char* path, const char* what, Findings& findings) {
+// A feature that exists with sampling only.
+void need_samples(bool has_it, const char* path, const char* what, ProblemList& problem_list) {
     if (!has_it) return;
-    findings.add([&] {
+    problem_list.add([&] {
         return Problem{.code = "scenario.needs_sampling",
                        .path = path,
                        .message = std::string(what) + " exists sample by sample only",
@@ -32,30 +32,30 @@ void need_samples(bool has_it, const char* path, const char* what, Findings& fin
     });
 }
 
-void check_digital(const Setup& setup, Findings& findings) {
+void check_digital(const Setup& setup, ProblemList& problem_list) {
     if (setup.digital.sampling.on) return;
-    const Controller<double>& controller = setup.law();
-    need_samples(controller.type == Controls::virtual_wall && controller.controls_passivity,
-                 "controller.passivity_control", "the energy that sampling creates", findings);
+    const Controller<double>& controller = setup.controller();
+    need_samples(controller.type == ControllerType::virtual_wall && controller.controls_passivity,
+                 "controller.passivity_control", "the energy that sampling creates", problem_list);
     need_samples(setup.observes() && setup.digital.observer.reaction != Reaction::ignore, "observer.reaction",
-                 "a reaction to a collision", findings);
+                 "a reaction to a collision", problem_list);
     const Sensors<double>& sensors = setup.digital.sensors;
-    need_samples(sensors.has_encoder, "sensors.encoder.counts", "a reading of an encoder", findings);
+    need_samples(sensors.has_encoder, "sensors.encoder.counts", "a reading of an encoder", problem_list);
     need_samples(sensors.velocity != VelocityEstimate::exact, "sensors.velocity.estimate",
-                 "a rate from differences of angles", findings);
-    need_samples(sensors.has_noise, "sensors.force.noise", "noise", findings);
-    need_samples(sensors.has_resolution, "sensors.force.resolution", "rounding to a resolution", findings);
-    need_samples(sensors.has_filter, "sensors.force.cutoff", "a digital filter", findings);
-    need_samples(sensors.has_delay, "sensors.force.delay", "a delay of samples", findings);
+                 "a rate from differences of angles", problem_list);
+    need_samples(sensors.has_noise, "sensors.force.noise", "noise", problem_list);
+    need_samples(sensors.has_resolution, "sensors.force.resolution", "rounding to a resolution", problem_list);
+    need_samples(sensors.has_filter, "sensors.force.cutoff", "a digital filter", problem_list);
+    need_samples(sensors.has_delay, "sensors.force.delay", "a delay of samples", problem_list);
     need_samples(sensors.has_tool, "sensors.force.tool_mass",
-                 "the weight of a tool, which gravity adds to the reading,", findings);
+                 "the weight of a tool, which gravity adds to the reading,", problem_list);
 }
 
-// ---- rk4: a sample, and a torque that comes later, fall on steps
+// ---- rk4: samples and delayed torques must be at the ends of steps
 
 bool is_whole(double x) { return std::abs(x - nearest_integer(x)) <= 1e-9 * std::max(1.0, std::abs(x)); }
 
-// Of the steps that part the period, and the delay too, the one nearest to `step`; 0 where none is near.
+// The step nearest to `step` that divides the period, and the delay too; 0 if none is near.
 double nearest_working_step(const Sampling<double>& sampling, double step) {
     constexpr double farthest = 1000;
     const double parts = std::floor(sampling.period / step);
@@ -68,13 +68,13 @@ double nearest_working_step(const Sampling<double>& sampling, double step) {
     return above > 0 && (below == 0 || above - step < step - below) ? above : below;
 }
 
-void check_grid(const Setup& setup, Findings& findings) {
+void check_grid(const Setup& setup, ProblemList& problem_list) {
     const Sampling<double>& sampling = setup.digital.sampling;
     const double step = setup.solver.step, parts = sampling.period / step, later = sampling.delay * parts;
     if (setup.solver.method != Solver::rk4 || !sampling.on) return;
     const bool fits = parts > 0.5 && is_whole(parts);
     if (fits && is_whole(later)) return;
-    findings.add([&] {
+    problem_list.add([&] {
         const double works = nearest_working_step(sampling, step);
         const std::string period = shortest(sampling.period) + " s";
         return Problem{
@@ -90,15 +90,15 @@ void check_grid(const Setup& setup, Findings& findings) {
     });
 }
 
-// Beside a sampled controller the estimator takes the samples of that one; else it samples itself, at the ends of steps.
-void check_estimates(const Setup& setup, Findings& findings) {
+// The estimator uses the samples of a sampled controller, if there is one; else it samples at the ends of steps.
+void check_estimates(const Setup& setup, ProblemList& problem_list) {
     const Estimation<double>& estimation = setup.estimation;
     if (setup.solver.method != Solver::rk4 || !estimation.on || setup.digital.sampling.on) return;
     const double step = setup.solver.step, later = estimation.start - setup.start;
     const double parts = estimation.period / step, nearest = std::max(1.0, nearest_integer(parts));
     const bool fits = is_whole(parts) && parts > 0.5;
     if (fits && is_whole(later / step)) return;
-    findings.add([&] {
+    problem_list.add([&] {
         const std::string period = shortest(estimation.period) + " s", begin = shortest(later) + " s";
         return Problem{
             .code = "scenario.grid",
@@ -117,37 +117,37 @@ void check_estimates(const Setup& setup, Findings& findings) {
 
 // ---- taylor: between the samples everything must be a series
 
-void check_series(std::span<const double> params, const Setup& setup, Findings& findings) {
+void check_series(std::span<const double> params, const Setup& setup, ProblemList& problem_list) {
     if (setup.solver.method != Solver::taylor) return;
     const auto refuse = [&](const char* path, const std::string& of, const std::string& hint) {
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{
                 .code = "scenario.no_series", .path = path, .message = "taylor has no series of " + of, .hint = hint};
         });
     };
     const std::string samples = "add a sampling section, such as `sampling: {rate: 1000}`, or use method: dopri5";
-    if (has_law(setup.law().type) && !setup.digital.sampling.on)
+    if (has_law(setup.controller().type) && !setup.digital.sampling.on)
         refuse("solver.method",
                "a law that computes continuously, controller.type " + choice_of(params, "controller.type"), samples);
     if (setup.observes() && !setup.digital.sampling.on)
         refuse("observer", "an observer that computes continuously", samples);
-    if (setup.plant.load.on) refuse("push", "a push from outside", "use method: dopri5");
+    if (setup.plant.external_force.on) refuse("push", "a push from outside", "use method: dopri5");
     if (setup.digital.sensors.has_analog_filter)
         refuse("sensors.force.analog_cutoff", "a filter before the samples", "use method: dopri5");
 }
 
 }  // namespace
 
-void check_sampling_keys(std::span<const double> params, Findings& findings) {
-    need_computing<"sampling">(params, findings);
-    need_computing<"sensors">(params, findings);
+void check_sampling_keys(std::span<const double> params, ProblemList& problem_list) {
+    need_computing<"sampling">(params, problem_list);
+    need_computing<"sensors">(params, problem_list);
 }
 
-void check_sampling(std::span<const double> params, const Setup& setup, Findings& findings) {
-    check_digital(setup, findings);
-    check_grid(setup, findings);
-    check_estimates(setup, findings);
-    check_series(params, setup, findings);
+void check_sampling(std::span<const double> params, const Setup& setup, ProblemList& problem_list) {
+    check_digital(setup, problem_list);
+    check_grid(setup, problem_list);
+    check_estimates(setup, problem_list);
+    check_series(params, setup, problem_list);
 }
 
 }  // namespace arm3r

@@ -8,9 +8,9 @@
 namespace arm3r {
 namespace {
 
-constexpr double most_bytes = 2e9;
-constexpr double most_fixed_steps = 1e9;
-constexpr double most_ticks = 1e8;
+constexpr double max_bytes = 2e9;
+constexpr double max_fixed_steps = 1e9;
+constexpr double max_ticks = 1e8;
 
 double rounded(double count) { return count < 1e15 ? nearest_integer(count) : count; }
 
@@ -27,24 +27,24 @@ double ticks_of(const Setup& setup) {
     return setup.digital.sampling.on ? duration(setup) / setup.digital.sampling.period : 0;
 }
 
-double fixed_steps_allowed(const Solver& solver) { return std::min(most_fixed_steps, solver.max_steps); }
+double fixed_steps_allowed(const Solver& solver) { return std::min(max_fixed_steps, solver.max_steps); }
 
 }  // namespace
 
 bool has_too_many_steps(const Setup& setup) {
     const bool is_fixed = setup.solver.method == Solver::rk4;
-    return ticks_of(setup) > most_ticks ||
+    return ticks_of(setup) > max_ticks ||
            (is_fixed && duration(setup) / setup.solver.step > fixed_steps_allowed(setup.solver));
 }
 
 void refuse_too_large(const Setup& setup, bool rows) {
     if (rows)
-        refuse_above(duration(setup) / setup.log_every, most_bytes / double(columns_of(setup).size() * sizeof(double)),
+        refuse_above(duration(setup) / setup.log_every, max_bytes / double(columns_of(setup).size() * sizeof(double)),
                      {.code = "budget.rows",
                       .path = "time.log_every",
                       .message = "the run would need too many rows",
                       .hint = "log less often"});
-    refuse_above(ticks_of(setup), most_ticks,
+    refuse_above(ticks_of(setup), max_ticks,
                  {.code = "budget.ticks",
                   .path = "sampling.rate",
                   .message = "the controller would have to compute too often",
@@ -59,20 +59,20 @@ void refuse_too_large(const Setup& setup, bool rows) {
 
 std::vector<std::size_t> columns_of(const Setup& setup) {
     const Plant<double>& plant = setup.plant;
-    const Controller<double>& law = setup.law();
-    const bool has_path = wants_path(law.type);
+    const Controller<double>& controller = setup.controller();
+    const bool has_path = tracks_path(controller.type);
     const auto is_there = [&](Need need) {
         switch (need) {
             case Need::nothing: return true;
             case Need::wall: return plant.has_wall;
-            case Need::force_reference: return wants_force(law.type);
-            case Need::path: return has_path && !law.setpoint.in_joints;
-            case Need::joint_path: return has_path && law.setpoint.in_joints;
+            case Need::force_reference: return tracks_force(controller.type);
+            case Need::path: return has_path && !controller.reference.in_joints;
+            case Need::joint_path: return has_path && controller.reference.in_joints;
             case Need::observer: return setup.observes();
             case Need::estimator: return setup.estimation.on;
-            case Need::tank: return law.type == Controls::energy_tank;
+            case Need::tank: return controller.type == ControllerType::energy_tank;
             case Need::loss: return can_lose_energy(plant);
-            default: return plant.arm.has_torque_limit && law.type != Controls::none;
+            default: return plant.arm.has_torque_limit && controller.type != ControllerType::none;
         }
     };
     std::vector<std::size_t> columns;

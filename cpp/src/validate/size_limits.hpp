@@ -1,5 +1,5 @@
 #pragma once
-// Runs that are refused before they begin, because they would need more rows, steps or samples than any user wants.
+// Refuses runs before they start that would need more rows, steps or samples than anybody wants.
 
 #include "setup/setup.hpp"
 

@@ -9,7 +9,7 @@ bool is_stable(double m, double b, double c, double d) {  // Routh
     return b > 0 && c > 0 && (d == 0 || b * c > m * d);
 }
 
-// (M s^2 + B s + K)(s^2 + 2 z w s + w^2) + k_e w^2: where Routh's last but one number vanishes.
+// (M s^2 + B s + K)(s^2 + 2 z w s + w^2) + k_e w^2: the stiffness at which the last but one Routh number is zero.
 double admittance_limit(double M, double B, double K, double w, double z) {
     const double a4 = M, a3 = B + 2 * z * w * M, a2 = K + 2 * z * w * B + w * w * M, a1 = 2 * z * w * K + w * w * B;
     return (a3 * a2 * a1 - a4 * a1 * a1) / (a3 * a3 * w * w) - K;
@@ -18,7 +18,7 @@ double admittance_limit(double M, double B, double K, double w, double z) {
 // M s^3 + B s^2 + (K + k_e) s + K k_r k_e
 double reference_gain_limit(double M, double B, double K, double k_e) { return B * (K + k_e) / (M * K * k_e); }
 
-double longest_period(double Kp, double Kd) { return std::min(2 * Kd / Kp, 2 / Kd); }
+double max_period(double Kp, double Kd) { return std::min(2 * Kd / Kp, 2 / Kd); }
 
 // M^-1 P = J^-1 A S J with A = J M^-1 J^-1 and S = E E^T, E any two directions across n: it shares its eigenvalues, but
 // for a zero, with E^T A E.

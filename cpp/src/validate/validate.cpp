@@ -1,4 +1,4 @@
-// The rules of the flat parameters: what each key allows, then what only holds between keys (setup.cpp).
+// The rules of the flat parameters: those of each key, then those between keys.
 
 #include "validate/validate.hpp"
 
@@ -42,7 +42,7 @@ std::size_t expected_count(const Key& key, std::span<const double> params) {
     if (key.form == Form::number_or_vector && std::isnan(params[key.offset + 1]) && std::isnan(params[key.offset + 2]))
         return 1;
     if (key.form == Form::by_choice) return takes_list(key, params) ? key.size : 1;
-    if (key.form == Form::list) return std::max(key.fewest, given_count(key, params));
+    if (key.form == Form::list) return std::max(key.min_size, given_count(key, params));
     return key.size;
 }
 
@@ -55,12 +55,12 @@ Problem missing(const Key& key, std::size_t count) {
 }
 
 // A choice must be the index of one of its words; everything else is read only when all of them are.
-void check_choice(const Key& key, std::span<const double> params, Findings& findings) {
+void check_choice(const Key& key, std::span<const double> params, ProblemList& problem_list) {
     const double stored = params[key.offset];
     if (std::isnan(stored) && key.unset == "as the plant") return;
     const double count = key.kind == Kind::choice ? double(key.choices.size()) : 2;
     if (!(stored >= 0 && stored < count && stored == std::floor(stored)))
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = "scenario.choice",
                            .path = key.path,
                            .message = "no such choice",
@@ -69,9 +69,9 @@ void check_choice(const Key& key, std::span<const double> params, Findings& find
         });
 }
 
-void check_number(const Key& key, double value, std::size_t item, std::size_t count, Findings& findings) {
+void check_number(const Key& key, double value, std::size_t item, std::size_t count, ProblemList& problem_list) {
     const auto broken = [&](const char* code, const char* message) {
-        findings.add([&] {
+        problem_list.add([&] {
             return Problem{.code = code,
                            .path = item_path(key, item, count),
                            .message = message,
@@ -83,50 +83,50 @@ void check_number(const Key& key, double value, std::size_t item, std::size_t co
     else if (key.kind == Kind::integer && value != std::floor(value)) broken("scenario.type", "not a whole number");
 }
 
-void check_numbers(const Key& key, std::span<const double> params, Findings& findings) {
+void check_numbers(const Key& key, std::span<const double> params, ProblemList& problem_list) {
     const std::size_t count = expected_count(key, params);
     std::size_t absent = 0;
     for (std::size_t i = 0; i < count; ++i) absent += std::isnan(params[key.offset + i]);
     if (absent == count && !key.unset.empty()) return;
-    if (absent > 0) return findings.add([&] { return missing(key, count); });
-    for (std::size_t i = 0; i < count; ++i) check_number(key, params[key.offset + i], i, count, findings);
+    if (absent > 0) return problem_list.add([&] { return missing(key, count); });
+    for (std::size_t i = 0; i < count; ++i) check_number(key, params[key.offset + i], i, count, problem_list);
 }
 
 template <Name path>
-void need_number(std::span<const double> params, const char* hint, Findings& findings) {
+void need_number(std::span<const double> params, const char* hint, ProblemList& problem_list) {
     if (!std::isnan(at<path>(params))) return;
-    findings.add([&] {
+    problem_list.add([&] {
         Problem problem = missing(known_key(path), 1);
         problem.hint = hint;
         return problem;
     });
 }
 
-// What a shape cannot give must be given.
+// Numbers that a shape does not determine must be given.
 template <Name link>
-void check_slender(std::span<const double> params, Findings& findings) {
+void check_slender(std::span<const double> params, ProblemList& problem_list) {
     if (is<link + ".shape", "slender">(params))
-        need_number<link + ".mass">(params, "a slender link has no density: give its mass", findings);
+        need_number<link + ".mass">(params, "a slender link has no density: give its mass", problem_list);
 }
 
-void check_shapes(std::span<const double> params, Findings& findings) {
-    check_slender<"arm.link1">(params, findings);
-    check_slender<"arm.link2">(params, findings);
-    check_slender<"arm.link3">(params, findings);
+void check_shapes(std::span<const double> params, ProblemList& problem_list) {
+    check_slender<"arm.link1">(params, problem_list);
+    check_slender<"arm.link2">(params, problem_list);
+    check_slender<"arm.link3">(params, problem_list);
     if (!is<"arm.link1.shape", "explicit">(params)) return;
     const char* hint = "shape explicit takes nothing from a shape";
-    need_number<"arm.link1.mass">(params, hint, findings);
-    need_number<"arm.link1.com">(params, hint, findings);
-    need_number<"arm.link1.inertia_axial">(params, hint, findings);
+    need_number<"arm.link1.mass">(params, hint, problem_list);
+    need_number<"arm.link1.com">(params, hint, problem_list);
+    need_number<"arm.link1.inertia_axial">(params, hint, problem_list);
 }
 
 template <Name path>
-void check_inertia(std::span<const double> params, Findings& findings) {
+void check_inertia(std::span<const double> params, ProblemList& problem_list) {
     const Vec3<double> inertia = vector_at<path>(params);
     for (int i = 0; i < 3; ++i) {
         const double own = inertia[i], others = inertia[(i + 1) % 3] + inertia[(i + 2) % 3];
         if (own > others * (1 + 1e-12))
-            findings.add([&] {
+            problem_list.add([&] {
                 return Problem{.code = "scenario.inertia",
                                .path = std::string(path),
                                .message = "no body has one principal inertia above the sum of the other two",
@@ -137,42 +137,42 @@ void check_inertia(std::span<const double> params, Findings& findings) {
 }
 
 // The rules of `arm`, its keys and what holds between them.
-void check_arm(std::span<const double> params, const std::vector<const Key*>& keys, Findings& findings) {
-    for (const Key* key : keys) check_numbers(*key, params, findings);
-    check_shapes(params, findings);
-    check_inertia<"arm.link2.inertia">(params, findings);
-    check_inertia<"arm.link3.inertia">(params, findings);
+void check_arm(std::span<const double> params, const std::vector<const Key*>& keys, ProblemList& problem_list) {
+    for (const Key* key : keys) check_numbers(*key, params, problem_list);
+    check_shapes(params, problem_list);
+    check_inertia<"arm.link2.inertia">(params, problem_list);
+    check_inertia<"arm.link3.inertia">(params, problem_list);
 }
 
-// The controller's copy must be an arm too: what is not given there is the plant's.
-void check_model(std::span<const double> params, const std::vector<const Key*>& keys, Findings& findings) {
-    check_arm(with_model(params), keys, findings);
-    for (Problem& problem : findings.problems)
+// The controller's model must be a valid arm too; numbers that are not given there are those of the plant.
+void check_model(std::span<const double> params, const std::vector<const Key*>& keys, ProblemList& problem_list) {
+    check_arm(with_model(params), keys, problem_list);
+    for (Problem& problem : problem_list.problems)
         problem.path.replace(0, std::string_view("arm").size(), "controller.model");
 }
 
-std::optional<Setup> check_all(std::span<const double> params, const NumberKeys& keys, Findings& findings) {
-    check_arm(params, keys.arm, findings);
-    for (const Key* key : keys.others) check_numbers(*key, params, findings);
-    if (findings.none() && has_model(controls_of(params)) && model_differs(params))
-        check_model(params, keys.model, findings);
-    return findings.none() ? check_setup(params, findings) : std::nullopt;
+std::optional<Setup> check_all(std::span<const double> params, const NumberKeys& keys, ProblemList& problem_list) {
+    check_arm(params, keys.arm, problem_list);
+    for (const Key* key : keys.others) check_numbers(*key, params, problem_list);
+    if (problem_list.empty() && has_model(controller_type_of(params)) && model_differs(params))
+        check_model(params, keys.model, problem_list);
+    return problem_list.empty() ? check_setup(params, problem_list) : std::nullopt;
 }
 
 bool is_choice(const Key& key) {
     return key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section;
 }
 
-void check_choices(std::span<const double> params, Findings& findings) {
+void check_choices(std::span<const double> params, ProblemList& problem_list) {
     if (params.size() != param_count())
-        return findings.add([&] {
+        return problem_list.add([&] {
             return Problem{.code = "argument.size",
                            .message = "wrong number of parameters",
                            .got = std::to_string(params.size()),
                            .allowed = std::to_string(param_count())};
         });
     for (const Key& key : schema())
-        if (is_choice(key)) check_choice(key, params, findings);
+        if (is_choice(key)) check_choice(key, params, problem_list);
 }
 
 enum class Part { arm, others };
@@ -191,37 +191,37 @@ NumberKeys number_keys(std::span<const double> params) {
             number_keys(with_model(params), Part::arm)};
 }
 
-// The same numbers, but in the place of those of controller.model those that they replace.
+// The numbers `varied`, with those of controller.model replaced by the ones that they override.
 std::vector<std::size_t> in_plant(std::span<const std::size_t> varied) {
     std::vector<std::size_t> numbers(varied.begin(), varied.end());
     for (const auto [from, to] : model_numbers()) std::ranges::replace(numbers, from, to);
     return numbers;
 }
 
-// Leaves the keys in which one of the numbers `varied` is, and those that are wrong in `params`.
-void drop_settled(std::vector<const Key*>& keys, std::span<const double> params, std::span<const std::size_t> varied) {
+// Keeps the keys that contain one of the numbers `varied`, and those that are wrong in `params`.
+void drop_decided(std::vector<const Key*>& keys, std::span<const double> params, std::span<const std::size_t> varied) {
     std::erase_if(keys, [&](const Key* key) {
         const auto has = [&](std::size_t number) { return number - key->offset < key->size; };
-        Findings findings(Findings::verdict);
-        check_numbers(*key, params, findings);
-        return findings.none() && std::ranges::none_of(varied, has);
+        ProblemList problem_list(ProblemList::count_only);
+        check_numbers(*key, params, problem_list);
+        return problem_list.empty() && std::ranges::none_of(varied, has);
     });
 }
 
 }  // namespace
 
 void refuse_unknown_choices(std::span<const double> params) {
-    Findings findings(Findings::messages);
-    check_choices(params, findings);
-    if (!findings.none()) throw Error(ARM3R_E_SCENARIO, std::move(findings.problems));
+    ProblemList problem_list(ProblemList::messages);
+    check_choices(params, problem_list);
+    if (!problem_list.empty()) throw Error(ARM3R_E_SCENARIO, std::move(problem_list.problems));
 }
 
 Validation validate(std::span<const double> params) {
-    Findings findings(Findings::messages);
-    check_choices(params, findings);
+    ProblemList problem_list(ProblemList::messages);
+    check_choices(params, problem_list);
     std::optional<Setup> setup;
-    if (findings.none()) setup = check_all(params, number_keys(params), findings);
-    return {std::move(findings.problems), std::move(setup)};
+    if (problem_list.empty()) setup = check_all(params, number_keys(params), problem_list);
+    return {std::move(problem_list.problems), std::move(setup)};
 }
 
 Setup valid_setup(std::span<const double> params) {
@@ -231,20 +231,20 @@ Setup valid_setup(std::span<const double> params) {
 }
 
 Checker::Checker(std::span<const double> params, std::span<const std::size_t> varied) {
-    Findings findings(Findings::verdict);
-    check_choices(params, findings);
-    readable_ = findings.none();
+    ProblemList problem_list(ProblemList::count_only);
+    check_choices(params, problem_list);
+    readable_ = problem_list.empty();
     if (!readable_) return;
     keys_ = number_keys(params);
-    drop_settled(keys_.arm, params, varied);
-    drop_settled(keys_.others, params, varied);
-    drop_settled(keys_.model, with_model(params), in_plant(varied));
+    drop_decided(keys_.arm, params, varied);
+    drop_decided(keys_.others, params, varied);
+    drop_decided(keys_.model, with_model(params), in_plant(varied));
 }
 
 std::optional<Setup> Checker::operator()(std::span<const double> params) const {
     if (!readable_) return {};
-    Findings findings(Findings::verdict);
-    return check_all(params, keys_, findings);
+    ProblemList problem_list(ProblemList::count_only);
+    return check_all(params, keys_, problem_list);
 }
 
 }  // namespace arm3r

@@ -29,7 +29,7 @@ struct NumberKeys {
     std::vector<const Key*> arm, others, model;
 };
 
-// Throws Error ARM3R_E_SCENARIO where a number that stands for a choice is none of its words.
+// Throws Error ARM3R_E_SCENARIO if a number that represents a choice is none of its words.
 void refuse_unknown_choices(std::span<const double> params);
 
 class Checker {

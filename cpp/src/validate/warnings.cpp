@@ -1,4 +1,4 @@
-// What is allowed but probably a slip.
+// Warnings of what is allowed but probably a mistake.
 
 #include <algorithm>
 #include <cmath>
@@ -24,47 +24,48 @@ std::string vector_text(const Vec3<double>& v) {
 }
 
 bool uses_gravity(const Controller<double>& controller) {
-    return has_model(controller.type) && (controller.type != Controls::joint_pd || controller.compensates_gravity);
+    return has_model(controller.type) &&
+           (controller.type != ControllerType::joint_pd || controller.compensates_gravity);
 }
 
-// What the plant feels and what the controller compensates differ, but by so little that a slip of typing is likely.
+// The plant's gravity and the compensated one differ by so little that a typing error is likely.
 bool is_nearly_equal(const Vec3<double>& feels, const Vec3<double>& compensates) {
-    const double apart = norm(minus(feels, compensates));
-    return apart > 0 && apart < 0.01 * norm(feels);
+    const double distance = norm(minus(feels, compensates));
+    return distance > 0 && distance < 0.01 * norm(feels);
 }
 
-void slip_of_gravity(const Setup& setup, std::vector<std::string>& slips) {
-    const Controller<double>& controller = setup.law();
+void warn_of_gravity(const Setup& setup, std::vector<std::string>& warnings) {
+    const Controller<double>& controller = setup.controller();
     const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = controller.model.gravity;
     if (uses_gravity(controller) && is_nearly_equal(feels, compensates))
-        slips.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
-                        shortest(norm(compensates)) +
-                        ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
+        warnings.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
+                           shortest(norm(compensates)) +
+                           ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
 }
 
-void slip_of_angles(const Setup& setup, std::vector<std::string>& slips) {
-    const Vec3<double> q = setup.simscape ? flipped(setup.q) : setup.q;
+void warn_of_angles(const Setup& setup, std::vector<std::string>& warnings) {
+    const Vec3<double> q = setup.simscape ? change_convention(setup.q) : setup.q;
     for (int i = 0; i < 3; ++i) {
         const double angle = q[i], in_degrees = angle * 180 / pi;
         const bool was_degrees = std::abs(in_degrees - std::round(in_degrees)) < 1e-9 * std::abs(in_degrees);
         if (std::abs(angle) > 2 * pi && !was_degrees)
-            slips.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " + shortest(angle) +
-                            " rad; plain numbers are radians: write `" + shortest(angle) +
-                            " deg` if degrees were meant");
+            warnings.push_back("initial.q[" + std::to_string(i) + "] is more than a full turn, " + shortest(angle) +
+                               " rad; plain numbers are radians: write `" + shortest(angle) +
+                               " deg` if degrees were meant");
     }
 }
 
-void slip_of_links(const Arm<double>& arm, std::vector<std::string>& slips) {
+void warn_of_links(const Arm<double>& arm, std::vector<std::string>& warnings) {
     const Link<double>* links[] = {&arm.link2, &arm.link3};
     for (int i = 0; i < 2; ++i) {
         if (links[i]->com < 0 || links[i]->com > links[i]->length)
-            slips.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " +
-                            shortest(links[i]->com) + " m of " + shortest(links[i]->length) + " m");
+            warnings.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " +
+                               shortest(links[i]->com) + " m of " + shortest(links[i]->length) + " m");
     }
 }
 
-// Units that are off by powers of ten show in the proportions of a link.
-void slip_of_units(const Arm<double>& arm, std::vector<std::string>& slips) {
+// Wrong powers of ten in the units show in the proportions of a link.
+void warn_of_units(const Arm<double>& arm, std::vector<std::string>& warnings) {
     constexpr double a_long_link = 50;  // m
     const Link<double>* links[] = {&arm.link2, &arm.link3};
     for (int i = 0; i < 2; ++i) {
@@ -73,16 +74,16 @@ void slip_of_units(const Arm<double>& arm, std::vector<std::string>& slips) {
         const double largest = std::max({link.inertia[0], link.inertia[1], link.inertia[2]});
         const double whole_mass_at_the_end = link.mass * link.length * link.length;
         if (link.length > a_long_link)
-            slips.push_back(name + ".length is " + shortest(link.length) + " m; was it given in millimetres?");
+            warnings.push_back(name + ".length is " + shortest(link.length) + " m; was it given in millimetres?");
         if (largest > whole_mass_at_the_end)
-            slips.push_back(name + ".inertia has " + shortest(largest) +
-                            " kg m^2, more than mass*length^2 = " + shortest(whole_mass_at_the_end) +
-                            ": no body within the link has as much; was it given in g cm^2 (1e-7 kg m^2)?");
+            warnings.push_back(name + ".inertia has " + shortest(largest) +
+                               " kg m^2, more than mass*length^2 = " + shortest(whole_mass_at_the_end) +
+                               ": no body within the link has as much; was it given in g cm^2 (1e-7 kg m^2)?");
     }
 }
 
-// How far the wall's plane comes past joint 2 at the worst moment of the run, m; < 0 when it never does.
-double past_shoulder(const Setup& setup) {
+// The largest distance of joint 2 behind the wall's plane during the run, m; < 0 if it is never behind it.
+double max_shoulder_depth(const Setup& setup) {
     const Wall<double>& wall = setup.plant.wall;
     const Vec3<double> shoulder(0, 0, setup.plant.arm.base_height);
     double deepest = -std::numeric_limits<double>::infinity();
@@ -90,70 +91,71 @@ double past_shoulder(const Setup& setup) {
         const Indentation<double> in = indentation(wall, wall_at(wall, t), shoulder, {0, 0, 0});
         if (inside_outline(wall, in) >= 0) deepest = std::max(deepest, in.depth);
     };
-    constexpr int looks = 1000;
-    for (int i = 0; i <= looks; ++i) look(setup.start + (setup.stop - setup.start) * i / looks);
+    constexpr int samples = 1000;
+    for (int i = 0; i <= samples; ++i) look(setup.start + (setup.stop - setup.start) * i / samples);
     return deepest;
 }
 
-// A fixed step against the frequency and the decay of the contact.
-void slip_of_contact_step(const Setup& setup, std::vector<std::string>& slips) {
+// The fixed step compared with the frequency and the decay of the contact.
+void warn_of_contact_step(const Setup& setup, std::vector<std::string>& warnings) {
     const Contact<double>& contact = setup.plant.contact;
     const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
     const auto check = [&](const char* name, double product, double half, const char* limit) {
         if (product > half)
-            slips.push_back(std::string(name) + " is " + shortest(product) + ", more than half of what rk4 bears (" +
-                            limit + "): the contact will not be resolved; take a smaller solver.step");
+            warnings.push_back(std::string(name) + " is " + shortest(product) + ", more than half of what rk4 bears (" +
+                               limit + "): the contact will not be resolved; take a smaller solver.step");
     };
-    if (contact.law != Law::hunt_crossley)
+    if (contact.law != ContactLaw::hunt_crossley)
         check("step*sqrt(K_E/m_n)", setup.solver.step * std::sqrt(contact.stiffness[0] / m_n), 1.414, "2.828");
-    if (contact.law == Law::kelvin_voigt)
+    if (contact.law == ContactLaw::kelvin_voigt)
         check("step*damping/m_n", setup.solver.step * contact.damping / m_n, 1.3925, "2.785");
 }
 
-// A fixed step keeps its order where a jump lies on its grid only (5.8).
-void slip_of_jump(const Setup& setup, std::vector<std::string>& slips) {
+// A fixed step keeps its order only if a jump lies on its grid (5.8).
+void warn_of_jump(const Setup& setup, std::vector<std::string>& warnings) {
     if (setup.solver.method != Solver::rk4) return;
     const double step = setup.solver.step;
     for (double t = next_jump(setup, setup.start); t < setup.stop; t = next_jump(setup, t)) {
         if (t == setup.start + nearest_integer((t - setup.start) / step) * step) continue;
-        slips.push_back("a push, the reference or the wall's table jumps at t = " + shortest(t) +
-                        " s, within a step of rk4, which is of first order there; take a solver.step that reaches this "
-                        "instant in whole steps, or method: dopri5");
+        warnings.push_back(
+            "a push, the reference or the wall's table jumps at t = " + shortest(t) +
+            " s, within a step of rk4, which is of first order there; take a solver.step that reaches this "
+            "instant in whole steps, or method: dopri5");
         return;
     }
 }
 
-void slip_of_wall(const Setup& setup, std::vector<std::string>& slips) {
+void warn_of_wall(const Setup& setup, std::vector<std::string>& warnings) {
     if (!setup.plant.has_wall) return;
-    const double past = past_shoulder(setup);
+    const double past = max_shoulder_depth(setup);
     if (past > 0)
-        slips.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
-                        " m at the most; the arm's base is then behind it");
-    if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) slip_of_contact_step(setup, slips);
+        warnings.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
+                           " m at the most; the arm's base is then behind it");
+    if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) warn_of_contact_step(setup, warnings);
 }
 
 }  // namespace
 
-std::optional<std::string> slip_of_default_gravity(const Setup& setup) {
-    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.law().model.gravity;
+std::optional<std::string> default_gravity_warning(const Setup& setup) {
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.controller().model.gravity;
     const bool differ = norm(minus(feels, compensates)) > 0 && !is_nearly_equal(feels, compensates);
-    if (!differ || !uses_gravity(setup.law())) return {};
+    if (!differ || !uses_gravity(setup.controller())) return {};
     return "the plant feels the gravity " + vector_text(feels) + " m/s^2 and the controller compensates " +
            vector_text(compensates) +
            " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
            ", or what it shall believe instead";
 }
 
-std::vector<std::string> likely_slips(const Setup& setup) {
-    std::vector<std::string> slips;
-    slip_of_gravity(setup, slips);
-    slip_of_angles(setup, slips);
-    slip_of_links(setup.plant.arm, slips);
-    slip_of_units(setup.plant.arm, slips);
-    slip_of_wall(setup, slips);
-    slip_of_jump(setup, slips);
-    add_controller_slips(setup, slips);
-    return slips;
+std::vector<std::string> scenario_warnings(const Setup& setup) {
+    std::vector<std::string> warnings;
+    warn_of_gravity(setup, warnings);
+    warn_of_angles(setup, warnings);
+    warn_of_links(setup.plant.arm, warnings);
+    warn_of_units(setup.plant.arm, warnings);
+    warn_of_wall(setup, warnings);
+    warn_of_jump(setup, warnings);
+    add_controller_warnings(setup, warnings);
+    return warnings;
 }
 
 }  // namespace arm3r

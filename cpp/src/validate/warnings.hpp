@@ -7,14 +7,14 @@
 
 namespace arm3r {
 
-// What is allowed but probably a slip, each one sentence with the numbers.
-std::vector<std::string> likely_slips(const Setup& setup);
+// Warnings of what is allowed but probably a mistake, each one sentence with the numbers.
+std::vector<std::string> scenario_warnings(const Setup& setup);
 
-// Of a scenario that does not give controller.gravity: the default is not what the plant feels. It is no part of
-// likely_slips(), for the numbers do not tell what was given.
-std::optional<std::string> slip_of_default_gravity(const Setup& setup);
+// The warning for a scenario without controller.gravity whose default differs from the plant's gravity. It is not part
+// of scenario_warnings(), because the numbers do not show which keys were given.
+std::optional<std::string> default_gravity_warning(const Setup& setup);
 
-// Of the controller, its reference and its sampling.
-void add_controller_slips(const Setup& setup, std::vector<std::string>& slips);
+// Warnings about the controller, its reference and its sampling.
+void add_controller_warnings(const Setup& setup, std::vector<std::string>& warnings);
 
 }  // namespace arm3r

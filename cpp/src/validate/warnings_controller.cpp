@@ -1,5 +1,4 @@
-// What is allowed of a controller but probably a slip: gains that its linear loop does not bear, references that lead
-// nowhere.
+// Warnings about a controller: gains with which its linearised loop is unstable, references that cannot be reached.
 
 #include <algorithm>
 #include <charconv>
@@ -15,244 +14,254 @@
 namespace arm3r {
 namespace {
 
-using Slips = std::vector<std::string>;
+using Warnings = std::vector<std::string>;
 
-// To six digits.
+// The number with six digits.
 std::string rounded(double x) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, 6).ptr};
 }
 
-std::string word_of(Controls type) { return known_key("controller.type").choices[static_cast<std::size_t>(type)]; }
+std::string word_of(ControllerType type) {
+    return known_key("controller.type").choices[static_cast<std::size_t>(type)];
+}
 
-// Of gains of the three base axes, the one along a unit vector.
+// The gain along a unit vector, from gains of the three base axes.
 double along(const Vec3<double>& n, const Vec3<double>& gains) {
     return n[0] * n[0] * gains[0] + n[1] * n[1] * gains[1] + n[2] * n[2] * gains[2];
 }
 
-// Of masses of the three base axes, the one that a force along a unit vector moves.
+// The mass that a force along a unit vector moves, from masses of the three base axes.
 double mass_along(const Vec3<double>& n, const Vec3<double>& masses) {
     return 1 / (n[0] * n[0] / masses[0] + n[1] * n[1] / masses[1] + n[2] * n[2] / masses[2]);
 }
 
-// A loop that the wall's spring closes: its stiffness, the face's normal, the mass that the tip shows along it.
+// A loop that the wall's spring closes: its stiffness, the wall's normal, the effective mass of the tip along it.
 struct Loop {
     double k_e, m_n;  // N/m, kg
     Vec3<double> n;
 };
 
-// ---- stability of the force loops against the wall as it stands at t = 0
+// ---- stability of the force loops on the wall at t = 0
 
-void slip_of_cubic(double m, double b, double c, double d, double gain, const std::string& loop, Slips& slips) {
+void warn_of_cubic(double m, double b, double c, double d, double gain, const std::string& loop, Warnings& warnings) {
     if (is_stable(m, b, c, d)) return;
-    slips.push_back("the force loop of " + loop + " is unstable: s^3, s^2, s and 1 have " + rounded(m) + ", " +
-                    rounded(b) + ", " + rounded(c) + " and " + rounded(d) +
-                    (b > 0 && c > 0 ? ", and controller.force_integral_gain must stay below " +
-                                          rounded(gain * b * c / (m * d)) + " 1/s"
-                                    : ", and nothing damps it"));
+    warnings.push_back("the force loop of " + loop + " is unstable: s^3, s^2, s and 1 have " + rounded(m) + ", " +
+                       rounded(b) + ", " + rounded(c) + " and " + rounded(d) +
+                       (b > 0 && c > 0 ? ", and controller.force_integral_gain must stay below " +
+                                             rounded(gain * b * c / (m * d)) + " 1/s"
+                                       : ", and nothing damps it"));
 }
 
-void slip_of_force_loop(const Controller<double>& controller, const Loop& loop, Slips& slips) {
+void warn_of_force_loop(const Controller<double>& controller, const Loop& loop, Warnings& warnings) {
     const Gains<double>& g = controller.gains;
     const double k = loop.k_e, kI = g.force_integral;
     const std::string name = "controller.type " + word_of(controller.type);
-    if (controller.type == Controls::parallel)
-        slip_of_cubic(g.force_mass, along(loop.n, g.damping), along(loop.n, g.stiffness) + k * g.force, k * kI, kI,
-                      name, slips);
-    if (controller.type == Controls::operational_space) {
+    if (controller.type == ControllerType::parallel)
+        warn_of_cubic(g.force_mass, along(loop.n, g.damping), along(loop.n, g.stiffness) + k * g.force, k * kI, kI,
+                      name, warnings);
+    if (controller.type == ControllerType::operational_space) {
         const double fed = controller.force_term == ForceTerm::feedforward ? g.force_mass / loop.m_n : 0;
-        slip_of_cubic(g.force_mass, g.force_damping, k * (g.force + fed), k * kI, kI, name, slips);
+        warn_of_cubic(g.force_mass, g.force_damping, k * (g.force + fed), k * kI, kI, name, warnings);
     }
-    if (controller.type == Controls::hybrid && controller.variant == Variant::dynamic)
-        slip_of_cubic(g.force_mass, g.force_damping, k * g.force, k * kI, kI, name, slips);
-    if (controller.type == Controls::hybrid && controller.variant == Variant::jacobian_transpose)
-        slip_of_cubic(loop.m_n, g.force_damping, k * (1 + g.force), k * kI, kI, name, slips);
+    if (controller.type == ControllerType::hybrid && controller.variant == Variant::dynamic)
+        warn_of_cubic(g.force_mass, g.force_damping, k * g.force, k * kI, kI, name, warnings);
+    if (controller.type == ControllerType::hybrid && controller.variant == Variant::jacobian_transpose)
+        warn_of_cubic(loop.m_n, g.force_damping, k * (1 + g.force), k * kI, kI, name, warnings);
 }
 
-void slip_of_admittance(const Controller<double>& controller, const Loop& loop, Slips& slips) {
-    if (controller.type != Controls::admittance || controller.inner != Inner::position) return;
+void warn_of_admittance(const Controller<double>& controller, const Loop& loop, Warnings& warnings) {
+    if (controller.type != ControllerType::admittance || controller.inner != Inner::position) return;
     const Gains<double>& g = controller.gains;
     const double limit = admittance_limit(mass_along(loop.n, g.mass), along(loop.n, g.damping),
                                           along(loop.n, g.stiffness), g.inner_bandwidth, g.inner_damping_ratio);
     if (loop.k_e > limit)
-        slips.push_back("wall.contact.stiffness is " + shortest(loop.k_e) +
-                        " N/m, and this admittance over this inner loop is stable on walls up to " + rounded(limit) +
-                        " N/m only; raise controller.damping, controller.mass or controller.inner_bandwidth");
+        warnings.push_back("wall.contact.stiffness is " + shortest(loop.k_e) +
+                           " N/m, and this admittance over this inner loop is stable on walls up to " + rounded(limit) +
+                           " N/m only; raise controller.damping, controller.mass or controller.inner_bandwidth");
 }
 
-void slip_of_reference_gain(const Controller<double>& controller, const Loop& loop, Slips& slips) {
-    if (controller.type != Controls::adaptive_reference || controller.adaptation != Adaptation::integral) return;
+void warn_of_reference_gain(const Controller<double>& controller, const Loop& loop, Warnings& warnings) {
+    if (controller.type != ControllerType::adaptive_reference || controller.adaptation != Adaptation::integral) return;
     const Gains<double>& g = controller.gains;
     const double limit = reference_gain_limit(mass_along(loop.n, g.mass), along(loop.n, g.damping),
                                               along(loop.n, g.stiffness), loop.k_e);
-    if (g.reference >= limit)
-        slips.push_back("controller.reference_gain is " + shortest(g.reference) +
-                        " m/(N s), and the loop is stable below " + rounded(limit) +
-                        "; a tenth of it is a good choice");
+    if (g.reference_gain >= limit)
+        warnings.push_back("controller.reference_gain is " + shortest(g.reference_gain) +
+                           " m/(N s), and the loop is stable below " + rounded(limit) +
+                           "; a tenth of it is a good choice");
 }
 
-void slip_of_light_mass(const Controller<double>& controller, const Loop& loop, Slips& slips) {
-    const bool shapes = controller.type == Controls::shaped_impedance ||
-                        controller.type == Controls::adaptive_reference ||
-                        (controller.type == Controls::admittance && controller.inner == Inner::exact);
+void warn_of_light_mass(const Controller<double>& controller, const Loop& loop, Warnings& warnings) {
+    const bool shapes = controller.type == ControllerType::shaped_impedance ||
+                        controller.type == ControllerType::adaptive_reference ||
+                        (controller.type == ControllerType::admittance && controller.inner == Inner::exact);
     const double mass = mass_along(loop.n, controller.gains.mass);
     if (shapes && mass < loop.m_n / 3)
-        slips.push_back("controller.mass is " + rounded(mass) +
-                        " kg along the wall's normal, less than a third of the " + rounded(loop.m_n) +
-                        " kg that the arm shows there: noise and delay of the force are amplified " +
-                        rounded(loop.m_n / mass - 1) + " times");
+        warnings.push_back("controller.mass is " + rounded(mass) +
+                           " kg along the wall's normal, less than a third of the " + rounded(loop.m_n) +
+                           " kg that the arm shows there: noise and delay of the force are amplified " +
+                           rounded(loop.m_n / mass - 1) + " times");
 }
 
-// Whether the measured contact force enters the torque: to reach a wanted one, to yield to it, or to cancel it.
+// Whether the torque depends on the measured contact force: to track a force, to yield to it, or to cancel it.
 bool uses_force(const Controller<double>& controller) {
     switch (controller.type) {
-        case Controls::shaped_impedance:
-        case Controls::admittance: return true;
-        case Controls::computed_torque:
-        case Controls::resolved_acceleration: return controller.cancels_force;
-        default: return wants_force(controller.type);
+        case ControllerType::shaped_impedance:
+        case ControllerType::admittance: return true;
+        case ControllerType::computed_torque:
+        case ControllerType::resolved_acceleration: return controller.cancels_force;
+        default: return tracks_force(controller.type);
     }
 }
 
-void slips_of_contact(const Setup& setup, Slips& slips) {
+void warn_of_contact(const Setup& setup, Warnings& warnings) {
     const Plant<double>& plant = setup.plant;
     if (!plant.has_wall) return;
-    if (uses_force(setup.law()) && !plant.acts_on_arm)
-        slips.push_back("controller.type " + word_of(setup.law().type) +
-                        (wants_force(setup.law().type) ? " presses on the wall" : " uses the contact force") +
-                        " and wall.acts_on_arm is false: the arm does not feel the force that "
-                        "its controller measures; write acts_on_arm: true");
+    if (uses_force(setup.controller()) && !plant.acts_on_arm)
+        warnings.push_back(
+            "controller.type " + word_of(setup.controller().type) +
+            (tracks_force(setup.controller().type) ? " presses on the wall" : " uses the contact force") +
+            " and wall.acts_on_arm is false: the arm does not feel the force that "
+            "its controller measures; write acts_on_arm: true");
     const Pose<double> p = pose(setup.q);
-    const Loop loop{plant.contact.stiffness[0], effective_mass(setup.law().model, p, plant.wall.n), plant.wall.n};
-    slip_of_light_mass(setup.law(), loop, slips);
-    if (!plant.acts_on_arm || (plant.contact.law != Law::spring && plant.contact.law != Law::diagonal)) return;
-    slip_of_force_loop(setup.law(), loop, slips);
-    slip_of_admittance(setup.law(), loop, slips);
-    slip_of_reference_gain(setup.law(), loop, slips);
+    const Loop loop{plant.contact.stiffness[0], effective_mass(setup.controller().model, p, plant.wall.n),
+                    plant.wall.n};
+    warn_of_light_mass(setup.controller(), loop, warnings);
+    if (!plant.acts_on_arm || (plant.contact.law != ContactLaw::spring && plant.contact.law != ContactLaw::diagonal))
+        return;
+    warn_of_force_loop(setup.controller(), loop, warnings);
+    warn_of_admittance(setup.controller(), loop, warnings);
+    warn_of_reference_gain(setup.controller(), loop, warnings);
 }
 
-// J^-1 S_p turns errors of the tip into the wrong joint torques where M^-1 P has an eigenvalue below zero.
-void slip_of_raibert_craig(const Setup& setup, Slips& slips) {
-    const Controller<double>& controller = setup.law();
-    if (controller.type != Controls::hybrid || controller.variant != Variant::raibert_craig || !setup.plant.has_wall)
+// J^-1 S_p gives wrong joint torques for errors of the tip where M^-1 P has a negative eigenvalue.
+void warn_of_raibert_craig(const Setup& setup, Warnings& warnings) {
+    const Controller<double>& controller = setup.controller();
+    if (controller.type != ControllerType::hybrid || controller.variant != Variant::raibert_craig ||
+        !setup.plant.has_wall)
         return;
     const double least = projected_mobility(controller.model, pose(setup.q), setup.plant.wall.n);
-    slips.push_back("hybrid variant raibert_craig is unstable in part of the workspace" +
-                    (least < 0 ? ", and at the start too: M^-1 P has the eigenvalue " + rounded(least) + " 1/(kg m^2)"
-                               : std::string(", though not at the start")) +
-                    "; projected and dynamic are not");
+    warnings.push_back("hybrid variant raibert_craig is unstable in part of the workspace" +
+                       (least < 0
+                            ? ", and at the start too: M^-1 P has the eigenvalue " + rounded(least) + " 1/(kg m^2)"
+                            : std::string(", though not at the start")) +
+                       "; projected and dynamic are not");
 }
 
 // ---- sampling
 
-// Of the laws that ask for accelerations, on their own and held for a period.
-void slip_of_slow_samples(const Setup& setup, Slips& slips) {
-    const Controller<double>& controller = setup.law();
-    const bool accelerates = controller.type == Controls::computed_torque ||
-                             controller.type == Controls::resolved_acceleration ||
-                             controller.type == Controls::operational_space ||
-                             (controller.type == Controls::hybrid && controller.variant == Variant::dynamic);
+// For laws that command accelerations, held for a period.
+void warn_of_slow_samples(const Setup& setup, Warnings& warnings) {
+    const Controller<double>& controller = setup.controller();
+    const bool accelerates = controller.type == ControllerType::computed_torque ||
+                             controller.type == ControllerType::resolved_acceleration ||
+                             controller.type == ControllerType::operational_space ||
+                             (controller.type == ControllerType::hybrid && controller.variant == Variant::dynamic);
     if (!setup.digital.sampling.on || !accelerates) return;
     const Vec3<double>&Kp = controller.gains.position, &Kd = controller.gains.velocity;
-    double longest = longest_period(Kp[0], Kd[0]);
-    for (int i = 1; i < 3; ++i) longest = std::min(longest, longest_period(Kp[i], Kd[i]));
+    double longest = max_period(Kp[0], Kd[0]);
+    for (int i = 1; i < 3; ++i) longest = std::min(longest, max_period(Kp[i], Kd[i]));
     if (setup.digital.sampling.period >= longest)
-        slips.push_back("the controller computes every " + rounded(setup.digital.sampling.period) +
-                        " s, and these position and velocity gains are stable with periods below " + rounded(longest) +
-                        " s only, min(2 Kd/Kp, 2/Kd); raise sampling.rate");
+        warnings.push_back("the controller computes every " + rounded(setup.digital.sampling.period) +
+                           " s, and these position and velocity gains are stable with periods below " +
+                           rounded(longest) + " s only, min(2 Kd/Kp, 2/Kd); raise sampling.rate");
 }
 
-void slip_of_observer(const Setup& setup, Slips& slips) {
+void warn_of_observer(const Setup& setup, Warnings& warnings) {
     if (!setup.digital.sampling.on || !setup.observes()) return;
     const Vec3<double>& gain = setup.digital.observer.gain;
     const double product = std::max({gain[0], gain[1], gain[2]}) * setup.digital.sampling.period;
     if (product > 0.2)
-        slips.push_back("observer.gain times the period of sampling is " + rounded(product) +
-                        (product >= 2 ? ": the residual diverges from 2 on; keep it below 0.2"
-                                      : ", and above 0.2 the residual is no longer the filter of the external torque"));
+        warnings.push_back("observer.gain times the period of sampling is " + rounded(product) +
+                           (product >= 2
+                                ? ": the residual diverges from 2 on; keep it below 0.2"
+                                : ", and above 0.2 the residual is no longer the filter of the external torque"));
 }
 
 // ---- references
 
-double latest_turn(const Setpoint<double>& wanted) {
-    switch (wanted.path) {
+double latest_turn(const Reference<double>& reference) {
+    switch (reference.path) {
         case Path::hold:
         case Path::point: return 0;
-        case Path::sinusoid: return wanted.start + (wanted.frequency > 0 ? 1 / wanted.frequency : 0);
-        default: return wanted.end;
+        case Path::sinusoid: return reference.start + (reference.frequency > 0 ? 1 / reference.frequency : 0);
+        default: return reference.end;
     }
 }
 
-// How far the wanted tip comes out of the arm's reach, m.
-double beyond_reach(const Arm<double>& model, const Setpoint<double>& wanted, double start, double stop) {
+// The largest distance of the desired tip position from the arm's workspace, m.
+double workspace_excess(const Arm<double>& model, const Reference<double>& reference, double start, double stop) {
     const double a2 = model.link2.length, a3 = model.link3.length,
-                 length = std::max(0.0, std::min(stop, latest_turn(wanted)) - start);
+                 length = std::max(0.0, std::min(stop, latest_turn(reference)) - start);
     double farthest = 0;
-    constexpr int looks = 200;
-    for (int i = 0; i <= looks; ++i) {
-        const Vec3<double> tip = wanted_at(wanted, start + length * i / looks).position;
+    constexpr int samples = 200;
+    for (int i = 0; i <= samples; ++i) {
+        const Vec3<double> tip = desired_motion_at(reference, start + length * i / samples).position;
         const double from_shoulder = hypot2(hypot2(tip[0], tip[1]), tip[2] - model.base_height);
         farthest = std::max({farthest, from_shoulder - (a2 + a3), std::abs(a2 - a3) - from_shoulder});
     }
     return farthest;
 }
 
-// Of a table, m.
+// The distance of a table's first point from the tip, m.
 double distance_at_start(const Controller<double>& controller, double start, const Vec3<double>& q) {
     const Vec3<double> off =
-        minus(wanted_at(controller.setpoint, start).position, tip_position(controller.model, pose(q)));
+        minus(desired_motion_at(controller.reference, start).position, tip_position(controller.model, pose(q)));
     return std::sqrt(dot(off, off));
 }
 
-void slips_of_reference(const Setup& setup, Slips& slips) {
-    const Controller<double>& controller = setup.law();
-    const Setpoint<double>& wanted = controller.setpoint;
-    if (!wants_path(controller.type)) return;
-    const double beyond = wanted.in_joints ? 0 : beyond_reach(controller.model, wanted, setup.start, setup.stop);
+void warn_of_reference(const Setup& setup, Warnings& warnings) {
+    const Controller<double>& controller = setup.controller();
+    const Reference<double>& reference = controller.reference;
+    if (!tracks_path(controller.type)) return;
+    const double beyond =
+        reference.in_joints ? 0 : workspace_excess(controller.model, reference, setup.start, setup.stop);
     if (beyond > 1e-9)
-        slips.push_back("the reference of the tip leaves the reach of the arm by " + rounded(beyond) + " m");
-    const double apart = wanted.path == Path::table ? distance_at_start(controller, setup.start, setup.q) : 0;
-    if (apart > 1e-3)
-        slips.push_back("the table of the reference begins " + rounded(apart) + " m from where the tip starts");
-    if (is_moving(wanted.path) && wanted.start > setup.stop)
-        slips.push_back(std::string(wanted.path == Path::table ? "reference.t[0]" : "reference.start") + " is " +
-                        shortest(wanted.start) + " s, and the run ends at " + shortest(setup.stop) + " s");
+        warnings.push_back("the reference of the tip leaves the reach of the arm by " + rounded(beyond) + " m");
+    const double distance = reference.path == Path::table ? distance_at_start(controller, setup.start, setup.q) : 0;
+    if (distance > 1e-3)
+        warnings.push_back("the table of the reference begins " + rounded(distance) + " m from where the tip starts");
+    if (is_moving(reference.path) && reference.start > setup.stop)
+        warnings.push_back(std::string(reference.path == Path::table ? "reference.t[0]" : "reference.start") + " is " +
+                           shortest(reference.start) + " s, and the run ends at " + shortest(setup.stop) + " s");
 }
 
-double smallest_force(const Setpoint<double>& wanted) {
-    if (wanted.pressing == Pressing::constant) return wanted.force;
-    if (wanted.pressing == Pressing::sinusoid) return wanted.force - std::abs(wanted.force_amplitude);
-    return std::min(wanted.force, wanted.force_before);
+double min_force(const Reference<double>& reference) {
+    if (reference.force_profile == ForceProfile::constant) return reference.force;
+    if (reference.force_profile == ForceProfile::sinusoid) return reference.force - std::abs(reference.force_amplitude);
+    return std::min(reference.force, reference.force_before);
 }
 
-void slips_of_pressing(const Setup& setup, Slips& slips) {
-    const Controller<double>& controller = setup.law();
-    if (!wants_force(controller.type) && controller.type != Controls::admittance) return;
-    const Setpoint<double>& wanted = controller.setpoint;
-    if (const double least = smallest_force(wanted); least < 0)
-        slips.push_back("the wanted force falls to " + shortest(least) +
-                        " N: a wall cannot pull, so the tip will leave it");
-    const bool changes = wanted.pressing == Pressing::step || wanted.pressing == Pressing::ramp;
-    if (changes && wanted.force_start > setup.stop)
-        slips.push_back("reference.force.start is " + shortest(wanted.force_start) + " s, and the run ends at " +
-                        shortest(setup.stop) + " s");
-    if (wants_force(controller.type) && controller.anti_windup != AntiWindup::none && !setup.plant.arm.has_torque_limit)
-        slips.push_back("controller.anti_windup has nothing to do: every arm.torque_limit is inf");
+void warn_of_pressing(const Setup& setup, Warnings& warnings) {
+    const Controller<double>& controller = setup.controller();
+    if (!tracks_force(controller.type) && controller.type != ControllerType::admittance) return;
+    const Reference<double>& reference = controller.reference;
+    if (const double least = min_force(reference); least < 0)
+        warnings.push_back("the wanted force falls to " + shortest(least) +
+                           " N: a wall cannot pull, so the tip will leave it");
+    const bool changes = reference.force_profile == ForceProfile::step || reference.force_profile == ForceProfile::ramp;
+    if (changes && reference.force_start > setup.stop)
+        warnings.push_back("reference.force.start is " + shortest(reference.force_start) + " s, and the run ends at " +
+                           shortest(setup.stop) + " s");
+    if (tracks_force(controller.type) && controller.anti_windup != AntiWindup::none &&
+        !setup.plant.arm.has_torque_limit)
+        warnings.push_back("controller.anti_windup has nothing to do: every arm.torque_limit is inf");
 }
 
-void slips_of_tank(const Setup& setup, Slips& slips) {
-    const Controller<double>& controller = setup.law();
+void warn_of_tank(const Setup& setup, Warnings& warnings) {
+    const Controller<double>& controller = setup.controller();
     const Vec3<double>& K_0 = controller.gains.stiffness;
     const double least = std::min({K_0[0], K_0[1], K_0[2]});
-    if (controller.type == Controls::energy_tank && controller.gains.stiffness_amplitude > least)
-        slips.push_back("controller.stiffness_amplitude is " + shortest(controller.gains.stiffness_amplitude) +
-                        " N/m, more than the stiffness of " + shortest(least) +
-                        " N/m about which it varies: the spring will push outwards");
+    if (controller.type == ControllerType::energy_tank && controller.gains.stiffness_amplitude > least)
+        warnings.push_back("controller.stiffness_amplitude is " + shortest(controller.gains.stiffness_amplitude) +
+                           " N/m, more than the stiffness of " + shortest(least) +
+                           " N/m about which it varies: the spring will push outwards");
 }
 
 // ---- the reserve of energy (8.8)
 
-// What a law with a reserve holds: its spring along the axes, and the mass that the tip shows there.
+// The spring of a law with a reserve, along an axis, and the effective mass of the tip there.
 struct Spring {
     double stiffness, damping, mass;  // N/m, N s/m, kg
     Vec3<double> axis;
@@ -263,35 +272,36 @@ std::vector<Spring> springs_of(const Controller<double>& controller, const Pose<
     const auto spring = [&](double stiffness, double damping, const Vec3<double>& axis) {
         return Spring{stiffness, damping, effective_mass(controller.model, p, axis), axis};
     };
-    if (controller.type == Controls::virtual_wall) return {spring(g.stiffness[0], g.damping[0], g.plane_normal)};
+    if (controller.type == ControllerType::virtual_wall) return {spring(g.stiffness[0], g.damping[0], g.plane_normal)};
     return {spring(g.stiffness[0], g.damping[0], {1, 0, 0}), spring(g.stiffness[1], g.damping[1], {0, 1, 0}),
             spring(g.stiffness[2], g.damping[2], {0, 0, 1})};
 }
 
-// A torque that comes late by T (1/2 + d) on average makes a spring K give out what a damping of K T (1/2 + d) takes.
-void slips_of_held_spring(const Setup& setup, const Spring& spring, Slips& slips) {
+// A torque that acts T (1/2 + d) late on average makes a spring K put out the energy that a damping of K T (1/2 + d)
+// takes.
+void warn_of_held_spring(const Setup& setup, const Spring& spring, Warnings& warnings) {
     const Sampling<double>& sampling = setup.digital.sampling;
     const double lag = sampling.period * (0.5 + sampling.delay), reach = sampling.period * (1 + sampling.delay);
     const std::string held = "controller.stiffness is " + shortest(spring.stiffness) + " N/m";
-    if (setup.law().type == Controls::energy_tank && spring.stiffness * lag > spring.damping)
-        slips.push_back(held + ", and torques that act " + rounded(lag) +
-                        " s late on average make such a spring give out more energy than controller.damping takes: "
-                        "the tank pays until it is empty, and then a brake works all the time; keep the stiffness "
-                        "below " +
-                        rounded(spring.damping / lag) + " N/m, or raise sampling.rate");
+    if (setup.controller().type == ControllerType::energy_tank && spring.stiffness * lag > spring.damping)
+        warnings.push_back(held + ", and torques that act " + rounded(lag) +
+                           " s late on average make such a spring give out more energy than controller.damping takes: "
+                           "the tank pays until it is empty, and then a brake works all the time; keep the stiffness "
+                           "below " +
+                           rounded(spring.damping / lag) + " N/m, or raise sampling.rate");
     const double turn = reach * std::sqrt(spring.stiffness / spring.mass);
-    if (turn > largest_foreseen_turn)
-        slips.push_back(held + ": its oscillation turns by " + rounded(turn) +
-                        " rad until a torque has acted, and beyond " + rounded(largest_foreseen_turn) +
-                        " rad the controller cannot foresee how much energy it gives out: it may create energy; "
-                        "raise sampling.rate or lower sampling.delay");
+    if (turn > max_foreseen_turn)
+        warnings.push_back(held + ": its oscillation turns by " + rounded(turn) +
+                           " rad until a torque has acted, and beyond " + rounded(max_foreseen_turn) +
+                           " rad the controller cannot foresee how much energy it gives out: it may create energy; "
+                           "raise sampling.rate or lower sampling.delay");
 }
 
-// How far the spring may be pressed until an actuator gives less than it asks for, m.
+// The deflection of the spring at which an actuator reaches its limit, m.
 double pressed_at_limit(const Setup& setup, const Spring& spring) {
     const Pose<double> p = pose(setup.q);
-    const Vec3<double> weight = gravity_torque(setup.law().model, p);
-    const Vec3<double> per_newton = tip_force_torque(setup.law().model, p, spring.axis);
+    const Vec3<double> weight = gravity_torque(setup.controller().model, p);
+    const Vec3<double> per_newton = tip_force_torque(setup.controller().model, p, spring.axis);
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i)
         if (per_newton[i] != 0)
@@ -299,76 +309,80 @@ double pressed_at_limit(const Setup& setup, const Spring& spring) {
     return std::max(0.0, least) / spring.stiffness;
 }
 
-// What the controller cannot count exactly or foresee.
-void slips_of_counting(const Setup& setup, const std::string& law, Slips& slips) {
+// Energy that the controller cannot compute or predict exactly.
+void warn_of_counting(const Setup& setup, const std::string& law, Warnings& warnings) {
     const Sampling<double>& sampling = setup.digital.sampling;
     const Sensors<double>& sensors = setup.digital.sensors;
     if (sensors.has_encoder || sensors.velocity != VelocityEstimate::exact)
-        slips.push_back(
+        warnings.push_back(
             law + " counts its energy by what sensors.encoder and sensors.velocity tell" +
             (sensors.has_encoder ? ", here in steps of " + rounded(sensors.encoder_step) + " rad" : std::string()) +
             ": it never creates energy only as far as they are exact");
     if (sampling.delay != std::floor(sampling.delay))
-        slips.push_back("sampling.delay is " + shortest(sampling.delay) +
-                        " samples, and two torques act within each period of " + rounded(sampling.period) +
-                        " s: " + law +
-                        " counts its energy to the third order of the period only; "
-                        "whole delays are counted exactly");
-    if (setup.law().type != Controls::virtual_wall) return;
-    const Gains<double>& g = setup.law().gains;
-    const double depth = dot(g.plane_normal, minus(g.plane_point, tip_position(setup.law().model, pose(setup.q))));
+        warnings.push_back("sampling.delay is " + shortest(sampling.delay) +
+                           " samples, and two torques act within each period of " + rounded(sampling.period) +
+                           " s: " + law +
+                           " counts its energy to the third order of the period only; "
+                           "whole delays are counted exactly");
+    if (setup.controller().type != ControllerType::virtual_wall) return;
+    const Gains<double>& g = setup.controller().gains;
+    const double depth =
+        dot(g.plane_normal, minus(g.plane_point, tip_position(setup.controller().model, pose(setup.q))));
     if (depth > 0 && sampling.delay > 0)
-        slips.push_back(
+        warnings.push_back(
             "the tip starts " + rounded(depth) + " m inside the virtual wall, and the first torque acts there for " +
             rounded(1 + sampling.delay) + " periods: it may create energy that is taken back later; start outside");
-    const TipLoad<double>& load = setup.plant.load;
-    if (!load.on) return;
-    const double size = std::sqrt(dot(load.force, load.force)), reach = sampling.period * (1 + sampling.delay);
+    const ExternalForce<double>& external_force = setup.plant.external_force;
+    if (!external_force.on) return;
+    const double size = std::sqrt(dot(external_force.force, external_force.force)),
+                 reach = sampling.period * (1 + sampling.delay);
     if (size == 0) return;
-    const Vec3<double> along(load.force[0] / size, load.force[1] / size, load.force[2] / size);
-    const double mass = effective_mass(setup.law().model, pose(setup.q), along);
-    slips.push_back("push.force moves the tip by " + rounded(0.5 * reach * reach * size / mass) +
-                    " m until a torque has acted, which the controller does not foresee: it takes the energy that it "
-                    "creates meanwhile back at the next samples");
+    const Vec3<double> along(external_force.force[0] / size, external_force.force[1] / size,
+                             external_force.force[2] / size);
+    const double mass = effective_mass(setup.controller().model, pose(setup.q), along);
+    warnings.push_back(
+        "push.force moves the tip by " + rounded(0.5 * reach * reach * size / mass) +
+        " m until a torque has acted, which the controller does not foresee: it takes the energy that it "
+        "creates meanwhile back at the next samples");
 }
 
-void slips_of_reserve(const Setup& setup, Slips& slips) {
-    const Controller<double>& controller = setup.law();
-    if (!keeps_reserve(controller)) return;
+void warn_of_reserve(const Setup& setup, Warnings& warnings) {
+    const Controller<double>& controller = setup.controller();
+    if (!has_reserve(controller)) return;
     const std::string law = "controller.type " + word_of(controller.type);
     double pressed = std::numeric_limits<double>::infinity();
     for (const Spring& spring : springs_of(controller, pose(setup.q))) {
-        if (setup.digital.sampling.on) slips_of_held_spring(setup, spring, slips);
+        if (setup.digital.sampling.on) warn_of_held_spring(setup, spring, warnings);
         if (spring.stiffness > 0) pressed = std::min(pressed, pressed_at_limit(setup, spring));
     }
     if (setup.plant.arm.has_torque_limit)
-        slips.push_back(
+        warnings.push_back(
             law + " never creates energy as long as no torque is at arm.torque_limit, which a spring pressed by " +
             rounded(pressed) + " m reaches at the start");
-    if (setup.digital.sampling.on) slips_of_counting(setup, law, slips);
+    if (setup.digital.sampling.on) warn_of_counting(setup, law, warnings);
 }
 
-void slips_of_push(const Setup& setup, Slips& slips) {
-    if (!setup.plant.load.on) return;
-    const Vec3<double>& force = setup.plant.load.force;
-    if (force[0] == 0 && force[1] == 0 && force[2] == 0) slips.push_back("push.force is [0, 0, 0]: nothing pushes");
-    if (setup.plant.load.start > setup.stop)
-        slips.push_back("push.start is " + shortest(setup.plant.load.start) + " s, and the run ends at " +
-                        shortest(setup.stop) + " s");
+void warn_of_push(const Setup& setup, Warnings& warnings) {
+    if (!setup.plant.external_force.on) return;
+    const Vec3<double>& force = setup.plant.external_force.force;
+    if (force[0] == 0 && force[1] == 0 && force[2] == 0) warnings.push_back("push.force is [0, 0, 0]: nothing pushes");
+    if (setup.plant.external_force.start > setup.stop)
+        warnings.push_back("push.start is " + shortest(setup.plant.external_force.start) + " s, and the run ends at " +
+                           shortest(setup.stop) + " s");
 }
 
 }  // namespace
 
-void add_controller_slips(const Setup& setup, Slips& slips) {
-    slips_of_contact(setup, slips);
-    slip_of_raibert_craig(setup, slips);
-    slip_of_slow_samples(setup, slips);
-    slip_of_observer(setup, slips);
-    slips_of_reference(setup, slips);
-    slips_of_pressing(setup, slips);
-    slips_of_tank(setup, slips);
-    slips_of_reserve(setup, slips);
-    slips_of_push(setup, slips);
+void add_controller_warnings(const Setup& setup, Warnings& warnings) {
+    warn_of_contact(setup, warnings);
+    warn_of_raibert_craig(setup, warnings);
+    warn_of_slow_samples(setup, warnings);
+    warn_of_observer(setup, warnings);
+    warn_of_reference(setup, warnings);
+    warn_of_pressing(setup, warnings);
+    warn_of_tank(setup, warnings);
+    warn_of_reserve(setup, warnings);
+    warn_of_push(setup, warnings);
 }
 
 }  // namespace arm3r

@@ -13,10 +13,10 @@ ARM3R_INLINE T turned_between(const T& to, const T& from) {
     return difference - two_pi * nearest_integer(T(difference * (1 / two_pi)));
 }
 
-// From the joints to those that put the tip at `point`, on the same of the four branches (2.7). Beyond reach the arm is
-// stretched towards it.
+// The change of the joint angles that brings the tip to `point`, on the present one of the four branches (2.7). If the
+// point is out of reach, the arm is stretched towards it.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> joint_error(const Arm<P>& model, const Sensed<T>& sensed, const Vec3<T>& point) {
+ARM3R_INLINE Vec3<T> joint_error(const Arm<P>& model, const Measurement<T>& sensed, const Vec3<T>& point) {
     const P a2 = model.link2.length, a3 = model.link3.length;
     const Pose<T>& p = sensed.pose;
     const T front = copysign(T(1.0), radius(model, p)), bent = T(sin_q3(p));
@@ -30,48 +30,49 @@ ARM3R_INLINE Vec3<T> joint_error(const Arm<P>& model, const Sensed<T>& sensed, c
     return {turned_between(q1, sensed.q[0]), turned_between(q2, sensed.q[1]), turned_between(q3, sensed.q[2])};
 }
 
-// M (xdd_c - xdd_d) + B (xd_c - xd_d) + K (x_c - x_d) = f_on_tip + f_d p_in: xdd_c, m/s^2 (7.17).
+// The admittance: M (xdd_c - xdd_d) + B (xd_c - xd_d) + K (x_c - x_d) = f_on_tip + f_d p_in, solved for xdd_c, m/s^2
+// (7.17).
 template <class P, class T>
-ARM3R_INLINE Vec3<T> yielding(const Controller<P>& controller, const Sensed<T>& sensed, const Vec3<T>& point,
-                              const Vec3<T>& velocity) {
+ARM3R_INLINE Vec3<T> admittance_acceleration(const Controller<P>& controller, const Measurement<T>& sensed,
+                                             const Vec3<T>& point, const Vec3<T>& velocity) {
     const Gains<P>& gains = controller.gains;
-    const Wanted<T> wanted = wanted_at(controller.setpoint, sensed.t);
-    const T pressed = force_wanted_at(controller.setpoint, sensed.t);
-    const Vec3<T> pulled = plus(each_times(gains.damping, minus(wanted.velocity, velocity)),
-                                each_times(gains.stiffness, minus(wanted.position, point)));
+    const DesiredMotion<T> desired = desired_motion_at(controller.reference, sensed.t);
+    const T pressed = desired_force_at(controller.reference, sensed.t);
+    const Vec3<T> feedback = plus(cwise_product(gains.damping, minus(desired.velocity, velocity)),
+                                  cwise_product(gains.stiffness, minus(desired.position, point)));
     Vec3<T> a;
     for (int i = 0; i < 3; ++i)
-        a[i] = wanted.acceleration[i] + (pulled[i] + (sensed.f_on_tip[i] - pressed * sensed.n[i])) / gains.mass[i];
+        a[i] = desired.acceleration[i] + (feedback[i] + (sensed.f_on_tip[i] - pressed * sensed.n[i])) / gains.mass[i];
     return a;
 }
 
-// The torque that takes the tip to the point (7.17).
+// The torque of the inner loop, which makes the tip track the point (7.17).
 template <class P, class T>
-ARM3R_INLINE Vec3<T> following(const Controller<P>& controller, const Sensed<T>& sensed, const Vec3<T>& point,
-                               const Vec3<T>& velocity, const Vec3<T>& acceleration) {
+ARM3R_INLINE Vec3<T> inner_loop_torque(const Controller<P>& controller, const Measurement<T>& sensed,
+                                       const Vec3<T>& point, const Vec3<T>& velocity, const Vec3<T>& acceleration) {
     const Arm<P>& model = controller.model;
     const Gains<P>& gains = controller.gains;
     if (controller.inner == Inner::joint_pd) {
-        const Vec3<T> tau = minus(each_times(gains.joint_stiffness, joint_error(model, sensed, point)),
-                                  each_times(gains.joint_damping, sensed.qd));
+        const Vec3<T> tau = minus(cwise_product(gains.joint_stiffness, joint_error(model, sensed, point)),
+                                  cwise_product(gains.joint_damping, sensed.qd));
         return plus(tau, gravity_torque(model, sensed.pose));
     }
     const T w(gains.inner_bandwidth), w2 = w * w, d = 2.0 * gains.inner_damping_ratio * w;
     const Vec3<T> xd = tip_velocity(model, sensed.pose, sensed.qd);
-    const Vec3<T> pulled = scaled(w2, minus(point, tip_position(model, sensed.pose)));
+    const Vec3<T> feedback = scaled(w2, minus(point, tip_position(model, sensed.pose)));
     const Vec3<T> a = controller.inner == Inner::exact
-                          ? plus(acceleration, plus(scaled(d, minus(velocity, xd)), pulled))
-                          : minus(pulled, scaled(d, xd));
+                          ? plus(acceleration, plus(scaled(d, minus(velocity, xd)), feedback))
+                          : minus(feedback, scaled(d, xd));
     return torque_for_tip(model, sensed, a, sensed.f_cancelled);
 }
 
 // Maples and Becker 1986.
 template <class P, class T>
-ARM3R_INLINE void admittance_control(const Controller<P>& controller, const Sensed<T>& sensed,
+ARM3R_INLINE void admittance_control(const Controller<P>& controller, const Measurement<T>& sensed,
                                      const std::array<T, law_memory>& memory, Command<T>& command) {
     const Vec3<T> point(memory[0], memory[1], memory[2]), velocity(memory[3], memory[4], memory[5]);
-    const Vec3<T> acceleration = yielding(controller, sensed, point, velocity);
-    command.tau = following(controller, sensed, point, velocity, acceleration);
+    const Vec3<T> acceleration = admittance_acceleration(controller, sensed, point, velocity);
+    command.tau = inner_loop_torque(controller, sensed, point, velocity, acceleration);
     command.rates = {velocity[0], velocity[1], velocity[2], acceleration[0], acceleration[1], acceleration[2]};
 }
 

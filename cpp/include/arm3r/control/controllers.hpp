@@ -1,6 +1,6 @@
 #pragma once
-// What a controller consists of: its law, its gains, its copy of the arm, possibly a wrong one, and what it wants. The laws
-// themselves: laws.hpp. Slide convention, base axes.
+// The parts of a controller: its law, its gains, its model of the arm, which may be wrong, and its reference. The laws
+// themselves are in control_laws.hpp. Slide convention, base axes.
 
 #include <array>
 
@@ -30,16 +30,16 @@ struct Gains {
     P integral_limit, tracking_time;                    // N s, s
     P contact_on, contact_off;                          // N
     P inner_bandwidth, inner_damping_ratio;             // rad/s, 1
-    P reference;                                        // m/(N s)
+    P reference_gain;                                   // m/(N s)
     P assumed_stiffness;                                // N/m
     P stiffness_amplitude, stiffness_frequency;         // N/m, Hz
     P tank_energy, tank_low, tank_high, tank_capacity;  // J
     Vec3<P> plane_point, plane_normal;                  // m; unit
 };
 
-// What is the same in all lanes.
+// The choices, which are the same in all lanes.
 struct ControllerChoices {
-    Controls type = Controls::none;
+    ControllerType type = ControllerType::none;
     Algorithm algorithm = Algorithm::closed_form;  // for gravity_compensation
     Variant variant = Variant::dynamic;
     ForceTerm force_term = ForceTerm::cancelled;
@@ -54,24 +54,24 @@ struct ControllerChoices {
     bool operator==(const ControllerChoices&) const = default;
 };
 
-// Whether it takes the wall's stiffness from an estimator, once that knows it.
+// Whether the law uses the wall stiffness of the estimator as soon as the estimate is valid.
 inline bool asks_estimator(const ControllerChoices& law) {
-    return law.type == Controls::adaptive_reference && law.adaptation == Adaptation::indirect;
+    return law.type == ControllerType::adaptive_reference && law.adaptation == Adaptation::indirect;
 }
 
 template <class P>
 struct Controller : ControllerChoices {
     Vec3<P> torque;  // N m, for constant
     Gains<P> gains;
-    Setpoint<P> setpoint;
+    Reference<P> reference;
     Arm<P> model;  // the controller's copy; its gravity is what it compensates
 };
 
-// ---- what a law is given and gives back
+// ---- input and output of a law
 
-// What a controller may know at an instant. With perfect sensors it is what is.
+// The measurements of a controller at an instant. If the sensors are perfect, they are the true values.
 template <class T>
-struct Sensed {
+struct Measurement {
     T t;                  // s
     Vec3<T> q, qd;        // rad, rad/s
     Pose<T> pose;         // of q
@@ -79,32 +79,33 @@ struct Sensed {
     Vec3<T> f_cancelled;  // N, what a law may cancel: the measured one, or the true one with ideal_cancellation
     Vec3<T> n;            // unit, from the wall towards the arm; the pressing direction is -n
     T face;               // m, n . (a point of the wall's face)
-    T contact;            // 1: the controller takes the tip to be in contact; else 0
-    T force_phase;        // 1: force is controlled along n; 0: the tip keeps to the reference there too
+    T contact;            // 1: the controller assumes that the tip is in contact; else 0
+    T force_phase;        // 1: the law controls the force along n; 0: the tip follows the reference along n too
 };
 
 template <class T>
 struct Command {
     Vec3<T> tau;                      // N m, before the limit
     std::array<T, law_memory> rates;  // of the law's memory, 1/s each
-    Vec3<T> per_integral;             // N m/(N s), d tau/d memory[0]: what anti-windup turns back
+    Vec3<T> dtau_dintegral;           // N m/(N s), d tau/d memory[0]: anti-windup needs it
 };
 
 template <class P, class T>
-using LawFunction = void (*)(const Controller<P>&, const Sensed<T>&, const std::array<T, law_memory>&, Command<T>&);
+using LawFunction = void (*)(const Controller<P>&, const Measurement<T>&, const std::array<T, law_memory>&,
+                             Command<T>&);
 
-// ---- the torques that need no law
+// ---- torques without gains
 
 template <class P, class T>
-ARM3R_INLINE Vec3<T> control(const Controller<P>& controller, const Vec3<T>& q, const Pose<T>& p) {
-    if (controller.type == Controls::gravity_compensation)
+ARM3R_INLINE Vec3<T> feedforward_torque(const Controller<P>& controller, const Vec3<T>& q, const Pose<T>& p) {
+    if (controller.type == ControllerType::gravity_compensation)
         return controller.algorithm == Algorithm::closed_form ? gravity_torque(controller.model, p)
                                                               : recursion_gravity_torque(controller.model, q);
-    if (controller.type == Controls::constant) return lifted<T>(controller.torque);
+    if (controller.type == ControllerType::constant) return broadcast<T>(controller.torque);
     return {T(0.0), T(0.0), T(0.0)};
 }
 
-// What the actuators can give of it: each joint for itself, or all by one factor.
+// The torque that the actuators can apply: each joint is limited by itself, or all are scaled by one factor.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> limited(const Arm<P>& arm, const Vec3<T>& tau, Saturation saturation) {
     if (!arm.has_torque_limit) return tau;
@@ -123,7 +124,7 @@ ARM3R_INLINE Vec3<T> limited(const Arm<P>& arm, const Vec3<T>& tau, Saturation s
     return {scaled(0), scaled(1), scaled(2)};
 }
 
-// The rate of an integral of the force error that stays within its limit (7.5).
+// The rate of an integral of the force error that does not leave its limit (7.5).
 template <class P, class T>
 ARM3R_INLINE T within_limit(const Gains<P>& gains, const T& integral, const T& rate) {
     const T o(0.0), limit(gains.integral_limit);
@@ -131,22 +132,22 @@ ARM3R_INLINE T within_limit(const Gains<P>& gains, const T& integral, const T& r
     return select(full, o, rate);
 }
 
-// The torque that is put out: the computed one behind the limit of the actuators. The law's integral takes note of what
-// they could not give (7.5).
+// The controller's output: the torque of the law after the limit of the actuators. Anti-windup corrects the rate of the
+// law's integral by the difference of the two (7.5).
 template <class P, class T>
 ARM3R_INLINE Vec3<T> actuated(const Arm<P>& arm, const Controller<P>& controller, const T& integral,
                               Command<T>& command) {
     const Vec3<T> output = limited(arm, command.tau, controller.saturation);
     if (controller.anti_windup == AntiWindup::none) return output;
     const Vec3<T> lack = minus(output, command.tau);
-    const T turned_back = dot(command.per_integral, lack);
+    const T windup_correction = dot(command.dtau_dintegral, lack);
     T& rate = command.rates[0];
     if (controller.anti_windup == AntiWindup::conditional) {
-        rate = select(turned_back * rate < T(0.0), T(0.0), rate);
+        rate = select(windup_correction * rate < T(0.0), T(0.0), rate);
     } else {
-        const T size = max(dot(command.per_integral, command.per_integral), T(1e-300));
-        rate =
-            within_limit(controller.gains, integral, T(rate + turned_back / (size * controller.gains.tracking_time)));
+        const T size = max(dot(command.dtau_dintegral, command.dtau_dintegral), T(1e-300));
+        rate = within_limit(controller.gains, integral,
+                            T(rate + windup_correction / (size * controller.gains.tracking_time)));
     }
     return output;
 }

@@ -1,14 +1,15 @@
 #pragma once
-// What a sampled law may give out: the energy of its own spring and the reserve of what it took from the arm before;
-// docs/model.md (8.8). After Hannaford and Ryu 2002 and Franken et al. 2011. Slide convention, base axes.
+// Passivity of a sampled law: it may put out the energy of its own spring and the reserve of energy that it took from
+// the arm before; docs/model.md (8.8). After Hannaford and Ryu 2002 and Franken et al. 2011. Slide convention, base
+// axes.
 
 #include "arm3r/control/controllers.hpp"
 
 namespace arm3r {
 
-// Whether its memory[0] is such a reserve, J.
-inline bool keeps_reserve(const ControllerChoices& law) {
-    return law.controls_passivity || (law.type == Controls::energy_tank && law.has_tank);
+// Whether memory[0] of the law is such a reserve, J.
+inline bool has_reserve(const ControllerChoices& law) {
+    return law.controls_passivity || (law.type == ControllerType::energy_tank && law.has_tank);
 }
 
 // The potential energy of the arm less that of the law's spring, J: its gradient is the law's torque without damping.
@@ -17,35 +18,36 @@ ARM3R_INLINE T law_potential(const Controller<P>& controller, const Pose<T>& p, 
     const Gains<P>& gains = controller.gains;
     const Vec3<T> x = tip_position(controller.model, p);
     T twice_spring;
-    if (controller.type == Controls::virtual_wall) {
-        const T depth = max(T(0.0), dot(lifted<T>(gains.plane_normal), minus(lifted<T>(gains.plane_point), x)));
+    if (controller.type == ControllerType::virtual_wall) {
+        const T depth = max(T(0.0), dot(broadcast<T>(gains.plane_normal), minus(broadcast<T>(gains.plane_point), x)));
         twice_spring = gains.stiffness[0] * depth * depth;
     } else {
         const Vec3<T> e = minus(x, x_d);
-        twice_spring = dot(e, each_times(gains.stiffness, e));
+        twice_spring = dot(e, cwise_product(gains.stiffness, e));
     }
     return potential_energy(controller.model, p) - 0.5 * twice_spring;
 }
 
-// The arm at an instant to come, as the model foresees it, and the reserve that will be left.
+// The state of the arm at a later instant, as the model predicts it, and the reserve at that instant.
 template <class T>
-struct Prospect {
+struct Prediction {
     Vec3<T> q, qd;
     Pose<T> pose;
     T potential, reserve;  // J
 };
 
-// Goes on for `time` under a torque while nothing touches the arm, to third order. How far the joints turn, rad.
+// Advances the prediction by `time` under a constant torque without contact, to third order. Returns the change of the
+// joint angles, rad.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> advance(const Controller<P>& controller, const Vec3<T>& x_d, const Vec3<T>& tau, const T& time,
-                             Prospect<T>& at) {
-    const Vec3<T> first = forward_dynamics(controller.model, at.pose, at.qd, tau, none<T>());
+ARM3R_INLINE Vec3<T> predict(const Controller<P>& controller, const Vec3<T>& x_d, const Vec3<T>& tau, const T& time,
+                             Prediction<T>& at) {
+    const Vec3<T> first = forward_dynamics(controller.model, at.pose, at.qd, tau, zero_vector<T>());
     Vec3<T> q, qd, way;
     for (int i = 0; i < 3; ++i) {
         q[i] = at.q[i] + time * (at.qd[i] + 0.5 * time * first[i]);
         qd[i] = at.qd[i] + time * first[i];
     }
-    const Vec3<T> second = forward_dynamics(controller.model, pose(q), qd, tau, none<T>());
+    const Vec3<T> second = forward_dynamics(controller.model, pose(q), qd, tau, zero_vector<T>());
     for (int i = 0; i < 3; ++i) {
         way[i] = time * (at.qd[i] + time * (2.0 * first[i] + second[i]) / 6.0);
         at.q[i] = at.q[i] + way[i];
@@ -58,13 +60,14 @@ ARM3R_INLINE Vec3<T> advance(const Controller<P>& controller, const Vec3<T>& x_d
     return way;
 }
 
-// The torque -alpha M qd that leaves nothing owed where `tau` alone, held for a period, would give out more than there is.
+// The torque -alpha M qd that keeps the reserve from becoming negative where `tau` alone, held for a period, would use
+// more energy than there is.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> brake(const Controller<P>& controller, const Vec3<T>& x_d, const Vec3<T>& tau, const T& period,
-                           const Prospect<T>& at) {
-    constexpr double doubt = 0.01;  // share of what the period gives out by which the prospect may err
-    Prospect<T> next = at;
-    const Vec3<T> way = advance(controller, x_d, tau, period, next);
+ARM3R_INLINE Vec3<T> braking_torque(const Controller<P>& controller, const Vec3<T>& x_d, const Vec3<T>& tau,
+                                    const T& period, const Prediction<T>& at) {
+    constexpr double doubt = 0.01;  // relative error of the prediction that is allowed for
+    Prediction<T> next = at;
+    const Vec3<T> way = predict(controller, x_d, tau, period, next);
     const Vec3<T> p = times(mass_matrix(controller.model, at.pose), way);
     const T o(0.0), least(1e-300), given = at.reserve - next.reserve;
     const T excess = doubt * abs(given) - next.reserve;

@@ -1,6 +1,6 @@
 #pragma once
 // The list of the control laws: the word that chooses each, and what sets it apart. Words of the schema, reading and rules
-// follow from it; the laws themselves: laws.hpp.
+// follow from it; the laws themselves: control_laws.hpp.
 
 #include <array>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace arm3r {
 
-enum class Controls {
+enum class ControllerType {
     none,
     constant,
     gravity_compensation,
@@ -32,7 +32,7 @@ enum class Controls {
 enum : std::size_t { law_memory = 6 };  // numbers that a law remembers at most
 
 struct LawProperties {
-    Controls type;
+    ControllerType type;
     std::string_view word;          // of controller.type
     bool has_model = false;         // a copy of the arm, and a gravity that it compensates
     bool has_gains = false;         // more than a formula without gains: a file of its own
@@ -46,13 +46,13 @@ struct LawProperties {
 
 // In the order of the enumerators.
 inline constexpr std::array law_table = [] {
-    constexpr auto basic = [](Controls type, std::string_view word) {
+    constexpr auto basic = [](ControllerType type, std::string_view word) {
         return LawProperties{.type = type, .word = word};
     };
-    constexpr auto with_model = [](Controls type, std::string_view word) {
+    constexpr auto with_model = [](ControllerType type, std::string_view word) {
         return LawProperties{.type = type, .word = word, .has_model = true};
     };
-    constexpr auto motion = [](Controls type, std::string_view word, bool in_joints) {
+    constexpr auto motion = [](ControllerType type, std::string_view word, bool in_joints) {
         return LawProperties{.type = type,
                              .word = word,
                              .has_model = true,
@@ -70,7 +70,7 @@ inline constexpr std::array law_table = [] {
         law.integrates_force = integrates;
         return law;
     };
-    using enum Controls;
+    using enum ControllerType;
     LawProperties without_path = with_model(virtual_wall, "virtual_wall");
     without_path.has_gains = true;
     return std::array{
@@ -96,18 +96,18 @@ inline constexpr std::array law_table = [] {
 }();
 static_assert([] {
     for (std::size_t i = 0; i < law_table.size(); ++i)
-        if (law_table[i].type != Controls(i)) return false;
-    return law_table.back().type == Controls::user;
+        if (law_table[i].type != ControllerType(i)) return false;
+    return law_table.back().type == ControllerType::user;
 }());
 
-constexpr const LawProperties& properties(Controls type) { return law_table[std::size_t(type)]; }
+constexpr const LawProperties& properties(ControllerType type) { return law_table[std::size_t(type)]; }
 
-constexpr bool has_law(Controls type) { return properties(type).has_gains; }
-constexpr bool has_model(Controls type) { return properties(type).has_model; }
-constexpr bool wants_path(Controls type) { return properties(type).follows_path; }
-constexpr bool is_in_joints(Controls type) { return properties(type).in_joints; }
-constexpr bool wants_force(Controls type) { return properties(type).controls_force; }
-constexpr bool integrates_force(Controls type) { return properties(type).integrates_force; }
-constexpr std::size_t memory_size(Controls type) { return properties(type).memory; }
+constexpr bool has_law(ControllerType type) { return properties(type).has_gains; }
+constexpr bool has_model(ControllerType type) { return properties(type).has_model; }
+constexpr bool tracks_path(ControllerType type) { return properties(type).follows_path; }
+constexpr bool is_in_joints(ControllerType type) { return properties(type).in_joints; }
+constexpr bool tracks_force(ControllerType type) { return properties(type).controls_force; }
+constexpr bool integrates_force(ControllerType type) { return properties(type).integrates_force; }
+constexpr std::size_t memory_size(ControllerType type) { return properties(type).memory; }
 
 }  // namespace arm3r

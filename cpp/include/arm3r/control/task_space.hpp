@@ -1,6 +1,6 @@
 #pragma once
-// The arm as seen from its tip: which joint motion gives a tip motion, and which torque; docs/model.md, section 7. Slide
-// convention, base axes.
+// Kinematics and dynamics in the space of the tip: joint rates and torques for a motion of the tip; docs/model.md,
+// section 7. Slide convention, base axes.
 
 #include "arm3r/control/controllers.hpp"
 
@@ -19,7 +19,7 @@ ARM3R_INLINE Vec3<T> joint_rates(const Arm<P>& arm, const Pose<T>& p, const Vec3
     return {around * inverse_r, w2, w3 - w2};
 }
 
-// Jdot(q, qd) rates: m/s^2 (2.6). The same with qd and `rates` exchanged.
+// Jdot(q, qd) rates: m/s^2 (2.6). Exchanging qd and `rates` does not change it.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> jacobian_dot_times(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& rates) {
     const P a2 = arm.link2.length, a3 = arm.link3.length;
@@ -35,7 +35,7 @@ ARM3R_INLINE Vec3<T> jacobian_dot_times(const Arm<P>& arm, const Pose<T>& p, con
 
 // ID(a): the torque at which the tip of the model accelerates by a, m/s^2, while f_on_tip, N, acts on it (7.4).
 template <class P, class T>
-ARM3R_INLINE Vec3<T> torque_for_tip(const Arm<P>& model, const Sensed<T>& sensed, const Vec3<T>& a,
+ARM3R_INLINE Vec3<T> torque_for_tip(const Arm<P>& model, const Measurement<T>& sensed, const Vec3<T>& a,
                                     const Vec3<T>& f_on_tip) {
     return shared<T>([&]() ARM3R_INLINE_LAMBDA {
         const Vec3<T> by_rates = jacobian_dot_times(model, sensed.pose, sensed.qd, sensed.qd);
@@ -44,42 +44,43 @@ ARM3R_INLINE Vec3<T> torque_for_tip(const Arm<P>& model, const Sensed<T>& sensed
     });
 }
 
-// J^T Lambda a = M J^-1 a: what that torque changes by with a (7.4).
+// J^T Lambda a = M J^-1 a: the change of that torque with a (7.4).
 template <class P, class T>
 ARM3R_INLINE Vec3<T> inertial_torque(const Arm<P>& model, const Pose<T>& p, const Vec3<T>& a) {
     return shared<T>([&]() ARM3R_INLINE_LAMBDA { return times(mass_matrix(model, p), joint_rates(model, p, a)); });
 }
 
-// How far the pose is from where J has no inverse: 0 there, 1 at most (7.21).
+// The distance of the pose from a singularity of J: 0 there, at most 1 (7.21).
 template <class P, class T>
 ARM3R_INLINE T distance_to_singular(const Arm<P>& arm, const Pose<T>& p) {
     const T S3 = sin_q3(p);
     return min(T(abs(S3)), T(abs(radius(arm, p)) / (arm.link2.length + arm.link3.length)));
 }
 
-// The tip where the controller believes it, and where it wants it: m, m/s, m/s^2, base axes.
+// Errors of the tip, computed with the controller's model, and the desired motion: m, m/s, m/s^2, base axes.
 template <class T>
 struct TipTask {
-    Vec3<T> velocity;                              // xd
-    Vec3<T> error, error_rate;                     // x_d - x, xd_d - xd
-    Vec3<T> wanted_velocity, wanted_acceleration;  // xd_d, xdd_d
+    Vec3<T> velocity;                                // xd
+    Vec3<T> error, error_rate;                       // x_d - x, xd_d - xd
+    Vec3<T> desired_velocity, desired_acceleration;  // xd_d, xdd_d
 };
 
 template <class P, class T>
-ARM3R_INLINE TipTask<T> tip_task(const Controller<P>& controller, const Sensed<T>& sensed) {
+ARM3R_INLINE TipTask<T> tip_task(const Controller<P>& controller, const Measurement<T>& sensed) {
     return shared<T>([&]() ARM3R_INLINE_LAMBDA {
-        const Wanted<T> wanted = wanted_at(controller.setpoint, sensed.t);
+        const DesiredMotion<T> desired = desired_motion_at(controller.reference, sensed.t);
         const Vec3<T> velocity = tip_velocity(controller.model, sensed.pose, sensed.qd);
-        return TipTask<T>{velocity, minus(wanted.position, tip_position(controller.model, sensed.pose)),
-                          minus(wanted.velocity, velocity), wanted.velocity, wanted.acceleration};
+        return TipTask<T>{velocity, minus(desired.position, tip_position(controller.model, sensed.pose)),
+                          minus(desired.velocity, velocity), desired.velocity, desired.acceleration};
     });
 }
 
 // xdd_d + Kd (xd_d - xd) + Kp (x_d - x): m/s^2 (7.8).
 template <class P, class T>
 ARM3R_INLINE Vec3<T> tracking_acceleration(const Gains<P>& gains, const TipTask<T>& tip) {
-    const Vec3<T> pulled = plus(each_times(gains.velocity, tip.error_rate), each_times(gains.position, tip.error));
-    return plus(tip.wanted_acceleration, pulled);
+    const Vec3<T> feedback =
+        plus(cwise_product(gains.velocity, tip.error_rate), cwise_product(gains.position, tip.error));
+    return plus(tip.desired_acceleration, feedback);
 }
 
 }  // namespace arm3r

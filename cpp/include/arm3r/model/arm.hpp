@@ -1,8 +1,7 @@
 #pragma once
-// The constants of the arm: what its maker states, and the nine lumped numbers that are all its dynamics can see.
-// Inside the library everything is in the slide convention (positive q2, q3 raise the arm); D maps at the faces (1.1).
-//
-// P is the number type of the parameters, T that of the state: double, Pack<N>, Dual<N> or Expr.
+// The constants of the arm: the data that its maker states, and the nine lumped numbers that determine its dynamics.
+// All code of the library uses the slide convention (positive q2, q3 raise the arm); D converts where data enter and
+// leave (1.1). P is the number type of the parameters, T that of the state: double, Pack<N>, Dual<N> or Expr.
 
 #include "arm3r/numbers/vectors.hpp"
 
@@ -11,15 +10,15 @@ namespace arm3r {
 // A link on joint 2 or 3. Axes: x along the link, y in the arm's vertical plane, z along the joint axis.
 template <class P>
 struct Link {
-    P length;         // m, joint to joint, or joint to tip
+    P length;         // m, from joint to joint, or from joint to tip
     P mass;           // kg
     P com;            // m from the joint, along x
     Vec3<P> inertia;  // kg m^2, principal, about the centre of mass
 };
 
-// Link 1 turns about the vertical: only its inertia about that axis matters to the motion.
+// Link 1 turns about the vertical axis: only its inertia about that axis affects the motion.
 template <class P>
-struct Turret {
+struct BaseLink {
     P mass;           // kg
     P com;            // m, height of the centre of mass in the base frame
     P inertia_axial;  // kg m^2
@@ -33,7 +32,7 @@ struct Lumped {  // (3.2)
 template <class P>
 struct Arm {
     P base_height;  // m, d1
-    Turret<P> link1;
+    BaseLink<P> link1;
     Link<P> link2, link3;
     P payload;             // kg, a point mass at the tip
     Vec3<P> gravity;       // m/s^2, base axes
@@ -44,7 +43,8 @@ struct Arm {
     Vec3<P> torque_limit;  // N m
     Lumped<P> lumped;
 
-    // What no lane of P has need not be computed. Leaving a term of exact zeros out changes no value.
+    // A flag is false if no lane of P has the term, which is then not computed. Leaving out a term of exact zeros
+    // changes no value.
     bool gravity_is_vertical = false, has_damping = false, has_dry_friction = false, has_torque_limit = false;
 };
 
@@ -69,9 +69,9 @@ Lumped<P> lump(const Arm<P>& arm) {  // (3.2)
     };
 }
 
-// D = diag(1, -1, -1): between the slide convention and simscape, either way, for q, qd, qdd and torques (1.1).
+// D = diag(1, -1, -1) converts q, qd, qdd and torques between the slide and the simscape convention, both ways (1.1).
 template <class T>
-ARM3R_INLINE Vec3<T> flipped(const Vec3<T>& joint_vector) {
+ARM3R_INLINE Vec3<T> change_convention(const Vec3<T>& joint_vector) {
     return {joint_vector[0], -joint_vector[1], -joint_vector[2]};
 }
 

@@ -45,8 +45,8 @@ ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& arm, const Pose<T>& p, const
     return {-2.0 * (row2 * w2 + row3 * w3) * w1, row2 * w1 * w1 - b * w3 * w3 + third, third};
 }
 
-// The weight of the links on the three angles q1, q2, q2 + q3 (3.5). g is any gravity vector, in base axes. Where it is
-// vertical both ways give the same bits.
+// The weight of the links on the three angles q1, q2, q2 + q3 (3.5). g is any gravity vector, in base axes. If it is
+// vertical, both branches give the same bits.
 template <class P, class G, class T>
 ARM3R_INLINE Vec3<T> link_weight(const Lumped<P>& l, const Vec3<G>& g, bool vertical, const Pose<T>& p) {
     if (vertical) return {T(0.0), -(l.G2 * p.C2) * g[2], -(l.G3 * p.C23) * g[2]};
@@ -106,8 +106,8 @@ ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const
     return {radius(arm, p) * around, second + third, third};
 }
 
-// qdd from the torques that drive the joints: actuators less friction plus J^T f; and from the weight on the link angles,
-// or what a controller leaves of it. Solved in the absolute link angles (3.8).
+// qdd from the torques that drive the joints (actuators less friction plus J^T f) and from the weight on the link
+// angles, or the part of it that a controller does not compensate. Solved in the absolute link angles (3.8).
 template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive,
                                         const Vec3<T>& weight) {
@@ -148,7 +148,7 @@ ARM3R_INLINE Vec3<T> forward_dynamics(const Arm<P>& arm, const Pose<T>& p, const
         arm, p, qd, Vec3<T>(tau[0] - tau_f[0] + tau_e[0], tau[1] - tau_f[1] + tau_e[1], tau[2] - tau_f[2] + tau_e[2]));
 }
 
-// The same equation, solved for tau.
+// The same equation (3.1), solved for tau.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> inverse_dynamics(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& qdd,
                                       const Vec3<T>& f_on_tip) {
@@ -162,7 +162,7 @@ ARM3R_INLINE Vec3<T> inverse_dynamics(const Arm<P>& arm, const Pose<T>& p, const
             M(2, 1) * qdd[1] + M(2, 2) * qdd[2] + v[2] + tau_g[2] + tau_f[2] - tau_e[2]};
 }
 
-// J M^-1 J^T: m-1, how easily the tip gives way (3.11).
+// J M^-1 J^T: 1/kg, the mobility of the tip (3.11).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> tip_mobility(const Arm<P>& arm, const Pose<T>& p) {
     const Mat3<T> M = mass_matrix(arm, p);

@@ -1,5 +1,5 @@
 #pragma once
-// Where the arm is and how fast it moves, in closed form; docs/model.md, section 2. Slide convention, base axes.
+// Position and velocity of the arm in closed form; docs/model.md, section 2. Slide convention, base axes.
 
 #include "arm3r/model/arm.hpp"
 #include "arm3r/numbers/pack.hpp"
@@ -22,7 +22,8 @@ template <class T>
 ARM3R_INLINE Pose<T> pose(const Vec3<T>& q) {
     const T sum = q[1] + q[2];
     const T added = sum - q[1];
-    const T lost = (q[1] - (sum - added)) + (q[2] - added);  // by rounding the sum, exactly; it is turned back in
+    // the rounding error of the sum, exactly; the rotation below corrects it
+    const T lost = (q[1] - (sum - added)) + (q[2] - added);
     const SinCos<T> first = sincos(q[0]);
     const auto [second, third] = sincos_pair(q[1], sum);
     return {first.sin, first.cos, second.sin, second.cos, third.sin + lost * third.cos, third.cos - lost * third.sin};
@@ -55,7 +56,7 @@ ARM3R_INLINE Vec3<T> elbow_position(const Arm<P>& arm, const Pose<T>& p) {  // (
 }
 
 template <class P, class T>
-ARM3R_INLINE Mat3<T> centres(const Arm<P>& arm, const Pose<T>& p) {  // (2.3), a row a link
+ARM3R_INLINE Mat3<T> centres_of_mass(const Arm<P>& arm, const Pose<T>& p) {  // (2.3), a row a link
     Mat3<T> rows;
     rows.row(0) << T(0.0), T(0.0), T(arm.link1.com);
     rows.row(1) = in_arm_plane(arm, p, T(arm.link2.com * p.C2), T(arm.link2.com * p.S2)).transpose();
@@ -139,24 +140,25 @@ ARM3R_INLINE T manipulability(const Arm<P>& arm, const Pose<T>& p) {  // |det J|
     return abs(T(arm.link2.length * arm.link3.length * S3 * radius(arm, p)));
 }
 
-// How far a point lies beyond the reach of the arm or within the hollow that it cannot reach, m; not above 0: neither.
+// The distance of a point from the workspace, m: outside the outer radius or inside the inner one; not above 0 within
+// the workspace.
 template <class P>
-double beyond_reach(const Arm<P>& arm, const Vec3<double>& tip) {
+double workspace_excess(const Arm<P>& arm, const Vec3<double>& tip) {
     const double a2 = arm.link2.length, a3 = arm.link3.length, zeta = tip[2] - arm.base_height;
     const double distance = sqrt(tip[0] * tip[0] + tip[1] * tip[1] + zeta * zeta);
     return max(distance - (a2 + a3), abs(a2 - a3) - distance);
 }
 
 template <class T>
-struct Reach {
+struct IkResult {
     Vec3<T> q;
-    T cos_q3;  // beyond [-1, 1]: the point is out of reach, by this much
+    T cos_q3;  // outside [-1, 1] the point is out of reach
 };
 
 // front: joint 1 faces the point, or faces away from it; up: the elbow lies above the line from shoulder to tip (2.7).
 // The result is meaningless where |cos_q3| > 1.
 template <class P, class T>
-Reach<T> inverse_kinematics(const Arm<P>& arm, const Vec3<T>& tip, bool front, bool up) {
+IkResult<T> inverse_kinematics(const Arm<P>& arm, const Vec3<T>& tip, bool front, bool up) {
     const P a2 = arm.link2.length, a3 = arm.link3.length;
     const T rho_2 = tip[0] * tip[0] + tip[1] * tip[1];
     const T rho = front ? T(sqrt(rho_2)) : T(-sqrt(rho_2));

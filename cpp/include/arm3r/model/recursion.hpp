@@ -40,7 +40,7 @@ ARM3R_INLINE std::array<Body<T>, 3> chain(const Arm<P>& arm, const Vec3<T>& q) {
     bodies[1].origin << o, o, T(arm.base_height);
     bodies[1].com << T(arm.link2.com), o, o;
     bodies[1].mass = T(arm.link2.mass);
-    bodies[1].inertia = lifted<T>(arm.link2.inertia);
+    bodies[1].inertia = broadcast<T>(arm.link2.inertia);
 
     const SinCos<T> three = sincos(q[2]);
     bodies[2].R << three.cos, -three.sin, o,  //
@@ -49,7 +49,7 @@ ARM3R_INLINE std::array<Body<T>, 3> chain(const Arm<P>& arm, const Vec3<T>& q) {
     bodies[2].origin << T(arm.link2.length), o, o;
     bodies[2].com << T(arm.link3.com), o, o;
     bodies[2].mass = T(arm.link3.mass);
-    bodies[2].inertia = lifted<T>(arm.link3.inertia);
+    bodies[2].inertia = broadcast<T>(arm.link3.inertia);
     return bodies;
 }
 
@@ -112,7 +112,8 @@ Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Ve
         moment[i] = plus(inertial, cross(omega, angular_momentum));
     }
 
-    // inward: f and n that the parent puts on each body, at its joint, starting from the payload and what pushes on it
+    // inward: f and n that the parent exerts on each body, at its joint, starting from the payload and the force on the
+    // tip
     Vec3<T> push = f_on_tip;
     for (int i = 0; i < 3; ++i) push = transposed_times(bodies[i].R, push);
     const Vec3<T> tip(T(arm.link3.length), o, o);

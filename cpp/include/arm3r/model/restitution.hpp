@@ -1,14 +1,14 @@
 #pragma once
-// Which damping a contact needs so that a mass leaves it at a wanted share of the speed at which it came: the
-// restitution e; docs/model.md (4.12), (4.13).
+// The damping with which a mass leaves a contact at a given fraction e (restitution) of its impact speed; docs/model.md
+// (4.12), (4.13).
 
 #include "arm3r/numbers/real.hpp"
 
 namespace arm3r {
 
-// Where an f that falls over [low, high] crosses zero, to the last bit.
+// The zero of an f that decreases on [low, high], by bisection to the last bit.
 template <class F>
-double falling_root(const F& f, double low, double high) {
+double bisect(const F& f, double low, double high) {
     for (double middle = 0.5 * (low + high); low < middle && middle < high; middle = 0.5 * (low + high))
         (f(middle) > 0 ? low : high) = middle;
     return high;
@@ -29,23 +29,23 @@ inline double damped_angle(double zeta) {
 // zeta = c/(2 sqrt(k m)) of a Kelvin-Voigt contact for 0 < e <= 1 (4.12).
 inline double damping_ratio_for(double e) {
     const double wanted = -log(e);
-    const auto too_bouncy = [&](double zeta) { return wanted - 2 * zeta * damped_angle(zeta); };
-    return wanted > 0 ? falling_root(too_bouncy, 0.0, 1 / sqrt(e)) : 0;
+    const auto residual = [&](double zeta) { return wanted - 2 * zeta * damped_angle(zeta); };
+    return wanted > 0 ? bisect(residual, 0.0, 1 / sqrt(e)) : 0;
 }
 
 // x - ln(1 + x).
-inline double less_its_log(double x) {
+inline double x_minus_log1p(double x) {
     if (abs(x) > 0.1) return x - log(1 + x);
     double sum = 0;
     for (int k = 20; k >= 2; --k) sum = 1.0 / k - x * sum;
     return x * x * sum;
 }
 
-// beta v of a Hunt-Crossley contact that is met at speed v, for 0 < e <= 1 (4.13).
+// beta v of a Hunt-Crossley contact with impact speed v, for 0 < e <= 1 (4.13).
 inline double hunt_crossley_number_for(double e) {
-    const auto too_bouncy = [&](double y) { return less_its_log(y) - less_its_log(-e * y); };
+    const auto residual = [&](double y) { return x_minus_log1p(y) - x_minus_log1p(-e * y); };
     const double first_order = 1.5 * (1 - e);
-    return first_order > 0 ? falling_root(too_bouncy, 0.5 * first_order, 1 / e) : 0;
+    return first_order > 0 ? bisect(residual, 0.5 * first_order, 1 / e) : 0;
 }
 
 }  // namespace arm3r

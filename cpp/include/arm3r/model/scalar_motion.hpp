@@ -1,5 +1,5 @@
 #pragma once
-// How far something is along a line, or about an axis, as a function of time alone: swings, ramps, tables.
+// The position along a line, or the angle about an axis, as a function of time: sinusoids, ramps, tables.
 
 #include <array>
 
@@ -9,53 +9,54 @@ namespace arm3r {
 
 // A sin(2 pi f t + phase) - A sin(phase): m, or rad.
 template <class P>
-struct Swing {
+struct Sinusoid {
     P amplitude, frequency, phase;  // frequency: Hz; phase: rad
 };
 
-// From one rest to the next.
+// A minimum-jerk motion from rest to rest.
 template <class P>
 struct Ramp {
     P distance, start, duration;  // m, s, s
 };
 
-inline constexpr int most_knots = 16;
+inline constexpr int max_knots = 16;
 
-// A curve through points, with velocity and acceleration there; at rest outside.
+// A quintic through points with velocity and acceleration given there; at rest before the first and after the last
+// point.
 template <class P>
-struct Table {
+struct QuinticTable {
     int knots = 0;  // in use, the same number in all lanes
-    std::array<P, most_knots> t, s, v, a;
+    std::array<P, max_knots> t, s, v, a;
 };
 
-// With its first two derivatives by time.
+// A position and its first two time derivatives.
 template <class T>
-struct Course {
+struct ScalarMotion {
     T s, v, a;
 };
 
 inline constexpr double two_pi = 6.283185307179586;
 
 template <class P, class T>
-ARM3R_INLINE Course<T> course(const Swing<P>& swing, const T& t) {
-    const T cycles = swing.frequency * t;
-    const SinCos<T> now = sincos(T((cycles - nearest_integer(cycles)) * two_pi + swing.phase));
-    const P omega = two_pi * swing.frequency;
-    return {swing.amplitude * now.sin - swing.amplitude * sincos(swing.phase).sin, swing.amplitude * omega * now.cos,
-            -(swing.amplitude * omega * omega) * now.sin};
+ARM3R_INLINE ScalarMotion<T> scalar_motion(const Sinusoid<P>& sinusoid, const T& t) {
+    const T cycles = sinusoid.frequency * t;
+    const SinCos<T> now = sincos(T((cycles - nearest_integer(cycles)) * two_pi + sinusoid.phase));
+    const P omega = two_pi * sinusoid.frequency;
+    return {sinusoid.amplitude * now.sin - sinusoid.amplitude * sincos(sinusoid.phase).sin,
+            sinusoid.amplitude * omega * now.cos, -(sinusoid.amplitude * omega * omega) * now.sin};
 }
 
 template <class P, class T>
-ARM3R_INLINE Course<T> course(const Ramp<P>& ramp, const T& t) {
+ARM3R_INLINE ScalarMotion<T> scalar_motion(const Ramp<P>& ramp, const T& t) {
     const T x = min(max(T((t - ramp.start) / ramp.duration), T(0.0)), T(1.0)), rest = 1.0 - x;
     const P speed = ramp.distance / ramp.duration;
     return {ramp.distance * (x * x * x * (10.0 + x * (6.0 * x - 15.0))), speed * (30.0 * (x * x) * (rest * rest)),
             speed / ramp.duration * (60.0 * x * rest * (rest - x))};
 }
 
-// The quintic of the piece that t lies in; at rest before the first knot and from the last one on.
+// The quintic of the interval that contains t; at rest before the first knot and from the last one on.
 template <class P, class T>
-ARM3R_INLINE Course<T> course(const Table<P>& table, const T& t) {
+ARM3R_INLINE ScalarMotion<T> scalar_motion(const QuinticTable<P>& table, const T& t) {
     struct Knot {
         T t, s, v, a;
     };

@@ -1,5 +1,5 @@
 #pragma once
-// A plate that moves on its own account; docs/model.md, section 4. It knows nothing of the arm. Base axes.
+// A plate with a prescribed motion; docs/model.md, section 4. It does not depend on the arm. Base axes.
 
 #include <memory>
 
@@ -20,14 +20,14 @@ struct Wall {
     P face_offset;      // m, of the contact face in front of the frame
     Motion motion = Motion::fixed;
     Vec3<P> velocity;   // m/s, for constant
-    Vec3<P> direction;  // unit, of every other motion
-    Swing<P> swing;
+    Vec3<P> direction;  // unit, of the other motions
+    Sinusoid<P> sinusoid;
     Ramp<P> ramp;
-    std::shared_ptr<Table<P>> table;
+    std::shared_ptr<QuinticTable<P>> table;
     Rotation rotation = Rotation::none;
     Vec3<P> axis;  // unit, through the origin of the frame
     P turn_rate;   // rad/s, for constant
-    Swing<P> turn_swing;
+    Sinusoid<P> turn_sinusoid;
 };
 
 template <class T>
@@ -44,10 +44,10 @@ ARM3R_INLINE WallState<T> no_wall() {
     return {zero, zero, zero, {o, T(1.0)}, o};
 }
 
-// About the wall's axis, rad.
+// The rotation about the wall's axis, rad.
 template <class P, class T>
-ARM3R_INLINE Course<T> turn(const Wall<P>& wall, const T& t) {
-    if (wall.rotation == Rotation::sinusoid) return course(wall.turn_swing, t);
+ARM3R_INLINE ScalarMotion<T> turn(const Wall<P>& wall, const T& t) {
+    if (wall.rotation == Rotation::sinusoid) return scalar_motion(wall.turn_sinusoid, t);
     const T turns = wall.turn_rate * (1 / two_pi) * t;
     return {(turns - nearest_integer(turns)) * two_pi, T(wall.turn_rate), T(0.0)};
 }
@@ -65,16 +65,16 @@ ARM3R_INLINE Vec3<T> rotated(const Vec3<P>& axis, const SinCos<T>& angle, const 
 template <class P, class T>
 ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
     WallState<T> state = no_wall<T>();
-    state.position = lifted<T>(wall.point);
+    state.position = broadcast<T>(wall.point);
     if (wall.motion == Motion::constant) {
         for (int i = 0; i < 3; ++i) {
             state.position[i] = wall.point[i] + wall.velocity[i] * t;
             state.velocity[i] = T(wall.velocity[i]);
         }
     } else if (wall.motion != Motion::fixed) {
-        const Course<T> along = wall.motion == Motion::sinusoid ? course(wall.swing, t)
-                                : wall.motion == Motion::ramp   ? course(wall.ramp, t)
-                                                                : course(*wall.table, t);
+        const ScalarMotion<T> along = wall.motion == Motion::sinusoid ? scalar_motion(wall.sinusoid, t)
+                                      : wall.motion == Motion::ramp   ? scalar_motion(wall.ramp, t)
+                                                                      : scalar_motion(*wall.table, t);
         for (int i = 0; i < 3; ++i) {
             state.position[i] = wall.point[i] + along.s * wall.direction[i];
             state.velocity[i] = along.v * wall.direction[i];
@@ -82,14 +82,14 @@ ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
         }
     }
     if (wall.rotation != Rotation::none) {
-        const Course<T> angle = turn(wall, t);
+        const ScalarMotion<T> angle = turn(wall, t);
         state.turned = sincos(angle.s);
         state.turn_rate = angle.v;
     }
     return state;
 }
 
-// The plate's axes as they stand now.
+// The present axes of the plate.
 template <class T>
 struct Axes {
     Vec3<T> n, e1, e2;
@@ -97,7 +97,7 @@ struct Axes {
 
 template <class P, class T>
 ARM3R_INLINE Axes<T> axes(const Wall<P>& wall, const WallState<T>& state) {
-    if (wall.rotation == Rotation::none) return {lifted<T>(wall.n), lifted<T>(wall.e1), lifted<T>(wall.e2)};
+    if (wall.rotation == Rotation::none) return {broadcast<T>(wall.n), broadcast<T>(wall.e1), broadcast<T>(wall.e2)};
     return {rotated(wall.axis, state.turned, wall.n), rotated(wall.axis, state.turned, wall.e1),
             rotated(wall.axis, state.turned, wall.e2)};
 }
@@ -107,7 +107,7 @@ ARM3R_INLINE Vec3<T> normal(const Wall<P>& wall, const WallState<T>& state) {
     return axes(wall, state).n;
 }
 
-// Of the plate's own point at x, m/s.
+// The velocity of the plate's material point at x, m/s.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> velocity_at(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& x) {
     if (wall.rotation == Rotation::none) return state.velocity;
@@ -115,7 +115,7 @@ ARM3R_INLINE Vec3<T> velocity_at(const Wall<P>& wall, const WallState<T>& state,
     return plus(state.velocity, cross(spin, minus(x, state.position)));
 }
 
-// A point as the plate sees it: how deep it is, how fast it sinks in, and where on the plate it is.
+// The position of a point relative to the plate: depth, rate of the depth, and place on the plate.
 template <class T>
 struct Indentation {
     T depth, rate;       // m, m/s; > 0 inside (4.3), deepening (4.4)
@@ -123,10 +123,10 @@ struct Indentation {
     T slip1, slip2;      // m/s relative to the plate's point there along e1, e2
 };
 
-// x and v: of the point from the frame's origin, and from the plate's own point there.
+// x and v: position relative to the frame's origin, and velocity relative to the plate's material point.
 template <class P, class A, class T>
 ARM3R_INLINE Indentation<T> indentation_along(const P& face_offset, const A& axes, const Vec3<T>& x, const Vec3<T>& v) {
-    const Vec3<T> n = lifted<T>(axes.n), e1 = lifted<T>(axes.e1), e2 = lifted<T>(axes.e2);
+    const Vec3<T> n = broadcast<T>(axes.n), e1 = broadcast<T>(axes.e1), e2 = broadcast<T>(axes.e2);
     return {face_offset - dot(n, x), -dot(n, v), dot(e1, x), dot(e2, x), dot(e1, v), dot(e2, v)};
 }
 
@@ -138,20 +138,20 @@ ARM3R_INLINE Indentation<T> indentation(const Wall<P>& wall, const WallState<T>&
     return indentation_along(wall.face_offset, axes(wall, state), x, v);
 }
 
-// The same of a plate that does not turn, without the rates: quickly computed.
+// The same for a plate that does not turn, without the rates, which is cheaper.
 template <class P, class T>
 ARM3R_INLINE Indentation<T> indentation_at_rest(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point) {
     const Vec3<T> x = minus(point, state.position);
     const T o(0.0);
-    Indentation<T> in{wall.face_offset - dot(lifted<T>(wall.n), x), o, o, o, o, o};
+    Indentation<T> in{wall.face_offset - dot(broadcast<T>(wall.n), x), o, o, o, o, o};
     if (wall.has_outline) {
-        in.across1 = dot(lifted<T>(wall.e1), x);
-        in.across2 = dot(lifted<T>(wall.e2), x);
+        in.across1 = dot(broadcast<T>(wall.e1), x);
+        in.across2 = dot(broadcast<T>(wall.e2), x);
     }
     return in;
 }
 
-// Distance inside the outline, m: < 0 beside the plate (4.7).
+// The distance from the outline, m: negative beside the plate (4.7).
 template <class P, class T>
 ARM3R_INLINE T inside_outline(const Wall<P>& wall, const Indentation<T>& in) {
     return min(T(wall.half1 - abs(in.across1)), T(wall.half2 - abs(in.across2)));

@@ -7,7 +7,7 @@ namespace arm3r {
 
 // x^(1/k) of a normal positive x, to a relative 1e-3.
 template <Lanewise T>
-ARM3R_INLINE T rough_root(const T& x, int k) {
+ARM3R_INLINE T approximate_root(const T& x, int k) {
     const T exponent = with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (i >> 52) | 0x4330000000000000; }) -
                        (0x1p52 + 1023);  // the integer i is read as the low bits of the double 2^52 + i
     const T m = with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (i & 0x000fffffffffffff) | 0x3ff0000000000000; });

@@ -16,7 +16,7 @@ struct Dual {
     Dual(double constant) : number(constant) {}
     Dual(double number, const std::array<double, N>& slope) : number(number), slope(slope) {}
 
-    // The i-th of the N quantities that the derivatives refer to.
+    // The i-th of the N variables of differentiation.
     static Dual variable(double number, int i) {
         Dual x(number);
         x.slope[i] = 1.0;
@@ -56,9 +56,10 @@ struct Dual {
 
     friend Dual nearest_integer(const Dual& x) {
         return Dual(arm3r::nearest_integer(x.number));
-    }  // flat but for its jumps
+    }  // its derivative is 0 except at the jumps
 
-    // Where the slope is infinite or undefined it is taken for 0: a clamped argument stands there and does not move.
+    // If the derivative is infinite or undefined, it is set to 0: this happens at a clamped argument only, which does
+    // not move.
     friend Dual sqrt(const Dual& x) {
         const double root = sqrt(x.number);
         return chain(root, x, root > 0.0 ? 0.5 / root : 0.0);
@@ -85,7 +86,7 @@ struct Dual {
         return chain(result, x, result);
     }
     friend Dual log(const Dual& x) { return chain(log(x.number), x, 1.0 / x.number); }
-    // For p >= 1 the slopes are finite down to x = 0, where they are those of x > 0.
+    // For p >= 1 the derivatives are finite down to x = 0, where they are those of x > 0.
     friend Dual power(const Dual& x, const Dual& p) {
         const double result = power(x.number, p.number);
         const double of_less = p.number == 1.0 ? 1.0 : power(x.number, p.number - 1.0);
@@ -94,7 +95,7 @@ struct Dual {
     }
 
 private:
-    // Two slopes at a time, in one register.
+    // Two derivatives at a time share a register.
     typedef double Two __attribute__((vector_size(16)));
     static Two two(const Dual& x, int i) {
         Two pair;

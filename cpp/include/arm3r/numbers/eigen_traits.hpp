@@ -28,7 +28,7 @@ struct NumTraits<arm3r::Dual<N>> : arm3r::EigenTraits<arm3r::Dual<N>> {};
 template <>
 struct NumTraits<arm3r::Expr> : arm3r::EigenTraits<arm3r::Expr> {};
 
-// A matrix of these may meet a double or a matrix of doubles.
+// A matrix of these numbers can be combined with a double or a matrix of doubles.
 template <class T, class Operation>
     requires std::is_base_of_v<arm3r::EigenTraits<T>, NumTraits<T>>
 struct ScalarBinaryOpTraits<T, double, Operation> {

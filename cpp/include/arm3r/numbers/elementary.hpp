@@ -9,7 +9,7 @@
 
 namespace arm3r {
 
-// Adding it rounds a number below 2^51 to an integer, which then stands in the low bits.
+// If this is added to a number below 2^51, the number is rounded to an integer, which then is in the low bits.
 inline constexpr double round_magic = 0x1.8p52;
 
 template <class T>
@@ -17,12 +17,12 @@ ARM3R_INLINE T nearest_integer(const T& x) {
     return (x + round_magic) - round_magic;
 }
 
-// Beyond this many radians the reduction of sincos loses digits: a run ends there, a function refuses.
+// Above this many radians the argument reduction of sincos loses digits: a run ends there, a function reports an error.
 inline constexpr double sincos_limit = 1e5;
 
-// For |x| <= sincos_limit. The angle is n quarter turns and a rest r within pi/4. pi/2 stands in three parts of 37, 37 and
-// 53 bits, so that n times the first two is exact. The quarter turns enter as an exact rotation by (cos, sin) of
-// n pi/2, which are 0 or +-1. The shape of the sums keeps the chain of dependent operations short.
+// For |x| <= sincos_limit. The angle is n quarter turns plus a remainder r within pi/4. pi/2 is the sum of three parts
+// of 37, 37 and 53 bits, so that n times the first two is exact. The quarter turns enter as an exact rotation by (cos,
+// sin) of n pi/2, which are 0 or +-1. The sums are arranged so that the chain of dependent operations is short.
 template <Lanewise T>
 ARM3R_INLINE SinCos<T> sincos(const T& x) {
     const T magnitude = abs(x);
@@ -49,8 +49,8 @@ ARM3R_INLINE SinCos<T> sincos(const T& x) {
     return {(turn_sine * sign) * cosine + (turn_cosine * sign) * sine, turn_cosine * cosine - turn_sine * sine};
 }
 
-// sin and cos of (angle + delta) from those of angle, for |delta| <= sincos_reach: absolute error below 3e-16.
-inline constexpr double sincos_reach = 0.03;
+// sin and cos of (angle + delta) from those of angle, for |delta| <= sincos_near_limit: absolute error below 3e-16.
+inline constexpr double sincos_near_limit = 0.03;
 
 template <class T>
 ARM3R_INLINE SinCos<T> sincos_rotated(const SinCos<T>& base, const T& delta) {
@@ -63,11 +63,12 @@ ARM3R_INLINE SinCos<T> sincos_rotated(const SinCos<T>& base, const T& delta) {
             base.cos - (sine + ((sine * z) * odd - (base.cos * z) * even))};
 }
 
-// sincos(angle), cheaper in each lane where base = sincos(base_angle) is near; no lane looks at another.
+// sincos(angle), cheaper in each lane where base = sincos(base_angle) is near. The result of a lane does not depend on
+// other lanes.
 template <class T>
 ARM3R_INLINE SinCos<T> sincos_near(const T& base_angle, const SinCos<T>& base, const T& angle) {
     const T delta = angle - base_angle;
-    const auto near = abs(delta) <= T(sincos_reach);
+    const auto near = abs(delta) <= T(sincos_near_limit);
     const SinCos<T> rotated = sincos_rotated(base, delta);
     if (all(near)) return rotated;
     const SinCos<T> full = sincos(angle);
@@ -152,8 +153,9 @@ ARM3R_INLINE T fifth_root(const T& x) {
     return y + y * ((x / ((y * y) * (y * y) * y) - 1.0) * 0.2);
 }
 
-// e^(high + low) for |low| <= 1e-6 (1 + |high|): the sum is n ln 2 + r + rest. ln 2 stands in two parts of 42 and 53
-// bits, so that n times the first is exact. The scale 2^n comes in two factors, for results at the ends of the range.
+// e^(high + low) for |low| <= 1e-6 (1 + |high|): the sum is n ln 2 + r + rest. ln 2 is the sum of two parts of 42 and
+// 53 bits, so that n times the first is exact. The scale 2^n is applied in two factors, for results at the ends of the
+// range.
 template <Lanewise T>
 ARM3R_INLINE T exp_of_sum(const T& high, const T& low) {
     const T x = min(max(high, T(-746.0)), T(710.0));
@@ -186,9 +188,9 @@ ARM3R_INLINE T exp(const T& x) {
     return exp_of_sum(x, T(0.0));
 }
 
-// An unevaluated sum, its second part a correction of the first.
+// An unevaluated sum of two numbers (double-double); the second is a correction of the first.
 template <class T>
-struct TwoPart {
+struct DoubleDouble {
     T high, low;
 };
 
@@ -201,7 +203,7 @@ ARM3R_INLINE T leading_bits(const T& x) {
 // ln x of a normal positive x, its error below 2^-57. x = 2^n m, sqrt(1/2) <= m < sqrt(2); ln m = 2 artanh(s) with
 // s = (m - 1)/(m + 1): its leading bits, and by division the rest, for what the leading bits leave of m - 1 is exact.
 template <Lanewise T>
-ARM3R_INLINE TwoPart<T> log_in_two(const T& x) {
+ARM3R_INLINE DoubleDouble<T> log_double_double(const T& x) {
     const T n =
         with_bits(x, [](auto& i) ARM3R_INLINE_LAMBDA { i = ((i + 0x00095f619980c433) >> 52) | 0x4330000000000000; }) -
         (0x1p52 + 1023);  // the sum carries into the exponent from sqrt(1/2) = 0x3fe6a09e667f3bcd on
@@ -230,7 +232,7 @@ ARM3R_INLINE TwoPart<T> log_in_two(const T& x) {
 template <Lanewise T>
 ARM3R_INLINE T log(const T& x) {
     constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
-    const TwoPart<T> sum = log_in_two(max(x, T(0x1p-1022)));
+    const DoubleDouble<T> sum = log_double_double(max(x, T(0x1p-1022)));
     const T positive = select(x < T(infinity), sum.high + sum.low, x);
     return select(x > T(0.0), positive, select(x == T(0.0), T(-infinity), T(nan)));
 }
@@ -239,7 +241,7 @@ ARM3R_INLINE T log(const T& x) {
 // as 2^-1022. The leading bits of p and ln x multiply exactly: up to the cube nearly all error is the exponential's.
 template <Lanewise T>
 ARM3R_INLINE T power(const T& x, const std::type_identity_t<T>& p) {
-    const TwoPart<T> sum = log_in_two(max(x, T(0x1p-1022)));
+    const DoubleDouble<T> sum = log_double_double(max(x, T(0x1p-1022)));
     const T log = sum.high + sum.low;
     const T log_leading = leading_bits(log), p_leading = leading_bits(p);
     const T log_rest = (log - log_leading) + (sum.low - (log - sum.high));

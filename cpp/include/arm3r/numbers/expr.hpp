@@ -1,4 +1,4 @@
-// A number that records the formula it takes part in. From the record come the formula's operation counts, its
+// A number that records the formula that it is part of. The record gives the operation counts of the formula, its
 // structure, and its replay on any other number type with the same bits.
 #pragma once
 
@@ -80,7 +80,7 @@ public:
 
     // The node's index: that of an equal earlier one where there is one.
     int record(const TapeNode& node) {
-        const auto [place, is_new] = known_.try_emplace(node, static_cast<int>(nodes_.size()));
+        const auto [place, is_new] = controller_state_.try_emplace(node, static_cast<int>(nodes_.size()));
         if (is_new) nodes_.push_back(node);
         return place->second;
     }
@@ -97,10 +97,10 @@ private:
 
     std::vector<TapeNode> nodes_;
     std::vector<int> inputs_, outputs_;
-    std::unordered_map<TapeNode, int, Hash> known_;
+    std::unordered_map<TapeNode, int, Hash> controller_state_;
 };
 
-// What Expr and its truth values share: a node of a tape, or a constant that needs none yet.
+// The common part of Expr and its truth values: a node of a tape, or a constant that needs no node yet.
 template <class Constant>
 class Recorded {
 public:

@@ -1,5 +1,5 @@
-// N doubles that march in step, each lane as if it were alone: the compiler maps them to whatever registers the
-// calling function may use (its target attribute), with the same bits.
+// N doubles in N independent lanes: the compiler maps them to the registers that the calling function may use (its
+// target attribute), with the same bits.
 #pragma once
 
 #include <array>
@@ -135,7 +135,7 @@ static_assert(Real<Pack<2>> && Real<Pack<8>>);
 
 ARM3R_INLINE Pack<2> side_by_side(double first, double second) { return Pack<2>(Pack<2>::Vector{first, second}); }
 
-ARM3R_INLINE std::array<SinCos<double>, 2> apart(const SinCos<Pack<2>>& both) {
+ARM3R_INLINE std::array<SinCos<double>, 2> split(const SinCos<Pack<2>>& both) {
     return {SinCos<double>{both.sin[0], both.cos[0]}, SinCos<double>{both.sin[1], both.cos[1]}};
 }
 
@@ -146,7 +146,7 @@ ARM3R_INLINE std::array<SinCos<T>, 2> sincos_pair(const T& first, const T& secon
 }
 
 ARM3R_INLINE std::array<SinCos<double>, 2> sincos_pair(double first, double second) {
-    return apart(sincos(side_by_side(first, second)));
+    return split(sincos(side_by_side(first, second)));
 }
 
 template <class T>
@@ -156,13 +156,13 @@ ARM3R_INLINE std::array<SinCos<T>, 2> sincos_near_pair(const T& first_base, cons
     return {sincos_near(first_base, at_first, first), sincos_near(second_base, at_second, second)};
 }
 
-// One look decides for both.
+// A single test decides for both angles.
 template <int N>
 ARM3R_INLINE std::array<SinCos<Pack<N>>, 2> sincos_near_pair(const Pack<N>& first_base, const SinCos<Pack<N>>& at_first,
                                                              const Pack<N>& first, const Pack<N>& second_base,
                                                              const SinCos<Pack<N>>& at_second, const Pack<N>& second) {
-    const Pack<N> first_delta = first - first_base, second_delta = second - second_base, reach(sincos_reach);
-    const PackMask<N> first_near = abs(first_delta) <= reach, second_near = abs(second_delta) <= reach;
+    const Pack<N> first_delta = first - first_base, second_delta = second - second_base, near_limit(sincos_near_limit);
+    const PackMask<N> first_near = abs(first_delta) <= near_limit, second_near = abs(second_delta) <= near_limit;
     const SinCos<Pack<N>> a = sincos_rotated(at_first, first_delta), b = sincos_rotated(at_second, second_delta);
     if (all(first_near && second_near)) return {a, b};
     const SinCos<Pack<N>> full_a = sincos(first), full_b = sincos(second);
@@ -174,7 +174,7 @@ ARM3R_INLINE std::array<SinCos<double>, 2> sincos_near_pair(double first_base, c
                                                             double first, double second_base,
                                                             const SinCos<double>& at_second, double second) {
     const SinCos<Pack<2>> bases{side_by_side(at_first.sin, at_second.sin), side_by_side(at_first.cos, at_second.cos)};
-    return apart(sincos_near(side_by_side(first_base, second_base), bases, side_by_side(first, second)));
+    return split(sincos_near(side_by_side(first_base, second_base), bases, side_by_side(first, second)));
 }
 
 }  // namespace arm3r

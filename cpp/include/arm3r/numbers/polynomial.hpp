@@ -1,5 +1,5 @@
-// Polynomials on [0, 1], the step: where one falls below zero, how large it gets. Values, integrals and Bernstein
-// coefficients for any number type, one degree for all lanes.
+// Polynomials on [0, 1], the step: their first zero crossing and their maximum. Values, integrals and Bernstein
+// coefficients for any number type, with one degree for all lanes.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace arm3r {
 
-inline constexpr int most_degree = 20;
+inline constexpr int max_degree = 20;
 
 template <class T>
-using Coefficients = std::array<T, most_degree + 1>;  // those beyond the degree mean nothing
+using Coefficients = std::array<T, max_degree + 1>;  // coefficients above the degree are undefined
 
 template <class T>
 struct Polynomial {
@@ -45,12 +45,12 @@ ARM3R_INLINE Polynomial<T> derivative(const Polynomial<T>& p) {
 }
 
 inline constexpr auto reciprocals = [] {
-    std::array<double, most_degree + 2> table{};
-    for (int i = 1; i < most_degree + 2; ++i) table[i] = 1.0 / i;
+    std::array<double, max_degree + 2> table{};
+    for (int i = 1; i < max_degree + 2; ++i) table[i] = 1.0 / i;
     return table;
 }();
 
-// From a to b. The difference of the powers has b - a as a factor; the rest is a sum without cancellation.
+// The integral from a to b. The difference of the powers has b - a as a factor; the rest is a sum without cancellation.
 template <class T, class S>
 ARM3R_INLINE auto integral(const Polynomial<T>& p, const S& a, const S& b) -> decltype(p.c[0] * a) {
     S power(1.0), rest(1.0);  // a^i and (b^(i+1) - a^(i+1))/(b - a)
@@ -63,14 +63,14 @@ ARM3R_INLINE auto integral(const Polynomial<T>& p, const S& a, const S& b) -> de
     return (b - a) * sum;
 }
 
-// Through y0 and y1 at the ends, with the derivatives d0 and d1 there.
+// The cubic through y0 and y1 at the ends, with the derivatives d0 and d1 there.
 template <class T>
 ARM3R_INLINE Polynomial<T> hermite_cubic(const T& y0, const T& d0, const T& y1, const T& d1) {
     const T difference = y1 - y0;
     return {3, {y0, d0, 3.0 * difference - 2.0 * d0 - d1, (d0 + d1) - 2.0 * difference}};
 }
 
-// Through five values at equal distances, from one end to the other; and its mean.
+// The quartic through five equidistant values, from one end to the other; and its mean.
 template <class T>
 ARM3R_INLINE Polynomial<T> through_five(const std::array<T, 5>& y) {
     const T d1 = y[1] - y[0], d2 = (y[2] - 2.0 * y[1]) + y[0];
@@ -86,8 +86,8 @@ ARM3R_INLINE T mean_of_five(const std::array<T, 5>& y) {  // Boole
 }
 
 inline constexpr auto inverse_binomials = [] {  // [n][i]: 1/C(n, i)
-    std::array<Coefficients<double>, most_degree + 1> table{};
-    for (int n = 0; n <= most_degree; ++n) {
+    std::array<Coefficients<double>, max_degree + 1> table{};
+    for (int n = 0; n <= max_degree; ++n) {
         long binomial = 1;
         for (int i = 0; i <= n; ++i) {
             table[n][i] = 1.0 / double(binomial);
@@ -119,7 +119,7 @@ inline Polynomial<double> negative(Polynomial<double> p) {
     return p;
 }
 
-namespace falls {
+namespace zero_crossing {
 
 using Bernstein = Coefficients<double>;
 
@@ -143,7 +143,8 @@ inline Halves split(const Bernstein& b, int degree, double at) {
     return halves;
 }
 
-// A bound on the rounding of value() and bernstein(). Not finite where the polynomial is not: then nothing is below.
+// A bound on the rounding error of value() and bernstein(). If the polynomial is not finite, it is not finite either,
+// and no crossing is found.
 inline double rounding(const Polynomial<double>& p) {
     double sum = 0;
     for (int i = 0; i <= p.degree; ++i) sum += abs(p.c[i]);
@@ -171,7 +172,8 @@ struct Search {
         return j > degree;
     }
 
-    // The leftmost interval with one fall; b belongs to [low, high], where the start is not below.
+    // The first interval with exactly one downward crossing; b belongs to [low, high], and the polynomial is not
+    // negative at the start.
     std::optional<Bracket> isolate(const Bernstein& b, double low, double high) const {
         const int j = first_below(b);
         if (j > degree) return std::nullopt;
@@ -189,9 +191,9 @@ struct Search {
     }
 };
 
-// Newton, each step a little too far, so that the bracket closes from both sides; halving where a step leaves the
-// bracket or does not shrink. The end of the bracket where p has fallen.
-inline double close(const Polynomial<double>& p, const Bracket& bracket, double resolution) {
+// Newton's method with steps that are slightly too long, so that the bracket closes from both sides; bisection where a
+// step leaves the bracket or does not shrink. Returns the end of the bracket at which p is negative.
+inline double refine_root(const Polynomial<double>& p, const Bracket& bracket, double resolution) {
     auto [low, high, next] = bracket;
     double here = low, stride = 2 * (high - low);
     while (high - low > resolution) {
@@ -211,7 +213,7 @@ inline double close(const Polynomial<double>& p, const Bracket& bracket, double 
     return high;
 }
 
-// Where p falls first in (from, to], for a p that is not below zero at `from`, or by no more than rounding.
+// The first downward zero crossing of p in (from, to]; p is not negative at `from`, except by rounding.
 inline std::optional<double> first(const Polynomial<double>& p, double from, double to, double resolution) {
     if (!(from < to)) return std::nullopt;
     const Search search{p.degree, rounding(p), max(std::numeric_limits<double>::epsilon(), resolution)};
@@ -221,29 +223,30 @@ inline std::optional<double> first(const Polynomial<double>& p, double from, dou
     if (to < 1) b = split(b, p.degree, (to - from) / (1 - from)).left;
     const auto bracket = search.isolate(b, from, to);
     if (!bracket) return std::nullopt;
-    return close(p, *bracket, search.resolution);
+    return refine_root(p, *bracket, search.resolution);
 }
 
-inline Polynomial<double> lowered(Polynomial<double> p, double by) {
+inline Polynomial<double> minus_constant(Polynomial<double> p, double by) {
     p.c[0] -= by;
     return p;
 }
 
-}  // namespace falls
+}  // namespace zero_crossing
 
-// Where g first falls below zero in (from, 1]: within `resolution` (of [0, 1]) after the root, and fallen there. Found
-// is what is wider than that and deeper than the rounding of g. Where g starts below zero, by more than rounding, it has
-// fallen at `from`, unless it comes up without sinking first; then the next fall counts. Nothing where g is not finite.
-inline std::optional<double> first_fall(const Polynomial<double>& g, double from, double resolution) {
+// The first downward zero crossing of g in (from, 1]: at most `resolution` (of [0, 1]) after the root, where g is
+// negative. Crossings that are shorter than that or smaller than the rounding of g may be missed. If g is negative at
+// the start by more than rounding, the crossing is at `from`, unless g rises above zero without falling first; then the
+// next crossing counts. Empty if g is not finite.
+inline std::optional<double> first_crossing(const Polynomial<double>& g, double from, double resolution) {
     const double start = value(g, from);
-    if (!(start < -falls::rounding(g) && from < 1)) return falls::first(g, from, 1.0, resolution);
-    const std::optional<double> up = falls::first(negative(g), from, 1.0, resolution);
-    if (!up || falls::first(falls::lowered(g, start), from, *up, resolution)) return from;
-    return falls::first(g, *up, 1.0, resolution);
+    if (!(start < -zero_crossing::rounding(g) && from < 1)) return zero_crossing::first(g, from, 1.0, resolution);
+    const std::optional<double> up = zero_crossing::first(negative(g), from, 1.0, resolution);
+    if (!up || zero_crossing::first(zero_crossing::minus_constant(g, start), from, *up, resolution)) return from;
+    return zero_crossing::first(g, *up, 1.0, resolution);
 }
 
 struct Maximum {
-    double place, value;
+    double position, value;
 
     void include(const Polynomial<double>& p, double at) {
         const double here = arm3r::value(p, at);
@@ -251,14 +254,14 @@ struct Maximum {
     }
 };
 
-// The maximum of p on [a, b], part of [0, 1]: at an end or where p turns, exact to rounding.
+// The maximum of p on [a, b], part of [0, 1]: at an end or where the derivative is zero, exact to rounding.
 inline Maximum maximum(const Polynomial<double>& p, double a, double b) {
-    constexpr double resolution = 0x1p-32;  // p is flat where it turns
+    constexpr double resolution = 0x1p-32;  // p is flat at its maximum
     Maximum most{a, value(p, a)};
     most.include(p, b);
     Polynomial<double> signed_slope = derivative(p);
     if (value(signed_slope, a) < 0) signed_slope = negative(signed_slope);
-    while (const auto turn = falls::first(signed_slope, a, b, resolution)) {
+    while (const auto turn = zero_crossing::first(signed_slope, a, b, resolution)) {
         most.include(p, *turn);
         signed_slope = negative(signed_slope);
         a = *turn;
@@ -266,6 +269,6 @@ inline Maximum maximum(const Polynomial<double>& p, double a, double b) {
     return most;
 }
 
-inline double largest(const Polynomial<double>& p, double a, double b) { return maximum(p, a, b).value; }
+inline double max_value(const Polynomial<double>& p, double a, double b) { return maximum(p, a, b).value; }
 
 }  // namespace arm3r

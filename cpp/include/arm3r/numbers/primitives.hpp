@@ -1,4 +1,4 @@
-// What a double offers to the generic formulas; Pack, Dual and Expr offer the same under the same names.
+// The operations on double that the generic formulas use; Pack, Dual and Expr offer the same under the same names.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,10 @@
 #define ARM3R_INLINE [[gnu::always_inline]] inline
 #define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
 #endif
-// A function of packs built for several instruction sets; the widest that the CPU has is taken, all with the same bits.
-// All that it calls is inlined into it. ARM3R_FOR_FOUR and ARM3R_FOR_EIGHT: called only where the processor has registers
-// for packs of 4 or 8 (widest_lanes); where nothing is built for these (ARM3R_WIDE_PACKS 0), packs have 2 lanes.
+// A function of packs that is compiled for several instruction sets; the widest one of the CPU is chosen at run time,
+// and all give the same bits. All functions that it calls are inlined. Functions with ARM3R_FOR_FOUR and
+// ARM3R_FOR_EIGHT may be called only if the processor has registers for packs of 4 or 8 (max_lanes); without such
+// variants (ARM3R_WIDE_PACKS 0) packs have 2 lanes.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && !defined(ARM3R_NARROW)
 #define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #define ARM3R_WIDEST_SCALARS __attribute__((target_clones("default", "arch=x86-64-v3")))
@@ -28,8 +29,8 @@
 
 namespace arm3r {
 
-// How many lanes the registers of this processor hold.
-inline int widest_lanes() {
+// The number of lanes in the widest registers of this processor.
+inline int max_lanes() {
 #if ARM3R_ONE_LANE
     return 1;
 #elif ARM3R_WIDE_PACKS
@@ -62,8 +63,8 @@ ARM3R_INLINE double min(double a, double b) { return b < a ? b : a; }
 ARM3R_INLINE double max(double a, double b) { return a < b ? b : a; }
 ARM3R_INLINE double copysign(double magnitude, double sign) { return __builtin_copysign(magnitude, sign); }
 
-// What is long, and asked for in many places: a function of its own, but for numbers that live in wide registers, which
-// must not cross a call, and for plain ones.
+// Runs a long f that is used in many places: in a function of its own for heavy number types (Dual), inlined for
+// double, and for packs, which must not cross a call.
 template <class T>
 inline constexpr bool is_heavy = false;
 template <class T, class F>

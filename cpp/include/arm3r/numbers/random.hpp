@@ -43,7 +43,7 @@ constexpr double uniform(std::uint64_t seed, std::uint32_t stream, std::uint64_t
     return open_unit(random_bits(seed, stream, counter));
 }
 
-// From two uniform numbers one of mean 0 and variance 1, at most 8.58 in size: Box and Muller (1958).
+// A normal number of mean 0 and variance 1 from two uniform ones, at most 8.58 in size: Box and Muller (1958).
 inline double box_muller(double radius, double angle) {
     return sqrt(-2.0 * log(radius)) * sincos(2.0 * std::numbers::pi * angle).cos;
 }

@@ -41,7 +41,7 @@ struct SmallLu {
     }
 
 private:
-    // What is not a number loses every comparison, and spreads to a column in which nothing wins.
+    // NaN loses every comparison and spreads to a column without a pivot.
     bool raise_pivot(std::size_t k) {
         double largest = 0;
         for (std::size_t i = k; i < n; ++i) {

@@ -25,9 +25,9 @@ ARM3R_INLINE Vec3<T> minus(const Vec3<T>& a, const Vec3<T>& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-// A gain of each axis, or one for all.
+// A gain per axis times a vector.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> each_times(const Vec3<P>& gain, const Vec3<T>& v) {
+ARM3R_INLINE Vec3<T> cwise_product(const Vec3<P>& gain, const Vec3<T>& v) {
     return {gain[0] * v[0], gain[1] * v[1], gain[2] * v[2]};
 }
 template <class T>
@@ -54,9 +54,9 @@ ARM3R_INLINE Vec3<T> transposed_times(const Mat3<T>& R, const Vec3<T>& v) {
     return out;
 }
 
-// Parameters of type P, lifted to the number type of the state.
+// A vector of parameters in the number type of the state.
 template <class T, class P>
-ARM3R_INLINE Vec3<T> lifted(const Vec3<P>& v) {
+ARM3R_INLINE Vec3<T> broadcast(const Vec3<P>& v) {
     return {T(v[0]), T(v[1]), T(v[2])};
 }
 

@@ -1,8 +1,8 @@
 #pragma once
-// Two ways to step y' = f(t, y), which know no physics; docs/model.md, section 5. A right-hand side offers
+// Two methods for y' = f(t, y), independent of any physics; docs/model.md, section 5. A right-hand side offers
 //   void begin_step(const State&)                       called once before the stages of a step
 //   void operator()(const T& t, const State&, State&)   the derivative
-// Leading `Norm` components of the state count in the error norm; the rest, the books, ride along.
+// The leading `Norm` components of the state enter the error norm; the quadratures behind them do not.
 
 #include <array>
 #include <cstddef>
@@ -43,17 +43,17 @@ struct Interpolant {
 template <class T, std::size_t N>
 Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0, const State<T, N>& y1,
                           const State<T, N>& f1) {
-    Interpolant<T, N> inside{t, h, {}};
+    Interpolant<T, N> dense{t, h, {}};
     for (std::size_t i = 0; i < N; ++i) {
         const T difference = y1[i] - y0[i];
         const T bow = h * f0[i] - difference;
-        inside.c[0][i] = y0[i];
-        inside.c[1][i] = difference;
-        inside.c[2][i] = bow;
-        inside.c[3][i] = difference - h * f1[i] - bow;
-        inside.c[4][i] = T(0.0);
+        dense.c[0][i] = y0[i];
+        dense.c[1][i] = difference;
+        dense.c[2][i] = bow;
+        dense.c[3][i] = difference - h * f1[i] - bow;
+        dense.c[4][i] = T(0.0);
     }
-    return inside;
+    return dense;
 }
 
 // One step of the classical method (5.1). f0 is the derivative at (t, y), with f.begin_step(y) done.
@@ -72,7 +72,7 @@ ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, 
     return y1;
 }
 
-// The same to the last bit, with f in it once: for those that are long.
+// The same bits as rk4_step, with a single call of f in the code: for a long f.
 template <class T, std::size_t N, class F>
 ARM3R_INLINE State<T, N> rk4_step_in_a_loop(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0,
                                             const T& h) {
@@ -81,9 +81,9 @@ ARM3R_INLINE State<T, N> rk4_step_in_a_loop(const F& f, const T& t, const State<
     const State<T, N>* before = &f0;
 #pragma GCC unroll 1
     for (int i = 0; i < 3; ++i) {
-        const T reach = i < 2 ? half : h;
-        for (std::size_t j = 0; j < N; ++j) stage[j] = y[j] + reach * (*before)[j];
-        f(t + reach, stage, k[i]);
+        const T offset = i < 2 ? half : h;
+        for (std::size_t j = 0; j < N; ++j) stage[j] = y[j] + offset * (*before)[j];
+        f(t + offset, stage, k[i]);
         before = &k[i];
     }
     const T sixth = h / 6.0;
@@ -91,10 +91,10 @@ ARM3R_INLINE State<T, N> rk4_step_in_a_loop(const F& f, const T& t, const State<
     return y1;
 }
 
-// Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step. The `Books` components behind the
-// first `Norm` ride along; what comes after them counts in the error norm again. The last `Parts` of the books are parts
-// of others among them, and never count.
-template <class T, std::size_t N, std::size_t Norm, std::size_t Books = N - Norm, std::size_t Parts = 0>
+// Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step. The `Quadratures` components
+// behind the first `Norm` do not enter the error norm; those after them do. The last `Parts` of the quadratures are
+// parts of others among them, and never enter it.
+template <class T, std::size_t N, std::size_t Norm, std::size_t Quadratures = N - Norm, std::size_t Parts = 0>
 struct Dopri5 {
     State<T, N> y1, f1;            // the end of the step
     std::array<State<T, N>, 6> k;  // k[0] = f0 .. k[5]
@@ -124,28 +124,28 @@ struct Dopri5 {
         f(t + h, y1, f1);
     }
 
-    // The estimated error of component i over the step of h.
+    // The error estimate of component i over the step of h.
     T error_of(std::size_t i, const T& h) const {
         const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] -
                          17253.0 / 339200 * k[4][i] + 22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
         return abs(e);
     }
 
-    // The largest error estimate, in units of its tolerance, of all but the books, or of these too. A step is good below 1.
-    // The largest, not a mean: a joint that stands still must not loosen the tolerance of one that moves.
-    T error(const State<T, N>& y, const T& h, double rtol, double atol, bool with_books = false) const {
+    // The largest error estimate in units of its tolerance, without the quadratures or with them. The step is accepted
+    // below 1. It is the maximum and not a mean: a joint at rest must not loosen the tolerance of one that moves.
+    T error(const State<T, N>& y, const T& h, double rtol, double atol, bool with_quadratures = false) const {
         T largest(0.0);
-        const std::size_t counted = with_books ? Norm + Books - Parts : Norm;
-        for (std::size_t i = 0; i < N; i = i + 1 == counted ? Norm + Books : i + 1)
+        const std::size_t counted = with_quadratures ? Norm + Quadratures - Parts : Norm;
+        for (std::size_t i = 0; i < N; i = i + 1 == counted ? Norm + Quadratures : i + 1)
             largest = max(largest, T(error_of(i, h) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
         return largest;
     }
 
-    // h times the size of the eigenvalue that rules the difference between the last two stages, both at the end of the step
-    // of h: beyond 3.25 the stability of the method holds the step down, not its accuracy (5.7).
+    // h times the magnitude of the dominant eigenvalue, from the difference between the last two stages, which are both
+    // at the end of the step. Above 3.25 the step is limited by stability and not by accuracy (5.7).
     T stiffness() const {
         T rate(0.0), way(0.0);
-        for (std::size_t i = 0; i < N; i = i + 1 == Norm ? i + 1 + Books : i + 1) {
+        for (std::size_t i = 0; i < N; i = i + 1 == Norm ? i + 1 + Quadratures : i + 1) {
             const T d = (35.0 / 384 - 9017.0 / 3168) * k[0][i] + 355.0 / 33 * k[1][i] +
                         (500.0 / 1113 - 46732.0 / 5247) * k[2][i] + (125.0 / 192 - 49.0 / 176) * k[3][i] +
                         (5103.0 / 18656 - 2187.0 / 6784) * k[4][i] + 11.0 / 84 * k[5][i];
@@ -156,16 +156,16 @@ struct Dopri5 {
     }
 
     Interpolant<T, N> interpolant(const T& t, const State<T, N>& y, const T& h) const {
-        Interpolant<T, N> inside = hermite(t, h, y, k[0], y1, f1);
+        Interpolant<T, N> dense = hermite(t, h, y, k[0], y1, f1);
         for (std::size_t i = 0; i < N; ++i)
-            inside.c[4][i] = h * (-12715105075.0 / 11282082432 * k[0][i] + 87487479700.0 / 32700410799 * k[2][i] -
-                                  10690763975.0 / 1880347072 * k[3][i] + 701980252875.0 / 199316789632 * k[4][i] -
-                                  1453857185.0 / 822651844 * k[5][i] + 69997945.0 / 29380423 * f1[i]);
-        return inside;
+            dense.c[4][i] = h * (-12715105075.0 / 11282082432 * k[0][i] + 87487479700.0 / 32700410799 * k[2][i] -
+                                 10690763975.0 / 1880347072 * k[3][i] + 701980252875.0 / 199316789632 * k[4][i] -
+                                 1453857185.0 / 822651844 * k[5][i] + 69997945.0 / 29380423 * f1[i]);
+        return dense;
     }
 };
 
-// What to multiply the step with, so that the next error comes out a little below the tolerance (5.2).
+// The factor of the step size that puts the next error a little below the tolerance (5.2).
 template <class T>
 T step_factor(const T& error) {
     const T floored = max(error, T(1e-10));

@@ -10,8 +10,8 @@
 
 namespace arm3r {
 
-// In the book's symbols for the transformed stages u: the point of stage i is y + sum a_ij u_j, that of the seventh the
-// end of the step, that of the sixth the end by the embedded method.
+// The symbols are those of the book for the transformed stages u: the point of stage i is y + sum a_ij u_j, that of the
+// seventh the end of the step, that of the sixth the end by the embedded method.
 namespace rodas4 {
 
 inline constexpr int stages = 6;
@@ -46,88 +46,90 @@ inline constexpr double d[2][stages - 1] = {
 
 }  // namespace rodas4
 
-// The state is laid out as in linearization.hpp. The books ride along: their stages follow from those of the rest, and
-// they do not count in the error norm. The last `Parts` of them are parts of others among them, and never count.
-template <std::size_t N, std::size_t Motion, std::size_t Books, std::size_t Parts = 0>
+// The layout of the state is that of linearization.hpp. The stages of the quadratures follow from those of the other
+// components, and they do not enter the error norm. The last `Parts` of them are parts of others among them, and never
+// enter it.
+template <std::size_t N, std::size_t Motion, std::size_t Quadratures, std::size_t Parts = 0>
 struct Rodas4 {
-    std::size_t memory = 0;                            // components in use behind the books; the rest keep their values
-    State<double, N> y1;                               // the end of the step
+    std::size_t memory = 0;  // memory components in use behind the quadratures; the rest keep their values
+    State<double, N> y1;     // the end of the step
     std::array<State<double, N>, rodas4::stages> u{};  // the stages
 
-    // f0 and `slopes` are f and its derivatives at (t, y), with f.begin_step(y) done; both serve again after a rejected step.
-    // False where the step has no end: I - h gamma df/dy is singular, or something is not finite.
+    // f0 and `linearization` are f and its Jacobian at (t, y), with f.begin_step(y) done; both can be used again after
+    // a rejected step. Returns false if the step fails: I - h gamma df/dy is singular, or something is not finite.
     template <class F>
-    bool step(const F& f, const Linearization<N>& slopes, double t, const State<double, N>& y,
+    bool step(const F& f, const Linearization<N>& linearization, double t, const State<double, N>& y,
               const State<double, N>& f0, double h) {
-        if (!factorise(slopes, h)) return false;
+        if (!factorise(linearization, h)) return false;
         y1 = y;
         State<double, N> fi = f0;
         for (std::size_t i = 0; i < rodas4::stages; ++i) {
             if (i > 0) f(t + rodas4::alpha[i] * h, y1, fi);
-            find_stage(i, slopes, fi, h);
+            find_stage(i, linearization, fi, h);
             const State<double, N> way = sum(rodas4::a[i + 1], i + 1);
             for (std::size_t l = 0; l < N; ++l) y1[l] = y[l] + way[l];
         }
         return is_finite();
     }
 
-    // The estimated error of component i.
+    // The error estimate of component i.
     double error_of(std::size_t i) const { return abs(u[rodas4::stages - 1][i]); }
 
-    // The largest error estimate, in units of its tolerance, over motion and memory, or over the books too; see Dopri5.
-    double error(const State<double, N>& y, double rtol, double atol, bool with_books = false) const {
+    // The largest error estimate in units of its tolerance, over motion and memory, or over the quadratures too; see
+    // Dopri5.
+    double error(const State<double, N>& y, double rtol, double atol, bool with_quadratures = false) const {
         double largest = 0;
-        const std::size_t counted = with_books ? Motion + Books - Parts : Motion;
-        for (std::size_t i = 0; i < in_use(); i = i + 1 == counted ? Motion + Books : i + 1)
+        const std::size_t counted = with_quadratures ? Motion + Quadratures - Parts : Motion;
+        for (std::size_t i = 0; i < in_use(); i = i + 1 == counted ? Motion + Quadratures : i + 1)
             largest = max(largest, error_of(i) / (atol + rtol * max(abs(y[i]), abs(y1[i]))));
         return largest;
     }
 
     Interpolant<double, N> interpolant(double t, const State<double, N>& y, double h) const {
-        Interpolant<double, N> inside{t, h, {}};
-        inside.c[0] = y;
-        for (std::size_t i = 0; i < N; ++i) inside.c[1][i] = y1[i] - y[i];
-        inside.c[2] = sum(rodas4::d[0], rodas4::stages - 1);
-        inside.c[3] = sum(rodas4::d[1], rodas4::stages - 1);
-        return inside;
+        Interpolant<double, N> dense{t, h, {}};
+        dense.c[0] = y;
+        for (std::size_t i = 0; i < N; ++i) dense.c[1][i] = y1[i] - y[i];
+        dense.c[2] = sum(rodas4::d[0], rodas4::stages - 1);
+        dense.c[3] = sum(rodas4::d[1], rodas4::stages - 1);
+        return dense;
     }
 
-    // As step_factor() of Dopri5, by the fourth root.
+    // The step factor as for Dopri5, with the fourth root.
     static double step_factor(double error) { return min(6.0, max(0.2, 0.9 / sqrt(sqrt(max(error, 1e-10))))); }
 
 private:
-    static constexpr std::size_t place(std::size_t k) { return place_of<Motion, Books>(k); }
-    std::size_t in_use() const { return Motion + Books + memory; }
+    static constexpr std::size_t index(std::size_t k) { return state_index<Motion, Quadratures>(k); }
+    std::size_t in_use() const { return Motion + Quadratures + memory; }
 
-    bool factorise(const Linearization<N>& slopes, double h) {
+    bool factorise(const Linearization<N>& linearization, double h) {
         lu_.n = Motion + memory;
         for (std::size_t i = 0; i < lu_.n; ++i) {
             for (std::size_t j = 0; j < lu_.n; ++j)
-                lu_.a[i][j] = -(h * rodas4::gamma) * slopes.by_state[place(i)][place(j)];
+                lu_.a[i][j] = -(h * rodas4::gamma) * linearization.df_dy[index(i)][index(j)];
             lu_.a[i][i] += 1.0;
         }
         return lu_.factorise();
     }
 
     // (I - h gamma df/dy) u_i = h gamma (f_i + h gamma_i df/dt) + gamma sum c_ij u_j.
-    void find_stage(std::size_t i, const Linearization<N>& slopes, const State<double, N>& fi, double h) {
+    void find_stage(std::size_t i, const Linearization<N>& linearization, const State<double, N>& fi, double h) {
         const double weight = h * rodas4::gamma;
         const State<double, N> before = sum(rodas4::c[i], i);
         State<double, N>& ui = u[i];
         for (std::size_t l = 0; l < in_use(); ++l)
-            ui[l] = weight * (fi[l] + (h * rodas4::gamma_sum[i]) * slopes.by_time[l]) + rodas4::gamma * before[l];
-        std::array<double, N - Books> x;
-        for (std::size_t k = 0; k < lu_.n; ++k) x[k] = ui[place(k)];
+            ui[l] = weight * (fi[l] + (h * rodas4::gamma_sum[i]) * linearization.df_dt[l]) + rodas4::gamma * before[l];
+        std::array<double, N - Quadratures> x;
+        for (std::size_t k = 0; k < lu_.n; ++k) x[k] = ui[index(k)];
         lu_.solve(x);
-        for (std::size_t k = 0; k < lu_.n; ++k) ui[place(k)] = x[k];
-        for (std::size_t l = Motion; l < Motion + Books; ++l) {
+        for (std::size_t k = 0; k < lu_.n; ++k) ui[index(k)] = x[k];
+        for (std::size_t l = Motion; l < Motion + Quadratures; ++l) {
             double through = 0;
-            for (std::size_t k = 0; k < lu_.n; ++k) through += slopes.by_state[l][place(k)] * x[k];
+            for (std::size_t k = 0; k < lu_.n; ++k) through += linearization.df_dy[l][index(k)] * x[k];
             ui[l] += weight * through;
         }
     }
 
-    // Over the first `count` stages.
+    // The sum over the first `count` stages.
     ARM3R_INLINE State<double, N> sum(const double* coefficients, std::size_t count) const {
         State<double, N> total{};
         for (std::size_t j = 0; j < count; ++j)
@@ -139,7 +141,7 @@ private:
         return std::all_of(y1.begin(), y1.begin() + in_use(), [](double v) { return std::isfinite(v); });
     }
 
-    SmallLu<N - Books> lu_;
+    SmallLu<N - Quadratures> lu_;
 };
 
 }  // namespace arm3r

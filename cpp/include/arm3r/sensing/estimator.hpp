@@ -19,9 +19,9 @@ struct WallEstimate {
 template <class T>
 class Estimator {
 public:
-    // Anew: clear(x) makes a number zero.
+    // Starts again; clear(x) sets a number to zero.
     template <class Clear>
-    void forget(bool wall_moves, Clear clear) {
+    void reset(bool wall_moves, Clear clear) {
         size_ = wall_moves ? 3 : 2;
         for (T& x : factor_) clear(x);
     }
@@ -43,14 +43,15 @@ public:
         for (std::size_t i = 0; i < factor_.size(); ++i) factor_[i] = select(due, after.factor_[i], factor_[i]);
     }
 
-    ARM3R_INLINE WallEstimate<T> answer() const {
+    ARM3R_INLINE WallEstimate<T> solve() const {
         std::array<T, 3> x{T(0.0), T(0.0), T(0.0)};
         for (int i = size_ - 1; i >= 0; --i) {
             T rest = at(i, size_);
             for (int j = i + 1; j < size_; ++j) rest = rest - at(i, j) * x[j];
             x[i] = rest / at(i, i);
         }
-        const auto none = x[0] == T(0.0);  // of a force that no place changes: there is no face and no speed either
+        // the data do not determine the wall if the force does not depend on position
+        const auto none = x[0] == T(0.0);
         const T stiffness = select(none, T(1.0), x[0]);
         return {x[0], select(none, T(0.0), T(-x[1] / stiffness)), select(none, T(0.0), T(x[2] / stiffness)),
                 condition()};

@@ -1,6 +1,6 @@
 #pragma once
-// The momentum observer: what pushes the arm, told from its own momentum (8.4). De Luca and Mattone 2003, 2005. Its one
-// state s is the momentum that the model expects; p(0) at the start.
+// The momentum observer estimates the external torque from the momentum of the arm (8.4). De Luca and Mattone 2003,
+// 2005. Its state s is the momentum that the model expects; s = p(0) at the start.
 
 #include "arm3r/model/dynamics.hpp"
 
@@ -18,7 +18,7 @@ ARM3R_INLINE Vec3<T> residual(const Vec3<P>& gain, const Vec3<T>& momentum, cons
     return {gain[0] * (momentum[0] - s[0]), gain[1] * (momentum[1] - s[1]), gain[2] * (momentum[2] - s[2])};
 }
 
-// ds/dt, N m, with the torque that is applied.
+// ds/dt, N m, with the applied torque.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> expected_rate(const Arm<P>& model, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& tau,
                                    const Vec3<T>& r) {

@@ -1,6 +1,6 @@
 #pragma once
-// What stands between a controller and the arm: when it computes, what its sensors do to the truth, what watches beside it.
-// All of it off is the ideal: continuous, exact. Slide convention, base axes.
+// Sampling, sensors, observer and estimator of a controller. If all of them are off, the controller is ideal:
+// continuous and exact. Slide convention, base axes.
 
 #include "arm3r/control/controllers.hpp"
 
@@ -9,7 +9,7 @@ namespace arm3r {
 enum class VelocityEstimate { exact, difference, filtered };
 enum class Reaction { ignore, stop, floating, reflex, retreat };
 
-enum : std::size_t { most_delay = 64, most_force_delay = 256 };  // samples
+enum : std::size_t { max_delay = 64, max_force_delay = 256 };  // samples
 
 struct SamplingChoices {
     bool on = false, has_delay = false;
@@ -22,7 +22,7 @@ struct Sampling : SamplingChoices {
     P start;   // s, of the first sample
     P period;  // s
     P delay;   // samples, from the sensors to the torque
-    P seed;    // of the noise, a whole number
+    P seed;    // seed of the noise, a whole number
 };
 
 struct SensorChoices {
@@ -36,11 +36,11 @@ struct SensorChoices {
 template <class P>
 struct Sensors : SensorChoices {
     P encoder_step;       // rad
-    P velocity_share;     // of a new difference in the filtered rate: 1 - exp(-2 pi f T)
+    P velocity_share;     // weight of a new difference in the filtered rate: 1 - exp(-2 pi f T)
     P noise, resolution;  // N: standard deviation, step
     Vec3<P> bias;         // N
     P analog_rate;        // rad/s, pole of the low-pass before sampling
-    P force_share;        // of a new sample in the digitally filtered force
+    P force_share;        // weight of a new sample in the digitally filtered force
     P force_delay;        // samples
     P tool_mass;          // kg
 };
@@ -60,9 +60,9 @@ struct Observer : ObserverChoices {
     Vec3<P> joint_stiffness, joint_damping;  // N m/rad, N m s/rad
 };
 
-// A controller that computes at samples, with all that belongs to it.
+// The parameters of a controller that computes at samples.
 template <class P>
-struct Digital {
+struct DigitalController {
     Sampling<P> sampling;
     Sensors<P> sensors;
     Observer<P> observer;
@@ -77,25 +77,25 @@ struct EstimationChoices {
 
 template <class P>
 struct Estimation : EstimationChoices {
-    P period, start;      // s
-    P forgetting;         // weight of a sample per later one
-    P largest_condition;  // above it: not identifiable
+    P period, start;  // s
+    P forgetting;     // forgetting factor: the weight of a sample is multiplied by it at each later sample
+    P max_condition;  // the estimate is not valid above it
 };
 
-// A force on the tip from outside, beside the wall's: grows in proportion to time for `rise`, then stays.
+// An external force on the tip, beside that of the wall: it grows linearly during `rise` and then stays constant.
 template <class P>
-struct TipLoad {
+struct ExternalForce {
     bool on = false;
     Vec3<P> force;       // N
-    P start, rise, end;  // s; rise: how long it grows
+    P start, rise, end;  // s; rise: how long the force grows
 };
 
 template <class P, class T>
-ARM3R_INLINE Vec3<T> load_at(const TipLoad<P>& load, const T& t) {  // (8.9)
-    const T since = t - load.start, o(0.0), l(1.0);
-    const T growing = select(t < load.start + load.rise, min(l, T(since / load.rise)), l);
-    const T share = select(t >= load.start, select(t < load.end, growing, o), o);
-    return {share * load.force[0], share * load.force[1], share * load.force[2]};
+ARM3R_INLINE Vec3<T> external_force_at(const ExternalForce<P>& external_force, const T& t) {  // (8.9)
+    const T since = t - external_force.start, o(0.0), l(1.0);
+    const T growing = select(t < external_force.start + external_force.rise, min(l, T(since / external_force.rise)), l);
+    const T share = select(t >= external_force.start, select(t < external_force.end, growing, o), o);
+    return {share * external_force.force[0], share * external_force.force[1], share * external_force.force[2]};
 }
 
 }  // namespace arm3r

@@ -30,19 +30,20 @@ BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
         FullState y0, f0, y1, f1;
         for (FullState* state : {&y0, &f0, &y1, &f1})
             for (double& x : *state) x = random.in(-2, 2);
-        Inside inside;
-        inside.take(hermite(3.0, 0.2, y0, f0, y1, f1));
-        const Known<double> known{};
-        const Scene scene{setup.plant, trial % 4 < 2, 0.5, static_cast<Mode>(trial % 4), inside, setup.law(),
-                          false,       known,         1,   double(trial % 7 < 4)};
-        double t[together];
-        for (int i = 0; i < together; ++i) t[i] = 3.0 + 0.025 * i;
+        DenseOutput dense;
+        dense.assign(hermite(3.0, 0.2, y0, f0, y1, f1));
+        const ControllerState<double> controller_state{};
+        const RowContext context{setup.plant, trial % 4 < 2,        0.5,   static_cast<ContactMode>(trial % 4),
+                                 dense,       setup.controller(),   false, controller_state,
+                                 1,           double(trial % 7 < 4)};
+        double t[rows_per_block];
+        for (int i = 0; i < rows_per_block; ++i) t[i] = 3.0 + 0.025 * i;
         RowBlock rows;
-        sample_together(scene, t, rows);
-        int first_behind = together;
-        for (int i = 0; i < together; ++i) {
-            const double theta = (t[i] - inside.t0) / inside.h;
-            const Row row = sample(scene, t[i], inside(theta), theta);
+        make_row_block(context, t, rows);
+        int first_behind = rows_per_block;
+        for (int i = 0; i < rows_per_block; ++i) {
+            const double theta = (t[i] - dense.t0) / dense.h;
+            const Row row = make_row(context, t[i], dense(theta), theta);
             for (std::size_t c = 0; c < column_count; ++c)
                 BOOST_TEST(same_bits(row.value[c], rows.value[c][i]),
                            column_table()[c].name << " of row " << i << ", trial " << trial);

@@ -8,7 +8,7 @@
 namespace arm3r {
 
 // Positions where they are promised, and velocities and accelerations that are their derivatives.
-BOOST_AUTO_TEST_SUITE(setpoint)
+BOOST_AUTO_TEST_SUITE(reference)
 
 using Vector = Eigen::Vector3d;
 
@@ -20,8 +20,8 @@ static bool close(double a, double b, double tolerance = 1e-13) {
     return std::abs(a - b) <= tolerance * (1 + std::abs(a));
 }
 
-static Setpoint<double> random_setpoint(Random& random, Path path) {
-    Setpoint<double> s{};
+static Reference<double> random_setpoint(Random& random, Path path) {
+    Reference<double> s{};
     s.path = path;
     s.from = random.vector(-1, 1);
     s.to = random.vector(-1, 1);
@@ -46,14 +46,14 @@ static void for_paths(F check) {
 }
 
 BOOST_AUTO_TEST_CASE(velocity_and_acceleration_are_the_derivatives) {
-    for_paths([](const Setpoint<double>& s, Random& random) {
+    for_paths([](const Reference<double>& s, Random& random) {
         for (const double share : {-0.4, random.in(0.02, 0.98), 1.4}) {
             const double t = s.start + share * s.duration, h = 1e-3 * s.duration;
             const auto difference = [&](auto part) -> Vector {
-                const auto at = [&](double time) -> Vector { return part(wanted_at(s, time)); };
+                const auto at = [&](double time) -> Vector { return part(desired_motion_at(s, time)); };
                 return (at(t - 2 * h) - 8 * at(t - h) + 8 * at(t + h) - at(t + 2 * h)) / (12 * h);
             };
-            const Wanted<double> wanted = wanted_at(s, t);
+            const DesiredMotion<double> wanted = desired_motion_at(s, t);
             const double size = 1 / (s.duration * s.duration);
             BOOST_TEST(close(wanted.velocity, difference([](const auto& w) { return w.position; }), 1e-7 * (1 + size)));
             BOOST_TEST(
@@ -62,13 +62,13 @@ BOOST_AUTO_TEST_CASE(velocity_and_acceleration_are_the_derivatives) {
     });
 }
 
-// What a path has before it starts, and after its end where it has one.
+// The value of a path before its start, and after its end if it has one.
 BOOST_AUTO_TEST_CASE(paths_begin_and_end_where_they_should) {
-    for_paths([](const Setpoint<double>& s, Random&) {
+    for_paths([](const Reference<double>& s, Random&) {
         const Vector still = Vector::Zero();
         const Vector begin = s.path == Path::point ? s.to : s.from;
         for (const double t : {0.0, 0.9 * s.start}) {
-            const Wanted<double> before = wanted_at(s, t);
+            const DesiredMotion<double> before = desired_motion_at(s, t);
             BOOST_TEST(close(begin, before.position));
             BOOST_TEST(close(still, before.velocity));
             BOOST_TEST(close(still, before.acceleration));
@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(paths_begin_and_end_where_they_should) {
                                ? Vector(centre + std::cos(angle) * s.across1 + std::sin(angle) * s.across2)
                                : Vector(s.to);
         for (const double late : {1e-9, 5.0}) {
-            const Wanted<double> after = wanted_at(s, s.start + s.duration + late);
+            const DesiredMotion<double> after = desired_motion_at(s, s.start + s.duration + late);
             BOOST_TEST(close(end, after.position, 1e-12));
             BOOST_TEST(close(still, after.velocity));
             BOOST_TEST(close(still, after.acceleration));
@@ -93,26 +93,26 @@ BOOST_AUTO_TEST_CASE(a_line_is_even_and_a_minimum_jerk_motion_is_that_of_the_qui
     Random random(3);
     for (int i = 0; i < 100; ++i) {
         const double x = random.in(0, 1);
-        const Setpoint<double> line = random_setpoint(random, Path::line);
+        const Reference<double> line = random_setpoint(random, Path::line);
         const Vector way = line.to - line.from;
-        const Wanted<double> even = wanted_at(line, line.start + x * line.duration);
+        const DesiredMotion<double> even = desired_motion_at(line, line.start + x * line.duration);
         BOOST_TEST(close(Vector(line.from) + x * way, even.position));
         BOOST_TEST(close(way / line.duration, even.velocity));
 
-        const Setpoint<double> smooth = random_setpoint(random, Path::minimum_jerk);
+        const Reference<double> smooth = random_setpoint(random, Path::minimum_jerk);
         const double s = 10 * std::pow(x, 3) - 15 * std::pow(x, 4) + 6 * std::pow(x, 5);
         BOOST_TEST(close(Vector(smooth.from) + s * (smooth.to - smooth.from),
-                         wanted_at(smooth, smooth.start + x * smooth.duration).position));
+                         desired_motion_at(smooth, smooth.start + x * smooth.duration).position));
     }
 }
 
 BOOST_AUTO_TEST_CASE(a_circle_keeps_its_distance_and_its_plane) {
     Random random(4);
     for (int i = 0; i < 100; ++i) {
-        const Setpoint<double> s = random_setpoint(random, Path::circle);
+        const Reference<double> s = random_setpoint(random, Path::circle);
         const Vector centre = s.from - s.across1, axis = s.across1.cross(s.across2).normalized();
         const double x = random.in(0, 1);
-        const Vector out = Vector(wanted_at(s, s.start + x * s.duration).position) - centre;
+        const Vector out = Vector(desired_motion_at(s, s.start + x * s.duration).position) - centre;
         BOOST_TEST(close(s.across1.norm(), out.norm()));
         BOOST_TEST(std::abs(axis.dot(out)) < 1e-13);
         const double angle = 2 * M_PI * s.turns * (10 * std::pow(x, 3) - 15 * std::pow(x, 4) + 6 * std::pow(x, 5));
@@ -123,9 +123,9 @@ BOOST_AUTO_TEST_CASE(a_circle_keeps_its_distance_and_its_plane) {
 BOOST_AUTO_TEST_CASE(a_sinusoid_swings_about_its_start) {
     Random random(5);
     for (int i = 0; i < 100; ++i) {
-        const Setpoint<double> s = random_setpoint(random, Path::sinusoid);
+        const Reference<double> s = random_setpoint(random, Path::sinusoid);
         const double since = random.in(0, 100), omega = 2 * M_PI * s.frequency;
-        const Wanted<double> wanted = wanted_at(s, s.start + since);
+        const DesiredMotion<double> wanted = desired_motion_at(s, s.start + since);
         BOOST_TEST(close(Vector(s.from) + std::sin(omega * since) * s.amplitude, wanted.position, 1e-11));
         BOOST_TEST(close(omega * std::cos(omega * since) * s.amplitude, wanted.velocity, 1e-11));
     }
@@ -133,9 +133,9 @@ BOOST_AUTO_TEST_CASE(a_sinusoid_swings_about_its_start) {
 
 // ---- the pressing force
 
-static Setpoint<double> pressing(Pressing kind) {
-    Setpoint<double> s{};
-    s.pressing = kind;
+static Reference<double> pressing(ForceProfile kind) {
+    Reference<double> s{};
+    s.force_profile = kind;
     s.force = 20;
     s.force_before = 5;
     s.force_start = 1.5;
@@ -146,14 +146,14 @@ static Setpoint<double> pressing(Pressing kind) {
 }
 
 BOOST_AUTO_TEST_CASE(the_force_is_constant_steps_ramps_or_swings) {
-    const Setpoint<double> constant = pressing(Pressing::constant), step = pressing(Pressing::step),
-                           ramp = pressing(Pressing::ramp), swing = pressing(Pressing::sinusoid);
+    const Reference<double> constant = pressing(ForceProfile::constant), step = pressing(ForceProfile::step),
+                            ramp = pressing(ForceProfile::ramp), swing = pressing(ForceProfile::sinusoid);
     for (const double t : {0.0, 1.4999, 1.5, 1.6, 1.9, 1.91, 7.0}) {
-        BOOST_TEST(force_wanted_at(constant, t) == 20);
-        BOOST_TEST(force_wanted_at(step, t) == (t < 1.5 ? 5 : 20));
+        BOOST_TEST(desired_force_at(constant, t) == 20);
+        BOOST_TEST(desired_force_at(step, t) == (t < 1.5 ? 5 : 20));
         const double share = t < 1.5 ? 0 : t < 1.9 ? (t - 1.5) / 0.4 : 1;
-        BOOST_TEST(close(5 + 15 * share, force_wanted_at(ramp, t)));
-        BOOST_TEST(close(20 + 2 * std::sin(6 * M_PI * t), force_wanted_at(swing, t)));
+        BOOST_TEST(close(5 + 15 * share, desired_force_at(ramp, t)));
+        BOOST_TEST(close(20 + 2 * std::sin(6 * M_PI * t), desired_force_at(swing, t)));
     }
 }
 
@@ -162,16 +162,16 @@ BOOST_AUTO_TEST_CASE(the_force_is_constant_steps_ramps_or_swings) {
 BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_each_setpoint_alone) {
     Random random(7);
     for (const Path path : paths) {
-        const Setpoint<double> s = random_setpoint(random, path);
+        const Reference<double> s = random_setpoint(random, path);
         Pack<8> times;
         for (int lane = 0; lane < 8; ++lane) times.set(lane, s.start + s.duration * random.in(-0.5, 1.5));
-        const Wanted<Pack<8>> together = wanted_at(s, times);
+        const DesiredMotion<Pack<8>> rows_per_block = desired_motion_at(s, times);
         for (int lane = 0; lane < 8; ++lane) {
-            const Wanted<double> alone = wanted_at(s, times[lane]);
+            const DesiredMotion<double> alone = desired_motion_at(s, times[lane]);
             for (int i = 0; i < 3; ++i) {
-                BOOST_TEST(same_bits(alone.position[i], together.position[i][lane]));
-                BOOST_TEST(same_bits(alone.velocity[i], together.velocity[i][lane]));
-                BOOST_TEST(same_bits(alone.acceleration[i], together.acceleration[i][lane]));
+                BOOST_TEST(same_bits(alone.position[i], rows_per_block.position[i][lane]));
+                BOOST_TEST(same_bits(alone.velocity[i], rows_per_block.velocity[i][lane]));
+                BOOST_TEST(same_bits(alone.acceleration[i], rows_per_block.acceleration[i][lane]));
             }
         }
     }
