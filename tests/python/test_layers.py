@@ -110,6 +110,30 @@ def test_a_function_is_defined_in_the_file_that_declares_it(root: Path) -> None:
     assert elsewhere == []
 
 
+def _function_lengths(path: Path) -> list[tuple[int, str]]:
+    """The lines of each function, and its first line: formatted code ends a function where its indentation returns."""
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    found = []
+    for start, line in enumerate(lines):
+        opens = re.search(r"\)(?: const)?(?: noexcept)?(?: override)? \{$", line)
+        if not opens or re.match(r" *(if|for|while|switch|else|\}|return|const auto|.*\[)", line):
+            continue
+        body = len(lines[start + 1]) - len(lines[start + 1].lstrip())
+        end = next(n for n in range(start + 1, len(lines)) if re.match(rf" {{{body - 4}}}\}}", lines[n]))
+        found.append((end - start + 1, f"{path.name}:{start + 1}: {line.strip()}"))
+    return found
+
+
+def test_functions_are_taken_in_at_a_glance(root: Path) -> None:
+    long = [
+        (length, place)
+        for path in _sources(root)
+        for length, place in _function_lengths(path)
+        if length > (40 if _room(root, path) in ("src/run", "src/lanes", "src/record", "include/arm3r/ode") else 60)
+    ]
+    assert long == []
+
+
 def test_files_and_yaml_stay_where_they_belong(root: Path) -> None:
     misplaced = [
         f"{path.name} includes {name}"
@@ -161,7 +185,7 @@ def test_one_name_is_one_type(root: Path) -> None:
     for path in _sources(root):
         for name in _types(path):
             places.setdefault(name, set()).add(path.as_posix())
-    assert places.keys() >= {"arm3r::Plant", "arm3r::TapeNode", "arm3r::Node", "arm3r::Rows", "arm3r::Controls"}
+    assert places.keys() >= {"arm3r::Plant", "arm3r::TapeNode", "arm3r::Node", "arm3r::StateRows", "arm3r::ControllerType"}
     assert {name: files for name, files in places.items() if len(files) > 1} == {}
 
 
