@@ -98,37 +98,7 @@ ARM3R_INLINE Measurement<T> measurement_of(const RowContext& context, const Righ
     return sensed;
 }
 
-template <class T, class Write, class WriteVector, class WriteJoints>
-ARM3R_INLINE void write_law(const RowContext& context, const Measurement<T>& sensed, const ContactForce<T>& force,
-                            const State<T, full_size>& y, const Write& write, const WriteVector& write_vector,
-                            const WriteJoints& write_joints) {
-    static_cast<void>(y);
-    const Controller<double>& law = context.controller;
-    write(force.normal);
-    write(dot(sensed.n, sensed.f_on_tip));
-    write(tracks_force(law.type) ? desired_force_at(law.reference, sensed.t) : T(0.0));
-    write(sensed.force_phase);
-    const Vec3<T> desired =
-        tracks_path(law.type) ? desired_motion_at(law.reference, sensed.t).position : zero_vector<T>();
-    write_vector(law.reference.in_joints ? zero_vector<T>() : desired);
-    write_joints(law.reference.in_joints ? desired : zero_vector<T>());
-}
-
-template <class T, class Write, class WriteVector, class WriteJoints>
-ARM3R_INLINE void write_observer(const RowContext& context, const RightHandSide<double, T>& rhs, const Pose<T>& p,
-                                 const Vec3<T>& qd, const State<T, full_size>& y, const Write& write,
-                                 const WriteVector& write_vector, const WriteJoints& write_joints) {
-    const bool continuous = !context.is_sampled && context.plant.observer.on;
-    const Vec3<T> r = continuous ? rhs.residual_at(p, qd, y) : broadcast<T>(context.controller_state.residual);
-    write_joints(r);
-    const Arm<double>& model = context.controller.model;
-    const Pose<T> seen =
-        context.is_sampled ? pose(broadcast<T>(context.controller_state.q)) : p;  // a sampled observer reads encoders
-    const auto regular = distance_to_singular(model, seen) > T(1e-3);
-    const Vec3<T> f = force_from(model, seen, r);
-    write_vector({select(regular, f[0], T(0.0)), select(regular, f[1], T(0.0)), select(regular, f[2], T(0.0))});
-    write(T(context.controller_state.collision));
-}
+// ---- the columns, in their order
 
 template <class T>
 struct RowValues {
@@ -136,84 +106,169 @@ struct RowValues {
     T link_behind_wall;
 };
 
+// Writes one column after the other. Joint vectors are in the slide convention.
+template <class T>
+class RowWriter {
+public:
+    ARM3R_INLINE RowWriter(RowValues<T>& row, bool simscape) : value_(row.value), simscape_(simscape) {}
+
+    ARM3R_INLINE void number(const T& x) { value_[column_++] = x + 0.0; }  // + 0.0: no negative zero
+    ARM3R_INLINE void vector(const Vec3<T>& v) {
+        for (int i = 0; i < 3; ++i) number(v[i]);
+    }
+    ARM3R_INLINE void joints(const Vec3<T>& v) { vector(simscape_ ? change_convention(v) : v); }
+    ARM3R_INLINE void go_to(std::size_t column) { column_ = column; }
+
+private:
+    std::array<T, column_count>& value_;
+    const bool simscape_;
+    std::size_t column_ = 0;
+};
+
+// Arm, wall and the force between them at the instant of a row.
+template <class T>
+struct RowState {
+    T t;  // s
+    Vec3<T> q, qd;
+    Pose<T> pose;
+    WallState<T> wall = no_wall<T>();
+    Indentation<T> in{T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+    ContactForce<T> force = no_contact<T>();
+    T touches{0.0};
+    Vec3<T> felt, at_tip;  // N, on the tip: what the arm feels, and what a sensor there would
+    Vec3<T> tau;           // N m
+};
+
+template <class T>
+ARM3R_INLINE void find_contact(const RowContext& context, RowState<T>& now, T& link_behind_wall) {
+    const Plant<double>& plant = context.plant;
+    if (plant.has_wall) {
+        now.wall = wall_at(plant.wall, now.t);
+        now.in = tip_indentation(plant, now.wall, now.pose, now.qd);
+        now.force = force_of(plant, now.wall, now.in, context.mode);
+        if (is_touching(context.mode)) now.touches = select(now.in.depth > T(0.0), T(1.0), T(0.0));
+        link_behind_wall = link_behind(plant, now.wall, now.pose, now.touches);
+    }
+    now.felt = plant.acts_on_arm ? now.force.on_tip : zero_vector<T>();
+    now.at_tip = now.force.on_tip;
+    if (!plant.external_force.on) return;
+    const Vec3<T> external_force = external_force_at(plant.external_force, now.t);
+    now.felt = plus(now.felt, external_force);
+    now.at_tip = plus(now.at_tip, external_force);
+}
+
+template <class T>
+ARM3R_INLINE void write_motion(const RowContext& context, const T& row_time, const RowState<T>& now, const T& theta,
+                               RowWriter<T>& write) {
+    const Arm<double>& arm = context.plant.arm;
+    const TipSensor<T> sensor = tip_sensor(arm, now.q, now.qd);
+    write.number(row_time);
+    write.joints(now.q);
+    write.joints(now.qd);
+    write.joints(forward_dynamics(arm, now.pose, now.qd, now.tau, now.felt));
+    write.joints(now.tau);
+    write.joints(gravity_torque(arm, now.pose));
+    write.vector(sensor.position);
+    write.vector(sensor.velocity);
+    write.vector(times(jacobian(arm, now.pose), now.qd));
+    write.vector(differentiated_tip(arm, context.dense, theta));
+}
+
+template <class T>
+ARM3R_INLINE void write_contact(const RowState<T>& now, RowWriter<T>& write) {
+    const Vec3<T>& f = now.force.on_tip;
+    write.vector(now.wall.position);
+    write.number(now.in.depth);
+    write.number(now.touches);
+    write.vector(f);
+    write.vector({-f[0], -f[1], -f[2]});
+}
+
+template <class T>
+ARM3R_INLINE void write_energy(const RowContext& context, const RowState<T>& now, const State<T, full_size>& y,
+                               RowWriter<T>& write) {
+    const Plant<double>& plant = context.plant;
+    const T kinetic = kinetic_energy(plant.arm, now.pose, now.qd), potential = potential_energy(plant.arm, now.pose);
+    const T stored = plant.acts_on_arm ? now.force.stored : T(0.0);
+    write.number(kinetic);
+    write.number(potential);
+    write.number(stored);
+    for (const std::size_t i : {work_of_actuators, work_of_wall, dissipated}) write.number(y[i]);
+    write.number(energy_residual(y, T(kinetic + potential + stored), context.energy_at_start));
+}
+
+template <class T>
+ARM3R_INLINE void write_law(const RowContext& context, const Measurement<T>& sensed, const ContactForce<T>& force,
+                            RowWriter<T>& write) {
+    const Controller<double>& law = context.controller;
+    write.number(force.normal);
+    write.number(dot(sensed.n, sensed.f_on_tip));
+    write.number(tracks_force(law.type) ? desired_force_at(law.reference, sensed.t) : T(0.0));
+    write.number(sensed.force_phase);
+    const Vec3<T> desired =
+        tracks_path(law.type) ? desired_motion_at(law.reference, sensed.t).position : zero_vector<T>();
+    write.vector(law.reference.in_joints ? zero_vector<T>() : desired);
+    write.joints(law.reference.in_joints ? desired : zero_vector<T>());
+}
+
+template <class T>
+ARM3R_INLINE void write_observer(const RowContext& context, const RightHandSide<double, T>& rhs, const RowState<T>& now,
+                                 const State<T, full_size>& y, RowWriter<T>& write) {
+    const bool continuous = !context.is_sampled && context.plant.observer.on;
+    const Vec3<T> r =
+        continuous ? rhs.residual_at(now.pose, now.qd, y) : broadcast<T>(context.controller_state.residual);
+    write.joints(r);
+    const Arm<double>& model = context.controller.model;
+    // A sampled observer reads encoders.
+    const Pose<T> seen = context.is_sampled ? pose(broadcast<T>(context.controller_state.q)) : now.pose;
+    const auto regular = distance_to_singular(model, seen) > T(1e-3);
+    const Vec3<T> f = force_from(model, seen, r);
+    write.vector({select(regular, f[0], T(0.0)), select(regular, f[1], T(0.0)), select(regular, f[2], T(0.0))});
+    write.number(T(context.controller_state.collision));
+}
+
+template <class T>
+ARM3R_INLINE void write_memory(const RowContext& context, const RowState<T>& now, const State<T, full_size>& y,
+                               RowWriter<T>& write) {
+    write.number(T(context.controller_state.stiffness));
+    write.number(T(context.controller_state.wall_speed));
+    write.number(T(context.controller_state.identifiable));
+    write.number(context.is_sampled ? T(context.controller_state.memory[0]) : y[law_at]);
+    T saturated(0.0);
+    for (int i = 0; i < 3; ++i)
+        saturated = select(abs(now.tau[i]) >= T(context.plant.arm.torque_limit[i]), T(1.0), saturated);
+    write.number(saturated);
+}
+
 template <class T>
 ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const State<T, full_size>& y, const T& theta,
                            RowValues<T>& row) {
-    const T t = max(row_time, T(context.dense.t0));  // no row is before the start of its step
     const Plant<double>& plant = context.plant;
-    const Arm<double>& arm = plant.arm;
-    const T o(0.0);
-    const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
-    const Pose<T> p = pose(q);
-
-    WallState<T> wall = no_wall<T>();
-    Indentation<T> in{o, o, o, o, o, o};
-    ContactForce<T> force = no_contact<T>();
-    T touches = o;
-    row.link_behind_wall = o;
-    if (plant.has_wall) {
-        wall = wall_at(plant.wall, t);
-        in = tip_indentation(plant, wall, p, qd);
-        force = force_of(plant, wall, in, context.mode);
-        if (is_touching(context.mode)) touches = select(in.depth > o, T(1.0), o);
-        row.link_behind_wall = link_behind(plant, wall, p, touches);
-    }
-    Vec3<T> felt = plant.acts_on_arm ? force.on_tip : Vec3<T>(o, o, o), at_tip = force.on_tip;
-    if (plant.external_force.on) {
-        const Vec3<T> external_force = external_force_at(plant.external_force, t);
-        felt = plus(felt, external_force);
-        at_tip = plus(at_tip, external_force);
-    }
+    RowState<T> now;
+    now.t = max(row_time, T(context.dense.t0));  // no row is before the start of its step
+    now.q = {y[0], y[1], y[2]};
+    now.qd = {y[3], y[4], y[5]};
+    now.pose = pose(now.q);
+    row.link_behind_wall = T(0.0);
+    find_contact(context, now, row.link_behind_wall);
     RightHandSide<double, T> rhs(plant);
-    const Vec3<T> tau = has_memory(plant)
-                            ? torque_with_memory(context, rhs, t, wall, p, y, at_tip)
-                            : limited(arm, feedforward_torque(plant.controller, q, p), plant.controller.saturation);
-    const TipSensor<T> sensor = tip_sensor(arm, q, qd);
-    const T kinetic = kinetic_energy(arm, p, qd), potential = potential_energy(arm, p);
-    const T stored = plant.acts_on_arm ? force.stored : o;
+    now.tau = has_memory(plant) ? torque_with_memory(context, rhs, now.t, now.wall, now.pose, y, now.at_tip)
+                                : limited(plant.arm, feedforward_torque(plant.controller, now.q, now.pose),
+                                          plant.controller.saturation);
 
-    std::size_t column = 0;
-    const auto write = [&](const T& value)
-                           ARM3R_INLINE_LAMBDA { row.value[column++] = value + 0.0; };  // + 0.0: no negative zero
-    const auto write_vector = [&](const Vec3<T>& v) ARM3R_INLINE_LAMBDA {
-        for (int i = 0; i < 3; ++i) write(v[i]);
-    };
-    const auto write_joints = [&](const Vec3<T>& v)
-                                  ARM3R_INLINE_LAMBDA { write_vector(context.simscape ? change_convention(v) : v); };
-    write(row_time);
-    write_joints(q);
-    write_joints(qd);
-    write_joints(forward_dynamics(arm, p, qd, tau, felt));
-    write_joints(tau);
-    write_joints(gravity_torque(arm, p));
-    write_vector(sensor.position);
-    write_vector(sensor.velocity);
-    write_vector(times(jacobian(arm, p), qd));
-    write_vector(differentiated_tip(arm, context.dense, theta));
-    write_vector(wall.position);
-    write(in.depth);
-    write(touches);
-    write_vector(force.on_tip);
-    write_vector({-force.on_tip[0], -force.on_tip[1], -force.on_tip[2]});
-    write(kinetic);
-    write(potential);
-    write(stored);
-    for (const std::size_t i : {work_of_actuators, work_of_wall, dissipated}) write(y[i]);
-    write(energy_residual(y, T(kinetic + potential + stored), context.energy_at_start));
-    const std::array<T, 4> parts = dissipated_parts(plant, y, context.lost_at_edges);
-    for (std::size_t i = 0; i < parts.size(); ++i) row.value[parts_column + i] = parts[i] + 0.0;
-    if (context.controller.type == ControllerType::none && !plant.observer.on && !plant.has_wall) return;
-    const Measurement<T> sensed = measurement_of(context, rhs, t, wall, p, q, qd, at_tip, y);
-    write_law(context, sensed, force, y, write, write_vector, write_joints);
-    write_observer(context, rhs, p, qd, y, write, write_vector, write_joints);
-    const auto write_constant = [&](double value) ARM3R_INLINE_LAMBDA { write(T(value)); };
-    write_constant(context.controller_state.stiffness);
-    write_constant(context.controller_state.wall_speed);
-    write_constant(context.controller_state.identifiable);
-    write(context.is_sampled ? T(context.controller_state.memory[0]) : y[law_at]);
-    T saturated = o;
-    for (int i = 0; i < 3; ++i) saturated = select(abs(tau[i]) >= T(arm.torque_limit[i]), T(1.0), saturated);
-    write(saturated);
+    RowWriter<T> write(row, context.simscape);
+    write_motion(context, row_time, now, theta, write);
+    write_contact(now, write);
+    write_energy(context, now, y, write);
+    if (context.controller.type != ControllerType::none || plant.observer.on || plant.has_wall) {
+        const Measurement<T> sensed =
+            measurement_of(context, rhs, now.t, now.wall, now.pose, now.q, now.qd, now.at_tip, y);
+        write_law(context, sensed, now.force, write);
+        write_observer(context, rhs, now, y, write);
+        write_memory(context, now, y, write);
+    }
+    write.go_to(parts_column);
+    for (const T& part : dissipated_parts(plant, y, context.lost_at_edges)) write.number(part);
 }
 
 }  // namespace arm3r
