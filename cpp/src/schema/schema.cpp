@@ -19,6 +19,8 @@ constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 using std::numbers::pi;
 
+using Words = std::vector<std::string>;
+
 constexpr Bounds any_position{-1e6, 1e6};
 constexpr Bounds not_negative{0, 1e12};
 constexpr Bounds a_length{1e-6, 1e6};
