@@ -30,7 +30,7 @@ public:
         }
     }
 
-    SourceLocation mark(const YAML::SourceLocation& mark) const {
+    SourceLocation mark(const YAML::Mark& mark) const {
         const std::size_t line = std::min<std::size_t>(mark.line < 0 ? 0 : mark.line, lines_.size() - 1);
         const std::size_t bytes = std::min<std::size_t>(mark.column < 0 ? 0 : mark.column, lines_[line].size());
         if (line != line_ || bytes < bytes_) line_ = line, bytes_ = characters_ = 0;
@@ -42,13 +42,13 @@ public:
     std::string_view line(int number) const { return lines_[static_cast<std::size_t>(number) - 1]; }
 
     // The byte at this place, or 0.
-    char at(const YAML::SourceLocation& mark) const {
+    char at(const YAML::Mark& mark) const {
         const std::string_view line = lines_[std::min<std::size_t>(std::max(mark.line, 0), lines_.size() - 1)];
         return mark.column >= 0 && std::size_t(mark.column) < line.size() ? line[std::size_t(mark.column)] : '\0';
     }
 
     // Whether the quote at this place is closed. The parser accepts the end of the text as its end.
-    bool is_closed(const YAML::SourceLocation& mark) const {
+    bool is_closed(const YAML::Mark& mark) const {
         const char quote = at(mark);
         const char* const first = lines_[std::size_t(mark.line)].data() + mark.column + 1;
         const char* const last = lines_.back().data() + lines_.back().size();
@@ -80,20 +80,18 @@ public:
         return {};
     }
 
-    void OnDocumentStart(const YAML::SourceLocation&) override {}
+    void OnDocumentStart(const YAML::Mark&) override {}
     void OnDocumentEnd() override {}
 
-    void OnNull(const YAML::SourceLocation& mark, YAML::anchor_t anchor) override {
-        leaf(node(Node::nothing, mark, "", anchor));
-    }
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { leaf(node(Node::nothing, mark, "", anchor)); }
 
-    void OnAlias(const YAML::SourceLocation& mark, YAML::anchor_t) override {
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
         const Node alias = node(Node::unset, mark, "", 0);
         problem(alias.mark, "yaml.alias", "anchors and aliases are not supported", "write the value out");
         leaf(alias);
     }
 
-    void OnScalar(const YAML::SourceLocation& mark, const std::string& tag, YAML::anchor_t anchor,
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   const std::string& value) override {
         const bool is_tagged = lines_.at(mark) == '!';  // the parser gives quoted text the tag ! too
         Node scalar = node(Node::scalar, mark, tag == "!" && !is_tagged ? "" : tag, anchor);
@@ -108,13 +106,13 @@ public:
         leaf(std::move(scalar));
     }
 
-    void OnSequenceStart(const YAML::SourceLocation& mark, const std::string& tag, YAML::anchor_t anchor,
+    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                          YAML::EmitterStyle::value) override {
         open(node(Node::list, mark, tag, anchor), mark);
     }
     void OnSequenceEnd() override { close(); }
 
-    void OnMapStart(const YAML::SourceLocation& mark, const std::string& tag, YAML::anchor_t anchor,
+    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                     YAML::EmitterStyle::value) override {
         open(node(Node::map, mark, tag, anchor), mark);
     }
@@ -129,7 +127,7 @@ private:
         bool has_key = false;
     };
 
-    Node node(Node::Type type, const YAML::SourceLocation& at, const std::string& tag, YAML::anchor_t anchor) {
+    Node node(Node::Type type, const YAML::Mark& at, const std::string& tag, YAML::anchor_t anchor) {
         Node node;
         node.type = type;
         node.mark = lines_.mark(at);
@@ -140,7 +138,7 @@ private:
         return node;
     }
 
-    void open(Node node, const YAML::SourceLocation& at) {
+    void open(Node node, const YAML::Mark& at) {
         if (stack_.size() == deepest) fatal(node.mark, "yaml.depth", "nesting deeper than 64", "");
         const char first = lines_.at(at);
         stack_.push_back({std::move(node), first == '[' || first == '{' ? first : '\0', {}, {}});
@@ -277,21 +275,19 @@ Problem syntax_problem(const YAML::Exception& error, const Lines& lines, const s
 class NoDocument : public YAML::EventHandler {
 public:
     NoDocument(const Lines& lines, const std::string& file) : lines_(lines), file_(file) {}
-    void OnDocumentStart(const YAML::SourceLocation& mark) override {
+    void OnDocumentStart(const YAML::Mark& mark) override {
         refuse(located({.code = "yaml.documents",
                         .message = "a second document starts here; one document per file",
                         .hint = "split the file at '---'"},
                        lines_.mark(mark), file_));
     }
     void OnDocumentEnd() override {}
-    void OnNull(const YAML::SourceLocation&, YAML::anchor_t) override {}
-    void OnAlias(const YAML::SourceLocation&, YAML::anchor_t) override {}
-    void OnScalar(const YAML::SourceLocation&, const std::string&, YAML::anchor_t, const std::string&) override {}
-    void OnSequenceStart(const YAML::SourceLocation&, const std::string&, YAML::anchor_t,
-                         YAML::EmitterStyle::value) override {}
+    void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+    void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
     void OnSequenceEnd() override {}
-    void OnMapStart(const YAML::SourceLocation&, const std::string&, YAML::anchor_t,
-                    YAML::EmitterStyle::value) override {}
+    void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
     void OnMapEnd() override {}
 
 private:
