@@ -30,7 +30,7 @@ struct Runs {
         return params;
     }
 
-    std::vector<double> rows_per_block(const BatchOptions& options) const {
+    std::vector<double> together(const BatchOptions& options) const {
         std::vector<std::size_t> varied;
         std::vector<double> flat;
         for (std::size_t j = 0; j < names.size(); ++j) {
@@ -62,19 +62,19 @@ inline void check_against_single_runs(const Runs& runs, const std::vector<double
     for (std::size_t i = 0; i < runs.count(); ++i) {
         const Run alone = runs.alone(i).run();
         for (std::size_t c = 0; c < summary_table().size(); ++c) {
-            const double rows_per_block = results[c * runs.count() + i], single = summary_table()[c].of(alone) + 0.0;
-            BOOST_TEST(same(rows_per_block, single),
-                       "run " << i << ", " << summary_table()[c].name << ": " << rows_per_block << " and " << single);
+            const double together = results[c * runs.count() + i], single = summary_table()[c].of(alone) + 0.0;
+            BOOST_TEST(same(together, single),
+                       "run " << i << ", " << summary_table()[c].name << ": " << together << " and " << single);
         }
     }
 }
 
 // Every width and number of threads gives the same table; it is returned.
 inline std::vector<double> check_widths_and_threads(const Runs& runs) {
-    const std::vector<double> reference = runs.rows_per_block({.threads = 1, .lanes = 1});
+    const std::vector<double> reference = runs.together({.threads = 1, .lanes = 1});
     for (const int lanes : widths()) {
         for (const int threads : {1, 3}) {
-            const std::vector<double> other = runs.rows_per_block({.threads = threads, .lanes = lanes});
+            const std::vector<double> other = runs.together({.threads = threads, .lanes = lanes});
             BOOST_TEST((std::memcmp(other.data(), reference.data(), reference.size() * sizeof(double)) == 0),
                        lanes << " lanes, " << threads << " threads");
         }

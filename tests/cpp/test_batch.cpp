@@ -194,17 +194,17 @@ BOOST_AUTO_TEST_CASE(neither_order_nor_the_callers_rounding_of_tiny_numbers_matt
     Random random(35);
     for (const char* method : {"rk4", "taylor"}) {
         const Runs runs = pushed_arms(random, method, 40);
-        const std::vector<double> table = runs.rows_per_block({});
+        const std::vector<double> table = runs.together({});
         Runs backwards = runs;
         for (std::vector<double>& values : backwards.values) std::reverse(values.begin(), values.end());
-        const std::vector<double> reversed = backwards.rows_per_block({});
+        const std::vector<double> reversed = backwards.together({});
         for (std::size_t c = 0; c < summary_table().size(); ++c)
             for (std::size_t i = 0; i < 40; ++i) BOOST_TEST(same(table[c * 40 + i], reversed[c * 40 + 39 - i]));
 #if defined(__x86_64__)
         constexpr unsigned flush_to_zero = 0x8040;  // and subnormal operands are zero
         const unsigned usual = __builtin_ia32_stmxcsr();
         __builtin_ia32_ldmxcsr(usual | flush_to_zero);
-        const std::vector<double> flushed = runs.rows_per_block({});
+        const std::vector<double> flushed = runs.together({});
         __builtin_ia32_ldmxcsr(usual);
         for (std::size_t i = 0; i < table.size(); ++i) BOOST_TEST(same(table[i], flushed[i]));
 #endif
@@ -218,7 +218,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_no_length_and_a_batch_of_no_runs_are_fine) {
     runs.values = {{0.1, 0.2}};
     check_against_single_runs(runs, check_widths_and_threads(runs));
     runs.values = {{}};
-    BOOST_TEST(runs.rows_per_block({}).empty());
+    BOOST_TEST(runs.together({}).empty());
 }
 
 BOOST_AUTO_TEST_CASE(what_cannot_vary_is_refused_by_name) {
@@ -226,12 +226,12 @@ BOOST_AUTO_TEST_CASE(what_cannot_vary_is_refused_by_name) {
     runs.values = {{1}};
     for (const char* name : {"solver.method", "wall", "wall.acts_on_arm"}) {
         runs.names = {name};
-        BOOST_CHECK_EXCEPTION(runs.rows_per_block({}), Error,
+        BOOST_CHECK_EXCEPTION(runs.together({}), Error,
                               [&](const Error& e) { return std::string(e.what()).find(name) != std::string::npos; });
     }
     runs.names = {"initial.q[0]", "initial.q[0]"};
     runs.values = {{1}, {1}};
-    BOOST_CHECK_THROW(runs.rows_per_block({}), Error);
+    BOOST_CHECK_THROW(runs.together({}), Error);
 }
 
 static std::int32_t ask_to_stop(void* user, std::int64_t, std::int64_t) { return *static_cast<std::int32_t*>(user); }
@@ -243,10 +243,10 @@ BOOST_AUTO_TEST_CASE(a_batch_that_is_stopped_says_so_in_every_row_that_is_not_fi
     for (std::int32_t answer : {1, -1}) {
         BatchOptions options{.progress = ask_to_stop, .user = &answer, .threads = 2};
         if (answer < 0) {
-            BOOST_CHECK_THROW(runs.rows_per_block(options), Error);
+            BOOST_CHECK_THROW(runs.together(options), Error);
             continue;
         }
-        const std::vector<double> table = runs.rows_per_block(options);
+        const std::vector<double> table = runs.together(options);
         for (std::size_t i = 0; i < runs.count(); ++i)
             BOOST_TEST(runs.number(table, "outcome", i) == ARM3R_RUN_STOPPED);
     }

@@ -76,7 +76,7 @@ void check_order(const Controlled& runs, const std::vector<double>& table) {
     std::vector<std::size_t> order(runs.count());
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), std::mt19937_64(42));
-    const std::vector<double> shuffled = runs.in_order(order).rows_per_block({.threads = 2});
+    const std::vector<double> shuffled = runs.in_order(order).together({.threads = 2});
     for (std::size_t c = 0; c < summary_table().size(); ++c)
         for (std::size_t i = 0; i < order.size(); ++i)
             BOOST_TEST(same(shuffled[c * order.size() + i], table[c * order.size() + order[i]]),
@@ -301,9 +301,9 @@ bool differs(const Controlled& runs, const std::vector<double>& a, const std::ve
 
 BOOST_AUTO_TEST_CASE(every_sensor_and_reaction) {
     for (const char* method : {"rk4", "taylor"}) {
-        Controlled without_negative_zero("hybrid", method);
+        Controlled plain("hybrid", method);
         plain.controls_force().sampled();
-        const std::vector<double> ideal = plain.rows_per_block({.threads = 1, .lanes = 1});
+        const std::vector<double> ideal = plain.together({.threads = 1, .lanes = 1});
         for (const Effect& effect : effects()) {
             if (!effect.by_taylor && std::string_view(method) == "taylor") continue;
             BOOST_TEST_CONTEXT(effect.name << " by " << method) {

@@ -165,13 +165,13 @@ BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_each_setpoint_alone) {
         const Reference<double> s = random_setpoint(random, path);
         Pack<8> times;
         for (int lane = 0; lane < 8; ++lane) times.set(lane, s.start + s.duration * random.in(-0.5, 1.5));
-        const DesiredMotion<Pack<8>> rows_per_block = desired_motion_at(s, times);
+        const DesiredMotion<Pack<8>> together = desired_motion_at(s, times);
         for (int lane = 0; lane < 8; ++lane) {
             const DesiredMotion<double> alone = desired_motion_at(s, times[lane]);
             for (int i = 0; i < 3; ++i) {
-                BOOST_TEST(same_bits(alone.position[i], rows_per_block.position[i][lane]));
-                BOOST_TEST(same_bits(alone.velocity[i], rows_per_block.velocity[i][lane]));
-                BOOST_TEST(same_bits(alone.acceleration[i], rows_per_block.acceleration[i][lane]));
+                BOOST_TEST(same_bits(alone.position[i], together.position[i][lane]));
+                BOOST_TEST(same_bits(alone.velocity[i], together.velocity[i][lane]));
+                BOOST_TEST(same_bits(alone.acceleration[i], together.acceleration[i][lane]));
             }
         }
     }

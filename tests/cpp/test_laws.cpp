@@ -717,15 +717,15 @@ static void check_lanes(Random& random, const Controller<double>& form) {
         for (std::size_t i = 0; i < law_memory; ++i) memory[i].set(lane, scene.memory[i]);
         scenes.push_back(scene);
     }
-    alignas(64) Command<Pack<N>> rows_per_block;
-    compiled_law<P, Pack<N>>()(controllers, sensed, memory, rows_per_block);
+    alignas(64) Command<Pack<N>> together;
+    compiled_law<P, Pack<N>>()(controllers, sensed, memory, together);
     for (int lane = 0; lane < N; ++lane) {
         Command<double> of_lane;
         for (int i = 0; i < 3; ++i) {
-            of_lane.tau[i] = rows_per_block.tau[i][lane];
-            of_lane.dtau_dintegral[i] = rows_per_block.dtau_dintegral[i][lane];
+            of_lane.tau[i] = together.tau[i][lane];
+            of_lane.dtau_dintegral[i] = together.dtau_dintegral[i][lane];
         }
-        for (std::size_t i = 0; i < law_memory; ++i) of_lane.rates[i] = rows_per_block.rates[i][lane];
+        for (std::size_t i = 0; i < law_memory; ++i) of_lane.rates[i] = together.rates[i][lane];
         const std::vector<double> alone = numbers(scenes[std::size_t(lane)].command()), packed = numbers(of_lane);
         BOOST_TEST(std::equal(alone.begin(), alone.end(), packed.begin(), same_bits));
     }

@@ -142,9 +142,9 @@ template <int N, class F>
 static void check_lanes(Random& random, F formula) {
     std::vector<Numbers> lanes;
     for (int lane = 0; lane < N; ++lane) lanes.push_back(random_state(random));
-    const std::vector<Pack<N>> rows_per_block = formula(packed<N>(lanes).data());
+    const std::vector<Pack<N>> together = formula(packed<N>(lanes).data());
     for (int lane = 0; lane < N; ++lane)
-        BOOST_TEST(same(lane_of(rows_per_block, lane), formula(lanes[std::size_t(lane)].data())));
+        BOOST_TEST(same(lane_of(together, lane), formula(lanes[std::size_t(lane)].data())));
 }
 
 template <class F>
@@ -221,9 +221,9 @@ BOOST_AUTO_TEST_CASE(each_lane_may_have_its_own_arm) {
             arms.push_back(random_params(random).arm());
             lanes.push_back(random_state(random));
         }
-        const Arm<Pack<N>> rows_per_block = packed_arm<N>(arms);
-        const std::vector<Pack<N>> x = packed<N>(lanes), closed = closed_form(rows_per_block, x.data()),
-                                   recursion = by_recursion(rows_per_block, x.data());
+        const Arm<Pack<N>> together = packed_arm<N>(arms);
+        const std::vector<Pack<N>> x = packed<N>(lanes), closed = closed_form(together, x.data()),
+                                   recursion = by_recursion(together, x.data());
         for (std::size_t lane = 0; lane < N; ++lane) {
             BOOST_TEST(same(lane_of(closed, int(lane)), closed_form(arms[lane], lanes[lane].data())));
             BOOST_TEST(same(lane_of(recursion, int(lane)), by_recursion(arms[lane], lanes[lane].data())));

@@ -174,7 +174,7 @@ int32_t arm3r_scenario_warnings(const arm3r_scenario* scenario, const char** tex
             const std::string place = visible(scenario->scenario.file, 4096) + ": warning: ";
             std::string lines;
             for (const std::string& slip : resolved.warnings) lines += place + slip + "\n";
-            for (const std::string& slip : scenario_warnings(resolved.params)) lines += place + slip + "\n";
+            for (const std::string& slip : scenario_warnings(resolved.setup)) lines += place + slip + "\n";
             return lines;
         });
     });

@@ -353,7 +353,7 @@ void check_brackets(std::string_view text, const std::string& file) {
 }  // namespace
 
 Problem located(Problem problem, const SourceLocation& at, const std::string& file) {
-    problem.file = at.edit ? at.edit->place : file;
+    problem.file = at.edit ? at.edit->location : file;
     problem.line = at.line;
     problem.column = at.edit && at.column == 1 ? 0 : at.column;
     return problem;

@@ -50,7 +50,7 @@ std::string value_schema(const Key& key) {
         return "{\"enum\": [" + listed(words, ", ") + "]}";
     }
     const std::string number = number_schema(key), most = std::to_string(key.size);
-    const std::string fewest = key.form == Form::list ? std::to_string(key.fewest) : most;
+    const std::string fewest = key.form == Form::list ? std::to_string(key.min_size) : most;
     const std::string list =
         "{\"type\": \"array\", \"items\": " + number + ", \"minItems\": " + fewest + ", \"maxItems\": " + most + "}";
     switch (key.form) {

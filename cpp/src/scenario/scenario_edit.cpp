@@ -29,7 +29,7 @@ std::vector<Problem> with_edit_location(const Edit& edit, std::string_view path,
     for (Problem& problem : problems) {
         const bool inside_value = !problem.file.empty();
         if (inside_value) problem.path = below(path, problem.path);
-        problem.file = edit.place;
+        problem.file = edit.location;
         problem.line = 0;
         if (problem.column == 1) problem.column = 0;
     }
@@ -37,7 +37,7 @@ std::vector<Problem> with_edit_location(const Edit& edit, std::string_view path,
 }
 
 Document read_value(const std::string& value, const std::shared_ptr<const Edit>& edit) {
-    Document document = parse_yaml(checked_text(value, edit->place), edit->place);
+    Document document = parse_yaml(checked_text(value, edit->location), edit->location);
     mark_as_edit(edit, document.root);
     return document;
 }

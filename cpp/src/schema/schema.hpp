@@ -33,7 +33,7 @@ enum class Form {
     vector_or_word,    // a list of `size`, or `word`, which stores +inf in every place
     by_choice,         // stored like number_or_vector; the choice at when_key decides: `word` takes a list of 3, any
                        // other one number
-    list,              // a list of `fewest` to `size`, with NaN after its end
+    list,              // a list of `min_size` to `size`, with NaN after its end
 };
 
 struct Bounds {
