@@ -410,12 +410,12 @@ BOOST_AUTO_TEST_CASE(what_is_not_finite_gives_nothing) {
 // ---- largest
 
 BOOST_AUTO_TEST_CASE(the_largest_of_known_curves) {
-    BOOST_TEST(largest(power_form({3}), 0, 1) == 3);
-    BOOST_TEST(largest(power_form({0, 1, -1}), 0, 1) == 0.25);
-    BOOST_TEST(std::abs(largest(power_form({0, 1, -1}), 0, 0.25) - 0.1875) <= 1e-16);
-    BOOST_TEST(std::abs(largest(power_form({0, 1, -1}), 0.75, 1) - 0.1875) <= 1e-16);
-    BOOST_TEST(largest(power_form({0.25, -1, 1}), 0, 1) == 0.25);
-    BOOST_TEST(largest(power_form({0.25, -1, 1}), 0.5, 0.5) == 0);
+    BOOST_TEST(max_value(power_form({3}), 0, 1) == 3);
+    BOOST_TEST(max_value(power_form({0, 1, -1}), 0, 1) == 0.25);
+    BOOST_TEST(std::abs(max_value(power_form({0, 1, -1}), 0, 0.25) - 0.1875) <= 1e-16);
+    BOOST_TEST(std::abs(max_value(power_form({0, 1, -1}), 0.75, 1) - 0.1875) <= 1e-16);
+    BOOST_TEST(max_value(power_form({0.25, -1, 1}), 0, 1) == 0.25);
+    BOOST_TEST(max_value(power_form({0.25, -1, 1}), 0.5, 0.5) == 0);
 }
 
 BOOST_AUTO_TEST_CASE(the_largest_is_that_of_dense_samples) {

@@ -173,7 +173,7 @@ static const std::vector<Place> places = {
     {"contact_off", nullptr, &Gains<double>::contact_off, false},
     {"inner_bandwidth", nullptr, &Gains<double>::inner_bandwidth, false},
     {"inner_damping_ratio", nullptr, &Gains<double>::inner_damping_ratio, false},
-    {"reference_gain", nullptr, &Gains<double>::reference, false},
+    {"reference_gain", nullptr, &Gains<double>::reference_gain, false},
     {"assumed_stiffness", nullptr, &Gains<double>::assumed_stiffness, false},
     {"stiffness_amplitude", nullptr, &Gains<double>::stiffness_amplitude, false},
     {"stiffness_frequency", nullptr, &Gains<double>::stiffness_frequency, false},
