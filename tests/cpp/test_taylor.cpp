@@ -329,8 +329,8 @@ BOOST_AUTO_TEST_CASE(a_step_keeps_its_tolerance) {
     e.c[0][1] = 100;
     e.c[10][1] = 3;  // relative, to the power of two below: 3/64
     BOOST_TEST(step_of(e, 1e-9) == std::pow(1e-9 / (3.0 / 64), 0.1), boost::test_tools::tolerance(1e-3));
-    e.c[0][9] = 100;
-    e.c[9][9] = 5;  // a signal: absolute
+    e.c[0][state_size] = 100;
+    e.c[9][state_size] = 5;  // a signal: absolute
     BOOST_TEST(step_of(e, 1e-9) == std::pow(1e-9 / 5, 1.0 / 9), boost::test_tools::tolerance(1e-3));
 
     Random random(8);
