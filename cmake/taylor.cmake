@@ -10,7 +10,3 @@ file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/taylor)
 add_custom_command(OUTPUT ${_kernels} COMMAND derive_taylor ${_kernels} DEPENDS derive_taylor VERBATIM)
 target_sources(arm3r_core PRIVATE ${_kernels})
 target_include_directories(arm3r_core PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/taylor)
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # The kernels fill the registers as they are; vectorized loops over the orders would be slower.
-  set_source_files_properties(cpp/src/integrate/taylor.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
-endif()
