@@ -19,8 +19,8 @@ SIZE = 1e-7
 """of the disturbance: rad, rad/s and m, and ten times as much in m/s^2 of gravity"""
 FLOOR = SIZE
 """of what may differ, in a column's unit and relative to its largest value: some columns feel no disturbance"""
-NOISY = {"tip_dv": 100.0, "f_estimate": 10.0}
-"""times the floor: the error of an interpolant's slope, and a residual divided by a nearly singular Jacobian"""
+NOISY = {"tip_dv": 100.0, "f_estimate": 1000.0}
+"""times the floor: the error of an interpolant's slope, and a residual over a Jacobian that is singular to 1e-3"""
 TIMES_OWN_ERROR = 5.0
 """how much larger the error of a method of fixed steps may be than the differences between its runs with other steps"""
 

@@ -99,6 +99,23 @@ def test_a_collision_is_over_when_it_has_been_quiet() -> None:
     assert first == pytest.approx(-np.log(1 - 0.05) / 50, abs=1.01e-4)
 
 
+@pytest.mark.parametrize("rate", [1000, 300, 450])
+def test_a_collision_ends_at_the_same_sample_with_every_method_and_at_every_start(rate: int) -> None:
+    """observer.hold is a whole number of periods: the sample at its end is not decided by rounding."""
+    periods, lengths = 15, set()
+    for start in (0.0, 0.7, 37.0, 1000.3):
+        for solver in ({"method": "dopri5"}, {"method": "rodas4"}, {"method": "rk4", "step": 1 / (4 * rate)}):
+            changes = {
+                "push": {"force": [-20, 0, 0], "start": start, "duration": 0.02}, "observer.hold": periods / rate,
+                "observer.threshold": [1e3, 1e3, 0.5], "sampling.rate": rate, "solver": solver,
+                "time": {"start": start, "stop": start + 0.25, "log_every": 1 / rate},
+            }  # fmt: skip
+            run = read("b11c_observer_sampled", changes).run()
+            is_loud = np.abs(run["residual"][:, 2]) > 0.25
+            lengths.add(int(np.flatnonzero(run["collision"])[-1] - np.flatnonzero(is_loud)[-1]))
+    assert lengths == {periods - 1}
+
+
 # ---- reactions ------------------------------------------------------------------------------------------------------
 
 

@@ -185,7 +185,13 @@ def test_one_name_is_one_type(root: Path) -> None:
     for path in _sources(root):
         for name in _types(path):
             places.setdefault(name, set()).add(path.as_posix())
-    assert places.keys() >= {"arm3r::Plant", "arm3r::TapeNode", "arm3r::Node", "arm3r::StateRows", "arm3r::ControllerType"}
+    assert places.keys() >= {
+        "arm3r::Plant",
+        "arm3r::TapeNode",
+        "arm3r::Node",
+        "arm3r::StateRows",
+        "arm3r::ControllerType",
+    }
     assert {name: files for name, files in places.items() if len(files) > 1} == {}
 
 

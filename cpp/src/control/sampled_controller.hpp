@@ -222,7 +222,9 @@ private:
         const T o(0.0), l(1.0);
         quiet_since_ = select(due && share > T(0.5), sensed.t, quiet_since_);
         const Mask begins = due && share > l;
-        const Mask lasts = state_.collision > o && sensed.t - quiet_since_ < observer.hold;
+        // Rounding of the instants, which depends on the method and on time.start, does not add a sample.
+        const T hold = observer.hold - 1e-6 * digital_.sampling.period;
+        const Mask lasts = state_.collision > o && sensed.t - quiet_since_ < hold;
         state_.collision = select(due, select(begins || lasts, l, o), state_.collision);
         const Mask reacts_now = begins && !(reacts_ > o);
         for (int i = 0; i < 3; ++i) hold_pose_[i] = select(reacts_now, sensed.q[i], hold_pose_[i]);
