@@ -57,7 +57,7 @@ def worst_gap(scenario: Keys, band: Band, method: str, rates: tuple[int, ...] = 
     if method == "rk4":
         return rk4_gap(scenario, band, rates)
     other = run_of(scenario, ADAPTIVE[method])
-    if other is None:
+    if other is None or other.outcome == "budget":  # too many steps at this tolerance: nothing to compare
         return None
     if other.outcome != "ok":
         return Gap(np.inf, f"outcome {other.outcome}: {other.summary['message']}", other.t[-1])
