@@ -134,6 +134,20 @@ def test_functions_are_taken_in_at_a_glance(root: Path) -> None:
     assert long == []
 
 
+def test_the_tour_names_files_and_names_that_there_are(root: Path) -> None:
+    tour = (root / "cpp/src/README.md").read_text()
+    files = {path.name for path in _sources(root)} | {"README.md", "test_layers.py", "model.md"}
+    named = {Path(name).name for name in re.findall(r"`([\w/.]+\.(?:hpp|cpp|py|md))`", tour)}
+    assert named - files == set()
+    ways = re.findall(r"^- \*(.*?)(?=^- \*|^$)", tour, flags=re.M | re.S)
+    assert len(ways) == 3
+    code = "\n".join(path.read_text() for path in _sources(root))
+    for way in ways:
+        names = [name for name in re.findall(r"`(\w+)`", way) if not re.fullmatch(r"tau\d", name)]
+        assert 0 < len(names) <= 7
+        assert [name for name in names if not re.search(rf"\b{name}\b", code)] == []
+
+
 def test_files_and_yaml_stay_where_they_belong(root: Path) -> None:
     misplaced = [
         f"{path.name} includes {name}"

@@ -25,7 +25,7 @@ struct Steps {
     std::int64_t accepted = 0, rejected = 0, evaluations = 0;
 };
 
-// The numbers of a run (summary.hpp). Joint vectors in the arm's convention.
+// The numbers of a run (metrics.hpp). Joint vectors in the arm's convention.
 struct Metrics {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
