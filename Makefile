@@ -29,6 +29,7 @@ test: $(VENV)/test $(BUILD)/tests
 
 gates: $(VENV)/test $(BUILD)/tests
 	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(PYTEST) -m gate
+	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null

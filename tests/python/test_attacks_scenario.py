@@ -117,6 +117,7 @@ def test_a3_only_regular_files_and_standard_input(cli, tmp_path):
         assert cli("check", "-", stdin=endless, timeout=5).returncode == SCENARIO_EXIT
 
 
+@pytest.mark.timed
 def test_a4_a_file_of_1_gib_is_refused_at_the_cap_at_once(cli, tmp_path):
     huge = tmp_path / "huge.yaml"
     with huge.open("wb") as file:
@@ -294,6 +295,7 @@ def test_m1_mutated_scenarios_never_crash(count: int) -> None:
         accepted_or_refused(mutant(chance, texts))
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize(
     "text",
     [
@@ -746,6 +748,7 @@ MANY_STEPS = "solver={method: rk4, step: 1e-3, max_steps: 1000000000}"
 LONG_RUN = ["--set", LONG_TIME, "--set", MANY_STEPS, "--set", "checks=[]"]
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_run_within_100_ms_by_the_signal_itself(executable, tmp_path, moving_wall, number):
     def delay():

@@ -774,6 +774,7 @@ def test_the_interpreter_is_free_during_a_run() -> None:
     assert ticks > 20
 
 
+@pytest.mark.timed
 def test_ctrl_c_returns_within_100_ms() -> None:
     code = f"""
 import sys, time, arm3r_cpp

@@ -90,6 +90,7 @@ private:
     void fail(std::exception_ptr failure) {
         const std::lock_guard lock(mutex_);
         if (!failure_) failure_ = std::move(failure);
+        job_.failed = true;
         job_.stop = true;
     }
 

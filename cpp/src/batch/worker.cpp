@@ -1,5 +1,6 @@
 #include "batch/worker.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -50,6 +51,7 @@ bool BatchWorker::next(const BatchKey& batch_key, Setup& setup, std::size_t& run
 }
 
 bool BatchWorker::fetch(std::size_t& run) {
+    if (is_stopped()) return refuse_rest(), false;
     if (first_ == last_ && retry_.empty()) {
         const std::size_t runs = job_.variation.runs;
         first_ = std::min(runs, job_.next.fetch_add(runs_at_a_time));
@@ -70,11 +72,10 @@ bool BatchWorker::prepare(std::size_t run, Setup& setup) {
     const Variation& variation = job_.variation;
     for (std::size_t j = 0; j < variation.varied.size(); ++j)
         params_[variation.varied[j]] = variation.values[j * variation.runs + run];
-    if (is_stopped()) return refuse(run, ARM3R_RUN_STOPPED), false;
     const std::optional<Setup> valid = job_.check(params_);
-    if (!valid) return refuse(run, ARM3R_RUN_INVALID), false;
+    if (!valid) return refuse(run, run + 1, ARM3R_RUN_INVALID), false;
     setup = *valid;
-    if (has_too_many_steps(setup)) return refuse(run, ARM3R_RUN_BUDGET), false;
+    if (has_too_many_steps(setup)) return refuse(run, run + 1, ARM3R_RUN_BUDGET), false;
     return true;
 }
 
@@ -87,11 +88,27 @@ void BatchWorker::store(std::size_t run, const Metrics& metrics) {
     job_.done.fetch_add(1, std::memory_order_relaxed);
 }
 
-void BatchWorker::refuse(std::size_t run, arm3r_outcome why) {
-    for (std::size_t i = 0; i < summary_table().size(); ++i)
-        job_.results[i * job_.variation.runs + run] = std::numeric_limits<double>::quiet_NaN();
-    job_.results[run] = double(why);  // the outcome is the first column
-    job_.done.fetch_add(1, std::memory_order_relaxed);
+// A batch that fails returns no table, so its rows are left as they are: to write a million takes a second.
+void BatchWorker::refuse_rest() {
+    const std::size_t runs = job_.variation.runs, next = std::min(runs, job_.next.exchange(runs));
+    if (!job_.failed) {
+        refuse(first_, last_, ARM3R_RUN_STOPPED);
+        refuse(next, runs, ARM3R_RUN_STOPPED);
+        for (const std::size_t run : retry_) refuse(run, run + 1, ARM3R_RUN_STOPPED);
+    }
+    first_ = last_;
+    retry_.clear();
+}
+
+void BatchWorker::refuse(std::size_t first, std::size_t last, arm3r_outcome why) {
+    const std::size_t runs = job_.variation.runs;
+    const auto fill = [&](std::size_t column, double value) {
+        std::fill(job_.results + column * runs + first, job_.results + column * runs + last, value);
+    };
+    fill(0, double(why));  // the outcome is the first column
+    for (std::size_t column = 1; column < summary_table().size(); ++column)
+        fill(column, std::numeric_limits<double>::quiet_NaN());
+    job_.done.fetch_add(last - first, std::memory_order_relaxed);
 }
 
 }  // namespace arm3r

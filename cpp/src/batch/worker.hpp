@@ -18,7 +18,7 @@ struct BatchJob {
     double* const results;
     const int lanes;  // as BatchOptions::lanes
     std::atomic<std::size_t> next = 0, done = 0;
-    std::atomic<bool> stop = false;
+    std::atomic<bool> failed = false, stop = false;
 };
 
 class BatchWorker {
@@ -31,13 +31,15 @@ public:
     // The next run with the key `batch_key`; runs with other keys are deferred.
     bool next(const BatchKey& batch_key, Setup& setup, std::size_t& run);
     void store(std::size_t run, const Metrics& metrics);
-    void refuse(std::size_t run, arm3r_outcome why);  // the run was not started: its row has no other number
     bool is_stopped() const { return job_.stop.load(std::memory_order_relaxed); }
 
 private:
     bool fetch(std::size_t& run);
     bool prepare(std::size_t run, Setup& setup);
     void run_group(const Setup& first, std::size_t run);
+    // The runs first to last - 1 were not started: their rows have no number but the outcome.
+    void refuse(std::size_t first, std::size_t last, arm3r_outcome why);
+    void refuse_rest();  // all runs that nobody has started
 
     BatchJob& job_;
     std::vector<double> params_;
