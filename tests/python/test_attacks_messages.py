@@ -111,6 +111,81 @@ def test_an_unknown_key_names_what_was_meant(text: str, words: list[str], absent
     assert all(word in found for word in words) and not any(word in found for word in absent), found
 
 
+# ---- S2: only the keys of the chosen type, and what people write instead --------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("controller: {type: joint_pd, kI: 1}", ["`force_integral_gain` belongs to type", "where type is joint_pd"]),
+        ("controller: {type: joint_pd, M: 1}", ["`mass` belongs to type", "admittance"]),
+        (
+            "controller: {type: joint_pd, stiffness: 1}",
+            ["not go with type joint_pd", "mean joint_stiffness?"],
+        ),
+        ("controller: {type: computed_torque, damping: 1}", ["did you mean velocity_gain?"]),
+        ("controller: {type: impedance, f_d: 1}", ["did you mean reference.force.value?"]),
+        ("controller: {type: impedance, x_d: [1, 0, 0]}", ["did you mean reference.tip?"]),
+        ("controller: {kp: 1}", ["where type is none", "belongs to type"]),
+        ("wall: {contact: {k: 1}}", ["where law is spring", "did you mean stiffness?"]),
+        ("wall: {contact: {mu: 1}}", ["did you mean friction.coefficient?"]),
+        ("wall: {contact: {c: 1}}", ["`damping` belongs to law kelvin_voigt"]),
+        ("wall: {k: 1}", ["did you mean contact.stiffness?"]),
+        ("wall: {velocity: 1}", ["`velocity` belongs to wall.motion"]),
+        ("wall: {motion: {type: sinusoid, amplitude: 1, frequency: 1, f: 1}}", ["did you mean frequency?"]),
+        ("wall: {motion: {speed: 1}}", ["did you mean velocity?"]),
+        ("arm: {link2: {m: 1, L: 2, I: 3}}", ["did you mean mass?", "did you mean length?", "did you mean inertia?"]),
+        ("observer: {K_O: 1}", ["did you mean gain?"]),
+    ],
+)
+def test_s2_what_people_write_is_known(text: str, words: list[str]) -> None:
+    found = message(HEAD + text + "\n")
+    assert all(word in found for word in words), found
+
+
+CHOICES = ["controller.type", "wall.motion.type", "wall.contact.law", "wall.rotation.type", "reference.type",
+           "arm.link2.shape", "solver.method", "sensors.velocity.estimate", "observer.reaction"]  # fmt: skip
+
+
+def _with(choice: str, word: str, more: str = "") -> list[dict[str, Any]]:
+    """The problems of a scenario with this word and, beside it, with more keys."""
+    *sections, name = choice.split(".")
+    text = f"{{{name}: {word}{more}}}"
+    for section in reversed(sections):
+        text = f"{section}: {text}" if section == sections[0] else f"{{{section}: {text}}}"
+    law = "" if choice == "controller.type" else "controller: {type: impedance}\n"
+    scenario = arm3r.Scenario(f"{HEAD}{law}{text}\n")
+    with pytest.raises(arm3r.ScenarioError) as error:
+        scenario.validate()
+    return error.value.problems
+
+
+@pytest.mark.parametrize("choice", CHOICES)
+def test_s2_only_keys_of_the_chosen_word_are_listed(choice: str) -> None:
+    """No key of the list belongs to another word, and at an unknown key nothing is suggested."""
+    section, _, name = choice.rpartition(".")
+    words = next(problem["allowed"] for problem in _with(choice, "no_such_word") if problem["path"] == choice)
+    for word in words.split(", "):
+        (problem,) = (found for found in _with(choice, word, ", zzzzzzzz: 1") if found["path"].endswith(".zzzzzzzz"))
+        assert f"where {name} is {word}" in problem["message"] and not problem["hint"]
+        keys = [key for key in problem["allowed"].split(", ") if key != name]
+        found = _with(choice, word, "".join(f", {key}: no_such_value" for key in keys) + ", zzzzzzzz: 1")
+        judged = {problem["path"]: problem["code"] for problem in found}
+        assert not {"scenario.other_choice", "scenario.unknown_key"} & {judged.get(f"{section}.{key}") for key in keys}
+
+
+def test_s2_under_an_unknown_word_no_keys_are_listed() -> None:
+    problems = problems_of(HEAD + "controller: {type: impedanc, kp: 3}\n")
+    assert [problem["path"] for problem in problems] == ["controller.type", "controller.kp"]
+    assert problems[1]["allowed"] == "" and "depends on controller.type" in problems[1]["hint"]
+
+
+@pytest.mark.parametrize("key", ["tau", "foo", "f_x"])
+def test_s2_no_far_fetched_hints(key: str) -> None:
+    (problem,) = problems_of(HEAD + f"controller: {{type: joint_pd, {key}: 3}}\n")
+    assert problem["hint"] == "", problem["hint"]
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

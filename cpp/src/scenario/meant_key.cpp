@@ -4,7 +4,6 @@
 
 #include "base/text.hpp"
 #include "files/paths.hpp"
-#include "schema/schema.hpp"
 #include "schema/suggest.hpp"
 
 namespace arm3r {
@@ -23,25 +22,57 @@ bool is_in(const Words& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// Names that other programs use, in small letters without underscores, and the keys with that meaning here.
+// Names that textbooks and other programs use, in small letters without underscores, and the last names of the keys with
+// that meaning here. Which of these keys is meant, the section decides.
 struct Synonyms {
-    Words typed, keys;
+    Words typed, names;
 };
 
 const std::vector<Synonyms>& synonyms() {
     static const std::vector<Synonyms> table = {
-        {{"kp", "k", "p"}, {"controller.joint_stiffness", "controller.position_gain", "controller.stiffness"}},
-        {{"kd", "kv", "d", "b", "c"},
-         {"controller.joint_damping", "controller.velocity_gain", "controller.damping", "controller.force_damping"}},
-        {{"ki", "i"}, {"controller.force_integral_gain"}},
-        {{"kf", "kpf"}, {"controller.force_gain"}},
-        {{"m", "md"}, {"controller.mass", "controller.force_mass"}},
-        {{"g"}, {"controller.gravity"}},
+        {{"k", "kp", "p", "ke", "kn", "kenv", "stiffness", "jointstiffness", "positiongain"},
+         {"joint_stiffness", "position_gain", "stiffness"}},
+        {{"b", "c", "d", "kd", "kv", "de", "damping", "jointdamping", "velocitygain"},
+         {"joint_damping", "velocity_gain", "damping", "force_damping"}},
+        {{"i", "ki", "kif", "kfi"}, {"force_integral_gain", "inertia", "inertia_axial"}},
+        {{"kf", "kpf", "kfp"}, {"force_gain"}},
+        {{"m", "md", "forcemass"}, {"mass", "force_mass"}},
+        {{"g"}, {"gravity"}},
         {{"gain", "gains"},
-         {"controller.joint_stiffness", "controller.joint_damping", "controller.position_gain",
-          "controller.velocity_gain", "controller.stiffness", "controller.damping", "controller.force_gain"}},
-        {{"tend", "tstop", "tfinal", "tmax", "tf", "end", "endtime", "stoptime", "duration"}, {"time.stop"}},
-        {{"dt", "h", "step", "timestep", "stepsize"}, {"solver.step", "time.log_every"}},
+         {"joint_stiffness", "joint_damping", "position_gain", "velocity_gain", "stiffness", "damping", "force_gain",
+          "gain"}},
+        {{"ko"}, {"gain"}},
+        {{"l", "len"}, {"length"}},
+        {{"rho"}, {"density"}},
+        {{"lc", "cog", "centerofmass", "centreofmass"}, {"com"}},
+        {{"mu"}, {"coefficient"}},
+        {{"e", "cor"}, {"restitution"}},
+        {{"v", "vel", "speed"}, {"velocity"}},
+        {{"a", "amp"}, {"amplitude"}},
+        {{"f", "freq"}, {"frequency"}},
+        {{"phi"}, {"phase"}},
+        {{"w", "omega"}, {"rate", "inner_bandwidth"}},
+        {{"r"}, {"radius"}},
+        {{"n"}, {"normal"}},
+    };
+    return table;
+}
+
+// Names of what another section holds.
+struct Elsewhere {
+    Words typed, sections, paths;
+};
+
+const std::vector<Elsewhere>& elsewhere() {
+    static const Words of_time = {"", "time", "solver"}, of_control = {"", "controller", "reference"};
+    static const std::vector<Elsewhere> table = {
+        {{"tend", "tstop", "tfinal", "tmax", "tf", "end", "endtime", "stoptime", "duration"}, of_time, {"time.stop"}},
+        {{"dt", "h", "step", "timestep", "stepsize"}, of_time, {"solver.step", "time.log_every"}},
+        {{"fd", "fdes", "fref", "desiredforce", "forceref", "setpoint"}, of_control, {"reference.force.value"}},
+        {{"xd", "xdes", "xref", "target", "goal"}, of_control, {"reference.tip"}},
+        {{"qd", "qdes", "qref"}, of_control, {"reference.q"}},
+        {{"fs", "ts", "rate", "samplerate"}, of_control, {"sampling.rate"}},
+        {{"taumax", "umax", "maxtorque"}, of_control, {"arm.torque_limit"}},
     };
     return table;
 }
@@ -53,21 +84,54 @@ std::string simplified(std::string_view name) {
     return out;
 }
 
-// Keys of this section by their names; for names of time also whole paths.
-Words synonyms_of(std::string_view name, std::string_view section, std::span<const double> params) {
-    const Words there = names_there(section, params);
-    const bool is_about_time = section.empty() || section == "time" || section == "solver";
-    Words found;
-    for (const Synonyms& synonym : synonyms()) {
-        if (!is_in(synonym.typed, simplified(name))) continue;
-        for (const std::string& path : synonym.keys) {
-            const bool is_controller = path.starts_with("controller.");
-            if (is_controller && section == "controller" && is_in(there, last_name(path)))
-                found.push_back(last_name(path));
-            if (!is_controller && is_about_time) found.push_back(path);
-        }
+// The keys of a section, or of the sections in it, whose last name is one of these.
+std::vector<const Key*> keys_named(const Words& names, std::string_view section, bool directly) {
+    std::vector<const Key*> found;
+    const std::string prefix = join(section, "");
+    for (const Key& key : schema()) {
+        if (!key.path.starts_with(prefix) || key.path.starts_with(prefix + "model.")) continue;
+        const bool is_direct = key.path.find('.', prefix.size()) == std::string::npos;
+        if (is_direct == directly && is_in(names, last_name(key.path))) found.push_back(&key);
     }
     return found;
+}
+
+Words names_of(const std::vector<const Key*>& keys, std::string_view section) {
+    Words names;
+    for (const Key* key : keys) names.push_back(key->path.substr(section.size() + 1));
+    return names;
+}
+
+// "`mass` belongs to type admittance" of a key that the choices do not let exist.
+std::string owner_text(const Key& key, std::span<const double> params) {
+    const Key& refused = key_refused(key, params);
+    return "`" + last_name(key.path) + "` belongs to " + last_name(refused.when_key) + " " +
+           listed(refused.when, " or ");
+}
+
+// "did you mean stiffness?" of the keys that the choices let exist; of others, to which choice they belong.
+std::string meant(std::vector<const Key*> keys, std::string_view section, std::span<const double> params) {
+    const std::vector<const Key*> all = keys;
+    std::erase_if(keys, [&](const Key* key) { return !key_exists(*key, params); });
+    if (!keys.empty()) return "did you mean " + listed(names_of(keys, section), " or ") + "?";
+    return all.empty() ? "" : owner_text(*all.front(), params);
+}
+
+// Directly in the section, or in the sections in it.
+std::string synonym_of(std::string_view name, std::string_view section, bool directly, std::span<const double> params) {
+    for (const Synonyms& entry : synonyms())
+        if (is_in(entry.typed, simplified(name)) && !section.empty())
+            if (const auto keys = keys_named(entry.names, section, directly); !keys.empty())
+                return meant(keys, section, params);
+    return "";
+}
+
+std::string synonym_elsewhere(std::string_view name, std::string_view section) {
+    const std::string typed = simplified(name);
+    for (const Elsewhere& entry : elsewhere())
+        if (is_in(entry.typed, typed) && is_in(entry.sections, section))
+            return "did you mean " + listed(entry.paths, " or ") + "?";
+    return "";
 }
 
 // The sections of the schema with a key of this name, except the copies in controller.model.
@@ -83,6 +147,15 @@ Words sections_of(std::string_view name) {
         }
     }
     return sections;
+}
+
+// "`velocity` belongs to wall.motion", of the sections within this one if there are such; "" if none has the key.
+std::string section_of(std::string_view name, std::string_view section) {
+    const Words all = sections_of(name);
+    Words inner = all;
+    std::erase_if(inner, [&](const std::string& other) { return !other.starts_with(join(section, "")); });
+    if (all.empty()) return "";
+    return "`" + visible(name) + "` belongs to " + listed(section.empty() || inner.empty() ? all : inner, " or ");
 }
 
 // The paths of the keys whose last name is nearest to this one, except the copies in controller.model.
@@ -120,13 +193,21 @@ std::string suggested_key(const Node& map, const Node& node, std::string_view se
     if (const std::size_t colon = node.key.find(':'); colon != std::string::npos && node.type == Node::nothing)
         return "a blank is needed after the colon: " + visible(node.key.substr(0, colon)) + ": " +
                visible(node.key.substr(colon + 1));
-    if (const Words meant = synonyms_of(node.key, section, params); !meant.empty())
-        return "did you mean " + listed(meant, " or ") + "?";
-    if (const Words elsewhere = sections_of(node.key); !elsewhere.empty())
-        return "`" + visible(node.key) + "` belongs to " + listed(elsewhere, " or ");
-    if (const std::string here = did_you_mean(node.key, names_below(section)); !here.empty()) return here;
+    for (const std::string& hint : {synonym_elsewhere(node.key, section), synonym_of(node.key, section, true, params),
+                                    section_of(node.key, section), synonym_of(node.key, section, false, params)})
+        if (!hint.empty()) return hint;
+    if (const std::string here = did_you_mean(node.key, names_there(section, params)); !here.empty()) return here;
+    if (const std::string other = nearest(node.key, names_below(section)); !other.empty())
+        if (const Key* key = find_key(join(section, other)))
+            return "did you mean " + other + "? " + owner_text(*key, params);
     const Words paths = paths_like(node.key);
     return paths.empty() ? "" : "did you mean " + listed(paths, " or ") + "?";
+}
+
+std::string meant_instead(const Key& key, std::span<const double> params) {
+    const std::string section = key.path.substr(0, key.path.rfind('.'));
+    const std::string hint = synonym_of(last_name(key.path), section, true, params);
+    return hint.starts_with("did you mean") ? hint : "";
 }
 
 }  // namespace arm3r

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "files/yaml_tree.hpp"
+#include "schema/schema.hpp"
 
 namespace arm3r {
 
@@ -15,5 +16,8 @@ std::vector<std::string> names_there(std::string_view section, std::span<const d
 
 // A sentence for the child `node` of `map` in `section`; "" if no key is near.
 std::string suggested_key(const Node& map, const Node& node, std::string_view section, std::span<const double> params);
+
+// "did you mean joint_stiffness?" for a key that does not go with the choices made; "" if no other key has its meaning.
+std::string meant_instead(const Key& key, std::span<const double> params);
 
 }  // namespace arm3r

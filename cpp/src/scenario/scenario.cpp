@@ -198,14 +198,43 @@ private:
     }
 
     void unknown_key(const Node& map, const Node& node, const std::string& section) {
-        problem(node.key_mark, {"scenario.unknown_key", join(section, node.key),
-                                section.empty() ? "no such key" : "no such key in " + section, "",
-                                listed(names_here(section)), suggested_key(map, node, section, result_.params)});
+        Problem found{"scenario.unknown_key", join(section, node.key), "no such key" + where_text(section)};
+        if (const std::string* choice = unknown_choice_of(section)) {
+            found.hint = "which keys there are depends on " + *choice + ", and its word is not known";
+        } else {
+            found.allowed = listed(names_here(section));
+            found.hint = suggested_key(map, node, section, result_.params);
+        }
+        problem(node.key_mark, found);
     }
 
-    // All that there are where a choice is not known.
+    // " in controller where type is joint_pd"
+    std::string where_text(const std::string& section) const {
+        if (section.empty()) return "";
+        const std::string prefix = join(section, "");
+        for (const Key& key : schema()) {
+            const Key* choice = key.decided_by;
+            if (!choice || !key.path.starts_with(prefix) || unknown_choices_.contains(choice->path)) continue;
+            if (choice->path == prefix + last_name(choice->path))
+                return " in " + section + " where " + last_name(choice->path) + " is " +
+                       choice_of(result_.params, *choice);
+        }
+        return " in " + section;
+    }
+
+    // The word on which the keys of a section depend, where it is not known.
+    const std::string* unknown_choice_of(const std::string& section) const {
+        if (section.empty() || unknown_choices_.empty()) return nullptr;
+        for (const Key& key : schema())
+            for (const Key* choice = key.decided_by; choice; choice = choice->decided_by)
+                if (key.path.starts_with(section + ".") && unknown_choices_.contains(choice->path))
+                    return &choice->path;
+        return nullptr;
+    }
+
     Words names_here(const std::string& section) const {
-        return unknown_choices_.empty() ? names_there(section, result_.params) : names_below(section);
+        const bool is_unknown = section.empty() ? !unknown_choices_.empty() : unknown_choice_of(section) != nullptr;
+        return is_unknown ? names_below(section) : names_there(section, result_.params);
     }
 
     // The choice of this section whose word was written alone: `controller: joint_pd`.
@@ -236,27 +265,26 @@ private:
 
     // A key of another choice: "`section` belongs to shape brick; here the shape is cylinder".
     void refuse_other_choice(const Key& key, const Node& node) {
-        const Key* missing = &key;
-        while (std::find(missing->when.begin(), missing->when.end(), choice_of(result_.params, missing->when_key)) !=
-               missing->when.end())
-            missing = find_key(missing->when_key);
-        if (unknown_choices_.contains(missing->when_key)) return;
-        const std::string choice = last_name(missing->when_key), name = "`" + last_name(key.path) + "`";
-        const std::string& here = choice_of(result_.params, missing->when_key);
-        const std::string words = listed(missing->when, " or ");
-        if (missing->when_key == "controller.type" && here == "none" && key.path.starts_with("reference."))
+        const Key& refused = key_refused(key, result_.params);
+        if (unknown_choices_.contains(refused.when_key)) return;
+        const std::string choice = last_name(refused.when_key), name = "`" + last_name(key.path) + "`";
+        const std::string& here = choice_of(result_.params, refused.when_key);
+        const std::string words = listed(refused.when, " or ");
+        if (refused.when_key == "controller.type" && here == "none" && key.path.starts_with("reference."))
             return problem(node.key_mark, {"scenario.other_choice", key.path,
                                            "`" + key.path.substr(0, key.path.find('.')) +
                                                "` is followed by a control law, and controller.type is none",
                                            "", "", "add controller: {type: ...}, one of " + words});
-        const bool is_of_most = words_without(*missing).size() < missing->when.size();
+        const bool is_of_most = words_without(refused).size() < refused.when.size();
+        const std::string instead = meant_instead(key, result_.params);
         problem(node.key_mark,
                 {"scenario.other_choice", key.path,
                  is_of_most ? name + " does not go with " + choice + " " + here
                             : name + " belongs to " + choice + " " + words + "; here the " + choice + " is " + here,
                  "", "",
-                 is_of_most ? "take it out, or choose another " + missing->when_key
-                            : "take it out, or set " + missing->when_key + " to " + words});
+                 !instead.empty() ? instead
+                 : is_of_most     ? "take it out, or choose another " + refused.when_key
+                                  : "take it out, or set " + refused.when_key + " to " + words});
     }
 
     void wrong_shape(const Key& key, const Node& node) {

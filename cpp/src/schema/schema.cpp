@@ -755,6 +755,11 @@ double default_stiffness(std::span<const double> params, double otherwise) {
     return preset == 0 ? otherwise : stiffness_presets[preset - 1].stiffness;
 }
 
+// Whether the choice that decides on a key is one of its words.
+bool is_chosen(const Key& key, std::span<const double> params) {
+    return std::ranges::find(key.when, choice_of(params, *key.decided_by)) != key.when.end();
+}
+
 const Key* known_among(const std::vector<Key>& keys, const std::string& path) {
     const auto found = std::ranges::find(keys, path, &Key::path);
     if (found == keys.end()) throw Error(ARM3R_E_INTERNAL, "no key '" + path + "' in the schema");
@@ -928,8 +933,13 @@ double choice_index(const Key& key, std::string_view word) {
 
 bool key_exists(const Key& key, std::span<const double> params) {
     if (!key.decided_by) return true;
-    const std::string& chosen = choice_of(params, *key.decided_by);
-    return std::ranges::find(key.when, chosen) != key.when.end() && key_exists(*key.decided_by, params);
+    return is_chosen(key, params) && key_exists(*key.decided_by, params);
+}
+
+const Key& key_refused(const Key& key, std::span<const double> params) {
+    const Key* refused = &key;
+    while (is_chosen(*refused, params)) refused = refused->decided_by;
+    return *refused;
 }
 
 std::vector<std::string> words_without(const Key& key) {

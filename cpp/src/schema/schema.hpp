@@ -89,6 +89,9 @@ const std::string& choice_of(std::span<const double> params, std::string_view pa
 double choice_index(const Key& key, std::string_view word);
 bool key_exists(const Key& key, std::span<const double> params);
 
+// Of a key that does not exist: itself, or the choice above it that does not exist because of the choice at its when_key.
+const Key& key_refused(const Key& key, std::span<const double> params);
+
 // How many numbers its list may have: "3", or "2 to 16" for a list of any length; and whether the choices made in
 // `params` let a by_choice key take a list.
 std::string list_sizes(const Key& key);

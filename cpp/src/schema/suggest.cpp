@@ -34,7 +34,7 @@ std::size_t common_head(std::string_view a, std::string_view b) {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& words) {
     if (word.empty() || word.size() > longest) return {};
-    std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
+    std::size_t best = std::max<std::size_t>(word.size() > 3 ? 2 : 1, word.size() / 3) + 1;
     std::string found;
     for (const std::string& candidate : words) {
         const std::size_t d = distance(word, candidate);

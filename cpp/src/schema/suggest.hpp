@@ -7,7 +7,7 @@
 
 namespace arm3r {
 
-// Levenshtein distance with transpositions; the nearest of `words` within 2 (or a third of the length), or "".
+// Levenshtein distance with transpositions; the nearest of `words` within 2 (1 for three letters or fewer; a third of the length for long words), or "".
 std::string nearest(std::string_view word, const std::vector<std::string>& words);
 
 }  // namespace arm3r
