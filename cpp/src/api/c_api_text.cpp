@@ -13,6 +13,7 @@
 #include "files/yaml_json.hpp"
 #include "results/csv.hpp"
 #include "results/report.hpp"
+#include "scenario/json_schema.hpp"
 #include "scenario/reference_docs.hpp"
 #include "schema/schema.hpp"
 #include "setup/setup.hpp"

@@ -121,7 +121,7 @@ std::string unit_hint(std::string_view number, std::string_view unit, const Numb
         if (known.name != unit) continue;
         const std::optional<double> value = convert(number, parts_of(number), ignored);
         if (value)
-            return "numbers are plain SI: write " + shortest(*value / known.divisor) + " (" + std::string(known.si) +
+            return "numbers are plain SI: write " + yaml_number(*value / known.divisor) + " (" + std::string(known.si) +
                    ")";
     }
     constexpr std::string_view no_word = "e+-.,:_0123456789";  // e: an exponent that was not finished
@@ -208,6 +208,24 @@ std::optional<double> read_number(std::string_view text, const NumberRules& rule
 char* write_shortest(char* begin, double value) {
     return std::to_chars(begin, begin + 32, value == 0 ? 0.0 : value).ptr;
 }
+
+std::string yaml_number(std::string_view text) {
+    const Parts parts = parts_of(text);
+    if (parts.size != text.size() || parts.size == 0) return std::string(text);  // inf
+    const std::string sign = text.starts_with('-') ? "-" : "";
+    const std::size_t mantissa_end = parts.exponent ? parts.exponent - 1 : text.size();
+    std::string mantissa(text.substr(parts.whole, mantissa_end - parts.whole));
+    if (mantissa.starts_with('.')) mantissa = "0" + mantissa;
+    if (!parts.exponent) return sign + mantissa;
+    if (!parts.fraction) mantissa += ".0";
+    std::string_view exponent = text.substr(parts.exponent);
+    const bool is_negative = exponent.starts_with('-');
+    exponent.remove_prefix(exponent.find_first_not_of("+-"));
+    exponent.remove_prefix(std::min(exponent.find_first_not_of('0'), exponent.size() - 1));
+    return sign + mantissa + (is_negative ? "e-" : "e+") + std::string(exponent);
+}
+
+std::string yaml_number(double value) { return yaml_number(shortest(value)); }
 
 std::string shortest(double value) {
     char text[32];

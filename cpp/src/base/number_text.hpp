@@ -24,7 +24,12 @@ std::optional<double> read_number(std::string_view text, const NumberRules& rule
 // A double in the shortest form that reads back to the same bits; "inf". No sign on zero.
 std::string shortest(double value);
 
-// Writes the same into a buffer of at least 32 characters; returns the end.
+// The same value for a YAML file, so that readers of YAML 1.1 take it for a number too: 1.0e-9, 1.0e+6. From a text with
+// the syntax above, or from a double.
+std::string yaml_number(std::string_view text);
+std::string yaml_number(double value);
+
+// Writes the shortest form into a buffer of at least 32 characters; returns the end.
 char* write_shortest(char* begin, double value);
 
 }  // namespace arm3r

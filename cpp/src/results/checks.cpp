@@ -350,6 +350,19 @@ CheckResult evaluate_one(const Check& check, const Run& run, std::span<const dou
 
 }  // namespace
 
+std::vector<CheckForm> check_forms() {
+    std::vector<CheckForm> forms;
+    for (std::size_t i = 0; i < subjects.size(); ++i)
+        forms.push_back({subjects[i], keys_of(static_cast<Check::Subject>(i))});
+    return forms;
+}
+
+Words words_of_check(std::string_view key) {
+    if (key == "event" || key == "count") return event_types;
+    if (key == "of") return reductions;
+    return key == "summary" ? summary_number_names() : Words{};
+}
+
 std::vector<Check> read_checks(const Node& list, std::span<const double> params, std::span<const std::size_t> columns,
                                const std::string& file, std::vector<Problem>& problems) {
     std::vector<Check> checks;

@@ -33,6 +33,17 @@ struct CheckResult {
     std::string reason;
 };
 
+// How a check may be written: its subject says which keys it has.
+struct CheckForm {
+    std::string subject;
+    std::vector<std::string> keys;
+};
+
+std::vector<CheckForm> check_forms();
+
+// The words that a key of a check takes, except names of columns; none for a number or a text.
+std::vector<std::string> words_of_check(std::string_view key);
+
 // Reads a list of checks; its errors are added to `problems`. `params` determine the rows of the run, `columns` are its
 // columns (indices into column_table()).
 std::vector<Check> read_checks(const Node& list, std::span<const double> params, std::span<const std::size_t> columns,

@@ -21,82 +21,6 @@ std::string when_text(const Key& key) {
                                             : "only where " + key.when_key + " is " + listed(key.when, " or ");
 }
 
-std::string unit_text(const Key& key) {
-    return key.unit.empty() ? "" : key.kind == Kind::angle ? key.unit + ", or VALUE deg" : key.unit;
-}
-
-// ---- JSON Schema
-
-std::string bound(const char* name, double value, bool open) {
-    if (std::isinf(value)) return {};
-    return std::string(", \"") + (open ? "exclusiveM" : "m") + (name + 1) + "\": " + shortest(value);
-}
-
-std::string number_schema(const Key& key) {
-    const std::string type = key.kind == Kind::integer ? "integer" : "number";
-    const std::string number = "{\"type\": \"" + type + "\"" + bound("minimum", key.bounds.low, key.bounds.open_low) +
-                               bound("maximum", key.bounds.high, key.bounds.open_high) + "}";
-    if (key.kind == Kind::angle)
-        return "{\"anyOf\": [" + number + ", {\"type\": \"string\", \"pattern\": \"^[-+.0-9e]+ +deg$\"}]}";
-    if (key.allow_infinity) return "{\"anyOf\": [" + number + ", {\"const\": \"inf\"}]}";
-    return number;
-}
-
-std::string value_schema(const Key& key) {
-    if (key.kind == Kind::flag) return "{\"type\": \"boolean\"}";
-    if (key.kind == Kind::choice) {
-        std::vector<std::string> words;
-        for (const std::string& word : key.choices) words.push_back(json_string(word));
-        return "{\"enum\": [" + listed(words, ", ") + "]}";
-    }
-    const std::string number = number_schema(key), most = std::to_string(key.size);
-    const std::string fewest = key.form == Form::list ? std::to_string(key.min_size) : most;
-    const std::string list =
-        "{\"type\": \"array\", \"items\": " + number + ", \"minItems\": " + fewest + ", \"maxItems\": " + most + "}";
-    switch (key.form) {
-        case Form::vector_or_word: return "{\"anyOf\": [" + list + ", {\"const\": " + json_string(key.word) + "}]}";
-        case Form::number_or_vector:
-        case Form::by_choice: return "{\"anyOf\": [" + number + ", " + list + "]}";
-        case Form::list: return list;
-        default: return key.size == 1 ? number : list;
-    }
-}
-
-std::string sentence(const Key& key) {
-    std::string out = key.doc;
-    if (!key.unit.empty()) out += " [" + unit_text(key) + "]";
-    if (!key.when_key.empty()) out += " (" + when_text(key) + ")";
-    return out;
-}
-
-// The schema of a value with a description put in as its first member.
-std::string described(const std::string& schema, const std::string& description) {
-    return "{\"description\": " + json_string(description) + ", " + schema.substr(1);
-}
-
-std::string checks_schema() {
-    return R"({"description": "Claims that are held against the run.", "type": "array", "items": {"type": "object"}})";
-}
-
-std::string section_schema(const std::string& section, const std::string& indent) {
-    const std::string inner = indent + "  ";
-    std::vector<std::string> properties;
-    for (const std::string& name : names_below(section)) {
-        const std::string path = join(section, name);
-        const Key* key = find_key(path);
-        std::string schema;
-        if (path == "format") schema = "{\"description\": \"Version of this format.\", \"const\": 1}";
-        else if (path == "name")
-            schema = "{\"description\": \"Default: the file's stem.\", \"type\": [\"string\", \"number\"]}";
-        else if (path == "checks") schema = checks_schema();
-        else if (!is_section(path)) schema = described(value_schema(*key), sentence(*key));
-        else schema = key ? described(section_schema(path, inner), sentence(*key)) : section_schema(path, inner);
-        properties.push_back(inner + json_string(name) + ": " + schema);
-    }
-    return "{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\n" + listed(properties, ",\n") +
-           "\n" + indent + "}}";
-}
-
 // ---- Markdown
 
 std::string cell(const std::string& text) {
@@ -121,8 +45,8 @@ std::string range_text(const Key& key) {
     if (key.kind == Kind::choice) return listed(key.choices, ", ");
     if (key.kind == Kind::flag) return "true, false";
     if (key.kind == Kind::section) return "a map";
-    std::string out = (key.bounds.open_low ? "> " : "") + shortest(key.bounds.low) + " to " +
-                      (key.bounds.open_high ? "< " : "") + shortest(key.bounds.high);
+    std::string out = (key.bounds.open_low ? "> " : "") + yaml_number(key.bounds.low) + " to " +
+                      (key.bounds.open_high ? "< " : "") + yaml_number(key.bounds.high);
     if (key.allow_infinity) out += ", inf";
     if (key.form == Form::vector_or_word) out += ", " + key.word;
     return out;
@@ -131,7 +55,7 @@ std::string range_text(const Key& key) {
 std::string numbers_as_text(const std::vector<double>& values) {
     std::vector<std::string> given;
     for (const double value : values)
-        if (!std::isnan(value)) given.push_back(shortest(value));
+        if (!std::isnan(value)) given.push_back(yaml_number(value));
     return given.size() == 1 ? given[0] : "[" + listed(given, ", ") + "]";
 }
 
@@ -189,6 +113,15 @@ files.
 Numbers are decimal: `[+-]digits[.digits][e[+-]digits]`, also `.5`; no quotes, no leading zeros. They are SI and
 radians; where the unit says so, `VALUE deg` is VALUE*pi/180. Anchors, aliases, tags, merge keys, duplicate keys and
 second documents are errors.
+
+Other programs may read YAML 1.1, as PyYAML does: to them a number with an exponent is text unless it has a point and a
+signed exponent. All files of arm3r, and all that `arm3r check`, `arm3r template` and `to_yaml` print, have numbers such
+as `1.0e-9` and `1.0e+6` therefore, which every reader takes for numbers. `30 deg` and `inf` are text to other readers.
+
+The line `# yaml-language-server: $schema=PATH` at the head of a file tells an editor where the JSON Schema lies:
+`arm3r schema` prints it, and `arm3r template` writes the line for the schema that is installed. The editor then offers
+the keys that the chosen `type`, `law`, `shape` or `method` has, shows their meaning and their defaults, and marks
+mistakes.
 
 The source of a default: *lecture* says it, *inferred* follows from what the lecture says, *our choice* is neither.
 
@@ -265,10 +198,8 @@ void add_docs(Node& node, const std::string& path) {
 
 }  // namespace
 
-std::string schema_json() {
-    return R"({"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "arm3r scenario", )"
-           R"("required": ["format"], )" +
-           section_schema("", "").substr(1) + "\n";
+std::string unit_text(const Key& key) {
+    return key.unit.empty() ? "" : key.kind == Kind::angle ? key.unit + ", or VALUE deg" : key.unit;
 }
 
 std::string schema_markdown() {

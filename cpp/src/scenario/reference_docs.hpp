@@ -3,10 +3,12 @@
 
 #include <string>
 
+#include "schema/schema.hpp"
+
 namespace arm3r {
 
-std::string schema_json();  // JSON Schema, draft 2020-12
 std::string schema_markdown();
+std::string unit_text(const Key& key);  // "rad, or VALUE deg"; "" for none
 std::string columns_text();
 std::string columns_markdown();
 std::string scenario_template();

@@ -31,8 +31,9 @@ bool is_number(const Node& node) {
 }
 
 std::string scalar_yaml(const Node& node) {
-    const bool literal = !node.quoted && (is_number(node) || node.text == "true" || node.text == "false" ||
-                                          node.text == "inf" || node.text == "-inf");
+    if (is_number(node)) return yaml_number(node.text);
+    const bool literal =
+        !node.quoted && (node.text == "true" || node.text == "false" || node.text == "inf" || node.text == "-inf");
     return literal || is_plain_word(node.text) ? node.text : json_string(node.text);
 }
 

@@ -20,7 +20,7 @@ std::string item_path(const Key& key, std::size_t item, std::size_t count) {
 
 std::string range_of(const Key& key) {
     const Bounds& b = key.bounds;
-    return std::string(b.open_low ? "(" : "[") + shortest(b.low) + ", " + shortest(b.high) + (b.open_high ? ")" : "]") +
+    return std::string(b.open_low ? "(" : "[") + yaml_number(b.low) + ", " + yaml_number(b.high) + (b.open_high ? ")" : "]") +
            (key.unit.empty() ? "" : " " + key.unit) + (key.allow_infinity ? " or inf" : "");
 }
 

@@ -9,9 +9,9 @@ import warnings
 from collections.abc import Sequence
 from typing import Any
 
+from .._progress_bar import Bar
 from ..errors import Arm3rError
 from .exit_codes import FAILED_RUNS, end_by_signal, exit_code, print_line
-from .progress_bar import Bar
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -53,8 +53,17 @@ def parser() -> argparse.ArgumentParser:
     add("--resume", action="store_true", help="go on where an interrupted sweep in DIR stopped")
     add("--set", action="append", default=[], metavar="PATH=VALUE", help="put a value into the scenario")
     add("--parquet", action="store_true", help="table.parquet instead of table.csv; needs pyarrow")
+    add("--schema", action=_PrintSchema, nargs=0, help="print the JSON Schema of sweep files, for editors")
     add("--version", action="version", version=f"arm3r-sweep {version}")
     return parser
+
+
+class _PrintSchema(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from ..sweeps.json_schema import sweep_schema
+
+        print_line(sweep_schema().rstrip("\n"))
+        parser.exit()
 
 
 def _say(message: Warning | str, *_: Any) -> None:

@@ -12,7 +12,11 @@ from .axes import DISTRIBUTIONS, SPACES, SweepAxis
 from .yaml_reader import Node, Reader, below, flow
 
 MAX_RUNS = 10**10
-RULES = ("values", *SPACES, *DISTRIBUTIONS)
+RULES = {
+    "values": "These: numbers, words, true and false, or lists where the key takes several numbers.",
+    **dict.fromkeys(SPACES, "[a, b, n]: n numbers from a to b, by equal steps (linspace) or equal ratios (geomspace)."),
+    **dict.fromkeys(DISTRIBUTIONS, "[a, b], or [mean, deviation] of normal: drawn from this distribution."),
+}
 
 
 def read_axes(reader: Reader, top: dict[str, Node], mode: str) -> tuple[SweepAxis, ...]:
@@ -33,7 +37,7 @@ def read_axes(reader: Reader, top: dict[str, Node], mode: str) -> tuple[SweepAxi
     return tuple(axes)
 
 
-_EXAMPLE_AXIS = "such as {key: wall.contact.stiffness, geomspace: [1e2, 1e6, 40]}"
+_EXAMPLE_AXIS = "such as {key: wall.contact.stiffness, geomspace: [1.0e+2, 1.0e+6, 40]}"
 
 
 def _read_axis(reader: Reader, node: Node, path: str, mode: str) -> SweepAxis | None:

@@ -23,7 +23,20 @@ from .yaml_reader import Node, Reader, below, flow, position, quoted
 
 FORMAT = 1
 MAX_COMBINATIONS_TRIED = 256
-KEYS = ("format", "scenario", "set", "axes", "mode", "runs", "seed", "metrics", "statistics", "shard")
+KEYS = {
+    "format": "Version of this format.",
+    "scenario": "A scenario's file, looked for beside this one, or a scenario as a map.",
+    "set": "Values by path, which are put into the scenario.",
+    "axes": "What varies: a key of the scenario each, and a rule for its values.",
+    "mode": "grid: every combination, the last axis the fastest; list: all axes together; the others draw.",
+    "runs": "How many runs are drawn; only in the modes random and latin_hypercube, which need it.",
+    "seed": "Seed of what is drawn.",
+    "metrics": "Columns of the summary that are kept, besides the outcome; default: all.",
+    "statistics": "Numbers made of columns of the run itself, which is then simulated once more.",
+    "shard": "Runs in one piece of work, which a worker holds in memory.",
+}
+DEFAULT_SEED = 1
+DEFAULT_SHARD, MAX_SHARD = 1000, 10**6
 
 
 class Sweep:
@@ -61,8 +74,8 @@ class Sweep:
         reader = Reader(file)
         top = reader.map(_native.yaml(data, file), "", KEYS)
         _read_format(reader, top)
-        self.shard: int = _whole(reader, top, "shard", 1000, 1, 10**6)
-        self.seed: int = _whole(reader, top, "seed", 1, 0, 2**53 - 1)
+        self.shard: int = _whole(reader, top, "shard", DEFAULT_SHARD, 1, MAX_SHARD)
+        self.seed: int = _whole(reader, top, "seed", DEFAULT_SEED, 0, 2**53 - 1)
         self.mode: str = (reader.word(top["mode"], "mode", MODES) if "mode" in top else None) or MODES[0]
         self.metrics = _read_metrics(reader, top)
         self.axes = read_axes(reader, top, self.mode)
@@ -182,10 +195,7 @@ def _read_scenario(reader: Reader, top: dict[str, Node], overrides: Sequence[str
         for node in top.get("set", {}).get("map", []):
             scenario._edit(node["key"], flow(node), f"{reader.place(node)}: set")
         for override in overrides:
-            path, equals, value = override.partition("=")
-            if not equals:
-                raise UsageError(f"--set {override}: PATH=VALUE is needed, such as time.stop=5", code="usage")
-            scenario._edit(path, value, "--set")
+            scenario._set_from_option(override)
         scenario.validate()
         return scenario
     except ScenarioError as error:
