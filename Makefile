@@ -8,8 +8,8 @@ BIN    := $(VENV)/bin
 export PATH := $(abspath $(BIN)):$(PATH)
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md \
-           $(shell find cpp cmake python -type f -not -path '*/__pycache__/*')
+SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md $(wildcard docs/*.schema.json) \
+           $(shell find cpp cmake python scenarios -type f -not -path '*/__pycache__/*')
 CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
@@ -53,10 +53,11 @@ clean:
 
 # The package, built in the tree that the C++ tests are built in too, so that nothing is compiled twice.
 $(VENV)/installed: $(SOURCES) | $(VENV)/tools
-	SKBUILD_BUILD_DIR=$(BUILD) $(PIP) --no-build-isolation .
+	@SKBUILD_BUILD_DIR=$(BUILD) $(BIN)/python cmake/install_package.py
 	@touch $@
 
 $(VENV)/tools: pyproject.toml
+	@echo "Fetching the build's tools (cmake, ninja, Eigen, yaml-cpp) into $(VENV): about a minute."
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) $$($(BIN)/python cmake/build_requires.py)
 	@touch $@

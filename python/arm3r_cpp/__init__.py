@@ -1,7 +1,7 @@
 """arm3r: dynamics, wall contact and simulation of a 3R spatial arm.
 
 >>> import arm3r_cpp as arm3r
->>> run = arm3r.Scenario.load("scenarios/moving_wall.yaml").run()
+>>> run = arm3r.Scenario.example("moving_wall").run()
 >>> run["f_on_wall_x"][-1], run.events, run.passed
 
 `Scenario` reads, changes and runs scenarios, `Run` holds results, `Arm` has the functions of the model, `plot` draws,

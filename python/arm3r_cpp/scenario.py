@@ -7,15 +7,17 @@ import math
 import os
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from . import _native
 from ._native import BatchProgress, Floats, Progress, lib
+from ._progress_bar import shown
 from .arm import Arm
 from .control.law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
 from .errors import UsageError, class_of_outcome
+from .examples import FOLDER, is_sweep, path_of
 from .params import param_count
 from .run import Run
 
@@ -28,7 +30,7 @@ _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the 
 class Scenario:
     """A scenario: read from YAML, changed by path, validated and run by the library.
 
-    >>> scenario = Scenario.load("scenarios/moving_wall.yaml")
+    >>> scenario = Scenario.example("moving_wall")
     >>> scenario["wall.contact.stiffness"] = 500
     >>> run = scenario.run()
     """
@@ -55,6 +57,20 @@ class Scenario:
             ScenarioError: as for a text.
         """
         return cls._of(_native.create("scenario", lib.arm3r_scenario_load, *_native.file_path(path)), os.fspath(path))
+
+    @classmethod
+    def example(cls, name: str) -> Scenario:
+        """A scenario that is installed with the package, such as "moving_wall" or "lecture/05_free_fall".
+
+        The command `arm3r examples` lists them.
+
+        Raises:
+            UsageError: there is no such scenario; the message names the nearest one.
+        """
+        path = path_of(name)
+        if is_sweep(path.relative_to(FOLDER).as_posix()):
+            raise UsageError(f"{name}: is a sweep; arm3r.sweep({str(path)!r}, out=...) runs it", code="usage")
+        return cls.load(path)
 
     @classmethod
     def _of(cls, handle: Any, file: str) -> Scenario:
@@ -101,6 +117,17 @@ class Scenario:
         """
         place = _native.utf8(path, "path")
         _native.call(lib.arm3r_scenario_set, self._handle, *place, *_native.utf8(flow(value, path), path))
+
+    def _set_from_option(self, text: str) -> None:
+        """Put a value given as "PATH=VALUE" with VALUE in YAML, as the commands' option --set takes it.
+
+        Raises:
+            UsageError: there is no "=".
+        """
+        path, equals, value = text.partition("=")
+        if not (path and equals):
+            raise UsageError(f"--set {text}: PATH=VALUE is needed, such as time.stop=5", code="usage")
+        self._edit(path, value, "--set")
 
     def _edit(self, path: str, value: str, origin: str) -> None:
         """Put YAML text at a path; messages call the place it came from `origin`."""
@@ -201,7 +228,7 @@ class Scenario:
         *,
         grid: bool = False,
         threads: int | None = None,
-        progress: BatchProgress | None = None,
+        progress: BatchProgress | Literal[False] | None = None,
     ) -> Batch:
         """Many runs at once: a table of their summaries, without rows. Ctrl-C ends it at once with KeyboardInterrupt.
 
@@ -216,7 +243,8 @@ class Scenario:
             grid: False: the arrays broadcast as NumPy's do; True: every value of each with every one of the others.
             threads: how many; None: one for each CPU that this process may use. It never changes a result.
             progress: called as progress(runs_done, runs) at most every 20 ms; a true result ends the runs left as
-                `stopped`, and what it raises comes out unchanged.
+                `stopped`, and what it raises comes out unchanged. None: a bar on stderr, if that is a terminal and the
+                runs take longer than a second; False: nothing.
 
         Raises:
             UsageError: a key that there is not, a number that varies twice, or arrays of shapes that do not fit.
@@ -226,7 +254,8 @@ class Scenario:
         """
         from .batch import run_batch  # it stands above this module
 
-        return run_batch(self, values, grid=grid, threads=threads, progress=progress)
+        with shown(progress, "batch", "runs") as report:
+            return run_batch(self, values, grid=grid, threads=threads, progress=report)
 
 
 def _restore(text: str, file: str) -> Scenario:

@@ -17,10 +17,15 @@ import pytest
         ("scenario.md", ["schema", "--format", "md"]),
         ("columns.md", ["columns", "--format", "md"]),
         ("scenario.schema.json", ["schema"]),
+        ("sweep.schema.json", ["sweep", "--schema"]),
     ],
 )
-def test_generated_pages_are_what_the_program_prints(root: Path, cli, page: str, call: list[str]) -> None:
-    assert (root / "docs" / page).read_text() == cli(*call).stdout, f"arm3r {' '.join(call)} > docs/{page}"
+def test_generated_pages_are_what_the_program_prints(
+    root: Path, cli, scripts: Path, page: str, call: list[str]
+) -> None:
+    environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
+    printed = cli(*call, env=environment).stdout
+    assert (root / "docs" / page).read_text() == printed, f"arm3r {' '.join(call)} > docs/{page}"
 
 
 def test_every_equation_the_code_cites_is_in_the_model(root: Path) -> None:
@@ -48,33 +53,28 @@ def _block(root: Path, language: str, section: str) -> str:
     return text.split(f"```{language}\n")[1].split("```")[0]
 
 
-@pytest.fixture
-def beside_the_scenarios(root: Path, tmp_path: Path) -> Path:
-    (tmp_path / "scenarios").symlink_to(root / "scenarios")
-    return tmp_path
-
-
-def test_the_readmes_python_prints_what_it_says(root: Path, beside_the_scenarios: Path) -> None:
+def test_the_readmes_python_prints_what_it_says(root: Path, tmp_path: Path) -> None:
+    """In an empty folder: the installed package has all that it reads."""
     code = _block(root, "python", "Python")
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=beside_the_scenarios, capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     promised = re.findall(r"print\(.*\)\s+# (.*)", code)
     assert promised
     for line in promised:
         assert line in done.stdout
-    assert (beside_the_scenarios / "overview.png").stat().st_size > 10_000
+    assert (tmp_path / "overview.png").stat().st_size > 10_000
 
 
-def test_the_readmes_shell_lines_run(root: Path, beside_the_scenarios: Path, scripts: Path) -> None:
-    lines = _block(root, "sh", "Shell")
+def test_the_readmes_shell_lines_run(root: Path, tmp_path: Path, scripts: Path) -> None:
+    """In an empty folder, into which the line above the block copies the scenarios."""
+    assert "`arm3r examples --copy scenarios`" in (root / "README.md").read_text()
+    lines = "arm3r examples --copy scenarios > /dev/null\n" + _block(root, "sh", "Shell")
     done = subprocess.run(
         ["bash", "-ec", lines],
-        cwd=beside_the_scenarios,
+        cwd=tmp_path,
         capture_output=True,
         text=True,
         env={**os.environ, "PATH": f"{scripts}:{os.environ['PATH']}"},
     )
     assert done.returncode == 0, done.stderr
     assert "FAIL" not in done.stdout
-    assert list((beside_the_scenarios / "figures").glob("*.png"))
+    assert list((tmp_path / "figures").glob("*.png"))

@@ -22,9 +22,23 @@ constexpr Call calls[] = {
     {"template", "", "print a commented scenario to start from", 0, 0},
 };
 
+// Programs of the Python package, which are called as `arm3r NAME`.
+struct Program {
+    std::string_view name, operands, does;
+};
+
+constexpr Program programs[] = {
+    {"examples", "[NAME]", "list the scenarios of this installation, print one, or copy them into a folder"},
+    {"plot", "RUN", "draw figures of a run, of several runs, or of a sweep"},
+    {"animate", "RUN", "draw a film of a run"},
+    {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
+};
+
 struct Option {
     std::string_view name, letter, value, calls, does;  // letter: the short form; value "": a flag; calls "": all
 };
+
+constexpr std::string_view no_call = "-";  // as `calls` of an option of the program itself
 
 constexpr Option options[] = {
     {"--output", "-o", "OUT", "run",
@@ -32,11 +46,13 @@ constexpr Option options[] = {
      "made"},
     {"--set", "", "PATH=VALUE", "run check",
      "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
+    {"--no-checks", "", "", "run", "leave out the scenario's checks, which hold for its own values only"},
     {"--json", "", "", "run", "print the summary as JSON: one object, or an array for several files"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
     {"--format", "", "md", "schema columns", "print a Markdown page instead"},
     {"--help", "-h", "", "", "print this"},
     {"--version", "", "", "", "print the version"},
+    {"--cmake-dir", "", "", no_call, "print the folder of arm3rConfig.cmake: cmake -Darm3r_DIR=$(arm3r --cmake-dir)"},
 };
 
 constexpr std::string_view exit_codes =
@@ -111,6 +127,8 @@ void apply(const Option& option, const std::string& value, Arguments& arguments)
         arguments.time_limit = read_seconds(value);
     } else {
         arguments.json |= option.name == "--json";
+        arguments.no_checks |= option.name == "--no-checks";
+        arguments.cmake_dir |= option.name == "--cmake-dir";
         arguments.help |= option.name == "--help";
         arguments.version |= option.name == "--version";
     }
@@ -173,10 +191,16 @@ std::string option_line(const Option& option) {
 
 std::string program_help() {
     std::string out = "usage: arm3r CALL ...\n\n";
-    for (const Call& call : calls)
-        out += two_columns(std::string(call.name) + " " + std::string(call.operands), call.does);
-    out += two_columns("NAME ...", "runs arm3r-NAME, found beside this program or on PATH");
-    return out + "\narm3r CALL --help tells more; arm3r --version prints the version.\n\n" + std::string(exit_codes);
+    const auto add = [&](const auto& entry) {
+        out += two_columns(std::string(entry.name) + " " + std::string(entry.operands), entry.does);
+    };
+    std::for_each(std::begin(calls), std::end(calls), add);
+    out += "\nCalls of the Python package, which need it installed:\n\n";
+    std::for_each(std::begin(programs), std::end(programs), add);
+    out += two_columns("NAME ...", "any other NAME runs arm3r-NAME, found beside this program or on PATH") + "\n";
+    for (const Option& option : options)
+        if (option.calls.empty() || option.calls == no_call) out += option_line(option);
+    return out + "\narm3r CALL --help tells more of a call.\n\n" + std::string(exit_codes);
 }
 
 }  // namespace
@@ -184,7 +208,7 @@ std::string program_help() {
 bool is_call(std::string_view name) { return find_call(name) != nullptr; }
 
 std::string unknown_call(const std::string& name) {
-    const std::string hint = did_you_mean(name, calls);
+    const std::string own = did_you_mean(name, calls), hint = own.empty() ? did_you_mean(name, programs) : own;
     return "unknown call " + printable(name) + ", and no program arm3r-" + printable(name) +
            (hint.empty() ? "; see" : hint + " See") + " arm3r --help";
 }
@@ -203,7 +227,8 @@ Arguments read_arguments(const std::vector<std::string>& words) {
             ++at;
         }
     }
-    if (!arguments.help && !arguments.version) check_fit(arguments, used);
+    if (arguments.help || arguments.version) return arguments;
+    if (!arguments.cmake_dir || !arguments.call.empty()) check_fit(arguments, used);
     return arguments;
 }
 

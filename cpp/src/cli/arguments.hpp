@@ -33,7 +33,7 @@ struct Arguments {
     std::vector<std::pair<std::string, std::string>> edits;  // PATH, VALUE
     std::string output, format;
     double time_limit = 0;  // s; 0: none
-    bool json = false, help = false, version = false;
+    bool json = false, no_checks = false, help = false, version = false, cmake_dir = false;
 };
 
 bool is_call(std::string_view name);                              // one of the executable's own

@@ -13,6 +13,7 @@
 
 #include "arm3r/arm3r.h"
 #include "cli/arguments.hpp"
+#include "cli/installation.hpp"
 #include "cli/terminal.hpp"
 
 namespace cli {
@@ -57,10 +58,15 @@ ScenarioHandle load(const std::string& path) {
     return {scenario, arm3r_scenario_free};
 }
 
+void edit(const ScenarioHandle& scenario, const std::string& at, const std::string& value, const std::string& origin) {
+    require(arm3r_scenario_set_from(scenario.get(), at.data(), at.size(), value.data(), value.size(), origin.data(),
+                                    origin.size()));
+}
+
 ScenarioHandle load(const std::string& path, const Arguments& arguments) {
     ScenarioHandle scenario = load(path);
-    for (const auto& [at, value] : arguments.edits)
-        require(arm3r_scenario_set_from(scenario.get(), at.data(), at.size(), value.data(), value.size(), "--set", 5));
+    for (const auto& [at, value] : arguments.edits) edit(scenario, at, value, "--set");
+    if (arguments.no_checks) edit(scenario, "checks", "[]", "--no-checks");
     require(arm3r_scenario_validate(scenario.get()));
     return scenario;
 }
@@ -235,13 +241,20 @@ int call_check(const Arguments& arguments) {
     return exit_ok;
 }
 
+// The line at the head tells an editor where the schema lies.
+void call_template() {
+    if (const std::string schema = scenario_schema(); !schema.empty())
+        print("# yaml-language-server: $schema=" + schema + "\n");
+    print(arm3r_template());
+}
+
 int call(const Arguments& arguments) {
     const bool markdown = arguments.format == "md";
     if (arguments.call == "run") return call_run(arguments);
     if (arguments.call == "check") return call_check(arguments);
     if (arguments.call == "schema") print(markdown ? arm3r_schema_markdown() : arm3r_schema_json());
     if (arguments.call == "columns") print(markdown ? arm3r_columns_markdown() : arm3r_columns_text());
-    if (arguments.call == "template") print(arm3r_template());
+    if (arguments.call == "template") call_template();
     return exit_ok;
 }
 
@@ -289,10 +302,12 @@ std::vector<std::string> own_directories(const std::string& outlined) {
 
 int main(int count, char** words) {
     if (count > 1 && words[1][0] != '-' && !is_call(words[1])) become(words[1], words);
-    const Arguments arguments = read_arguments({words + std::min(count, 1), words + count});
+    if (count <= 1) return print(help("")), exit_ok;
+    const Arguments arguments = read_arguments({words + 1, words + count});
     if (arguments.help) return print(help(arguments.call)), exit_ok;
     if (arguments.version)
         return print("arm3r " + std::string(arm3r_version()) + "\n" + arm3r_build_info() + "\n"), exit_ok;
+    if (arguments.cmake_dir) return print(cmake_directory() + "\n"), exit_ok;
     return call(arguments);
 }
 

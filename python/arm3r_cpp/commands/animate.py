@@ -7,8 +7,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from .._progress_bar import Bar
 from .exit_codes import attempt, print_line
-from .progress_bar import Bar
+from .run_source import add_set, read
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -33,6 +34,7 @@ def parser() -> argparse.ArgumentParser:
     add("-o", dest="out", type=Path, metavar="PATH", help="NAME.gif, NAME.mp4 (by ffmpeg, if it is on PATH), or a new "
         "folder for PNG files (default: RUN.gif here)")  # fmt: skip
     add("--fps", type=float, metavar="N", default=25.0, help="frames a second of the film (default: 25)")
+    add_set(parser)
     pace = parser.add_mutually_exclusive_group()
     pick = pace.add_argument
     pick("--speed", type=float, metavar="X", default=1.0, help="seconds of the run in one of the film (default: 1)")
@@ -42,10 +44,9 @@ def parser() -> argparse.ArgumentParser:
 
 def film(options: argparse.Namespace, bar: Bar) -> None:
     from ..animation.animate import animate
-    from .plot import read
 
     out: Path = options.out or Path(f"{options.run.stem}.gif")
-    run, failure = read(options.run)
+    run, failure = read(options.run, options.set)
     animate(run, out, fps=options.fps, speed=options.speed, every=options.every, progress=bar.draw)
     bar.clear()
     print_line(out)

@@ -21,6 +21,10 @@ def animate() -> int:
     return _call("animate")
 
 
+def examples() -> int:
+    return _call("examples")
+
+
 def _call(module: str) -> int:
     main = import_module(f".{module}", __package__).main
     if _OURS:

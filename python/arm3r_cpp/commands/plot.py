@@ -9,17 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._files import check_folder, make_folder
-from ..errors import Arm3rError, UsageError
+from ..errors import UsageError
 from ..plot.figure_files import check_format, write
 from ..plot.style import FORMATS, WIDTH
 from .exit_codes import attempt, print_line
+from .run_source import add_set, read
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..run import Run
 
-SCENARIOS = (".yaml", ".yml")
 MIN_WIDTH, MAX_WIDTH = 3.0, 12.0  # inches
 
 
@@ -35,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def draw(options: argparse.Namespace) -> None:
-    runs = {path: read(path) for path in paths_of(options)}
+    runs = {path: read(path, options.set) for path in paths_of(options)}
     target = target_of(options)
     save({path: run for path, (run, _) in runs.items()}, options, target)
     for _, failure in runs.values():
@@ -74,6 +74,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="PATH",
         help="folder, made if it is missing, or without --lecture also a file in a folder that exists (default: here)",
     )
+    add_set(parser)
     add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
     width = f"of --force and --compare (default: {WIDTH}; 3.4 fits a journal's column)"
     add("--width", type=inches, metavar="INCHES", help=width)
@@ -109,21 +110,6 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
     if options.format not in (None, out.suffix[1:]):
         raise UsageError(f"-o {out}: is not {options.format}; leave --format away or change the name")
     return out.with_suffix(""), out.suffix[1:]
-
-
-def read(path: Path) -> tuple[Run, Arm3rError | None]:
-    """The run; and why it is only a partial one, if it is."""
-    from ..run import Run
-    from ..scenario import Scenario
-
-    if path.suffix not in SCENARIOS:
-        return Run.load(path), None
-    try:
-        return Scenario.load(path).run(), None
-    except Arm3rError as error:
-        if error.run is None:
-            raise
-        return error.run, error
 
 
 def save(runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path, str]) -> None:

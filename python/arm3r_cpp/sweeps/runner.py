@@ -23,6 +23,8 @@ from .table import SweepTable
 from .table_io import merge, pyarrow
 
 Submit = Callable[[ShardJob], "Future[ShardResult]"]
+UnderWay = dict[int, int]
+"""How many runs of a shard are done while it is computed, by its first run; only threads say so."""
 
 IN_FLIGHT = 64  # shards, of an executor that does not say how many workers it has
 
@@ -74,8 +76,9 @@ def sweep(
     plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
     job = _first_job(plan, "parquet" if parquet else "csv")
     with SweepFolder.open(Path(out), _manifest(plan, job), resume=resume) as folder:
-        with _submitting(executor, jobs) as (submit, at_a_time):
-            _run(plan, job, folder, submit, at_a_time, progress)
+        under_way: UnderWay = {}
+        with _submitting(executor, jobs, under_way) as (submit, at_a_time):
+            _run(plan, job, folder, submit, at_a_time, under_way, progress)
         with replacing(folder.path / f"table.{job.table}") as part, part.open("wb") as file:
             merge(map(folder.read, range(_shards(plan))), columns_of(job), job.table, file)
     return SweepTable(out)
@@ -125,6 +128,7 @@ def _run(
     folder: SweepFolder,
     submit: Submit,
     at_a_time: int,
+    under_way: UnderWay,
     progress: Callable[[int, int], Any] | None,
 ) -> None:
     """Compute and store every shard that the folder does not have; at most `at_a_time` are on their way."""
@@ -143,7 +147,8 @@ def _run(
             for future in finished:
                 shard = pending.pop(future)
                 folder.store(*shard, *future.result())
-            if progress and progress(folder.runs_done, plan.runs):
+                under_way.pop(shard[1], None)
+            if progress and progress(folder.runs_done + sum(list(under_way.values())), plan.runs):
                 raise Arm3rError(f"{folder.path}: stopped after {folder.runs_done} of {plan.runs} runs", code="stopped")
     except BrokenExecutor as broken:
         message = f"a worker died; {folder.runs_done} of {plan.runs} runs are finished, and resuming goes on from there"
@@ -154,7 +159,7 @@ def _run(
 
 
 @contextmanager
-def _submitting(executor: Executor | None, jobs: int | None) -> Iterator[tuple[Submit, int]]:
+def _submitting(executor: Executor | None, jobs: int | None, under_way: UnderWay) -> Iterator[tuple[Submit, int]]:
     """The function that submits a job, and how many jobs are submitted at a time."""
     if executor is not None:
         yield lambda job: executor.submit(run_shard, job), IN_FLIGHT if jobs is None else max(1, jobs)
@@ -162,15 +167,19 @@ def _submitting(executor: Executor | None, jobs: int | None) -> Iterator[tuple[S
     threads = _allowed(jobs)
     left = threading.Event()
 
-    def go_on(runs_done: int, runs: int) -> None:
-        if left.is_set():
-            raise Arm3rError("the sweep was left", code="stopped")
+    def computed(job: ShardJob) -> ShardResult:
+        def go_on(runs_done: int, runs: int) -> None:
+            under_way[job.first] = runs_done
+            if left.is_set():
+                raise Arm3rError("the sweep was left", code="stopped")
+
+        return run_shard(job, go_on)
 
     if threading.current_thread().daemon:
         _of_daemons.add(left)
     with ThreadPoolExecutor(threads) as pool:
         try:
-            yield lambda job: pool.submit(run_shard, job, go_on), 2 * threads
+            yield lambda job: pool.submit(computed, job), 2 * threads
         finally:
             left.set()
             _of_daemons.discard(left)

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Literal
+
+Progress = Callable[[int, int], Any]
 
 BAR = 30  # characters
+DELAY = 1.0  # s, before a bar is shown
 
 
 class Bar:
@@ -21,7 +27,7 @@ class Bar:
     def draw(self, done: int, all_of_them: int) -> None:
         seconds = time.monotonic() - self.start
         self.before = done if self.before is None else self.before
-        if seconds < 1 or not sys.stderr.isatty():
+        if seconds < DELAY or not sys.stderr.isatty():
             return
         rate = (done - self.before) / seconds
         left = f"{_clock((all_of_them - done) / rate)} left" if rate else "-"
@@ -36,6 +42,19 @@ class Bar:
         if self.drawn:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
         self.drawn = False
+
+
+@contextmanager
+def shown(progress: Progress | Literal[False] | None, work: str, things: str) -> Iterator[Progress | None]:
+    """What reports the progress of a call that the user may watch: his own function, or a bar; False: nothing."""
+    if progress is not None:
+        yield progress or None
+        return
+    bar = Bar(work, things)
+    try:
+        yield bar.draw
+    finally:
+        bar.clear()
 
 
 def _clock(seconds: float) -> str:

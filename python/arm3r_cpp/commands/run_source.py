@@ -1,0 +1,41 @@
+"""The run that a command draws: a finished one from its file, or a scenario that is run now."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import Arm3rError, UsageError
+
+if TYPE_CHECKING:
+    from ..run import Run
+
+SCENARIOS = (".yaml", ".yml")
+
+
+def add_set(parser: argparse.ArgumentParser) -> None:
+    """The option by which a scenario is changed before it is run."""
+    help = "put VALUE in place of what stands at PATH of a scenario .yaml; again for more"
+    parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help=help)
+
+
+def read(path: Path, edits: Sequence[str] = ()) -> tuple[Run, Arm3rError | None]:
+    """The run, of a scenario with these edits; and why it is only a partial one, if it is."""
+    from ..run import Run
+    from ..scenario import Scenario
+
+    if path.suffix not in SCENARIOS:
+        if edits:
+            raise UsageError(f"--set {edits[0]}: {path} is a finished run; give a scenario's .yaml", code="usage")
+        return Run.load(path), None
+    scenario = Scenario.load(path)
+    for edit in edits:
+        scenario._set_from_option(edit)
+    try:
+        return scenario.run(), None
+    except Arm3rError as error:
+        if error.run is None:
+            raise
+        return error.run, error
