@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +101,16 @@ SCENARIO, SWEEP = (jsonschema.Draft7Validator(schema_of(name)) for name in ("sce
 def test_the_schemas_are_schemas() -> None:
     for schema in (SCENARIO, SWEEP):
         jsonschema.Draft7Validator.check_schema(schema.schema)
+        for words in enums(schema.schema):
+            assert len(set(words)) == len(words)  # editors refuse a schema in which a word stands twice
+
+
+def enums(schema: Any) -> Iterator[list[str]]:
+    for key, value in schema.items() if isinstance(schema, dict) else enumerate(schema):
+        if key == "enum":
+            yield value
+        elif isinstance(value, (dict, list)):
+            yield from enums(value)
 
 
 @pytest.mark.parametrize("path", FILES, ids=name_of)

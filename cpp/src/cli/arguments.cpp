@@ -17,7 +17,7 @@ struct Call {
 constexpr Call calls[] = {
     {"run", "FILE...", "simulate scenarios (- is standard input); the summary goes to standard output", 1, 10'000},
     {"check", "FILE", "validate a scenario and print it resolved, each value with its origin", 1, 1},
-    {"schema", "", "print the JSON Schema of scenario files", 0, 0},
+    {"schema", "", "print the JSON Schema of scenario files; arm3r sweep --schema prints that of sweep files", 0, 0},
     {"columns", "", "print name, unit and meaning of every column of a run", 0, 0},
     {"template", "", "print a commented scenario to start from", 0, 0},
 };

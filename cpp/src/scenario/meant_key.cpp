@@ -31,7 +31,7 @@ struct Synonyms {
 const std::vector<Synonyms>& synonyms() {
     static const std::vector<Synonyms> table = {
         {{"k", "kp", "p", "ke", "kn", "kenv", "stiffness", "jointstiffness", "positiongain"},
-         {"joint_stiffness", "position_gain", "stiffness"}},
+         {"joint_stiffness", "position_gain", "stiffness", "gain"}},
         {{"b", "c", "d", "kd", "kv", "de", "damping", "jointdamping", "velocitygain"},
          {"joint_damping", "velocity_gain", "damping", "force_damping"}},
         {{"i", "ki", "kif", "kfi"}, {"force_integral_gain", "inertia", "inertia_axial"}},
@@ -42,6 +42,8 @@ const std::vector<Synonyms>& synonyms() {
          {"joint_stiffness", "joint_damping", "position_gain", "velocity_gain", "stiffness", "damping", "force_gain",
           "gain"}},
         {{"ko"}, {"gain"}},
+        {{"q0", "theta", "angles", "position"}, {"q"}},
+        {{"qd0", "dq", "dq0", "qdot", "qdot0", "rates", "velocities"}, {"qd"}},
         {{"l", "len"}, {"length"}},
         {{"rho"}, {"density"}},
         {{"lc", "cog", "centerofmass", "centreofmass"}, {"com"}},
@@ -193,8 +195,10 @@ std::string suggested_key(const Node& map, const Node& node, std::string_view se
     if (const std::size_t colon = node.key.find(':'); colon != std::string::npos && node.type == Node::nothing)
         return "a blank is needed after the colon: " + visible(node.key.substr(0, colon)) + ": " +
                visible(node.key.substr(colon + 1));
+    const std::string deeper = synonym_of(node.key, section, false, params);
+    const bool is_symbol = node.key.size() == 1;  // of a textbook, rather than a column of a table such as `v`
     for (const std::string& hint : {synonym_elsewhere(node.key, section), synonym_of(node.key, section, true, params),
-                                    section_of(node.key, section), synonym_of(node.key, section, false, params)})
+                                    is_symbol ? deeper : "", section_of(node.key, section), deeper})
         if (!hint.empty()) return hint;
     if (const std::string here = did_you_mean(node.key, names_there(section, params)); !here.empty()) return here;
     if (const std::string other = nearest(node.key, names_below(section)); !other.empty())

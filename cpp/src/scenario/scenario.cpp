@@ -198,12 +198,18 @@ private:
     }
 
     void unknown_key(const Node& map, const Node& node, const std::string& section) {
-        Problem found{"scenario.unknown_key", join(section, node.key), "no such key" + where_text(section)};
+        Problem found{"scenario.unknown_key", join(section, node.key), "no such key"};
         if (const std::string* choice = unknown_choice_of(section)) {
+            found.message += " in " + section;
             found.hint = "which keys there are depends on " + *choice + ", and its word is not known";
         } else {
-            found.allowed = listed(names_here(section));
+            found.message += where_text(section);
+            const Words here = names_here(section);
+            found.allowed = listed(here);
             found.hint = suggested_key(map, node, section, result_.params);
+            const bool lacks_choice = here.size() == 1 && !map.find(here[0]);
+            if (lacks_choice && !found.hint.starts_with("did you mean"))
+                found.hint = "choose a " + here[0] + " first: the other keys depend on it";
         }
         problem(node.key_mark, found);
     }

@@ -78,4 +78,4 @@ def _rule(rule: str) -> Schema:
 def _paths() -> list[str]:
     """What `set` can name: every key, every number of a key, and every section."""
     sections = {name.rsplit(".", depth)[0] for name in places() for depth in range(1, name.count(".") + 1)}
-    return ["name", "checks", *sorted(sections), *places()]
+    return list(dict.fromkeys(["name", "checks", *sorted(sections), *places()]))
