@@ -61,7 +61,7 @@ def sweep(
         resume: go on where an interrupted sweep stopped. No finished shard is done again.
         parquet: table.parquet instead of table.csv; needs the extra `parquet`.
         progress: called as progress(runs_done, runs) from the calling thread; a true result ends the sweep, as Ctrl-C
-            does, and it can be resumed. Runs of shards on their way count too, but on another executor only whole shards.
+            does, and it can be resumed. Runs of shards on their way count too; on another executor only whole shards.
 
     Returns:
         The table. A run that failed is a row of it, and raises nothing.
