@@ -119,6 +119,50 @@ class Arm:
         """Joint torques that give an acceleration, under a force on the tip (N): (..., 3), N m."""
         return self._one(lib.arm3r_arm_inverse_dynamics, 3, q=q, qd=qd, qdd=qdd, f_on_tip=f_on_tip)
 
+    def forward_dynamics_derivatives(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, f_on_tip: ArrayLike | None = None
+    ) -> tuple[Floats, Floats, Floats]:
+        """The derivatives of `forward_dynamics` with respect to q, qd and tau: three of shape (..., 3, 3).
+
+        The number in row i and column j is that of qdd[i] with respect to q[j] (1/s^2), to qd[j] (1/s) and to tau[j]
+        (1/(kg m^2)): the last matrix is the inverse of the mass matrix. They are exact to rounding (automatic
+        differentiation; docs/model.md, 3.13). f_on_tip is constant in base axes.
+        """
+        found = self._batch(
+            lib.arm3r_arm_forward_dynamics_derivatives, *[(3, 3)] * 3, q=q, qd=qd, tau=tau, f_on_tip=f_on_tip
+        )
+        return found[0], found[1], found[2]
+
+    def inverse_dynamics_derivatives(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, f_on_tip: ArrayLike | None = None
+    ) -> tuple[Floats, Floats, Floats]:
+        """The derivatives of `inverse_dynamics` with respect to q, qd and qdd: three of shape (..., 3, 3).
+
+        The number in row i and column j is that of tau[i] with respect to q[j] (N m/rad), to qd[j] (N m s/rad) and to
+        qdd[j] (kg m^2): the last matrix is the mass matrix. They are exact to rounding, as those of the forward
+        dynamics. f_on_tip is constant in base axes.
+        """
+        found = self._batch(
+            lib.arm3r_arm_inverse_dynamics_derivatives, *[(3, 3)] * 3, q=q, qd=qd, qdd=qdd, f_on_tip=f_on_tip
+        )
+        return found[0], found[1], found[2]
+
+    def linearize(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, f_on_tip: ArrayLike | None = None
+    ) -> tuple[Floats, Floats]:
+        """The linear state-space model about a state, d(q, qd)/dt = A (q, qd) + B tau for small deviations of each.
+
+        A is (..., 6, 6) and B is (..., 6, 3), in SI units and radians; docs/model.md (3.14). f_on_tip is constant.
+
+        >>> A, B = arm.linearize(q, [0, 0, 0], arm.gravity_torque(q))  # about rest
+        """
+        by_q, by_qd, by_tau = self.forward_dynamics_derivatives(q, qd, tau, f_on_tip)
+        leading = by_q.shape[:-2]
+        A, B = np.zeros((*leading, 6, 6)), np.zeros((*leading, 6, 3))
+        A[..., :3, 3:] = np.eye(3)
+        A[..., 3:, :3], A[..., 3:, 3:], B[..., 3:, :] = by_q, by_qd, by_tau
+        return A, B
+
     def recursion_forward_dynamics(
         self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, f_on_tip: ArrayLike | None = None
     ) -> Floats:

@@ -123,6 +123,13 @@ ARM3R_API int32_t arm3r_arm_forward_dynamics(const arm3r_arm *arm, size_t n, con
                                              const double *f_on_tip /* Nullable */, double *qdd); /* 3, 3, 3, 3 -> 3, rad/s^2 */
 ARM3R_API int32_t arm3r_arm_inverse_dynamics(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *qdd,
                                              const double *f_on_tip /* Nullable */, double *tau); /* 3, 3, 3, 3 -> 3, N m */
+/* The derivatives of both, exact to rounding: 3x3 each, a row for each component of the result. The force on the tip is constant. */
+ARM3R_API int32_t arm3r_arm_forward_dynamics_derivatives(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *tau,
+                                                         const double *f_on_tip /* Nullable */, double *qdd_by_q, double *qdd_by_qd,
+                                                         double *qdd_by_tau /* the inverse of the mass matrix */);
+ARM3R_API int32_t arm3r_arm_inverse_dynamics_derivatives(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *qdd,
+                                                         const double *f_on_tip /* Nullable */, double *tau_by_q, double *tau_by_qd,
+                                                         double *tau_by_qdd /* the mass matrix */);
 /* The independent Newton-Euler recursion on rotation matrices: the transform sensor, and the check of the closed form. */
 ARM3R_API int32_t arm3r_arm_recursion_inverse_dynamics(const arm3r_arm *arm, size_t n, const double *q, const double *qd, const double *qdd,
                                                        const double *f_on_tip /* Nullable */, double *tau); /* as arm3r_arm_inverse_dynamics */

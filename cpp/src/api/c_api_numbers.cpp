@@ -1,6 +1,7 @@
 // The numbers half of the C interface: version, parameters, the arm, and reading a run.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "api/c_api.hpp"
+#include "arm3r/model/derivatives.hpp"
 #include "base/number_text.hpp"
 #include "batch/model_batch.hpp"
 #include "batch/simulation.hpp"
@@ -166,6 +168,29 @@ int32_t by_recursion(const arm3r_arm* arm, std::size_t n, const double* q, const
                          body(load_joints(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third, i),
                               f_on_tip ? load(f_on_tip, i) : load(no_force, 0)),
                          out.data, i);
+    });
+}
+
+// A matrix of derivatives of a joint vector with respect to a joint vector: D A D (1.1).
+void store_derivatives(const arm3r_arm& arm, const Mat3<double>& A, double* data, std::size_t i) {
+    const auto sign = [&](int joint) { return arm.simscape && joint > 0 ? -1.0 : 1.0; };
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            data[9 * i + 3 * row + column] = sign(row) * sign(column) * A(row, column) + 0.0;  // no negative zero
+}
+
+// The derivatives of a joint vector with respect to q, qd and a third argument, for one state after the other.
+template <class Body>
+int32_t differentiated(const arm3r_arm* arm, std::size_t n, const double* q, const double* qd, const Input& third,
+                       const double* f_on_tip, const std::array<Output, 3>& by, Body body) {
+    return guard([&] {
+        check(arm, n, {joint_angles(q), numbers(qd, "qd"), third, tip_force(f_on_tip)}, {by[0], by[1], by[2]});
+        for (std::size_t i = 0; i < n; ++i) {
+            const Derivatives found =
+                body(arm->arm, load_joints(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third.data, i),
+                     f_on_tip ? load(f_on_tip, i) : load(no_force, 0));
+            for (int k = 0; k < 3; ++k) store_derivatives(*arm, found[k], by[k].data, i);
+        }
     });
 }
 
@@ -346,6 +371,22 @@ int32_t arm3r_arm_recursion_forward_dynamics(const arm3r_arm* arm, size_t n, con
         [&](const Vec3<double>& angles, const Vec3<double>& w, const Vec3<double>& torque, const Vec3<double>& f) {
             return recursion_forward_dynamics(arm->arm, angles, w, torque, f);
         });
+}
+
+int32_t arm3r_arm_forward_dynamics_derivatives(const arm3r_arm* arm, size_t n, const double* q, const double* qd,
+                                               const double* tau, const double* f_on_tip, double* qdd_by_q,
+                                               double* qdd_by_qd, double* qdd_by_tau) {
+    return differentiated(arm, n, q, qd, numbers(tau, "tau"), f_on_tip,
+                          {{{qdd_by_q, 9, "qdd_by_q"}, {qdd_by_qd, 9, "qdd_by_qd"}, {qdd_by_tau, 9, "qdd_by_tau"}}},
+                          forward_dynamics_derivatives);
+}
+
+int32_t arm3r_arm_inverse_dynamics_derivatives(const arm3r_arm* arm, size_t n, const double* q, const double* qd,
+                                               const double* qdd, const double* f_on_tip, double* tau_by_q,
+                                               double* tau_by_qd, double* tau_by_qdd) {
+    return differentiated(arm, n, q, qd, numbers(qdd, "qdd"), f_on_tip,
+                          {{{tau_by_q, 9, "tau_by_q"}, {tau_by_qd, 9, "tau_by_qd"}, {tau_by_qdd, 9, "tau_by_qdd"}}},
+                          inverse_dynamics_derivatives);
 }
 
 int32_t arm3r_arm_tip_sensor(const arm3r_arm* arm, size_t n, const double* q, const double* qd, double* position,
