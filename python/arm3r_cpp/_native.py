@@ -271,6 +271,7 @@ class _InProgress:
         self.progress = progress
         self.law = law
         self.raised: BaseException | None = None
+        self.stop = ffi.new("int32_t *")
 
     def __enter__(self) -> None:
         self._outer, _here.call = getattr(_here, "call", None), self
@@ -288,6 +289,7 @@ _here = threading.local()  # .call: this thread's run in progress
 
 def _keep(kind: type[BaseException], raised: BaseException, traceback: Any) -> None:
     _here.call.raised = raised.with_traceback(traceback)
+    _here.call.stop[0] = 1
 
 
 @ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
@@ -329,22 +331,54 @@ def arm3r_python_batch_progress(user: Any, runs_done: int, runs: int) -> int:
     return int(progress is not None and bool(progress(runs_done, runs)))
 
 
+@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+def arm3r_python_batch_law(user: Any, state: Any, tau: Any) -> int:
+    call = _here.call
+    call.stop[0] |= _interpreter.stop[0]
+    return call.law(int(ffi.cast("uintptr_t", user)), state, tau)
+
+
 def batch(
-    params: Floats, varied: list[int], values: Floats, *, threads: int | None, progress: BatchProgress | None
-) -> Floats:
-    """The table of (varied, runs) values in the places of the varied numbers: (columns, runs)."""
-    options = ffi.new("arm3r_batch_options *")
-    options.struct_size = ffi.sizeof("arm3r_batch_options")
-    options.stop = _interpreter.stop_flag()
-    options.progress = lib.arm3r_python_batch_progress
-    options.threads = threads or 0
+    params: Floats,
+    varied: list[int],
+    values: Floats,
+    *,
+    threads: int | None,
+    progress: BatchProgress | None,
+    law: Any = None,
+) -> tuple[Floats, BaseException | None]:
+    """The table of (varied, runs) values in the places of the varied numbers, (columns, runs); and what a law raised.
+
+    law: None, in machine code (NativeLaw), or called as law(run, state, tau). If it raises, no other run is begun.
+    """
     runs = values.shape[1]
     results = np.empty((lib.arm3r_summary_count(), runs))
     places = ffi.new("size_t[]", varied or 1)
-    given = (readable(params), params.size, places, len(varied), readable(values), runs, options, writable(results))
-    with _InProgress(progress):
-        call(lib.arm3r_batch_run, *given)
-    return results
+    given = [readable(params), params.size, places, len(varied), readable(values), runs]
+    here = _InProgress(progress, law)
+    options = ffi.new("arm3r_batch_options *")
+    options.struct_size = ffi.sizeof("arm3r_batch_options")
+    options.stop = here.stop if callable(law) else _interpreter.stop_flag()
+    options.progress = lib.arm3r_python_batch_progress
+    options.threads = threads or 0
+    with here:
+        if law is None:
+            call(lib.arm3r_batch_run, *given, options, writable(results))
+        else:
+            call(lib.arm3r_batch_control, *given, _batch_law(law), options, writable(results))
+    return results, here.raised
+
+
+def _batch_law(law: Any) -> Any:
+    struct = ffi.new("arm3r_batch_law *")
+    struct.struct_size = ffi.sizeof("arm3r_batch_law")
+    if callable(law):
+        struct.function, struct.user_stride = lib.arm3r_python_batch_law, 1  # `user` is the number of the run
+    else:
+        struct.function = ffi.cast("arm3r_law", int(law.address))
+        struct.user = ffi.cast("void *", int(law.user))
+        struct.user_stride, struct.reentrant = int(law.stride), int(law.reentrant)
+    return struct
 
 
 def summary_columns() -> dict[str, str]:

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from . import _native
 from ._messages import no_column
 from ._native import BatchProgress, Floats, lib
+from .control.batch_law import BatchLaw, MakeLaw
+from .control.law import Law, NativeLaw
 from .errors import BudgetError, ScenarioError, UsageError
 from .params import param_index, param_key, param_name, places
 from .run import Run
@@ -56,10 +58,15 @@ class Batch:
     """
 
     def __init__(
-        self, scenario: Scenario, axes: list[Axis], columns: Mapping[str, Floats], shape: tuple[int, ...]
+        self,
+        scenario: Scenario,
+        axes: list[Axis],
+        columns: Mapping[str, Floats],
+        shape: tuple[int, ...],
+        law: BatchLaw | None = None,
     ) -> None:
         """`Scenario.batch` makes batches."""
-        self._scenario, self._axes, self._columns = scenario, axes, dict(columns)
+        self._scenario, self._axes, self._columns, self._law = scenario, axes, dict(columns), law
         self.axes = {axis.key: axis.values if axis.values.shape[-1] > 1 else axis.values[..., 0] for axis in axes}
         self.shape = shape
         self.units = _native.summary_columns()
@@ -119,9 +126,11 @@ class Batch:
     def run(self, index: Index) -> Run:
         """One run alone, with all its rows and the same bits. Raises as `Scenario.run`.
 
+        A law of your own is asked again. A batch that was pickled has none any more: use `scenario(index).run`.
+
         index: of one run, as for a column.
         """
-        return self.scenario(index).run()
+        return self.scenario(index).run(controller=self._law.of_run(index) if self._law else None)
 
 
 def run_batch(
@@ -131,14 +140,21 @@ def run_batch(
     grid: bool = False,
     threads: int | None = None,
     progress: BatchProgress | None = None,
+    controller: Law | NativeLaw | None = None,
+    make_controller: MakeLaw | None = None,
+    rate: float | None = None,
 ) -> Batch:
     """What `Scenario.batch` does."""
     if not isinstance(values, Mapping):
         raise TypeError(f"values: a map of arrays by key is needed, got {type(values).__name__}")
     if threads is not None and not (hasattr(threads, "__index__") and 1 <= threads < 2**31):
         raise UsageError(f"threads: a whole number from 1 is needed, got {threads!r}", code="usage")
-    scenario.validate()
-    base = scenario.copy()
+    has_law = controller is not None or make_controller is not None
+    if rate is not None and not has_law:
+        raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
+    mine = scenario._for_law(rate) if has_law else scenario
+    mine.validate()
+    base = mine.copy()
     base["checks"] = []
     axes = [axis_of(base, key, value) for key, value in values.items()]
     for key, other in combinations(values, 2):
@@ -149,6 +165,7 @@ def run_batch(
     runs = math.prod(shape)
     varied = [index for axis in axes for index in axis.indices]
     names = list(_native.summary_columns())
+    law = BatchLaw(controller, make_controller, shape, scenario._file) if has_law else None
     _check_room(runs, len(varied) + len(names))
     numbers = _numbers(axes, shape)
     done = 0
@@ -156,15 +173,17 @@ def run_batch(
     def report(runs_done: int, _: int) -> Any:
         return progress and progress(done + runs_done, runs)
 
-    def table_of(group: NDArray[np.intp] | slice) -> Floats:
+    def table_of(group: Any) -> Floats:
         params, values = _params(base, axes, shape, group), np.ascontiguousarray(numbers[:, group])
+        if params is not None and law:
+            return law.table(group, params, varied, values, threads=threads, progress=report)
         if params is not None:
-            return _native.batch(params, varied, values, threads=threads, progress=report)
+            return _native.batch(params, varied, values, threads=threads, progress=report)[0]
         table = np.full((len(names), values.shape[1]), np.nan)
         table[names.index("outcome")] = lib.ARM3R_RUN_INVALID
         return table
 
-    groups = _groups(axes, shape)
+    groups = law.groups(_groups(axes, shape)) if law else _groups(axes, shape)
     if len(groups) == 1:
         table = table_of(groups[0])
     else:
@@ -173,7 +192,7 @@ def run_batch(
             table[:, group] = table_of(group)
             done += len(group)
     columns = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
-    return Batch(base, axes, columns, shape)
+    return Batch(base, axes, columns, shape, law)
 
 
 # ---- axes -----------------------------------------------------------------------------------------------------------

@@ -23,6 +23,7 @@ from .run import Run
 
 if TYPE_CHECKING:
     from .batch import Batch
+    from .control.batch_law import MakeLaw
 
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
 
@@ -229,6 +230,9 @@ class Scenario:
         grid: bool = False,
         threads: int | None = None,
         progress: BatchProgress | Literal[False] | None = None,
+        controller: Law | NativeLaw | None = None,
+        make_controller: MakeLaw | None = None,
+        rate: float | None = None,
     ) -> Batch:
         """Many runs at once: a table of their summaries, without rows. Ctrl-C ends it at once with KeyboardInterrupt.
 
@@ -245,8 +249,17 @@ class Scenario:
             progress: called as progress(runs_done, runs) at most every 20 ms; a true result ends the runs left as
                 `stopped`, and what it raises comes out unchanged. None: a bar on stderr, if that is a terminal and the
                 runs take longer than a second; False: nothing.
+            controller: a law of your own for all runs, as `run` takes it. A Python function is called for one run after
+                the other in this thread; so is a NativeLaw, unless it is declared re-entrant.
+            make_controller: called as make_controller(index) at the start of each run, for a law with a memory or with
+                gains of its own; it returns the law of this run. index: as for a column, so a tuple where the batch has
+                several dimensions.
+            rate: of the samples of these laws, Hz, as in `run`.
 
         Raises:
+            ControllerError: a law in Python raised, or returned no torque: `error.index` is its run, and no other one
+                is begun. A torque that is not finite, and a NativeLaw that returns an error, end that run alone, with
+                the outcome `controller`.
             UsageError: a key that there is not, a number that varies twice, or arrays of shapes that do not fit.
             TypeError: not numbers.
             BudgetError: there is no memory for the table.
@@ -255,7 +268,16 @@ class Scenario:
         from .batch import run_batch  # it stands above this module
 
         with shown(progress, "batch", "runs") as report:
-            return run_batch(self, values, grid=grid, threads=threads, progress=report)
+            return run_batch(
+                self,
+                values,
+                grid=grid,
+                threads=threads,
+                progress=report,
+                controller=controller,
+                make_controller=make_controller,
+                rate=rate,
+            )
 
 
 def _restore(text: str, file: str) -> Scenario:

@@ -92,7 +92,7 @@ class Caller:
         if kind == "const char *":
             return self.keep(ffi.new("char[]", self.text(function, name)))
         if name == "params":
-            return self.params("user" if function.name == "arm3r_params_control" else "none")
+            return self.params("user" if function.name.endswith("_control") else "none")
         if kind == "const double *":
             return self.keep(ffi.new("double[]", [1.2, -0.5, 0.9]))
         if kind == "double *":
@@ -106,6 +106,10 @@ class Caller:
             return self.keep(ffi.callback("int32_t(void *, const arm3r_law_state *, double *)", _hold))
         if kind == "arm3r_sink":
             return self.keep(ffi.callback("int32_t(void *, const char *, size_t)", lambda user, data, size: 0))
+        if kind == "const arm3r_batch_law *":
+            law = self.options("arm3r_batch_law")
+            law.function = self.argument(function, Argument("arm3r_law", name, False))
+            return law
         if options := re.fullmatch(r"const (arm3r_\w+_options) \*", kind):
             return self.options(options[1])
         if kind == "void *":
@@ -313,6 +317,30 @@ def test_reserved_fields_must_be_zero(call: Caller, place: int) -> None:
 @pytest.mark.parametrize("limit", [-1.0, float("nan"), -float("inf")])
 def test_time_limit_must_be_a_duration(call: Caller, limit: float) -> None:
     assert _run_with(call, OPTIONS, time_limit=limit) == lib.ARM3R_E_VALUE
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "expected"),
+    [
+        ("struct_size", 0, "E_ABI"),
+        ("function", ffi.NULL, "E_NULL"),
+        ("reentrant", 2, "E_VALUE"),
+        ("reserved", [0, 0, 1, 0], "E_ABI"),
+        ("reentrant", 1, "OK"),
+        ("user_stride", 8, "OK"),
+    ],
+)
+def test_the_law_of_a_batch_is_checked(call: Caller, field: str, value: Any, expected: str) -> None:
+    batch = by_name("arm3r_batch_control")
+    law = call.argument(batch, batch.arguments[batch.index("law")])
+    setattr(law, field, value)
+    assert call(batch, law=law, runs=1) == getattr(lib, f"ARM3R_{expected}"), message()
+
+
+def test_the_law_of_a_batch_takes_the_place_of_no_other_controller(call: Caller) -> None:
+    assert call(by_name("arm3r_batch_control"), params=call.params("none")) == lib.ARM3R_E_SCENARIO
+    assert "takes the place of no other controller" in message()
+    assert call(by_name("arm3r_batch_run"), params=call.params("user")) == lib.ARM3R_E_SCENARIO
 
 
 def test_stop_flag_ends_the_run(call: Caller) -> None:

@@ -235,6 +235,22 @@ ARM3R_API int32_t arm3r_summary_column(size_t index, const char **name, const ch
 ARM3R_API int32_t arm3r_batch_run(const double *params, size_t count, const size_t *varied, size_t varied_count, const double *values, size_t runs,
                                   const arm3r_batch_options *options /* Nullable */, double *results);
 
+/* A law of your own for the runs of a batch. */
+typedef struct arm3r_batch_law {
+    size_t struct_size;             /* sizeof(arm3r_batch_law) */
+    arm3r_law function;
+    void *user;                     /* Nullable: run i hands user + i*user_stride to the law */
+    size_t user_stride;             /* bytes; 0: all runs hand it the same */
+    int64_t reentrant;              /* 1: several threads may call it at the same time, each for a run of its own;
+                                       0: only the calling thread calls it, for one run after the other */
+    int64_t reserved[4];            /* 0 */
+} arm3r_batch_law;
+
+/* As arm3r_batch_run, with the law; row i has the same bits as the summary of arm3r_params_control. A run whose law did not
+ * return 0 has the outcome `controller`. */
+ARM3R_API int32_t arm3r_batch_control(const double *params, size_t count, const size_t *varied, size_t varied_count, const double *values, size_t runs,
+                                      const arm3r_batch_law *law, const arm3r_batch_options *options /* Nullable */, double *results);
+
 /* ---- text: scenarios ----------------------------------------------------------------------------------------------- */
 
 typedef struct arm3r_scenario arm3r_scenario;

@@ -27,6 +27,26 @@ BatchOptions batch_options_in(const arm3r_batch_options* given) {
     return {options.stop, options.progress, options.user, options.threads, options.lanes};
 }
 
+BatchLaw batch_law_in(const arm3r_batch_law& given) {
+    const arm3r_batch_law law = struct_in(&given, "arm3r_batch_law");
+    need(reinterpret_cast<const void*>(law.function), "law.function");
+    if (law.reentrant != 0 && law.reentrant != 1)
+        throw Error(ARM3R_E_VALUE,
+                    "arm3r_batch_law: reentrant is " + std::to_string(law.reentrant) + "; 0 or 1 is needed");
+    return {law.function, law.user, law.user_stride, law.reentrant == 1};
+}
+
+Variation variation_in(const double* params, std::size_t count, const std::size_t* varied, std::size_t varied_count,
+                       const double* values, std::size_t runs) {
+    need(varied, "varied");
+    check_pointer(values, "values");
+    const std::size_t most = std::numeric_limits<std::size_t>::max() / sizeof(double);
+    for (const std::size_t width : {varied_count, summary_table().size()})
+        if (runs > 0 && width > most / runs)
+            throw Error(ARM3R_E_SIZE, "runs is " + std::to_string(runs) + ": no array is as long");
+    return {params_in(params, count), {varied, varied_count}, {values, varied_count * runs}, runs};
+}
+
 }  // namespace
 
 size_t arm3r_summary_count(void) { return summary_table().size(); }
@@ -47,16 +67,23 @@ int32_t arm3r_summary_column(size_t index, const char** name, const char** unit,
 int32_t arm3r_batch_run(const double* params, size_t count, const size_t* varied, size_t varied_count,
                         const double* values, size_t runs, const arm3r_batch_options* options, double* results) {
     return guard([&] {
-        need(varied, "varied");
-        check_pointer(values, "values");
+        const Variation variation = variation_in(params, count, varied, varied_count, values, runs);
         check_pointer(results, "results");
-        const std::size_t most = std::numeric_limits<std::size_t>::max() / sizeof(double);
-        for (const std::size_t width : {varied_count, summary_table().size()})
-            if (runs > 0 && width > most / runs)
-                throw Error(ARM3R_E_SIZE, "runs is " + std::to_string(runs) + ": no array is as long");
-        const std::span<const double> all = params_in(params, count);
-        if (is<"controller.type", "user">(all)) refuse_missing_law();
-        run_batch({all, {varied, varied_count}, {values, varied_count * runs}, runs}, batch_options_in(options),
-                  results);
+        if (is<"controller.type", "user">(variation.params)) refuse_missing_law();
+        run_batch(variation, batch_options_in(options), results);
+    });
+}
+
+int32_t arm3r_batch_control(const double* params, size_t count, const size_t* varied, size_t varied_count,
+                            const double* values, size_t runs, const arm3r_batch_law* law,
+                            const arm3r_batch_options* options, double* results) {
+    return guard([&] {
+        const Variation variation = variation_in(params, count, varied, varied_count, values, runs);
+        check_pointer(results, "results");
+        need(law, "law");
+        refuse_other_controllers(variation.params);
+        BatchOptions chosen = batch_options_in(options);
+        chosen.law = batch_law_in(*law);
+        run_batch(variation, chosen, results);
     });
 }

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "api/c_api.hpp"
-#include "base/callback.hpp"
 #include "base/number_text.hpp"
+#include "batch/law_adapter.hpp"
 #include "batch/simulation.hpp"
 #include "control/controller_view.hpp"
 #include "run/adaptive_run.hpp"
@@ -20,41 +20,11 @@ using namespace arm3r;
 
 namespace {
 
-struct LawAdapter {
-    arm3r_law function;
-    void* user;
-    LawView view;
-    arm3r_law_state state{};
-
-    LawAdapter(arm3r_law function, void* user, const Setup& setup) : function(function), user(user), view(setup) {
-        state.struct_size = sizeof state;
-    }
-
-    static int call(void* self, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
-                    const ControllerState<double>& controller_state, Vec3<double>& tau) {
-        LawAdapter& law = *static_cast<LawAdapter*>(self);
-        law.view.fill_state(tick, truth, sensed, controller_state, law.state);
-        double caller[3] = {NAN, NAN, NAN};
-        const int32_t status = call_back(law.function, law.user, &law.state, caller);
-        tau = law.view.torque(caller);
-        return status;
-    }
-};
-
-void refuse_other_controllers(std::span<const double> params) {
-    if (choice_of(params, "controller.type") == "user") return;
-    throw Error(ARM3R_E_SCENARIO, {{.code = "scenario.other_choice",
-                                    .path = "controller.type",
-                                    .message = "a law of your own takes the place of no other controller",
-                                    .got = choice_of(params, "controller.type"),
-                                    .allowed = "user"}});
-}
-
 Run run_with_law(std::span<const double> params, const Setup& setup, arm3r_law function, void* user,
                  RunOptions options) {
     refuse_other_controllers(params);
     LawAdapter law(function, user, setup);
-    options.user_law = {LawAdapter::call, &law, setup.simscape};
+    options.user_law = law.user_law();
     return simulate(setup, options);
 }
 

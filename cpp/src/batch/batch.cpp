@@ -1,5 +1,6 @@
 #include "batch/batch.hpp"
 
+#include <cxxabi.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -54,14 +55,28 @@ struct StopGuard {
 class Batch {
 public:
     Batch(const Variation& variation, const BatchOptions& options, double* results)
-        : options_(options),
-          job_{variation, Checker(variation.params, variation.varied), results,
-               options.lanes ? options.lanes : max_lanes()} {}
+        : options_(options), job_{variation,   Checker(variation.params, variation.varied),
+                                  results,     options.lanes ? options.lanes : max_lanes(),
+                                  options.law, poll_of_this_thread()} {}
 
     void run() {
+        if (job_.poll) BatchWorker(job_).run();
+        else run_in_threads();
+        if (failure_) std::rethrow_exception(failure_);
+    }
+
+private:
+    // A law that is not re-entrant is called by the calling thread, which then works itself.
+    std::function<void()> poll_of_this_thread() {
+        if (!options_.law.function || options_.law.reentrant) return {};
+        return [this] { poll_caller(); };
+    }
+
+    void run_in_threads() {
         const std::size_t runs = job_.variation.runs;
         const std::size_t wanted = options_.threads > 0 ? options_.threads : allowed_threads();
-        const std::size_t count = std::clamp<std::size_t>(runs / min_runs_per_thread, 1, wanted);
+        const std::size_t runs_per_thread = options_.law.function ? 1 : min_runs_per_thread;
+        const std::size_t count = std::clamp<std::size_t>(runs / runs_per_thread, 1, wanted);
         std::vector<std::jthread> threads;
         const StopGuard stop_guard{job_.stop};
         threads.reserve(count);
@@ -71,21 +86,31 @@ public:
             if (threads.empty()) throw;
         }
         while (!has_ended(threads.size())) poll_caller();
-        threads.clear();
-        if (failure_) std::rethrow_exception(failure_);
     }
 
-private:
     void run_worker() {
+        const EndOfWorker end{*this};
         try {
             BatchWorker(job_).run();
+        } catch (const abi::__forced_unwind&) {
+            fail(std::make_exception_ptr(Error(ARM3R_E_CALLBACK, "the law ended the thread that called it")));
+            throw;
         } catch (...) {
             fail(std::current_exception());
         }
+    }
+
+    void end_worker() {
         const std::lock_guard lock(mutex_);
         ended_ += 1;
         wake_.notify_one();
     }
+
+    // A thread counts as ended also where a law ended it (pthread_exit).
+    struct EndOfWorker {
+        Batch& batch;
+        ~EndOfWorker() { batch.end_worker(); }
+    };
 
     void fail(std::exception_ptr failure) {
         const std::lock_guard lock(mutex_);

@@ -16,12 +16,21 @@ struct Variation {
     std::size_t runs;
 };
 
+// A law of the user's for every run, as arm3r_batch_law describes it.
+struct BatchLaw {
+    arm3r_law function = nullptr;
+    void* user = nullptr;
+    std::size_t user_stride = 0;  // bytes
+    bool reentrant = false;
+};
+
 struct BatchOptions {
     const volatile std::int32_t* stop = nullptr;
     arm3r_batch_progress progress = nullptr;
     void* user = nullptr;
     int threads = 0;  // 0: as many as the CPUs that this process may use
     int lanes = 0;    // 1, 2, 4 or 8; 0: as is fastest
+    BatchLaw law = {};
 };
 
 // results: summary_table().size() columns of `runs` numbers. Throws Error where the base or the variation is not valid.

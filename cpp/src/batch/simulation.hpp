@@ -1,6 +1,8 @@
 #pragma once
 // A run: a pure function of its parameters, ending in exactly one outcome.
 
+#include <span>
+
 #include "record/run_data.hpp"
 #include "setup/setup.hpp"
 
@@ -10,5 +12,8 @@ namespace arm3r {
 Run simulate(const Setup& setup, const RunOptions& options);
 
 [[noreturn]] void refuse_missing_law();
+
+// Throws Error where the parameters have a controller of another type than `user`.
+void refuse_other_controllers(std::span<const double> params);
 
 }  // namespace arm3r

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "batch/lane_group.hpp"
+#include "batch/law_adapter.hpp"
+#include "batch/simulation.hpp"
 #include "record/metrics.hpp"
 #include "run/adaptive_run.hpp"
 #include "validate/size_limits.hpp"
@@ -32,13 +34,28 @@ void BatchWorker::run() {
 }
 
 void BatchWorker::run_group(const Setup& first, std::size_t run) {
-    if (!first.solver.runs_in_lanes()) {
+    if (job_.law.function) {
+        run_with_law(first, run);
+    } else if (!first.solver.runs_in_lanes()) {
         store(run, run_adaptively(first, {.should_stop = &job_.stop, .rows = false}));
     } else {
         lane_group_of(first)(job_.lanes, *this, first, run);
         retry_.insert(retry_.end(), deferred_.begin(), deferred_.end());
         deferred_.clear();
     }
+}
+
+void BatchWorker::run_with_law(const Setup& setup, std::size_t run) {
+    const auto poll_during_run = [](void* job, double, double, std::int64_t) -> std::int32_t {
+        return static_cast<BatchJob*>(job)->poll(), 0;
+    };
+    const auto first_user = reinterpret_cast<std::uintptr_t>(job_.law.user);
+    void* const user = reinterpret_cast<void*>(first_user + run * job_.law.user_stride);
+    LawAdapter law(job_.law.function, user, setup);
+    RunOptions options{.should_stop = &job_.stop, .user_law = law.user_law(), .rows = false};
+    if (job_.poll) options.progress = poll_during_run, options.user = &job_;
+    store(run, simulate(setup, options));
+    if (job_.poll) job_.poll();
 }
 
 bool BatchWorker::next(const BatchKey& batch_key, Setup& setup, std::size_t& run) {
@@ -54,8 +71,9 @@ bool BatchWorker::fetch(std::size_t& run) {
     if (is_stopped()) return refuse_rest(), false;
     if (first_ == last_ && retry_.empty()) {
         const std::size_t runs = job_.variation.runs;
-        first_ = std::min(runs, job_.next.fetch_add(runs_at_a_time));
-        last_ = std::min(runs, first_ + runs_at_a_time);
+        const std::size_t count = job_.law.function ? 1 : runs_at_a_time;
+        first_ = std::min(runs, job_.next.fetch_add(count));
+        last_ = std::min(runs, first_ + count);
     }
     if (first_ < last_) {
         run = first_++;

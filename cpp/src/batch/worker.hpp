@@ -2,6 +2,7 @@
 // A batch worker, one per thread: it fetches runs, integrates them in lanes, and writes their rows.
 
 #include <atomic>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct BatchJob {
     const Checker check;
     double* const results;
     const int lanes;  // as BatchOptions::lanes
+    const BatchLaw& law;
+    const std::function<void()> poll;  // empty, or what the calling thread does during a run and after it
     std::atomic<std::size_t> next = 0, done = 0;
     std::atomic<bool> failed = false, stop = false;
 };
@@ -37,6 +40,7 @@ private:
     bool fetch(std::size_t& run);
     bool prepare(std::size_t run, Setup& setup);
     void run_group(const Setup& first, std::size_t run);
+    void run_with_law(const Setup& setup, std::size_t run);
     // The runs first to last - 1 were not started: their rows have no number but the outcome.
     void refuse(std::size_t first, std::size_t last, arm3r_outcome why);
     void refuse_rest();  // all runs that nobody has started

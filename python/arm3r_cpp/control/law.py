@@ -31,6 +31,10 @@ class NativeLaw(NamedTuple):
     """The address of the function; the caller keeps the function alive."""
     user: int = 0
     """The address that the function gets as its first argument."""
+    stride: int = 0
+    """In a batch, run i gets the address user + i*stride, bytes; i counts in the order of `ravel`."""
+    reentrant: bool = False
+    """In a batch, whether several threads may call the function at the same time, each for a run of its own."""
 
 
 def law_state_index() -> dict[str, int]:
@@ -45,7 +49,7 @@ class LawAdapter:
     """Calls a law at each sample as the library calls it, and keeps what the message of an error needs."""
 
     def __init__(self, law: Law) -> None:
-        self._law = law
+        self.law = law
         self._memory: _native.StateMemory | None = None
         self._period = 1.0
         self._first = 0.0
@@ -62,7 +66,7 @@ class LawAdapter:
         state = _new(LawState)
         state._now = memory
         try:
-            self.received = received = self._law(t, state)
+            self.received = received = self.law(t, state)
         finally:
             state._now = OVER
         _native.put_torque(received, tau)
@@ -79,8 +83,7 @@ def run_with_law(
 ) -> Run:
     """Run a scenario's handle with a law. ControllerError, BudgetError: as Scenario.run says."""
     if isinstance(controller, NativeLaw):
-        _check_address("NativeLaw.address", controller.address)
-        _check_address("NativeLaw.user", controller.user)
+        check_native(controller)
         run, _ = _native.control(handle, controller, progress=progress, time_limit=time_limit)
         return Run._of(run)
     if not callable(controller):
@@ -94,27 +97,23 @@ def run_with_law(
     ended = Run._of(run)
     if raised is None and ended.outcome != "controller":
         return ended
-    raise _failure(adapter, controller, raised, ended, file, time_limit) from _cause(raised)
+    raise _failure(adapter, controller, raised, ended, file, time_limit) from cause_of(raised)
 
 
-def _cause(raised: BaseException | None) -> BaseException | None:
+def cause_of(raised: BaseException | None) -> BaseException | None:
     return None if isinstance(raised, (_native.NoTorque, TimeLimitReached)) else raised
 
 
 def _failure(
     adapter: LawAdapter, controller: Law, raised: BaseException | None, run: Run, file: str, time_limit: float | None
 ) -> BudgetError | ControllerError:
-    tick, name = adapter.tick, getattr(controller, "__qualname__", repr(controller))
+    tick = adapter.tick
     place = f"at tick {tick}, t = {adapter.t:.12g} s"
     if isinstance(raised, TimeLimitReached):
-        why = f"the time limit of {time_limit:g} s is used up in the controller {name} {place}"
+        why = f"the time limit of {time_limit:g} s is used up in the controller {name_of(controller)} {place}"
         return BudgetError(f"{file}: budget: {why}", code="run.budget", run=run)
-    if _cause(raised) is not None:
-        why = f"{name} raised {type(raised).__name__}: {raised}"
-    else:
-        why = f"{name} returned {adapter.received!r}; {TORQUE}"
     return ControllerError(
-        f"{file}: controller: {place}: {why}",
+        f"{file}: controller: {place}: {why_it_failed(adapter, controller, raised)}",
         code="run.controller",
         run=run,
         tick=tick,
@@ -123,7 +122,26 @@ def _failure(
     )
 
 
+def name_of(function: Any) -> str:
+    return getattr(function, "__qualname__", repr(function))
+
+
+def why_it_failed(adapter: LawAdapter, controller: Law, raised: BaseException | None) -> str:
+    if cause_of(raised) is not None:
+        return f"{name_of(controller)} raised {type(raised).__name__}: {raised}"
+    return f"{name_of(controller)} returned {adapter.received!r}; {TORQUE}"
+
+
 TORQUE = "three finite numbers (list, tuple, array) are needed, N m, at most 1e12 either way"
+
+
+def check_native(law: NativeLaw) -> None:
+    """TypeError: not integers. ValueError: no addresses of this machine, or a stride that no array has."""
+    _check_address("NativeLaw.address", law.address)
+    _check_address("NativeLaw.user", law.user)
+    _check_address("NativeLaw.stride", law.stride)
+    if not isinstance(law.reentrant, (bool, np.bool_)):
+        raise TypeError(f"NativeLaw.reentrant: True or False is needed, got {law.reentrant!r}")
 
 
 def _check_address(name: str, address: object) -> None:
