@@ -18,6 +18,7 @@ from .errors import (
     NumericalError,
     OutputError,
     ScenarioError,
+    ScenarioWarning,
     UsageError,
 )
 from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
@@ -59,6 +60,7 @@ __all__ = [
     "Run",
     "Scenario",
     "ScenarioError",
+    "ScenarioWarning",
     "Simulation",
     "Snapshot",
     "Sweep",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import difflib
+import sys
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -37,3 +39,12 @@ def no_column(name: object, names: Iterable[str]) -> KeyError:
     names = list(names)
     hint = did_you_mean(str(name), names) or f"there are {', '.join(names)}"
     return KeyError(f"no column {name!r}; {hint}")
+
+
+def warn_user(message: str, category: type[Warning]) -> None:
+    """Issue a warning at the line outside the package that called it."""
+    package = __name__.partition(".")[0]
+    frame, level = sys._getframe(1), 2
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == package:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, category, stacklevel=level)

@@ -43,6 +43,10 @@ class ScenarioError(Arm3rError, ValueError):
     """The scenario is not valid; `problems` lists every place."""
 
 
+class ScenarioWarning(UserWarning):
+    """What is allowed in a scenario but probably a mistake, such as degrees that were written without `deg`."""
+
+
 class NumericalError(Arm3rError, ArithmeticError):
     """The run diverged, its step collapsed, its contact chattered, its energy did not balance."""
 

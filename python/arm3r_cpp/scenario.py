@@ -6,19 +6,20 @@ import json
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from . import _native
+from ._messages import describe, warn_user
 from ._native import BatchProgress, Floats, Progress, lib
 from ._progress_bar import shown
 from .arm import Arm
 from .control.law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
-from .errors import UsageError, class_of_outcome
+from .errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, class_of_outcome
 from .examples import FOLDER, is_sweep, path_of
-from .params import param_count
+from .params import param_count, places
 from .run import Run
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ class Scenario:
         if os.path.isfile(text):
             raise UsageError(f"text: a file's name instead of a scenario; use Scenario.load({text!r})", code="usage")
         self._file = file
+        self._warned: set[str] | None = set()
         self._handle = _native.create("scenario", lib.arm3r_scenario_create, *texts)
 
     @classmethod
@@ -76,12 +78,14 @@ class Scenario:
     @classmethod
     def _of(cls, handle: Any, file: str) -> Scenario:
         scenario = cls.__new__(cls)
-        scenario._handle, scenario._file = handle, file
+        scenario._handle, scenario._file, scenario._warned = handle, file, set()
         return scenario
 
     def copy(self) -> Scenario:
         """An independent copy."""
-        return self._of(_native.create("scenario", lib.arm3r_scenario_copy, self._handle), self._file)
+        copy = self._of(_native.create("scenario", lib.arm3r_scenario_copy, self._handle), self._file)
+        copy._warned = None if self._warned is None else set(self._warned)
+        return copy
 
     def __copy__(self) -> Scenario:
         return self.copy()
@@ -108,16 +112,62 @@ class Scenario:
         return _plain(json.loads(found, parse_float=_number))
 
     def __setitem__(self, path: str, value: Any) -> None:
-        """Put a number, text, flag, list, array or map at a path; it is validated when the scenario is next used.
+        """Put a number, text, flag, list, array or map at a path; its value is validated when it is next used.
 
         Angles may be given as text: "30 deg". A new type, method or law drops the keys of the old one. None takes away
         what is there: the default holds again.
 
         Raises:
             TypeError: the value is none of these, or the path is not text.
+            ScenarioError: there is no such key, at the path or in a map; the message names the nearest one, and the
+                scenario is as it was.
         """
-        place = _native.utf8(path, "path")
-        _native.call(lib.arm3r_scenario_set, self._handle, *place, *_native.utf8(flow(value, path), path))
+        changed = self._changed({path: value})
+        if path not in places() or isinstance(value, Mapping):
+            changed._check_keys(path)
+        self._take(changed)
+
+    def update(self, values: Mapping[str, Any]) -> None:
+        """Put several values, by path, and validate them together: all of them or, where an error is raised, none.
+
+        >>> scenario.update({"controller": {"type": "user"}, "sampling": {"rate": 500, "delay": 0.002}})
+
+        A map takes the place of the whole section. The values are put one after the other, as by `scenario[path]`.
+
+        Raises:
+            TypeError: `values` is no map, or a value or a path is of a wrong type.
+            ScenarioError: the scenario would not be valid; it is as it was.
+        """
+        if not isinstance(values, Mapping):
+            raise TypeError(f"values: a map of values by path is needed, got {type(values).__name__}")
+        changed = self._changed(values)
+        _native.call(lib.arm3r_scenario_validate, changed._handle)
+        self._take(changed)
+
+    def _take(self, changed: Scenario) -> None:
+        self._handle, self._warned = changed._handle, None if self._warned is None else set()
+
+    def _changed(self, values: Mapping[str, Any]) -> Scenario:
+        """A copy with other values, not validated."""
+        changed = self.copy()
+        for path, value in values.items():
+            place = _native.utf8(path, "path")
+            _native.call(lib.arm3r_scenario_set, changed._handle, *place, *_native.utf8(flow(value, path), path))
+        return changed
+
+    def _check_keys(self, path: str) -> None:
+        """ScenarioError: a key at a path, or below it, exists under no choice."""
+        try:
+            _native.text(lib.arm3r_scenario_name, self._handle)
+        except Arm3rError as error:
+            unknown = [
+                problem
+                for problem in error.problems
+                if problem["code"] == "scenario.unknown_key" and _is_part(problem["path"], path)
+            ]
+            if unknown:
+                message = "\n".join(map(describe, unknown))
+                raise ScenarioError(message, status=error.status, code=error.code, problems=unknown) from None
 
     def _set_from_option(self, text: str) -> None:
         """Put a value given as "PATH=VALUE" with VALUE in YAML, as the commands' option --set takes it.
@@ -134,6 +184,7 @@ class Scenario:
         """Put YAML text at a path; messages call the place it came from `origin`."""
         texts = [part for word in (path, value, origin) for part in _native.utf8(word, path)]
         _native.call(lib.arm3r_scenario_set_from, self._handle, *texts)
+        self._take(self)
 
     def __contains__(self, path: str) -> bool:
         """Whether there is a value at a path, a default included.
@@ -147,8 +198,32 @@ class Scenario:
             return False
 
     def validate(self) -> None:
-        """Raise ScenarioError, listing all problems, unless the scenario is valid."""
+        """Raise ScenarioError, listing all problems, unless the scenario is valid.
+
+        What is allowed but probably a mistake is issued as ScenarioWarning, once for each state of the scenario.
+        """
         _native.call(lib.arm3r_scenario_validate, self._handle)
+        self._warn_of_scenario()
+
+    def _warnings(self) -> list[str]:
+        """What is allowed in this scenario but probably a mistake, a sentence each. It must be valid."""
+        lines = _native.text(lib.arm3r_scenario_warnings, self._handle).splitlines()
+        return [line.partition(": warning: ")[2] for line in lines]
+
+    def _warn_of_scenario(self) -> None:
+        self._warn(self._warnings())
+
+    def _warn(self, sentences: Iterable[str]) -> None:
+        """Issue the warnings that this state of the scenario has not yet led to."""
+        for sentence in sentences:
+            if self._warned is not None and sentence not in self._warned:
+                warn_user(f"{self._file}: {sentence}", ScenarioWarning)
+                self._warned.add(sentence)
+
+    def _quiet(self) -> Scenario:
+        """This scenario, which issues no warnings from now on, and neither do its copies."""
+        self._warned = None
+        return self
 
     @property
     def name(self) -> str:
@@ -181,6 +256,9 @@ class Scenario:
     ) -> Run:
         """Simulate. Ctrl-C ends the run at once with KeyboardInterrupt.
 
+        What is allowed in the scenario but probably a mistake is issued as ScenarioWarning, and so is what only the run
+        shows, such as a link that moves through the wall.
+
         >>> run = scenario.run(controller=lambda t, state: state.tau_g - 5 * state.qd)
 
         Args:
@@ -199,13 +277,15 @@ class Scenario:
             Arm3rError: `progress` stopped the run; `error.run` likewise.
         """
         check_time_limit(time_limit)
-        if controller is not None:
-            mine = self._for_law(rate)
-            run = run_with_law(mine._handle, controller, self._file, progress=progress, time_limit=time_limit)
-        elif rate is not None:
+        if controller is None and rate is not None:
             raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
+        mine = self if controller is None else self._for_law(rate)
+        mine._warn_of_scenario()
+        if controller is None:
+            run = Run._of(_native.start(lib.arm3r_scenario_run, mine._handle, progress=progress, time_limit=time_limit))
         else:
-            run = Run._of(_native.start(lib.arm3r_scenario_run, self._handle, progress=progress, time_limit=time_limit))
+            run = run_with_law(mine._handle, controller, mine._file, progress=progress, time_limit=time_limit)
+        mine._warn(_native.text(lib.arm3r_run_warnings, run._handle).splitlines())
         if run.outcome != "ok":
             raise class_of_outcome(run.outcome)(
                 f"{self._file}: {run.outcome}: {run.summary['message']}", code=f"run.{run.outcome}", run=run
@@ -213,7 +293,7 @@ class Scenario:
         return run
 
     def _for_law(self, rate: float | None) -> Scenario:
-        """A copy whose controller is a law of the user's own."""
+        """A copy whose controller is a law of the user's own. What it warns of, this scenario has warned of."""
         mine = self.copy()
         if mine["controller.type"] != "user":
             mine["controller.type"] = "user"
@@ -221,6 +301,7 @@ class Scenario:
         if rate is not None:
             check_rate(rate)
             mine["sampling.rate"] = rate
+        mine._warned = self._warned
         return mine
 
     def batch(
@@ -278,6 +359,10 @@ class Scenario:
                 make_controller=make_controller,
                 rate=rate,
             )
+
+
+def _is_part(path: str, of: str) -> bool:
+    return path == of or path.startswith((f"{of}.", f"{of}["))
 
 
 def _restore(text: str, file: str) -> Scenario:

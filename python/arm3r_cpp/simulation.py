@@ -45,6 +45,7 @@ class Simulation:
             ScenarioError: the scenario is not valid, or its solver.method is rk4 or taylor.
         """
         mine = scenario._for_law(rate)
+        mine._warn_of_scenario()
         self._file = mine._file
         self._begin(_native.create("simulation", lib.arm3r_simulation_create, mine._handle))
 

@@ -313,6 +313,8 @@ ARM3R_API int32_t arm3r_yaml_json(const char *text, size_t text_size, const char
 
 ARM3R_API int32_t arm3r_run_summary(const arm3r_run *run, const char **json);   /* the JSON summary, one object */
 ARM3R_API int32_t arm3r_run_report(const arm3r_run *run, const char **text);    /* the summary for people */
+/* Warnings of the scenario and of what the run showed, one sentence a line; "" if there are none. */
+ARM3R_API int32_t arm3r_run_warnings(const arm3r_run *run, const char **text);
 ARM3R_API int32_t arm3r_run_checks(const arm3r_run *run, size_t *count, size_t *failed);
 /* CSV in pieces: the sink returns 0 to go on, anything else ends the call with ARM3R_E_OUTPUT. */
 typedef int32_t (*arm3r_sink)(void *user, const char *data, size_t size);

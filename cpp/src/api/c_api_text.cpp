@@ -235,6 +235,18 @@ int32_t arm3r_run_report(const arm3r_run* run, const char** text) {
     });
 }
 
+int32_t arm3r_run_warnings(const arm3r_run* run, const char** text) {
+    return guard([&] {
+        need(run, "run");
+        need(text, "text");
+        *text = run->texts.get("warnings", [&] {
+            std::string lines;
+            for (const std::string& warning : run->run.warnings) lines += warning + "\n";
+            return lines;
+        });
+    });
+}
+
 int32_t arm3r_run_checks(const arm3r_run* run, size_t* count, size_t* failed) {
     return guard([&] {
         need(run, "run");

@@ -90,6 +90,8 @@ Node& child(Node& node, const std::string& path, std::size_t index) {
                "give the whole list: " + path + " = [...]");
     const Key* key = find_key(path);
     if (index == node.children.size() && (!key || index < key->size)) node.children.emplace_back();
+    if (index >= node.children.size() && !is_known(path) && node.children.empty())
+        refuse(item(path, index), "path.unknown", "there is no such list", did_you_mean(path, all_paths()));
     if (index >= node.children.size())
         refuse(item(path, index), "path.index", "`" + path + "` has " + counted(node.children.size(), "item"), "");
     return node.children[index];

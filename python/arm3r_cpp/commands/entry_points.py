@@ -2,7 +2,9 @@
 
 import signal
 import sys
+import warnings
 from importlib import import_module
+from typing import Any
 
 _OURS = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # not where the caller ignores the signal
 if _OURS:
@@ -26,6 +28,7 @@ def examples() -> int:
 
 
 def _call(module: str) -> int:
+    warnings.showwarning = _say  # type: ignore[assignment]
     main = import_module(f".{module}", __package__).main
     if _OURS:
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -35,3 +38,7 @@ def _call(module: str) -> int:
         from .exit_codes import end_by_signal
 
         end_by_signal(signal.SIGINT)
+
+
+def _say(message: Warning | str, *_: Any) -> None:
+    print(f"warning: {message}", file=sys.stderr)

@@ -197,7 +197,7 @@ def _read_scenario(reader: Reader, top: dict[str, Node], overrides: Sequence[str
         for override in overrides:
             scenario._set_from_option(override)
         scenario.validate()
-        return scenario
+        return scenario._quiet()
     except ScenarioError as error:
         inline = top["scenario"] if "map" in top.get("scenario", {}) else None
         found = [_placed(reader, problem, inline) for problem in error.problems]

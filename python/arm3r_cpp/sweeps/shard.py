@@ -85,7 +85,7 @@ def run_shard(job: ShardJob, progress: Callable[[int, int], Any] | None = None) 
 
 def _computed(job: ShardJob, progress: Callable[[int, int], Any] | None) -> ShardResult:
     counts_later = progress and (lambda runs_done, runs: progress(0, runs))  # statistics run each of them once more
-    scenario = Scenario(job.scenario, file=job.file)
+    scenario = Scenario(job.scenario, file=job.file)._quiet()
     batch = run_batch(scenario, job.values, threads=1, progress=counts_later if job.statistics else progress)
     outcomes = batch.outcomes
     columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
