@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,10 @@ from .errors import BudgetError, ScenarioError, UsageError
 from .params import param_index, param_key, param_name, places
 from .run import Run
 from .scenario import Scenario
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 Index = int | tuple[int, ...]
 
@@ -35,6 +39,16 @@ class Axis(NamedTuple):
     """of its numbers among all of a scenario; none for words and flags"""
     values: NDArray[Any]
     """(..., numbers), float64; of words and flags (..., 1)"""
+
+    @property
+    def names(self) -> list[str]:
+        """Of its numbers: "initial.q[0]", "initial.q[1]", ...; else its key."""
+        return [param_name(index) for index in self.indices] if len(self.indices) > 1 else [self.key]
+
+    @property
+    def unit(self) -> str:
+        """Of its numbers; "" for none, and for words and flags."""
+        return param_key(self.indices[0]).unit if self.indices else ""
 
     def at(self, place: tuple[int, ...], shape: tuple[int, ...]) -> Any:
         """Its value in one run, as `Scenario` takes it."""
@@ -91,6 +105,13 @@ class Batch:
         """The columns' names, in order."""
         return iter(self._columns)
 
+    def keys(self) -> list[str]:
+        """The columns' names, in order: dict(batch) is a dict of the columns."""
+        return list(self._columns)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.keys()
+
     def __len__(self) -> int:
         """How many runs there are."""
         return math.prod(self.shape)
@@ -98,6 +119,36 @@ class Batch:
     def __repr__(self) -> str:
         over = ", ".join(self.axes) or "nothing"
         return f"<Batch of {len(self)} runs over {over}: {np.count_nonzero(self.ok)} ok>"
+
+    def _repr_html_(self) -> str:
+        from .notebook import pages
+
+        return pages.of_batch(self)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A pandas.DataFrame with a row for each run: the values that vary, the outcome in words, the other columns.
+
+        The rows of a batch of several dimensions have the order of `batch["peak_force"].ravel()`.
+
+        Raises:
+            UsageError: pandas is not installed; it is the extra `pandas`.
+        """
+        from .notebook import tables
+
+        return tables.batch_to_pandas(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """An xarray.Dataset of the columns in the batch's shape; the outcome is in words.
+
+        The values that vary are coordinates. A dimension along which one key varies has its name; any other is called
+        "run" or, where there are several, "axis_0", "axis_1".
+
+        Raises:
+            UsageError: xarray is not installed; it is the extra `xarray`.
+        """
+        from .notebook import tables
+
+        return tables.batch_to_xarray(self)
 
     @property
     def outcomes(self) -> NDArray[np.str_]:

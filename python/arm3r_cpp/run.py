@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from ._messages import no_column
 from ._native import Floats, lib
 from .errors import UsageError
 from .run_file import read, with_numbers
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 
 class Event(NamedTuple):
@@ -92,8 +96,23 @@ class Run:
         """How many rows there are."""
         return len(self.t)
 
+    def keys(self) -> list[str]:
+        """The columns' names, in order: dict(run) is a dict of the columns."""
+        return self.columns
+
     def __repr__(self) -> str:
-        return f"<Run {self.summary['name']}: {self.outcome}, {len(self)} rows to t = {self.t[-1]:g} s>"
+        failed = sum(not check["passed"] for check in self.checks)
+        checks = f", {failed} of {len(self.checks)} checks failed" if failed else ""
+        return f"<Run {self.summary['name']}: {self.outcome}{checks}, {len(self)} rows to t = {self.t[-1]:g} s>"
+
+    def _repr_html_(self) -> str:
+        from .notebook import pages
+
+        return pages.of_run(self)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        triples = {name[:-1].removesuffix("_") for name in self._columns}
+        return [*self._columns, *sorted(name for name in triples if self._three(name))]
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Run, (self._columns, self.units, self.summary, self._text())
@@ -183,6 +202,26 @@ class Run:
                 summary=json.dumps(self.summary),
                 report=self._text() or "",
             )
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The columns as a pandas.DataFrame with the time as its index; `attrs["units"]` has their units.
+
+        Raises:
+            UsageError: pandas is not installed; it is the extra `pandas`.
+        """
+        from .notebook import tables
+
+        return tables.run_to_pandas(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The columns as an xarray.Dataset over the dimension t; each has its unit in `attrs["units"]`.
+
+        Raises:
+            UsageError: xarray is not installed; it is the extra `xarray`.
+        """
+        from .notebook import tables
+
+        return tables.run_to_xarray(self)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Run:

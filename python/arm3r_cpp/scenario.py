@@ -6,7 +6,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -225,6 +225,14 @@ class Scenario:
         self._warned = None
         return self
 
+    def _repr_html_(self) -> str:
+        from .notebook import pages
+
+        return pages.of_scenario(self)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return sorted({part for path in places() for part in _sections(path)} | {"name", "checks"})
+
     @property
     def name(self) -> str:
         """Its `name`, by default the file's stem."""
@@ -363,6 +371,12 @@ class Scenario:
 
 def _is_part(path: str, of: str) -> bool:
     return path == of or path.startswith((f"{of}.", f"{of}["))
+
+
+def _sections(path: str) -> Iterator[str]:
+    """A path and the sections that it lies in: "wall", "wall.contact", "wall.contact.law"."""
+    parts = path.split(".")
+    return (".".join(parts[:count]) for count in range(1, len(parts) + 1))
 
 
 def _restore(text: str, file: str) -> Scenario:

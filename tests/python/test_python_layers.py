@@ -21,6 +21,7 @@ ROOMS = [
     "batch simulation",
     "sweeps",
     "plot",
+    "notebook",
     "animation",
     "commands",
     "_api",
@@ -29,6 +30,7 @@ ROOMS = [
 
 # Public names that a room below hands on: these imports point up, and they are done when the name is used.
 LATER = {("scenario", "batch"), ("plot", "animation")}
+LATER |= {(room, "notebook") for room in ("run", "scenario", "batch")}  # their pages and tables
 
 MAX_MODULES = 16  # in a folder
 

@@ -1,4 +1,4 @@
-"""The tutorial prints what it says, step by step."""
+"""The tutorial and the page about Python print what they say, step by step."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 
-def test_every_step_prints_what_it_says(root: Path, tmp_path: Path) -> None:
+
+@pytest.mark.parametrize(("page", "count"), [("tutorial.md", 9), ("python.md", 6)])
+def test_every_step_prints_what_it_says(root: Path, tmp_path: Path, page: str, count: int) -> None:
     (tmp_path / "scenarios").symlink_to(root / "scenarios")
-    blocks = re.findall(r"```python\n(.*?)```", (root / "docs/tutorial.md").read_text(), re.S)
-    assert len(blocks) >= 9
+    blocks = re.findall(r"```python\n(.*?)```", (root / "docs" / page).read_text(), re.S)
+    assert len(blocks) >= count
     code = "\n".join(blocks)
     promised = re.findall(r"print\(.*\)  # (.*)", code)
     assert len(promised) == code.count("print(")

@@ -4,7 +4,6 @@ import signal
 import sys
 import warnings
 from importlib import import_module
-from typing import Any
 
 _OURS = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # not where the caller ignores the signal
 if _OURS:
@@ -40,5 +39,5 @@ def _call(module: str) -> int:
         end_by_signal(signal.SIGINT)
 
 
-def _say(message: Warning | str, *_: Any) -> None:
+def _say(message: object, *_: object) -> None:
     print(f"warning: {message}", file=sys.stderr)

@@ -76,6 +76,13 @@ class SweepTable:
         """The columns' names, in order."""
         return iter(self.units)
 
+    def keys(self) -> list[str]:
+        """The columns' names, in order: dict(table) is a dict of the columns."""
+        return self.names
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.names
+
     def __len__(self) -> int:
         """How many runs there are."""
         return len(self["run"])
