@@ -75,6 +75,13 @@ def test_what_is_completed_can_be_read(pushed: arm3r.Run) -> None:
         scenario[key]
 
 
+def test_the_columns_of_a_sweep_are_completed_and_become_a_dict() -> None:
+    table = object.__new__(arm3r.SweepTable)
+    table.units = {"run": "", "peak_force": "N"}
+    table.__dict__["_columns"] = {"run": np.arange(2), "peak_force": np.array([1.0, 2.0])}
+    assert table._ipython_key_completions_() == list(dict(table)) == ["run", "peak_force"]
+
+
 # ---- pages ----------------------------------------------------------------------------------------------------------
 
 
