@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from . import plot as plot
+    from . import verify as verify
     from ._api import *  # noqa: F403
 
 
@@ -33,4 +34,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*import_module(f"{__name__}._api").__all__, "plot"])
+    return sorted([*import_module(f"{__name__}._api").__all__, "plot", "verify"])

@@ -23,6 +23,7 @@ ROOMS = [
     "plot",
     "notebook",
     "animation",
+    "verify",
     "commands",
     "_api",
     "__init__",
@@ -130,4 +131,4 @@ def test_a_folder_can_be_taken_in(folder: Path) -> None:
 def test_no_module_hides_a_public_name_of_its_package() -> None:
     """The import of plot/force.py would put the module in the place of the function plot.force."""
     assert not {f"plot.{name}" for name in arm3r.plot.__all__} & set(KNOWN)
-    assert not set(dir(arm3r)) - {"plot"} & set(KNOWN)
+    assert not set(dir(arm3r)) - {"plot", "verify"} & set(KNOWN)

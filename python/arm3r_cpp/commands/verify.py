@@ -1,0 +1,79 @@
+"""arm3r-verify: is a user's formula right, and if not, which term is wrong?"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..errors import Arm3rError
+from .exit_codes import WRONG_FORMULA, attempt, print_line
+from .progress_bar import Bar
+
+if TYPE_CHECKING:
+    from ..verify.verdict import Verdict
+
+KINDS = ("jacobian", "gravity", "kinematics", "mass", "coriolis", "inverse", "forward", "controller")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Entry point of `arm3r-verify`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
+    options = parser().parse_args(sys.argv[1:] if argv is None else argv)
+    verdicts: list[Verdict] = []
+    code = attempt("arm3r-verify", lambda: verify(options, verdicts))
+    return code or (0 if all(verdict.ok for verdict in verdicts) else WRONG_FORMULA)
+
+
+def parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="arm3r-verify",
+        description="Judge formulas of the arm: exit code 0 if all are right, 11 if one is wrong; see docs/verify.md.",
+    )
+    add = parser.add_argument
+    add("formulas", nargs="+", metavar="FILE[:FUNCTION]", help="a Python file, or a MATLAB function file")
+    add("--kind", choices=KINDS, help="what the formulas compute (default: found from names)")
+    add("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
+    add("--json", action="store_true", help="print the verdicts as a JSON array")
+    return parser
+
+
+def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
+    """Judge each formula; a file that cannot be read ends it."""
+    from ..verify.functions import formula_verdict, truth_of
+
+    arm: Any = truth_of(options.arm)
+    failure: Arm3rError | None = None
+    for formula in options.formulas:
+        bar = Bar("repair", "edits")
+        try:
+            verdict = formula_verdict(formula, options.kind, arm, progress=bar.draw)
+        except Arm3rError as error:
+            failure = failure or error
+            continue
+        finally:
+            bar.clear()
+        verdicts.append(verdict)
+        if not options.json:
+            print_line(verdict)
+    if options.json:
+        print_line(json.dumps([verdict.to_dict() for verdict in verdicts], indent=2, ensure_ascii=False))
+    elif len(verdicts) > 1 or not all(verdict.ok for verdict in verdicts):
+        print_line(summary(verdicts))
+    if failure:
+        raise failure
+
+
+def summary(verdicts: Sequence[Verdict]) -> str:
+    """ "2 mistakes in 2 files"; entries that one edit mends are one mistake."""
+    count = sum(
+        len({(one.line, one.column, one.old, one.cause if one.old is None else "") for one in verdict.findings})
+        for verdict in verdicts
+    )
+    files = len({verdict.file for verdict in verdicts})
+    return f"{count or 'no'} mistake{'' if count == 1 else 's'} in {files} file{'' if files == 1 else 's'}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

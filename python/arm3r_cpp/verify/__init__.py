@@ -1,0 +1,32 @@
+"""Reads a user's formula back: is it right, and if not, which term is wrong, in which line?
+
+In comes a formula of an arm (a function, a file, a log), and the arm it is meant for. Out comes a `Verdict`. `judge`
+goes the way from one to the other: `formula` and `program` evaluate what the user wrote, `truth` knows what is right,
+`comparison` holds both beside each other, `explain` finds causes, `coverage` says what other tests would have seen, and
+`words` says it all in sentences. Nothing here steps physics, and files of the user run in a process of their own.
+
+>>> verdict = arm3r.verify.jacobian(my_jacobian)
+>>> verdict.ok, verdict.findings
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from .functions import *  # noqa: F403
+
+
+def __getattr__(name: str) -> Any:
+    # The process that runs a user's file imports this package, too, and needs nothing of this.
+    functions = import_module(f"{__name__}.functions")
+    if name not in functions.__all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}; it has {', '.join(functions.__all__)}")
+    return getattr(functions, name)
+
+
+def __dir__() -> list[str]:
+    return sorted(import_module(f"{__name__}.functions").__all__)

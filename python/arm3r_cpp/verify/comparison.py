@@ -1,0 +1,123 @@
+"""A formula beside the truth: both at the same states and arms, entry by entry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .._native import Floats
+from ..errors import UsageError
+from .explain.repair import wrong_entries
+from .formula import Formula
+from .kinds import Kind, standard_form
+from .program.nodes import Edit, ProgramError
+from .samples import Samples, random_states
+
+TOLERANCE = 1e-9  # of an entry's scale
+_ARMS, _STATES = 5, 8
+
+
+@dataclass
+class Comparison:
+    """What a formula returns and what is due, for one kind of formula.
+
+    `parameters` are the formula's names of quantities that are varied; the arm's own values stand in the first arm.
+    """
+
+    formula: Formula
+    truth: Any
+    kind: Kind
+    parameters: dict[str, str]
+    convention: str = ""
+    inertia: str = "scaled"
+    rows: int = 3
+    degrees: bool = False
+    shape: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        self.known = sorted(set(self.parameters.values()))
+        self.call = self.formula.bind(self.kind, self.truth.joints, self.parameters, self.known)
+        self.convention = self.convention or self.truth.convention
+        random = np.random.default_rng(20)
+        self.first, self.second, self.fresh = (self._samples(random, states) for states in (1, _STATES, _STATES))
+
+    def _samples(self, random: np.random.Generator, states: int) -> Samples:
+        """The arm itself, unless all of its states are in the other samples, and random arms."""
+        if not self.known:
+            return Samples(random_states(random, 2 * states, self.truth.joints), [{}])
+        count = 1 if states == 1 else _ARMS
+        arms = [self.truth.random_quantities(set(self.known), random) for _ in range(count)]
+        return Samples(random_states(random, states, self.truth.joints), arms)
+
+    @property
+    def own(self) -> dict[str, float]:
+        """The arm's own values of the quantities that are varied."""
+        return {name: self.truth.values_of_quantities[name] for name in self.known}
+
+    def values(self, samples: Samples, edit: Edit | None = None) -> Floats:
+        """What the formula returns, in the form of the truth: (rows, ...).
+
+        Raises:
+            ProgramError: it failed, or returned what is no such formula.
+        """
+        if self.degrees:
+            samples = Samples({**samples.states, "q": np.rad2deg(samples.states["q"])}, samples.arms)
+        raw = self.formula.values(self.call, samples, self.known, edit)
+        try:
+            return standard_form(self.kind, raw, self.truth.joints, samples.tiled("qd"))
+        except UsageError as error:
+            raise ProgramError(str(error)) from None
+
+    def due(
+        self, samples: Samples, changes: Mapping[str, Floats] | None = None, states: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """What is right: (rows, ...).
+
+        Args:
+            changes: quantities with other values, in each row.
+            states: other joint vectors, in each row.
+        """
+        count = len(samples.states["q"])
+        results = []
+        for number, arm in enumerate(samples.arms):
+            rows = slice(number * count, (number + 1) * count)
+            here = {name: values[rows] for name, values in states.items()} if states else samples.states
+            new = {name: float(values[rows][0]) for name, values in (changes or {}).items()}
+            results.append(
+                self.truth.values(
+                    self.kind.name, self.convention, here, {**arm, **new}, inertia=self.inertia, rows=self.rows
+                )
+            )
+        return np.concatenate(results)
+
+    def wrong(self, values: Floats, samples: Samples, due: Floats | None = None) -> frozenset[int]:
+        """The flat places of the entries that differ."""
+        due = self.due(samples) if due is None else due
+        if values.shape != due.shape:
+            raise ProgramError(f"returns {_words(values.shape[1:])} numbers; {_words(due.shape[1:])} are due")
+        flat, right = (one.reshape(len(one), -1) for one in (values, due))
+        return wrong_entries(flat, right, scales(right), TOLERANCE)
+
+    def entry(self, place: int) -> list[int]:
+        """[row, column] from 1."""
+        return [int(one) + 1 for one in np.unravel_index(place, self.shape)]
+
+    def given(self, samples: Samples) -> dict[str, Floats]:
+        """The values of the varied quantities in each row; of the others, the arm's own."""
+        count = len(samples.states["q"])
+        own = self.truth.values_of_quantities
+        return {name: np.repeat([arm.get(name, own[name]) for arm in samples.arms], count) for name in own}
+
+
+def scales(due: Floats) -> Floats:
+    """The scale of each entry: its largest value, and where it is zero that of all entries."""
+    largest = np.abs(due).max(axis=0)
+    whole = largest.max() if largest.size else 1.0
+    return np.where(largest > 1e-9 * whole, largest, whole if whole else 1.0)
+
+
+def _words(shape: tuple[int, ...]) -> str:
+    return "x".join(map(str, shape)) or "a single one of"

@@ -1,0 +1,7 @@
+"""Why a formula is wrong: hypotheses about the whole, the terms that its entries read, and edits that mend it.
+
+In come the user's formula, the truth, and which entries differ. Out come causes, terms and edits, none of them without
+a confirmation at states and arms that played no part in finding it. `hypotheses` tries mistakes that change the formula
+as a whole; `spectrum` and `terms` read entries as sums of sines and cosines with monomials of the parameters;
+`edits` lists the single edits of a text and `repair` tries them. This room prints nothing.
+"""

@@ -1,0 +1,225 @@
+"""The single edits of a program's text: one sign, name, function, number, term or factor at a time."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from ..program.nodes import Edit, Node
+
+_TRIGONOMETRIC = {"sin": "cos", "cos": "sin", "sind": "cosd", "cosd": "sind", "tan": "sin"}
+_ADDITIVE, _MULTIPLICATIVE = ("+", "-"), ("*", "/", ".*", "./")
+_MOST = 6000
+
+
+class Editor:
+    """Lists the edits of a text that may mend it, the likely ones first."""
+
+    def __init__(
+        self, text: str, nodes: Sequence[Node], language: str, angles: Sequence[str], factors: Sequence[str]
+    ) -> None:
+        """
+        Args:
+            angles: what joint angles are called in the text, in the order of the joints.
+            factors: the names of parameters.
+        """
+        self.text, self.nodes, self.language = text, list(nodes), language
+        self.factors = list(dict.fromkeys(factors))[:8]
+        every = [inner for node in self.nodes for inner in node.walk()]
+        self.names = list(dict.fromkeys(one.word for one in every if one.kind == "name"))[:40]
+        self.trig = [
+            one for one in every if one.kind == "call" and _last(one.word) in _TRIGONOMETRIC and len(one.parts) == 1
+        ]
+        self.angles = list(dict.fromkeys([*self._angle_texts(angles), *(self._of(one.parts[0]) for one in self.trig)]))[
+            :14
+        ]
+        self.products = list(dict.fromkeys(self._of(one) for one in self._terms() if one.kind != "number"))[:24]
+        self.power = "**" if language == "python" else "^"
+
+    def _of(self, node: Node) -> str:
+        return self.text[node.start : node.end]
+
+    def _angle_texts(self, angles: Sequence[str]) -> list[str]:
+        """Single angles, and the sums of neighbours."""
+        found = list(angles)
+        for first in range(len(angles)):
+            for last in range(first + 2, len(angles) + 1):
+                found.append("+".join(angles[first:last]))
+        return found
+
+    def _terms(self) -> Iterator[Node]:
+        """The summands of all sums."""
+        for statement in self.nodes:
+            for node in statement.walk():
+                if node.kind == "binary" and node.word in _ADDITIVE:
+                    yield from (part for part in node.parts if not (part.kind == "binary" and part.word in _ADDITIVE))
+                elif node.kind == "assign" and not (node.parts[0].kind == "binary" and node.parts[0].word in _ADDITIVE):
+                    yield node.parts[0]
+
+    def all(self, statements: Sequence[Node]) -> list[Edit]:
+        """The edits of some statements, each once, without those that change nothing, the likely ones first."""
+        seen, found = set(), []
+        for statement in statements:
+            for node, parent in _with_parents(statement):
+                if parent is None:
+                    continue
+                for edit in self._of_node(node, parent):
+                    new = " ".join(edit.new.split())
+                    if (
+                        new != " ".join(self.text[edit.start : edit.end].split())
+                        and (edit.start, edit.end, new) not in seen
+                    ):
+                        seen.add((edit.start, edit.end, new))
+                        found.append(edit)
+        return sorted(found, key=lambda edit: edit.rank)[:_MOST]
+
+    def _of_node(self, node: Node, parent: Node) -> Iterator[Edit]:
+        if node.kind in ("other", "row", "all", "range", "assign"):
+            if node.kind == "other" and parent.kind != "index" and not node.word.startswith(("np", "math")):
+                yield from self._wrapped(node, parent)
+            return
+        yield from getattr(self, f"_{node.kind}", self._nothing)(node, parent)
+        is_value = parent.kind not in ("index", "other") or parent.parts[:1] != (node,)
+        if is_value and not (parent.kind == "index" and node.kind == "number"):
+            yield from self._wrapped(node, parent)
+
+    def _nothing(self, node: Node, parent: Node) -> Iterator[Edit]:
+        yield from ()
+
+    def _at(self, node: Node, new: str, rank: int, parent: Node | None = None) -> Edit:
+        """The node's text replaced; a sum in a product gets brackets."""
+        tight = parent is not None and parent.kind in ("binary", "unary", "transpose", "index")
+        if tight and re.search(r"[-+*/]", re.sub(r"\([^()]*\)|\[[^]]*\]", "", new)):
+            new = f"({new})"
+        return Edit(node.start, node.end, new, rank)
+
+    # ---- by the kind of node -----------------------------------------------------------------------------------------
+
+    def _name(self, node: Node, parent: Node) -> Iterator[Edit]:
+        is_angle = any(node in one.parts for one in self.trig)
+        if is_angle:
+            return  # the argument of a sine is edited with its call
+        near = node.word.rstrip("0123456789")
+        for name in dict.fromkeys([*self.names, *self.factors]):
+            yield self._at(node, name, 1 if name.rstrip("0123456789") == near else 5)
+        if self.trig:
+            prefix = self.trig[0].word[: -len(_last(self.trig[0].word))]
+            if node.word in self.angles:
+                yield from (self._at(node, f"{prefix}{name}({node.word})", 4) for name in ("sin", "cos"))
+                yield from (self._at(node, angle, 3, parent) for angle in self.angles)
+
+    def _number(self, node: Node, parent: Node) -> Iterator[Edit]:
+        try:
+            value = float(node.word.lower().replace("d", "e"))
+        except ValueError:
+            return
+        values = [0, 1, 2, 3, 4, 12, 0.5, -1, value + 1, value - 1, value / 2, 2 * value, -value, 9.80665]
+        if parent.kind == "index" or (value == int(value) and parent.kind in ("call", "matrix")):
+            values = [0, 1, 2, 3, value + 1, value - 1, -value]
+        for new in dict.fromkeys(values):
+            yield self._at(node, f"{new:.10g}", 2, parent if new < 0 else None)
+        yield from (self._at(node, name, 6) for name in self.factors)
+        if value == 0 and parent.kind != "index":
+            yield from (self._at(node, term, 4) for term in self.products)
+
+    def _unary(self, node: Node, parent: Node) -> Iterator[Edit]:
+        yield Edit(node.at, node.parts[0].start, "", 1)
+        if node.word == "+":
+            yield Edit(node.at, node.at + 1, "-", 1)
+
+    def _binary(self, node: Node, parent: Node) -> Iterator[Edit]:
+        left, right = node.parts
+        for word in ("+", "-", "*", "/", self.power, "@" if self.language == "python" else "*"):
+            if word != node.word:
+                yield Edit(
+                    node.at, node.at + len(node.word), word, 1 if word in _ADDITIVE and node.word in _ADDITIVE else 2
+                )
+        yield self._at(node, self._of(left), 3, parent)
+        yield self._at(node, self._of(right) if node.word != "-" else f"-{self._of(right)}", 3, parent)
+        if node.word in ("-", "/", "@", "*"):
+            yield self._at(node, f"{self._of(right)} {node.word} {self._of(left)}", 4, parent)
+        if node.word in (*_ADDITIVE, *_MULTIPLICATIVE) and left.kind == "binary" and left.word in _ADDITIVE:
+            yield from self._regrouped(node, left, right)
+        if node.word in _ADDITIVE and left.kind == "binary" and left.word in _MULTIPLICATIVE:
+            inner = f"{self._of(left.parts[0])}{left.word}({self._of(left.parts[1])} {node.word} {self._of(right)})"
+            yield self._at(node, inner, 5, None if parent.kind != "binary" else parent)
+
+    def _regrouped(self, node: Node, left: Node, right: Node) -> Iterator[Edit]:
+        """(a + b)*c as a + b*c, and a - b + c as a - (b + c)."""
+        first, second = left.parts
+        yield self._at(node, f"{self._of(first)} {left.word} ({self._of(second)} {node.word} {self._of(right)})", 5)
+
+    def _call(self, node: Node, parent: Node) -> Iterator[Edit]:
+        last, inner = _last(node.word), [self._of(part) for part in node.parts]
+        if last in _TRIGONOMETRIC and len(node.parts) == 1:
+            name = node.word[: -len(last)] + _TRIGONOMETRIC[last]
+            yield Edit(node.at, node.at + len(node.word), name, 1)
+            for angle in self.angles:
+                if " ".join(angle.split()) != " ".join(inner[0].split()):
+                    yield Edit(node.parts[0].start, node.parts[0].end, angle, 1)
+            for angle in [one for one in self.angles if re.fullmatch(r"[\w\[\]().]+", one)]:
+                bracketed = inner[0] if re.fullmatch(r"[\w\[\]().]+", inner[0]) else f"({inner[0]})"
+                yield Edit(node.parts[0].start, node.parts[0].end, f"{inner[0]}+{angle}", 2)
+                yield Edit(node.parts[0].start, node.parts[0].end, f"{inner[0]}-{angle}", 2)
+                yield Edit(node.parts[0].start, node.parts[0].end, f"{angle}-{bracketed}", 3)
+        if len(node.parts) == 1:
+            yield self._at(node, inner[0], 4, parent)
+        if len(node.parts) == 2:
+            yield Edit(node.parts[0].start, node.parts[1].end, f"{inner[1]}, {inner[0]}", 2)
+
+    def _transpose(self, node: Node, parent: Node) -> Iterator[Edit]:
+        yield self._at(node, self._of(node.parts[0]), 1, parent)
+
+    def _matrix(self, node: Node, parent: Node) -> Iterator[Edit]:
+        """Two elements of a list, or two rows of a matrix, in the other order; the whole transposed."""
+        parts = node.parts[0].parts if len(node.parts) == 1 and node.parts[0].kind == "row" else node.parts
+        for first in range(len(parts)):
+            for second in range(first + 1, len(parts)):
+                one, other = parts[first], parts[second]
+                yield Edit(one.start, other.end, self._of(other) + self.text[one.end : other.start] + self._of(one), 3)
+        yield Edit(node.end, node.end, "'" if self.language == "matlab" else ".T", 4)
+
+    # ---- for any expression ------------------------------------------------------------------------------------------
+
+    def _wrapped(self, node: Node, parent: Node) -> Iterator[Edit]:
+        text = self._of(node)
+        is_atom = node.kind in ("name", "number", "call", "index", "group", "matrix")
+        whole = text if is_atom else f"({text})"
+        is_sum = node.kind == "binary" and node.word in _ADDITIVE
+        if node.kind != "number" and parent.kind != "transpose":
+            if parent.kind != "unary":
+                yield self._at(node, f"-{whole if is_sum else text}", 2, parent)
+            yield self._at(node, "0", 3)
+            yield self._at(node, "1", 4)
+        if node.kind in ("name", "call", "other", "index") or (
+            node.kind == "binary" and parent.kind not in ("binary", "unary")
+        ):
+            for factor in self.factors:
+                yield Edit(node.start, node.end, f"{factor}*{whole}", 4)
+                yield self._at(node, f"{whole}/{factor}", 6, parent if parent.kind == "binary" else None)
+            yield self._at(node, f"{whole}/2", 3, parent if parent.kind == "binary" else None)
+            yield Edit(node.start, node.end, f"2*{whole}", 3)
+            yield self._at(node, f"{whole}{self.power}2", 4)
+            for call in {one.word + one_arg for one in self.trig for one_arg in (f"({self._of(one.parts[0])})",)}:
+                yield Edit(node.start, node.end, f"{whole}*{call}", 5)
+        is_end_of_sum = parent.kind in ("assign", "group", "matrix", "row") or (parent.kind == "binary" and not is_sum)
+        if is_end_of_sum and (is_sum or parent.kind in ("assign", "group", "matrix", "row", "binary")):
+            brackets = parent.kind == "binary" and not is_sum
+            for term in self.products:
+                for sign in _ADDITIVE:
+                    body = f"{text} {sign} {term}"
+                    yield Edit(node.start, node.end, f"({body})" if brackets else body, 5)
+        if self.language == "python" and node.kind in ("name", "call", "index") and parent.kind in ("binary", "assign"):
+            yield Edit(node.end, node.end, ".T", 6)
+        elif self.language == "matlab" and node.kind in ("name", "group", "call"):
+            yield Edit(node.end, node.end, "'", 6)
+
+
+def _last(word: str) -> str:
+    return word.rsplit(".", 1)[-1]
+
+
+def _with_parents(node: Node, parent: Node | None = None) -> Iterator[tuple[Node, Node | None]]:
+    yield node, parent
+    for part in node.parts:
+        yield from _with_parents(part, node)

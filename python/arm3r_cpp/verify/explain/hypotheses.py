@@ -1,0 +1,161 @@
+"""Mistakes that change a formula as a whole: each is a truth of its own, which the formula is compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import permutations
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._native import Floats
+
+States = dict[str, Floats]
+Truth = Callable[[States, dict[str, float]], Floats]
+"""What is right at the joint vectors of all rows, with factors or replacements of quantities: (rows, ...)."""
+
+
+class Hypothesis(NamedTuple):
+    cause: str
+    values: Callable[[], Floats]
+    weight: int = 1
+    """How far-fetched it is."""
+
+
+def hypotheses(
+    kind: str,
+    truth: Truth,
+    states: States,
+    joints: int,
+    rotation: Callable[[], Floats] | None,
+    scales: dict[str, Floats],
+) -> Iterator[Hypothesis]:
+    """All of them, each to be evaluated when it is asked for."""
+    yield from _inputs(truth, states, joints, kind)
+    yield from _outputs(kind, lambda: truth(states, {}), joints, rotation)
+    yield from _quantities(truth, states, scales)
+
+
+def _inputs(truth: Truth, states: States, joints: int, kind: str) -> Iterator[Hypothesis]:
+    q = states["q"]
+
+    def with_q(new: Floats, **other: Floats) -> Callable[[], Floats]:
+        return lambda: truth({**states, "q": new, **other}, {})
+
+    yield Hypothesis("the angles are taken in degrees; radians are due", with_q(np.deg2rad(q)))
+    yield Hypothesis(
+        "the angles are turned into degrees before they are used; they are due in radians", with_q(np.rad2deg(q))
+    )
+    yield Hypothesis("all joint angles have the wrong sign", with_q(-q))
+    for joint in range(joints):
+        turned = q.copy()
+        turned[:, joint] *= -1
+        yield Hypothesis(f"q{joint + 1} has the wrong sign", with_q(turned), 2)
+        turned = q.copy()
+        turned[:, joint] = np.deg2rad(turned[:, joint])
+        yield Hypothesis(f"q{joint + 1} is taken in degrees; radians are due", with_q(turned), 2)
+    for joint in range(1, joints):
+        absolute = q.copy()
+        absolute[:, joint] -= absolute[:, joint - 1]
+        words = f"q{joint + 1} is taken as the absolute angle of its link; the angle relative to link {joint} is due"
+        yield Hypothesis(words, with_q(absolute))
+        if kind == "jacobian":
+            yield Hypothesis(
+                words + " (and in the derivatives, too)",
+                partial(_absolute_columns, with_q(absolute), joint),
+            )
+    for order in list(permutations(range(joints)))[1:] if joints <= 4 else []:
+        names = ", ".join(f"q{joint + 1}" for joint in np.argsort(order))
+        moved = {vector: values[:, order] for vector, values in states.items()}
+        yield Hypothesis(f"the joints are taken in the order {names}", partial(truth, {**states, **moved}, {}))
+
+
+def _absolute_columns(due: Callable[[], Floats], joint: int) -> Floats:
+    """The columns of a Jacobian with respect to absolute angles: that of the joint before loses the next one's."""
+    values = due().copy()
+    values[..., joint - 1] -= values[..., joint]
+    return values
+
+
+def _outputs(
+    kind: str, due: Callable[[], Floats], joints: int, rotation: Callable[[], Floats] | None
+) -> Iterator[Hypothesis]:
+    values = due()
+    rows = values.shape[1]
+    yield Hypothesis("the result has the wrong sign", lambda: -values)
+    yield Hypothesis("the result is in degrees; radians are due", lambda: np.rad2deg(values), 2)
+    for factor, words in (
+        (2, "twice what is due"),
+        (0.5, "half of what is due"),
+        (1000, "1000 times what is due: millimetres?"),
+        (1e-3, "a thousandth of what is due"),
+        (1e6, "1e6 times what is due: millimetres?"),
+    ):
+        yield Hypothesis(f"the result is {words}", partial(np.multiply, factor, values), 2)
+    for row in range(rows):
+        signs = np.where(np.arange(rows) == row, -1.0, 1.0)
+        yield Hypothesis(
+            f"{'row' if values.ndim == 3 else 'entry'} {row + 1} has the wrong sign",
+            partial(np.multiply, values, signs.reshape(-1, *[1] * (values.ndim - 2))),
+        )
+    for order in list(permutations(range(rows)))[1:] if rows <= 3 else [(3, 4, 5, 0, 1, 2)] * (rows == 6):
+        if rows == 6:
+            words = "the angular rows stand above the linear ones; linear rows first are due"
+        else:
+            what = "rows" if values.ndim == 3 else "entries"
+            words = f"the {what} stand in the order {', '.join(str(row + 1) for row in order)}"
+        yield Hypothesis(words, partial(np.take, values, order, axis=1))
+    if values.ndim == 3:
+        if rows == values.shape[2]:
+            yield Hypothesis("the matrix is transposed", lambda: np.swapaxes(values, 1, 2))
+        for column in range(joints):
+            signs = np.where(np.arange(joints) == column, -1.0, 1.0)
+            yield Hypothesis(f"column {column + 1} has the wrong sign", partial(np.multiply, values, signs))
+        for order in list(permutations(range(joints)))[1:] if joints <= 4 else []:
+            yield Hypothesis(
+                f"the columns stand in the order {', '.join(str(one + 1) for one in order)}",
+                partial(np.take, values, order, axis=2),
+            )
+    if kind == "jacobian" and rotation is not None:
+        yield Hypothesis("the rows are in the tip's frame; the base frame is due", lambda: _rotated(rotation(), values))
+
+
+def _rotated(rotation: Floats, values: Floats) -> Floats:
+    inverse = np.swapaxes(rotation, 1, 2)
+    return np.concatenate([inverse @ values[:, first : first + 3] for first in range(0, values.shape[1], 3)], axis=1)
+
+
+def _quantities(truth: Truth, states: States, given: dict[str, Floats]) -> Iterator[Hypothesis]:
+    """One quantity in the place of another; `given` has the values of each quantity in all rows."""
+    words = {"length2": "a2", "length3": "a3", "mass2": "m2", "mass3": "m3", "gravity": "g"}
+
+    def changed(**new: Floats) -> Callable[[], Floats]:
+        return lambda: truth(states, new)  # type: ignore[arg-type]
+
+    for first, second in (("length2", "length3"), ("mass2", "mass3")):
+        if first in given and second in given and not np.allclose(given[first], given[second]):
+            one, other = words[first], words[second]
+            yield Hypothesis(
+                f"{one} and {other} are exchanged", changed(**{first: given[second], second: given[first]})
+            )
+            yield Hypothesis(f"{one} stands in the place of {other}", changed(**{second: given[first]}))
+            yield Hypothesis(f"{other} stands in the place of {one}", changed(**{first: given[second]}))
+    for link in (2, 3):
+        if f"length{link}" in given and f"mass{link}" in given:
+            at_end = changed(**{f"com{link}": given[f"length{link}"]})
+            yield Hypothesis(f"the centre of mass of link {link} is taken at the link's end", at_end)
+            yield Hypothesis(
+                f"the mass m{link} is missing", changed(**{f"mass{link}": 0 * given[f"mass{link}"] + 1e-12}), 2
+            )
+    if {"length2", "length3"} <= set(given):
+        yield Hypothesis(
+            "the centres of mass of links 2 and 3 are taken at the links' ends",
+            changed(com2=given["length2"], com3=given["length3"]),
+        )
+    if "gravity" in given:
+        g = given["gravity"]
+        yield Hypothesis("g is missing", changed(gravity=np.ones_like(g)))
+        yield Hypothesis("g is multiplied in twice", changed(gravity=g**2))
+        yield Hypothesis("gravity is left out", changed(gravity=0 * g))
+        yield Hypothesis("gravity has the wrong direction", changed(gravity=-g))

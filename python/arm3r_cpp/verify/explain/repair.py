@@ -1,0 +1,102 @@
+"""Tries the edits of a program's text: which of them make entries right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._native import Floats
+from ..program.nodes import Edit, Node, ProgramError
+
+Evaluate = Callable[[Edit, bool], Floats]
+"""The formula with an edit at the first samples, or with True at all of them: (rows, entries)."""
+Progress = Callable[[int, int], None]
+
+
+class Repair(NamedTuple):
+    edit: Edit
+    mended: frozenset[int]
+    """The entries that are right with the edit and were wrong without."""
+
+
+def wrong_entries(values: Floats, due: Floats, scale: Floats, tolerance: float) -> frozenset[int]:
+    """The entries that differ somewhere; what is no number differs."""
+    difference = np.abs(values - due)
+    return frozenset(int(entry) for entry in np.flatnonzero(~(difference <= tolerance * scale).all(axis=0)))
+
+
+def tried(
+    edits: Sequence[Edit],
+    evaluate: Evaluate,
+    wrong_first: Callable[[Floats], frozenset[int]],
+    wrong_all: Callable[[Floats], frozenset[int]],
+    wrong: frozenset[int],
+    progress: Progress | None = None,
+) -> list[Repair]:
+    """The edits that make some wrong entries right and no right one wrong, the best ones first.
+
+    They are tried in the order of their ranks, up to the first rank with one that mends everything.
+    """
+    found: list[Repair] = []
+    enough = 100
+    for number, edit in enumerate(edits):
+        if edit.rank > enough:
+            break
+        if progress and number % 100 == 0:
+            progress(number, len(edits))
+        left = _left(evaluate, edit, False, wrong_first)
+        if left is None or not left < wrong:
+            continue
+        left = _left(evaluate, edit, True, wrong_all)
+        if left is not None and left < wrong:
+            found.append(Repair(edit, frozenset(wrong - left)))
+            enough = edit.rank if not left else enough
+    return sorted(found, key=lambda one: (-len(one.mended), one.edit.rank, len(one.edit.new)))
+
+
+def influential(
+    nodes: Sequence[Node], text: str, evaluate: Evaluate, values: Floats, wrong: frozenset[int]
+) -> list[Node]:
+    """The statements that change a wrong entry when their values change."""
+    kept = []
+    places = sorted(wrong)
+    for node in nodes:
+        inner = node.parts[0]
+        try:
+            changed = evaluate(Edit(inner.start, inner.end, f"1.3*({text[inner.start : inner.end]})"), False)
+            if changed.shape == values.shape:
+                rows = len(values)
+                flat = changed.reshape(rows, -1)[:, places], values.reshape(rows, -1)[:, places]
+                if np.array_equal(*flat, equal_nan=True) and np.abs(flat[0]).max() > 0:
+                    zero = evaluate(Edit(inner.start, inner.end, f"1.3+({text[inner.start : inner.end]})"), False)
+                    if np.array_equal(zero.reshape(rows, -1)[:, places], flat[1], equal_nan=True):
+                        continue
+        except (ProgramError, ValueError):
+            pass
+        kept.append(node)
+    return kept
+
+
+def _left(
+    evaluate: Evaluate, edit: Edit, everywhere: bool, wrong: Callable[[Floats], frozenset[int]]
+) -> frozenset[int] | None:
+    try:
+        return wrong(evaluate(edit, everywhere))
+    except (ProgramError, ValueError):
+        return None
+
+
+def cover(repairs: Sequence[Repair], wrong: frozenset[int]) -> list[Repair]:
+    """Few edits that mend as many entries as possible together: each time the one that mends most of what is left."""
+    chosen: list[Repair] = []
+    left = set(wrong)
+    while left:
+        best = max(repairs, key=lambda one: len(one.mended & left), default=None)
+        if best is None or not best.mended & left:
+            break
+        if not any(best.edit.start < one.edit.end and one.edit.start < best.edit.end for one in chosen):
+            chosen.append(best)
+        left -= best.mended
+    return chosen

@@ -1,0 +1,167 @@
+"""Entries of a formula as sums of sines and cosines of the joint angles, by a discrete Fourier transform."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from ..._native import Floats
+
+Sampler = Callable[[Floats], Floats]
+"""Joint vectors (S, n) to values (arms, S, entries)."""
+_OFFSET = 0.137  # of the grid's angles: no point of it is a special pose
+
+
+@dataclass(frozen=True)
+class Wave:
+    """cos or sin of an integer combination of angles, or a power of one joint variable; the empty wave is 1."""
+
+    kind: str = ""
+    """ "C", "S", "C deg", "S deg" or "power" """
+    joints: tuple[int, ...] = ()
+    factors: tuple[int, ...] = ()
+
+    def __str__(self) -> str:
+        names = [f"q{joint + 1}" for joint in self.joints]
+        if self.kind == "power":
+            return names[0] if self.factors == (1,) else f"{names[0]}^{self.factors[0]}"
+        if set(self.factors) == {1} and self.kind in ("C", "S"):
+            return self.kind + "".join(str(joint + 1) for joint in self.joints)
+        parts = [
+            f"{'-' if f < 0 else '+'} {'' if abs(f) == 1 else f'{abs(f)} '}{name}"
+            for f, name in zip(self.factors, names, strict=True)
+        ]
+        text = " ".join(parts).removeprefix("+ ").replace("- ", "-", 1 if parts[0].startswith("-") else 0)
+        return f"{'cos' if self.kind[0] == 'C' else 'sin'}({text}{' deg' if 'deg' in self.kind else ''})"
+
+    def at(self, q: Floats) -> Floats:
+        """Its value at joint vectors (S, n)."""
+        if not self.joints:
+            return np.ones(len(q))
+        if self.kind == "power":
+            return q[:, self.joints[0]] ** self.factors[0]
+        angle = q[:, list(self.joints)] @ np.array(self.factors, float)
+        angle = np.deg2rad(angle) if "deg" in self.kind else angle
+        return np.cos(angle) if self.kind[0] == "C" else np.sin(angle)
+
+
+@dataclass
+class Axis:
+    """A group of joints whose angles occur as sums: its grid, its waves, and the map from values to coefficients."""
+
+    joints: tuple[int, ...]
+    points: Floats
+    waves: list[Wave]
+    inverse: Floats
+
+
+def axis(joints: tuple[int, ...], kind: str, order: int, total: int) -> Axis:
+    """kind: "angle", "degree" (an angle in degrees) or "power" (a length, or an angle that stands by itself)."""
+    if kind == "power":
+        points = np.array([[-0.9], [0.2], [1.1], [1.7]])[: max(order, 2) + 1]
+        waves = [Wave(), *(Wave("power", joints, (power,)) for power in range(1, len(points)))]
+    else:
+        period, suffix = (360.0, " deg") if kind == "degree" else (2 * np.pi, "")
+        one = (np.arange(2 * order + 1) / (2 * order + 1) + _OFFSET) * period
+        points = np.array(list(product(one, repeat=len(joints))))
+        waves = [Wave()]
+        for factors in product(range(-order, order + 1), repeat=len(joints)):
+            first = next((factor for factor in factors if factor), 0)
+            if first > 0:
+                used = [(joint, factor) for joint, factor in zip(joints, factors, strict=True) if factor]
+                places, numbers = tuple(joint for joint, _ in used), tuple(factor for _, factor in used)
+                waves += [Wave(f"{letter}{suffix}", places, numbers) for letter in "CS"]
+    q = np.zeros((len(points), total))
+    q[:, list(joints)] = points
+    return Axis(joints, points, waves, np.linalg.inv(np.stack([wave.at(q) for wave in waves], axis=1)))
+
+
+@dataclass
+class Spectrum:
+    """Coefficients (arms, waves, entries) of products of waves, one of each axis."""
+
+    waves: list[tuple[Wave, ...]]
+    coefficients: Floats
+
+    def at(self, q: Floats) -> Floats:
+        """The values (arms, S, entries) that the coefficients give."""
+        values = np.stack(
+            [np.prod([np.ones(len(q)), *(wave.at(q) for wave in waves)], axis=0) for waves in self.waves], axis=1
+        )
+        return np.einsum("sw,kwe->kse", values, self.coefficients)
+
+
+def spectrum(sampler: Sampler, axes: Sequence[Axis], total: int) -> Spectrum:
+    """One evaluation at each point of the grid that the axes span."""
+    grid = list(product(*(one.points for one in axes)))
+    q = np.zeros((len(grid), total))
+    for row, points in enumerate(grid):
+        for one, values in zip(axes, points, strict=True):
+            q[row, list(one.joints)] = values
+    values = sampler(q)
+    arms, entries = len(values), values.shape[2]
+    values = values.reshape(arms, *(len(one.points) for one in axes), entries)
+    for place, one in enumerate(axes, start=1):
+        values = np.moveaxis(np.tensordot(one.inverse, values, axes=(1, place)), 0, place)
+    waves = [tuple(wave for wave in waves if wave.joints) for waves in product(*(one.waves for one in axes))]
+    return Spectrum(waves, values.reshape(arms, -1, entries))
+
+
+def kinds_of_axes(sampler: Sampler, revolute: Sequence[bool], entry: int) -> list[str] | None:
+    """For each joint what the entry is in it: "angle", "degree", "power"; None where it is neither."""
+    random = np.random.default_rng(11)
+    n = len(revolute)
+    base = random.uniform(-2, 2, (3, n))
+    kinds = []
+    for joint in range(n):
+
+        def moved(by: float, joint: int = joint) -> Floats:
+            q = base.copy()
+            q[:, joint] += by
+            return sampler(q)[..., entry]
+
+        here = moved(0.0)
+        limit = 1e-7 * (1e-3 + np.abs(here).max())
+        if revolute[joint] and np.abs(moved(2 * np.pi) - here).max() < limit:
+            kinds.append("angle")
+        elif np.abs(moved(360.0) - here).max() < limit:
+            kinds.append("degree")
+        else:
+            cubic = moved(3.0) - 3 * moved(2.0) + 3 * moved(1.0) - here
+            if not np.abs(cubic).max() < 10 * limit:
+                return None
+            kinds.append("power")
+    return kinds
+
+
+def read(
+    sampler: Sampler, groups: Sequence[Sequence[int]], revolute: Sequence[bool], entry: int, budget: int = 3000
+) -> Spectrum | None:
+    """The spectrum of one entry, confirmed at random states; None where it is no such sum.
+
+    Args:
+        budget: the most points of a grid that is tried.
+    """
+    kinds = kinds_of_axes(sampler, revolute, entry)
+    if kinds is None:
+        return None
+    n = len(revolute)
+    split: list[tuple[tuple[int, ...], str]] = []
+    for group in groups:
+        angles = tuple(joint for joint in group if kinds[joint] == "angle")
+        split += [((joint,), kinds[joint]) for joint in group if kinds[joint] != "angle"]
+        split += [(angles, "angle")] if angles else []
+    probe = np.random.default_rng(12).uniform(-3, 3, (12, n))
+    due = sampler(probe)[..., [entry]]
+    limit = 1e-8 * (np.abs(due).max() + 1e-6)
+    for order in (1, 2, 3, 4):
+        axes = [axis(joints, kind, order, n) for joints, kind in sorted(split)]
+        if np.prod([len(one.points) for one in axes]) > budget:
+            return None
+        found = spectrum(lambda q: sampler(q)[..., [entry]], axes, n)
+        if np.abs(found.at(probe) - due).max() < limit:
+            return found
+    return None

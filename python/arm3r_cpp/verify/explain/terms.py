@@ -1,0 +1,169 @@
+"""Coefficients of a spectrum as rational numbers times monomials of the arm's parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from itertools import combinations, product
+
+import numpy as np
+
+from ..._native import Floats
+from .spectrum import Spectrum, Wave
+
+_ORDER = "mgaLlrcIJ"  # of the letters in a term: masses, gravity, lengths
+
+
+@dataclass(frozen=True)
+class Term:
+    """number * parameters * waves"""
+
+    number: float
+    powers: tuple[tuple[str, int], ...]
+    waves: tuple[Wave, ...]
+
+    def __str__(self) -> str:
+        """With its sign in front: "+ 1/2 m2 g a2 C2"."""
+        words = [name if power == 1 else f"{name}^{power}" for name, power in self.powers if power > 0]
+        words += [str(wave) for wave in self.waves]
+        size = number_words(abs(self.number))
+        text = " ".join(words if size == "1" and words else [size, *words])
+        text += "".join(f"/{name}" * -power for name, power in self.powers if power < 0)
+        return f"{'-' if self.number < 0 else '+'} {text}"
+
+
+def number_words(number: float) -> str:
+    fraction = Fraction(number).limit_denominator(144)
+    if fraction and abs(float(fraction) / number - 1) < 1e-7:
+        return str(fraction)
+    return f"{number:.6g}"
+
+
+def sum_words(terms: Sequence[Term]) -> str:
+    """ "-a3 S1 S23 + a2 C2"; "0" for no terms."""
+    if not terms:
+        return "0"
+    text = " ".join(str(term) for term in terms)
+    return text[2:] if text.startswith("+") else f"-{text[2:]}"
+
+
+class Parameters:
+    """The values that named parameters have in several arms, and fits of coefficients by their monomials."""
+
+    def __init__(self, values: dict[str, Floats], fixed: dict[str, float], arms: int) -> None:
+        """values: of lifted parameters in each arm. fixed: numbers of the plant that have a name and do not change."""
+        self.names = sorted(values, key=lambda name: (_ORDER.find(name[0]) % 99, name))
+        self.values = np.array([values[name] for name in self.names]).reshape(len(self.names), arms)
+        self.fixed = {name: value for name, value in fixed.items() if name not in values and value not in (0, 1)}
+        logs = np.concatenate([np.log(self.values), np.ones((1, arms))]).T
+        self.inverse = np.linalg.pinv(logs)
+        self.arms = arms
+        self.is_determined = arms >= len(self.names) + 2 or not self.names
+
+    def monomial(self, powers: Sequence[int]) -> Floats:
+        return np.prod(self.values ** np.array(powers, float)[:, None], axis=0) if self.names else np.ones(self.arms)
+
+    def single(self, coefficient: Floats, limit: float) -> tuple[float, tuple[int, ...]] | None:
+        """A number and the powers of one monomial that is the coefficient in every arm."""
+        if np.abs(coefficient).min() <= limit or len(set(np.sign(coefficient))) > 1:
+            return None
+        powers = tuple(int(power) for power in np.round(self.inverse @ np.log(np.abs(coefficient)))[:-1])
+        if any(abs(power) > 4 for power in powers):
+            return None
+        monomial = self.monomial(powers)
+        number = float(np.mean(coefficient / monomial))
+        return (number, powers) if np.abs(coefficient - number * monomial).max() <= limit else None
+
+    def is_simple(self, number: float) -> bool:
+        fraction = Fraction(number).limit_denominator(144)
+        return bool(fraction) and abs(float(fraction) / number - 1) < 1e-7
+
+    @cache  # noqa: B019
+    def _dictionary(self) -> tuple[list[tuple[int, ...]], Floats]:
+        powers = [one for one in product(range(3), repeat=len(self.names)) if sum(one) <= 4]
+        return powers, np.array([self.monomial(one) for one in powers])
+
+    def double(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
+        """Two monomials with simple numbers."""
+        powers, monomials = self._dictionary()
+        for number in (1, -1, 1 / 2, -1 / 2, 1 / 4, -1 / 4, 1 / 3, -1 / 3, 2, -2, 1 / 8, -1 / 8, 1 / 12, -1 / 12):
+            rest = coefficient - number * monomials
+            with np.errstate(divide="ignore"):
+                fitted = np.log(np.abs(rest) + 1e-300) @ self.inverse.T[:, :-1]
+            near = np.abs(fitted - np.round(fitted)).max(axis=1, initial=0) < 1e-4
+            for place in np.flatnonzero(near):
+                other = self.single(rest[place], limit)
+                if other and self.is_simple(other[0]):
+                    return [(number, powers[place]), other]
+        return None
+
+    def fit(
+        self,
+        coefficient: Floats,
+        due: Sequence[tuple[float, tuple[int, ...]]],
+        limit: float,
+    ) -> list[tuple[float, tuple[int, ...]]] | None:
+        """The coefficient as a sum of monomials: some of those that are due, and one or two others."""
+        if np.abs(coefficient).max() <= limit:
+            return []
+        alone = self.single(coefficient, limit)
+        if alone and (self.is_simple(alone[0]) or not due):
+            return [alone]
+        kept = [number * self.monomial(powers) for number, powers in due]
+        for missing in range(len(due) + 1):
+            for places in combinations(range(len(due)), len(due) - missing):
+                rest = coefficient - sum((kept[place] for place in places), np.zeros(self.arms))
+                chosen = [due[place] for place in places]
+                if np.abs(rest).max() <= limit:
+                    return chosen
+                other = self.single(rest, limit)
+                if other and (self.is_simple(other[0]) or self.arms > 1):
+                    return [*chosen, other]
+        if self.is_determined and 0 < len(self.names) <= 6:
+            return self.double(coefficient, limit)
+        return [alone] if alone else None
+
+    def term(self, number: float, powers: Sequence[int], waves: tuple[Wave, ...]) -> Term:
+        named = [(name, power) for name, power in zip(self.names, powers, strict=True) if power]
+        if not self.is_simple(number) and self.fixed:
+            found = self._named_number(number)
+            if found:
+                number, more = found
+                named += more
+        return Term(number, tuple(sorted(named, key=lambda one: (_ORDER.find(one[0][0]) % 99, one[0]))), waves)
+
+    def _named_number(self, number: float) -> tuple[float, list[tuple[str, int]]] | None:
+        """A number of the plant as a simple number times its named quantities, the fewest that do."""
+        for size in (1, 2, 3):
+            for names in combinations(self.fixed, size):
+                value = float(np.prod([self.fixed[name] for name in names]))
+                if (
+                    value
+                    and self.is_simple(number / value)
+                    and Fraction(number / value).limit_denominator(144).denominator <= 24
+                ):
+                    return number / value, [(name, 1) for name in names]
+        return None
+
+
+def terms_of(
+    found: Spectrum,
+    parameters: Parameters,
+    due: dict[tuple[Wave, ...], list[tuple[float, tuple[int, ...]]]],
+    scale: float,
+) -> tuple[list[Term], dict[tuple[Wave, ...], list[tuple[float, tuple[int, ...]]]]] | None:
+    """The terms of one entry, and the monomials of each wave; None where a coefficient has no name."""
+    limit = 2e-9 * scale
+    monomials, terms = {}, []
+    for place, waves in enumerate(found.waves):
+        coefficient = found.coefficients[:, place, 0]
+        if np.abs(coefficient).max() <= limit:
+            continue
+        fitted = parameters.fit(coefficient, due.get(waves, []), limit)
+        if fitted is None:
+            return None
+        monomials[waves] = fitted
+        terms += [parameters.term(number, powers, waves) for number, powers in fitted]
+    return terms, monomials

@@ -1,0 +1,263 @@
+"""The user's formula: a program, and what it is given."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import textwrap
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from .._native import Floats
+from ..errors import UsageError
+from .kinds import KINDS, Kind
+from .names import quantities_of, slots_of
+from .program.matlab_program import MatlabProgram
+from .program.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
+from .program.python_nodes import PythonText
+from .program.python_program import PythonProgram, _numbers
+from .samples import Samples, columns
+
+
+class Program(Protocol):
+    """Evaluates the user's function, (rows, columns) to (rows, ...)."""
+
+    def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats: ...
+
+
+class CallableProgram:
+    """A function without a text."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function = function
+
+    def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats:
+        results = []
+        for row in table:
+            values = [float(row[slot]) if isinstance(slot, int) else row[list(slot)] for slot in call.slots]
+            try:
+                results.append(_numbers(self.function(*values)))
+            except ProgramError:
+                raise
+            except Exception as error:
+                raise ProgramError(f"raises {type(error).__name__}: {error}") from None
+        return np.array(results)
+
+
+@dataclass
+class Formula:
+    """A user's function, with what its text tells about it."""
+
+    file: str
+    name: str
+    program: Program
+    arguments: list[str]
+    constants: dict[str, Constant] = field(default_factory=dict)
+    defaults: dict[str, float] = field(default_factory=dict)
+    nodes: list[Node] = field(default_factory=list)
+    text: str | None = None
+    language: str = "python"
+    comments: str = ""
+    outputs: list[str] = field(default_factory=list)
+    """The names of several outputs in their order, where they have names."""
+    global_numbers: dict[str, float] = field(default_factory=dict)
+    """Numbers outside of the text that a function in memory uses."""
+
+    @property
+    def order(self) -> list[int] | None:
+        """The places of outputs 1 to n among several outputs whose names end with these numbers."""
+        digits = numbers_of(self.outputs)
+        if len(digits) < 2 or sorted(digits) != [str(n + 1) for n in range(len(digits))]:
+            return None
+        if self.language == "python" and numbers_of(self.arguments)[: len(digits)] != digits:
+            return None  # a Python function returns by position, unless its arguments have the same order
+        return [digits.index(str(n + 1)) for n in range(len(digits))]
+
+    def parameters(self, kind: Kind, joints: int) -> dict[str, str]:
+        """The parameters of the arm among arguments and constants, by the names of the formula."""
+        from .names import slot_of
+
+        states = {name for name in self.arguments if (slot := slot_of(name)) and slot[0] in kind.inputs}
+        own = {"self", *states}
+        names = [name for name in (*self.arguments, *self.constants, *self.global_numbers) if name not in own]
+        return quantities_of(names)
+
+    def bind(self, kind: Kind, joints: int, parameters: dict[str, str], known: list[str]) -> Call:
+        """How the function is called; `known` are the quantities that stand in the table behind the joint vectors."""
+        first = 4 * joints
+        if self.arguments == ["*"]:
+            return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {})
+        slots: list[Any] = []
+        for vector, joint in slots_of(self.arguments, kind, joints, parameters):
+            if joint == -1:
+                slots.append(first + known.index(parameters[vector]))
+            else:
+                place = columns(vector, joints)
+                slots.append(place if joint is None else place[joint])
+        lifted = {
+            name: first + known.index(quantity) for name, quantity in parameters.items() if name not in self.arguments
+        }
+        return Call(tuple(slots), lifted)
+
+    def values(self, call: Call, samples: Samples, known: list[str], edit: Edit | None = None) -> Floats:
+        """What the formula returns, a row for each arm and state, outputs in their order."""
+        values = self.program.evaluate(call, samples.table(known), edit)
+        return values[:, self.order] if self.order and values.ndim == 2 else values
+
+
+def from_callable(function: Any) -> Formula:
+    """A function in memory, or sympy expressions."""
+    if type(function).__module__.split(".")[0] == "sympy":
+        return _from_sympy(function)
+    if not callable(function):
+        raise UsageError(f"a function, a file or sympy expressions are needed, got {type(function).__name__}")
+    name = getattr(function, "__name__", type(function).__name__)
+    try:
+        given = inspect.signature(function).parameters.values()
+        several = any(one.kind is one.VAR_POSITIONAL for one in given)
+        arguments = ["*"] if several else [one.name for one in given if one.kind is not one.KEYWORD_ONLY]
+    except (TypeError, ValueError):
+        arguments = ["q"]
+    formula = Formula(name, name, CallableProgram(function), arguments)
+    try:
+        text = textwrap.dedent(inspect.getsource(function))
+        source = PythonText(text, name)
+        if name in source.functions and not source.functions[name].decorator_list:
+            _with_text(formula, function, source)
+    except (OSError, TypeError, UsageError):
+        pass  # without a text there is no repair
+    return formula
+
+
+def _with_text(formula: Formula, function: Any, source: PythonText) -> None:
+    formula.text, formula.nodes, formula.comments = source.text, source.nodes(), source.comments(formula.name)
+    formula.constants = {one.name: one for one in source.constants()}
+    formula.defaults = source.arguments(formula.name)[1]
+    formula.outputs = source.returned_names(formula.name)
+    closure = inspect.getclosurevars(function)
+    outside = {**closure.globals, **closure.nonlocals}
+    formula.global_numbers = {name: float(value) for name, value in outside.items() if type(value) in (int, float)}
+    namespace = {**getattr(function, "__globals__", {}), **outside}
+    formula.program = PythonProgram(source.text, formula.name, "<formula>", namespace)
+
+
+def _from_sympy(expression: Any) -> Formula:
+    """Expressions become a function of their symbols; the order of the arguments follows their names."""
+    import sympy
+
+    symbols = sorted(expression.free_symbols, key=lambda symbol: symbol.name)
+    function = sympy.lambdify(symbols, expression, "numpy")
+    return Formula("expression", "expression", CallableProgram(function), [symbol.name for symbol in symbols])
+
+
+def from_file(path: str | os.PathLike[str], *, sandbox: Any = None) -> Formula:
+    """A function of a file: `file.py:function`, `file.m`, `file.m:function`.
+
+    Raises:
+        UsageError: the file cannot be read, or has no such function.
+    """
+    file, function = split_name(os.fspath(path))
+    try:
+        text = Path(file).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if file.endswith(".m"):
+        program = MatlabProgram(text, file, function)
+        outputs = program.outputs if len(program.outputs) > 1 else []
+        return Formula(
+            file,
+            program.function,
+            program,
+            program.arguments,
+            {one.name: one for one in program.constants()},
+            {},
+            program.nodes(),
+            text,
+            "matlab",
+            program.comments(),
+            outputs,
+        )
+    source = PythonText(text, file)
+    name = function or likely_function(source, file)
+    if name not in source.functions:
+        raise UsageError(f"{file}: there is no function {name}; it has {', '.join(source.functions) or 'none'}")
+    arguments, defaults = source.arguments(name)
+    program_of = sandbox or PythonProgram
+    return Formula(
+        file,
+        name,
+        program_of(text, name, file),
+        arguments,
+        {one.name: one for one in source.constants()},
+        defaults,
+        source.nodes(),
+        text,
+        "python",
+        source.comments(name),
+        source.returned_names(name),
+    )
+
+
+def split_name(path: str) -> tuple[str, str | None]:
+    """The file and the function in FILE:FUNCTION."""
+    file, colon, function = path.rpartition(":")
+    return (file, function) if colon and function.isidentifier() and not os.path.exists(path) else (path, None)
+
+
+def likely_function(source: PythonText, file: str) -> str:
+    """The only function, the one named like a kind or like the file, or the last one."""
+    names = list(source.functions)
+    if not names:
+        raise UsageError(f"{file}: there is no function in this file")
+    stem = Path(file).stem
+    for wanted in (lambda name: name == stem, lambda name: kind_of_name(name) is not None):
+        chosen = [name for name in names if wanted(name)]
+        if len(chosen) == 1:
+            return chosen[0]
+    return names[-1]
+
+
+_WORDS = {
+    "jacobian": ("jac",),
+    "gravity": ("grav", "tau_g", "taug", "g_torque"),
+    "kinematics": ("kin", "fk", "tip", "position"),
+    "mass": ("mass", "inertia", "mmat"),
+    "coriolis": ("coriolis", "centrifugal", "cmat", "velocity_product"),
+    "inverse": ("inverse_dyn", "invdyn", "id", "rnea", "inverse"),
+    "forward": ("forward_dyn", "fwddyn", "fd", "aba", "accel"),
+    "controller": ("control", "law", "ctrl"),
+}
+
+
+def kind_of_name(name: str) -> str | None:
+    """The kind of formula that a name tells: of a function, a file or an output."""
+    lower = name.lower()
+    if "forward_kin" in lower or "fkin" in lower:
+        return "kinematics"
+    for kind in ("controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics"):
+        for word in _WORDS[kind]:
+            if (len(word) > 2 and word in lower) or lower == word or lower.startswith(f"{word}_"):
+                return kind
+    return {"j": "jacobian", "g": "gravity", "m": "mass", "c": "coriolis", "h": "coriolis"}.get(lower)
+
+
+def kind_of(formula: Formula, joints: int) -> Kind:
+    """The kind of formula, from its names.
+
+    Raises:
+        UsageError: they do not tell it.
+    """
+    outputs = [formula.outputs[0]] if formula.outputs else []
+    if formula.language == "matlab" and isinstance(formula.program, MatlabProgram):
+        outputs = formula.program.outputs[:1]
+    for name in (formula.name, Path(formula.file).stem, *outputs):
+        kind = kind_of_name(name)
+        if kind:
+            return KINDS[kind]
+    if outputs and outputs[0].rstrip("123").lower() in ("t", "tau", "torque", "g"):
+        return KINDS["gravity"]
+    raise UsageError(f"{formula.file}: what {formula.name} computes is not clear; name it by --kind {'|'.join(KINDS)}")

@@ -1,0 +1,112 @@
+"""The functions of `arm3r_cpp.verify`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+from ..arm import Arm
+from ..errors import UsageError
+from ..scenario import Scenario
+from .formula import Formula, from_callable, from_file, kind_of
+from .judge import Progress, judge
+from .kinds import KINDS
+from .program.python_process import PythonProcess
+from .truth.three_r import ThreeR
+from .verdict import Finding, Verdict
+
+__all__ = [
+    "Chain",
+    "Finding",
+    "Verdict",
+    "controller",
+    "coriolis",
+    "formula_verdict",
+    "forward",
+    "gravity",
+    "inverse",
+    "jacobian",
+    "kinematics",
+    "mass",
+]
+
+
+class Chain:
+    pass
+
+
+def truth_of(arm: Any) -> Any:
+    """The truth for a scenario, an arm, a chain or a scenario's file; None is the lecture's arm."""
+    if arm is None or isinstance(arm, (Scenario, Arm)):
+        return ThreeR(arm)
+    if isinstance(arm, (str, os.PathLike)):
+        return ThreeR(Scenario.load(arm))
+    if hasattr(arm, "joints"):
+        return arm
+    raise UsageError(f"arm: a Scenario, an Arm, a Chain or the path of a scenario is needed, got {type(arm).__name__}")
+
+
+def formula_verdict(
+    f: Any, kind: str | None = None, arm: Any = None, *, seen_by: Sequence[Any] = (), progress: Progress | None = None
+) -> Verdict:
+    """Judge a formula: a function, sympy expressions, or the path of a file.
+
+    Args:
+        kind: one of `KINDS`; None: found from names.
+        arm: a `Scenario`, an `Arm`, a `Chain`, or the path of a scenario; None: the lecture's arm.
+        seen_by: tests, of which the verdict says whether they would have seen each mistake.
+
+    Raises:
+        UsageError: the formula cannot be read, or its kind is not clear.
+    """
+    truth = truth_of(arm)
+    formula = (
+        f
+        if isinstance(f, Formula)
+        else from_file(f, sandbox=PythonProcess)
+        if isinstance(f, (str, os.PathLike))
+        else from_callable(f)
+    )
+    chosen = KINDS[kind] if kind else kind_of(formula, truth.joints)
+    return judge(formula, chosen, truth, seen_by={}, progress=progress)
+
+
+def jacobian(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge the Jacobian of the tip: f(q) -> (3, n), or (6, n) with linear rows first."""
+    return formula_verdict(f, "jacobian", arm, seen_by=seen_by)
+
+
+def gravity(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge the torque that holds the arm: f(q) -> (n,), N m."""
+    return formula_verdict(f, "gravity", arm, seen_by=seen_by)
+
+
+def kinematics(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge the tip's position: f(q) -> (3,), or (4, 4), m."""
+    return formula_verdict(f, "kinematics", arm, seen_by=seen_by)
+
+
+def mass(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge the mass matrix: f(q) -> (n, n), kg m^2."""
+    return formula_verdict(f, "mass", arm, seen_by=seen_by)
+
+
+def coriolis(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge the Coriolis and centrifugal torque: f(q, qd) -> (n,), or a matrix (n, n) by its product with qd, N m."""
+    return formula_verdict(f, "coriolis", arm, seen_by=seen_by)
+
+
+def inverse(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge the inverse dynamics: f(q, qd, qdd) -> (n,), N m."""
+    return formula_verdict(f, "inverse", arm, seen_by=seen_by)
+
+
+def forward(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge the forward dynamics: f(q, qd, tau) -> (n,), rad/s^2."""
+    return formula_verdict(f, "forward", arm, seen_by=seen_by)
+
+
+def controller(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+    """Judge a control law: f(q, qd) -> (n,), N m, against that of the scenario `arm`."""
+    return formula_verdict(f, "controller", arm, seen_by=seen_by)

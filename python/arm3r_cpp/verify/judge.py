@@ -1,0 +1,323 @@
+"""Judges a formula: finds how it is meant, which entries are wrong, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from .._native import Floats
+from .comparison import Comparison, scales
+from .coverage import seen_by_tests
+from .explain.edits import Editor
+from .explain.hypotheses import hypotheses
+from .explain.reader import read_entries
+from .explain.repair import Repair, cover, influential, tried
+from .formula import Formula
+from .kinds import Kind, entry_name
+from .names import slot_of
+from .program.nodes import Edit, ProgramError, line_and_column
+from .verdict import Finding, Verdict
+
+Progress = Callable[[int, int], None]
+_NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
+
+
+def judge(
+    formula: Formula,
+    kind: Kind,
+    truth: Any,
+    *,
+    seen_by: Mapping[str, Any] | None = None,
+    progress: Progress | None = None,
+) -> Verdict:
+    """The verdict on a formula of a known kind."""
+    try:
+        cases = _meant(formula, kind, truth)
+        values = cases[0].values(cases[0].second)
+        if not np.array_equal(values, cases[0].values(cases[0].second), equal_nan=True):
+            raise ProgramError("gives different numbers when it is called again with the same ones")
+        verdicts = []
+        for case in cases:
+            verdicts.append((_verdict(case, progress), case))
+            if all(finding.old is not None for finding in verdicts[-1][0].findings):
+                break
+        verdict, case = min(verdicts, key=lambda one: sum(finding.old is None for finding in one[0].findings))
+    except ProgramError as error:
+        return _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
+    if verdict.findings and len(cases) > 1:
+        other = next(one.convention for one in cases if one is not case)
+        verdict.alternatives.append(f"in the convention {other} as many entries would be wrong")
+    _judge_constants(verdict, case)
+    verdict.ok = not verdict.findings
+    seen_by_tests(verdict, case, seen_by or {})
+    return verdict
+
+
+def _verdict(case: Comparison, progress: Progress | None) -> Verdict:
+    """The verdict on a formula that is meant in one way."""
+    formula = case.formula
+    verdict = Verdict(True, case.kind.name, case.convention, 0.0, file=formula.file, text=formula.text)
+    values, due = case.values(case.second), case.due(case.second)
+    case.shape = due.shape[1:]
+    verdict.shape, verdict.found = list(case.shape), _found(case)
+    wrong = case.wrong(values, case.second, due)
+    own_due, own_values = _own(case)
+    verdict.residual = _largest(own_values - own_due)
+    wrong = _only_structured(verdict, values, due, wrong)
+    if wrong:
+        verdict.residual = verdict.residual if verdict.residual > 0 else _largest(values - due)
+        _explain(verdict, case, wrong, progress)
+    return verdict
+
+
+def _largest(difference: Floats) -> float:
+    return float(np.max(np.abs(difference))) if np.isfinite(difference).all() else float("inf")
+
+
+def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
+    finding = Finding(None, f"the formula {error}", line=error.line)
+    verdict.ok, verdict.residual, verdict.findings = False, float("inf"), [finding]
+    return verdict
+
+
+def _own(case: Comparison) -> tuple[Floats, Floats]:
+    """What is due and what the formula returns for the arm itself, with the constants as they stand in the text."""
+    samples = case.second
+    numbers = {
+        **case.formula.defaults,
+        **case.formula.global_numbers,
+        **{name: one.value for name, one in case.formula.constants.items()},
+    }
+    written = {case.parameters[name]: value for name, value in numbers.items() if name in case.parameters}
+    here = type(samples)(samples.states, [{**case.own, **written}])
+    return case.due(type(samples)(samples.states, [case.own])), case.values(here)
+
+
+def _meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
+    """The comparisons that fit best: which convention, which inertias, degrees where the text says so."""
+    parameters = {
+        name: quantity
+        for name, quantity in formula.parameters(kind, truth.joints).items()
+        if quantity in truth.values_of_quantities
+    }
+    inertias = ("scaled", "fixed") if kind.name in ("mass", "coriolis", "inverse", "forward") else ("scaled",)
+    base = Comparison(formula, truth, kind, parameters)
+    values = base.values(base.second)
+    rows = 6 if kind.name == "jacobian" and values.shape[1] == 6 else 3
+    says_degrees = "deg" in " ".join([*formula.arguments, *formula.comments.lower().split()])
+    first = truth.convention
+    counted: list[tuple[int, Comparison]] = []
+    for convention in (first, *(one for one in truth.conventions if one != first)):
+        for inertia in inertias if parameters else ("scaled",):
+            for degrees in (False, True) if says_degrees else (False,):
+                case = Comparison(formula, truth, kind, parameters, convention, inertia, rows, degrees)
+                result = case.values(case.second) if degrees else values
+                counted.append((len(case.wrong(result, case.second)), case))
+    fewest = min(count for count, _ in counted)
+    best = [case for count, case in counted if count == fewest]
+    return [
+        next(case for case in best if case.convention == convention)
+        for convention in dict.fromkeys(case.convention for case in best)
+    ][: 2 if fewest else 1]
+
+
+def _found(case: Comparison) -> list[str]:
+    """What was found out rather than asked for."""
+    formula, found = case.formula, []
+    states = [name for name in formula.arguments if slot_of(name) and name not in case.parameters]
+    if [slot_of(name) for name in states] != sorted((slot_of(name) for name in states), key=str):
+        found.append(f"arguments in the order {', '.join(states)}")
+    if formula.order and formula.order != sorted(formula.order):
+        found.append(f"outputs in the order {', '.join(formula.outputs)}")
+    if case.degrees:
+        found.append("angles in degrees")
+    if case.convention:
+        found.append(f"convention {case.convention}")
+    return found
+
+
+def _only_structured(verdict: Verdict, values: Floats, due: Floats, wrong: frozenset[int]) -> frozenset[int]:
+    """Without the entries whose differences are rounding: these are right, with a warning."""
+    flat, right = values.reshape(len(values), -1), due.reshape(len(due), -1)
+    relative = np.abs(flat - right).max(axis=0) / scales(right)
+    numerical = {place for place in wrong if relative[place] < _NUMERICAL}
+    if wrong and numerical == wrong:
+        verdict.warnings.append(f"differences of up to {relative.max():.1e} of the entries' scale: these are numerical")
+        return frozenset()
+    return wrong
+
+
+# ---- why ------------------------------------------------------------------------------------------------------------
+
+
+def _explain(verdict: Verdict, case: Comparison, wrong: frozenset[int], progress: Progress | None) -> None:
+    causes = _hypotheses(case)
+    repairs = _repairs(case, wrong, progress)
+    reads = read_entries(case, wrong)
+    chosen = cover(repairs, wrong)
+    for place in sorted(wrong):
+        found = reads.get(place)
+        finding = Finding(case.entry(place), "", found.reads if found else None, found.due if found else None)
+        repair = next((one for one in chosen if place in one.mended), None)
+        if repair:
+            _put_edit(finding, case, repair.edit)
+        finding.cause = _cause(case, place, finding, causes, repair)
+        verdict.findings.append(finding)
+        if not (repair or causes or (found and found.reads)):
+            verdict.unexplained.append(case.entry(place))
+        if found and found.note and found.note not in verdict.warnings:
+            verdict.warnings.append(found.note)
+    verdict.alternatives += causes[1:]
+    for repair in chosen:
+        verdict.alternatives += _other_edits(case, repairs, repair)
+
+
+def _hypotheses(case: Comparison) -> list[str]:
+    """The mistakes of the formula as a whole that explain it at all samples, the simplest ones first."""
+    found = []
+    fitting, fresh = case.second, case.fresh
+    values, check = case.values(fitting), case.values(fresh)
+
+    def list_at(samples: Any) -> Any:
+        states = {vector: samples.tiled(vector) for vector in samples.states}
+        rotation = getattr(case.truth, "rotation", None)
+
+        def truth(here: dict[str, Floats], changes: dict[str, Any]) -> Floats:
+            return case.due(samples, changes, here)
+
+        return hypotheses(
+            case.kind.name,
+            truth,
+            states,
+            case.truth.joints,
+            rotation and (lambda: rotation(case.convention, states["q"])),
+            case.given(samples),
+        )
+
+    for one, other in zip(list_at(fitting), list_at(fresh), strict=True):
+        try:
+            expected = one.values()
+            if not case.wrong(values, fitting, expected) and not case.wrong(check, fresh, other.values()):
+                found.append((one.weight, one.cause))
+        except (ProgramError, ValueError, ArithmeticError):
+            continue
+    return [cause for _, cause in sorted(found, key=lambda one: one[0])]
+
+
+def _repairs(case: Comparison, wrong: frozenset[int], progress: Progress | None) -> list[Repair]:
+    """The edits of the text that make wrong entries right, confirmed at fresh states and arms."""
+    formula = case.formula
+    if not formula.text or not formula.nodes:
+        return []
+    angles = [name for name in formula.arguments if (slot := slot_of(name)) and slot[0] == "q" and slot[1] is not None]
+    angles = sorted(angles) or _indexed_angles(formula)
+    editor = Editor(formula.text, formula.nodes, formula.language, angles, list(case.parameters))
+    due = {everywhere: case.due(case.second if everywhere else case.first) for everywhere in (False, True)}
+
+    def evaluate(edit: Edit, everywhere: bool) -> Floats:
+        return case.values(case.second if everywhere else case.first, edit)
+
+    def wrong_at(everywhere: bool) -> Callable[[Floats], frozenset[int]]:
+        return lambda values: case.wrong(values, case.second if everywhere else case.first, due[everywhere])
+
+    statements = influential(formula.nodes, formula.text, evaluate, case.values(case.first), wrong)
+    found = tried(editor.all(statements), evaluate, wrong_at(False), wrong_at(True), wrong, progress)
+    return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
+
+
+def _is_confirmed(case: Comparison, repair: Repair, wrong: frozenset[int]) -> bool:
+    try:
+        return case.wrong(case.values(case.fresh, repair.edit), case.fresh) <= wrong - repair.mended
+    except ProgramError:
+        return False
+
+
+def _indexed_angles(formula: Formula) -> list[str]:
+    """q[0], q[1], ... where the formula takes a vector."""
+    names = [name for name in formula.arguments if (slot := slot_of(name)) and slot[0] == "q"]
+    texts = sorted(
+        {
+            formula.text[node.start : node.end]
+            for top in formula.nodes
+            for node in top.walk()
+            if formula.text
+            and node.kind in ("index", "call")
+            and node.parts
+            and (node.word in names or formula.text[node.parts[0].start : node.parts[0].end] in names)
+        }
+    )
+    used = {node.word for top in formula.nodes for node in top.walk() if node.kind == "name"}
+    plain = sorted(name for name in used if (slot := slot_of(name)) and slot[0] == "q" and slot[1] is not None)
+    return plain or texts
+
+
+def _put_edit(finding: Finding, case: Comparison, edit: Edit) -> None:
+    text = case.formula.text or ""
+    finding.line, finding.column = line_and_column(text, edit.start)
+    finding.old, finding.new = text[edit.start : edit.end], edit.new
+    if not finding.old:  # an insertion is shown with the character before it
+        start = max(edit.start - 1, 0)
+        finding.line, finding.column = line_and_column(text, start)
+        finding.old, finding.new = text[start : edit.end], text[start : edit.start] + edit.new
+
+
+def _cause(case: Comparison, place: int, finding: Finding, causes: list[str], repair: Repair | None) -> str:
+    if causes:
+        return f"{causes[0][0].upper()}{causes[0][1:]}."
+    name = entry_name(case.kind, case.entry(place))
+    if repair and finding.old is not None:
+        stands = f"stands where `{finding.new}` is due" if finding.new else "is too much"
+        others = f"; this line spoils {len(repair.mended)} entries" if len(repair.mended) > 1 else ""
+        return f"{name}: in line {finding.line} `{finding.old}` {stands}{others}."
+    if finding.reads is not None:
+        return f"{name} reads {finding.reads}; {finding.due} is due."
+    return f"{name} is wrong, and neither its terms nor a single edit explain it."
+
+
+def _other_edits(case: Comparison, repairs: list[Repair], shown: Repair) -> list[str]:
+    same = [one for one in repairs if one is not shown and one.mended == shown.mended]
+    text, said = case.formula.text or "", []
+    for one in same[:3]:
+        line, _ = line_and_column(text, one.edit.start)
+        old = text[one.edit.start : one.edit.end]
+        said.append(f"in line {line} `{old}` as `{one.edit.new}` would be right, too")
+    return said
+
+
+def _judge_constants(verdict: Verdict, case: Comparison) -> None:
+    """The numbers that the text gives to the arm's quantities, against the arm's own."""
+    for name, constant in case.formula.constants.items():
+        quantity = case.parameters.get(name)
+        own = case.truth.values_of_quantities.get(quantity) if quantity else None
+        if own is None or abs(constant.value - own) <= 1e-9 * max(abs(own), 1e-3):
+            continue
+        places = _depending(case, str(quantity), constant.value)
+        text = case.formula.text or ""
+        line, column = line_and_column(text, constant.start)
+        old = text[constant.start : constant.end]
+        words = "millimetres? " if own and abs(constant.value / own - 1000) < 1e-6 else ""
+        arm = "the lecture's arm" if case.truth.is_default else "the arm"
+        for place in places:
+            verdict.findings.append(
+                Finding(
+                    case.entry(place),
+                    f"{name} is {constant.value:.10g} in line {line}; {words}{arm} has {own:.10g}.",
+                    None,
+                    None,
+                    line,
+                    column,
+                    old,
+                    f"{own!r}",
+                )
+            )
+
+
+def _depending(case: Comparison, quantity: str, value: float) -> list[int]:
+    """The entries that another value of a quantity changes."""
+    samples = type(case.second)(case.second.states, [case.own])
+    right = case.due(samples)
+    changed = case.due(samples, {quantity: np.full(len(right), value)})
+    flat, other = (one.reshape(len(one), -1) for one in (right, changed))
+    return [int(place) for place in np.flatnonzero(np.abs(flat - other).max(axis=0) > 1e-12 * np.abs(flat).max())]

@@ -1,0 +1,115 @@
+"""What the names of a user's arguments and constants mean."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+from ..errors import UsageError
+from .kinds import Kind
+
+_ANGLE = r"(?:q|Q|qs|th|theta|thetas|phi|alpha|ang|angle|angles|joint|joints|theta_?vec|q_?vec|config|conf)"
+_RATE = r"(?:qd|dq|qdot|q_dot|qp|thd|dth|thetad|dtheta|theta_?dot|thdot|w|omega|v|vel|rates?|qvel|q_?dots?)"
+_ACCELERATION = r"(?:qdd|ddq|qddot|q_ddot|qpp|thdd|ddth|thetadd|ddtheta|theta_?ddot|thddot|acc|qacc|q_?ddots?)"
+_TORQUE = r"(?:tau|taus|torque|torques|u|t|T|trq)"
+_DEGREES = r"(?:_?(?:deg|degrees?))?"
+_VECTORS = {
+    name: re.compile(pattern)
+    for name, pattern in {
+        "q": rf"{_ANGLE}_?(\d?){_DEGREES}",
+        "qdd": rf"{_ACCELERATION}_?(\d?)|(?:q|th|theta)_?(\d)_?(?:dd|ddot|pp)",
+        "qd": rf"{_RATE}_?(\d?)|(?:q|th|theta)_?(\d)_?(?:d|dot|p)",
+        "tau": rf"{_TORQUE}_?(\d?)",
+    }.items()
+}
+_LETTERS = {
+    "a": "length",
+    "l": "length",
+    "L": "length",
+    "A": "length",
+    "link": "length",
+    "length": "length",
+    "len": "length",
+    "m": "mass",
+    "M": "mass",
+    "mass": "mass",
+    "lc": "com",
+    "r": "com",
+    "ac": "com",
+    "com": "com",
+    "rc": "com",
+    "c": "com",
+    "d": "height",
+    "h": "height",
+    "I": "inertia",
+    "J": "inertia",
+    "Izz": "inertia",
+    "Iz": "inertia",
+    "Iyy": "inertia",
+    "Iy": "inertia",
+}
+_PARAMETER = re.compile(rf"({'|'.join(sorted(_LETTERS, key=len, reverse=True))})_?(\d)(?:_?(c|com|cm))?")
+_GRAVITY = re.compile(r"g0?|grav|gravity|G|g_?acc")
+
+
+def slot_of(name: str) -> tuple[str, int | None] | None:
+    """("q", 0) for q1, ("qd", None) for a vector qd; None for what is no state."""
+    for vector, pattern in _VECTORS.items():
+        found = pattern.fullmatch(name)
+        if found:
+            digits = "".join(group or "" for group in found.groups())
+            return vector, int(digits) - 1 if digits else None
+    return None
+
+
+def quantities_of(names: Iterable[str]) -> dict[str, str]:
+    """The arm's quantities that names such as a2, m3, g stand for."""
+    names = list(names)
+    parts = {name: found for name in names if (found := _PARAMETER.fullmatch(name))}
+    digits: dict[str, set[int]] = {}
+    for found in parts.values():
+        digits.setdefault(found[1], set()).add(int(found[2]))
+    has_lengths = any(letter in digits for letter in ("a", "A", "L", "length", "len"))
+    meaning = {name: "gravity" for name in names if _GRAVITY.fullmatch(name)}
+    for name, found in parts.items():
+        kind = "com" if found[3] or (found[1] == "l" and has_lengths) else _LETTERS[found[1]]
+        number = int(found[2])
+        if kind in ("length", "com", "mass", "inertia") and digits[found[1]] == {1, 2}:
+            number += 1  # links 2 and 3 counted from 1
+        if kind == "length" and number == 1:
+            kind = "height"
+        if kind == "height":
+            if number == 1:
+                meaning[name] = "height"
+        elif number in (2, 3) or (kind == "mass" and number == 1):
+            meaning[name] = f"{kind}{number}"
+    return meaning
+
+
+def slots_of(
+    arguments: Sequence[str], kind: Kind, joints: int, parameters: Iterable[str]
+) -> list[tuple[str, int | None]]:
+    """What each argument is given: ("q", 0), ("q", None), or ("parameter name", -1).
+
+    Raises:
+        UsageError: the names do not say it.
+    """
+    found: list[tuple[str, int | None] | None] = []
+    for name in arguments:
+        slot = slot_of(name)
+        if slot and slot[0] in kind.inputs and (slot[1] is None or slot[1] < joints):
+            found.append(slot)
+        else:
+            found.append((name, -1) if name in parameters else None)
+    needed = len(kind.inputs)
+    if None in found and len(arguments) == needed:
+        return [(vector, None) for vector in kind.inputs]  # q, qd, ... in the order of the field
+    if None in found and len(arguments) == needed * joints:
+        return [(vector, joint) for vector in kind.inputs for joint in range(joints)]
+    unknown = [name for name, slot in zip(arguments, found, strict=True) if slot is None]
+    if unknown:
+        raise UsageError(
+            f"the argument {unknown[0]} is not understood; a {kind.words} takes {', '.join(kind.inputs)}, or "
+            f"{', '.join(f'{kind.inputs[0]}{n + 1}' for n in range(joints))}, and parameters such as a2, m3, g"
+        )
+    return [slot for slot in found if slot is not None]

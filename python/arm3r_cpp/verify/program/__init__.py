@@ -1,0 +1,9 @@
+"""The user's program: how a formula is read and how it is evaluated.
+
+In come a Python file or function, a MATLAB function file, a symbol of a shared library, or sympy expressions. Out come
+the numbers that the formula returns, a row for each state, and the text with the places of its parts, so that single
+edits of it can be evaluated too. `nodes` is what both languages have in common; `python_program` runs Python, in this
+process, or by `python_process` and `child` in one of its own, which `confinement` bars from the rest;
+`matlab_reader` and `matlab_program` read and evaluate MATLAB without running any foreign program. This room must not
+know what is right.
+"""

@@ -1,0 +1,67 @@
+"""The process that runs a user's Python file: answers requests for evaluations until its input ends."""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+import sys
+from typing import IO, Any
+
+import numpy as np
+
+from .confinement import end_with_parent, enter_namespaces, limit_resources
+from .nodes import Call, Edit, ProgramError
+from .python_program import PythonProgram
+
+HEAD = struct.Struct("<II")  # lengths of the JSON and of the numbers that follow
+
+
+def main() -> None:
+    """sys.argv: the descriptor that answers are written to. The first request describes the program."""
+    answers = os.fdopen(int(sys.argv[1]), "wb")
+    requests = os.fdopen(os.dup(0), "rb")
+    null = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (0, 1, 2):
+        os.dup2(null, descriptor)
+    end_with_parent()
+    unbarred = enter_namespaces()
+    head, _ = receive(requests)
+    limit_resources()
+    if head["folder"]:
+        sys.path.insert(0, head["folder"])
+    if head["forbid"]:
+        for name in [name for name in sys.modules if name.split(".")[0] == "arm3r_cpp"]:
+            sys.modules[name] = None  # type: ignore[assignment]
+    program = PythonProgram(head["text"], head["function"], head["file"])
+    send(answers, {"unbarred": unbarred}, b"")
+    while True:
+        answer(program, requests, answers)
+
+
+def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> None:
+    head, body = receive(requests)
+    table = np.frombuffer(body).reshape(head["rows"], -1) if head["rows"] else np.zeros((0, 1))
+    call = Call(tuple(one if isinstance(one, int) else tuple(one) for one in head["slots"]), head["lifted"])
+    try:
+        values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
+        send(answers, {"shape": values.shape}, np.ascontiguousarray(values).tobytes())
+    except ProgramError as error:
+        send(answers, {"error": str(error), "line": error.line}, b"")
+    except MemoryError:
+        send(answers, {"error": "needs too much memory", "line": None}, b"")
+
+
+def send(stream: IO[bytes], head: dict[str, Any], body: bytes) -> None:
+    text = json.dumps(head).encode()
+    stream.write(HEAD.pack(len(text), len(body)) + text + body)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> tuple[Any, bytes]:
+    """Ends the process where the input has ended."""
+    lengths = stream.read(HEAD.size)
+    if len(lengths) < HEAD.size:
+        os._exit(0)
+    text, body = HEAD.unpack(lengths)
+    return json.loads(stream.read(text)), stream.read(body)

@@ -1,0 +1,365 @@
+"""Reads MATLAB function files in the style of the lecture: assignments, arithmetic, matrices and local functions."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from ...errors import UsageError
+from .nodes import Node, line_and_column
+
+_TOKEN = re.compile(
+    r"(?P<blank>[ \t]+|\.\.\.[^\n]*\n)|(?P<comment>%[^\n]*)|(?P<newline>\n)"
+    r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)(?![A-Za-z_])"
+    r"|(?P<name>[A-Za-z]\w*)|(?P<operator>\.\*|\./|\.\^|\.'|[-+*/^'=(),;:\[\]])"
+)
+_REFUSED = frozenset(
+    [
+        "for",
+        "while",
+        "if",
+        "else",
+        "elseif",
+        "switch",
+        "case",
+        "otherwise",
+        "try",
+        "catch",
+        "parfor",
+        "global",
+        "persistent",
+        "return",
+        "break",
+        "continue",
+        "classdef",
+        "import",
+        "load",
+        "save",
+        "eval",
+        "feval",
+    ]
+)
+MAX_CHARACTERS = 200_000
+MAX_DEPTH = 150
+
+
+class Token(NamedTuple):
+    kind: str
+    text: str
+    start: int
+    end: int
+    spaced: bool
+    """Whether a blank stands before it."""
+
+
+@dataclass
+class Statement:
+    """`targets = value`; a target is a name, with the node of its index where it has one."""
+
+    targets: list[tuple[str, Node | None]]
+    value: Node
+    start: int
+    end: int
+
+
+@dataclass
+class Function:
+    name: str
+    outputs: list[str]
+    inputs: list[str]
+    line: int
+    body: list[Statement] = field(default_factory=list)
+
+
+def read(text: str, file: str) -> dict[str, Function]:
+    """The functions of a file by their names, in their order.
+
+    Raises:
+        UsageError: the file holds what is not read; the message names its line.
+    """
+    if len(text) > MAX_CHARACTERS:
+        raise UsageError(f"{file}: a function file of at most {MAX_CHARACTERS} characters is read, got {len(text)}")
+    return _Reader(text, file).functions()
+
+
+def read_expression(text: str, file: str = "expression") -> Node:
+    """A single expression."""
+    reader = _Reader(text, file)
+    node = reader.expression()
+    if reader.peek().kind != "end":
+        raise reader.refusal("the expression does not end here")
+    return node
+
+
+def _blank_block_comments(text: str) -> str:
+    """The text with the comments between %{ and %} as blanks, so that all places stay."""
+    block = re.compile(r"^[ \t]*%\{[ \t]*$.*?^[ \t]*%\}[ \t]*$", re.M | re.S)
+    return block.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
+
+
+class _Reader:
+    """A recursive descent over the tokens; inside brackets a blank can separate elements."""
+
+    def __init__(self, text: str, file: str) -> None:
+        self.text, self.file = text, file
+        self.tokens = self._scan(_blank_block_comments(text).replace("\r", " "))
+        self.at = 0
+        self.inside: list[str] = []
+        self.depth = 0
+
+    def _scan(self, text: str) -> list[Token]:
+        tokens, at, spaced = [], 0, False
+        while at < len(text):
+            found = _TOKEN.match(text, at)
+            if not found:
+                line, column = line_and_column(text, at)
+                raise UsageError(
+                    f"{self.file}:{line}:{column}: {text[at]!r} is not read; known are assignments, "
+                    "arithmetic, matrices and functions"
+                )
+            kind = found.lastgroup or ""
+            if kind in ("blank", "comment"):
+                spaced = True
+            else:
+                tokens.append(Token(kind, found[0], at, found.end(), spaced))
+                spaced = False
+            at = found.end()
+        return [*tokens, Token("end", "the end of the file", len(text), len(text), False)]
+
+    def peek(self, ahead: int = 0) -> Token:
+        return self.tokens[min(self.at + ahead, len(self.tokens) - 1)]
+
+    def next(self) -> Token:
+        token = self.peek()
+        self.at += 1
+        return token
+
+    def refusal(self, message: str, token: Token | None = None) -> UsageError:
+        line, column = line_and_column(self.text, (token or self.peek()).start)
+        return UsageError(f"{self.file}:{line}:{column}: {message}")
+
+    def expect(self, text: str) -> Token:
+        if self.peek().text != text:
+            raise self.refusal(f"{text!r} is needed here, got {self.peek().text!r}")
+        return self.next()
+
+    def skip_separators(self) -> None:
+        while self.peek().kind == "newline" or self.peek().text in (";", ","):
+            self.next()
+
+    # ---- functions and statements ------------------------------------------------------------------------------------
+
+    def functions(self) -> dict[str, Function]:
+        found: dict[str, Function] = {}
+        self.skip_separators()
+        while self.peek().kind != "end":
+            if self.peek().text != "function":
+                raise self.refusal(f"a function file begins with `function`, got {self.peek().text!r}")
+            function = self.function()
+            if function.name in found:
+                raise self.refusal(f"there are two functions {function.name}")
+            found[function.name] = function
+            self.skip_separators()
+        if not found:
+            raise UsageError(f"{self.file}:1: there is no function in this file")
+        return found
+
+    def function(self) -> Function:
+        line, _ = line_and_column(self.text, self.next().start)
+        if self.peek().text == "[":
+            self.next()
+            outputs = self.names("]")
+            self.expect("=")
+            name = self.name()
+        else:
+            name = self.name()
+            outputs = []
+            if self.peek().text == "=":
+                self.next()
+                outputs, name = [name], self.name()
+        inputs = []
+        if self.peek().text == "(":
+            self.next()
+            inputs = self.names(")")
+        function = Function(name, outputs, inputs, line)
+        self.skip_separators()
+        while self.peek().text not in ("end", "function") and self.peek().kind != "end":
+            function.body.append(self.statement())
+            self.skip_separators()
+        if self.peek().text == "end":
+            self.next()
+        return function
+
+    def names(self, closing: str) -> list[str]:
+        names = []
+        while self.peek().text != closing:
+            names.append(self.name())
+            if self.peek().text == ",":
+                self.next()
+        self.next()
+        return names
+
+    def name(self) -> str:
+        token = self.next()
+        if token.kind != "name" or token.text in _REFUSED:
+            raise self.refusal(f"a name is needed here, got {token.text!r}", token)
+        return token.text
+
+    def statement(self) -> Statement:
+        start = self.peek()
+        if start.text in _REFUSED:
+            raise self.refusal(f"`{start.text}` is not read; known are assignments, arithmetic, matrices and functions")
+        targets: list[tuple[str, Node | None]] = []
+        if start.text == "[":
+            self.next()
+            targets = [(name, None) for name in self.names("]")]
+        elif start.kind == "name":
+            name, index = self.name(), None
+            if self.peek().text == "(":
+                opening = self.next()
+                index = Node("index", opening.start, 0, self.arguments(")"))
+                index.end = self.tokens[self.at - 1].end
+            targets = [(name, index)]
+        if not targets or self.peek().text != "=":
+            raise self.refusal("only assignments are read: a name, `=` and a value are needed here", start)
+        self.next()
+        value = self.expression()
+        if self.peek().kind not in ("newline", "end") and self.peek().text not in (";", ","):
+            raise self.refusal(f"the expression goes on with {self.peek().text!r}, which is not read")
+        return Statement(targets, value, start.start, value.end)
+
+    # ---- expressions -------------------------------------------------------------------------------------------------
+
+    def expression(self) -> Node:
+        """Sums; a colon between sums is a range."""
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise self.refusal(f"the expression is nested more than {MAX_DEPTH} deep")
+        left = self.sum()
+        if self.peek().text == ":" and not self.ends_element():
+            token = self.next()
+            right = self.sum()
+            left = Node("range", left.start, right.end, (left, right), ":", token.start)
+        self.depth -= 1
+        return left
+
+    def ends_element(self) -> bool:
+        """Whether a blank before the next token separates two elements of a matrix: [a -b] but not [a - b]."""
+        token = self.peek()
+        if not self.inside or self.inside[-1] != "[" or not token.spaced:
+            return False
+        return not (token.text in ("+", "-") and self.peek(1).spaced) and token.text not in (
+            "*",
+            "/",
+            "^",
+            ".*",
+            "./",
+            ".^",
+        )
+
+    def chain(self, operators: tuple[str, ...], part: object) -> Node:
+        left: Node = part()  # type: ignore[operator]
+        while self.peek().text in operators and not self.ends_element():
+            token = self.next()
+            right: Node = part()  # type: ignore[operator]
+            left = Node("binary", left.start, right.end, (left, right), token.text, token.start)
+        return left
+
+    def sum(self) -> Node:
+        return self.chain(("+", "-"), self.product)
+
+    def product(self) -> Node:
+        return self.chain(("*", "/", ".*", "./"), self.signed)
+
+    def signed(self) -> Node:
+        if self.peek().text in ("+", "-"):
+            token = self.next()
+            self.depth += 1
+            if self.depth > MAX_DEPTH:
+                raise self.refusal(f"the expression is nested more than {MAX_DEPTH} deep")
+            inner = self.signed()
+            self.depth -= 1
+            return Node("unary", token.start, inner.end, (inner,), token.text, token.start)
+        return self.power()
+
+    def power(self) -> Node:
+        left = self.postfix()
+        while self.peek().text in ("^", ".^") and not self.ends_element():
+            token = self.next()
+            if self.peek().text in ("+", "-"):
+                sign = self.next()
+                inner = self.postfix()
+                right = Node("unary", sign.start, inner.end, (inner,), sign.text, sign.start)
+            else:
+                right = self.postfix()
+            left = Node("binary", left.start, right.end, (left, right), token.text, token.start)
+        return left
+
+    def postfix(self) -> Node:
+        node = self.atom()
+        while self.peek().text in ("'", ".'") and not self.peek().spaced:
+            token = self.next()
+            node = Node("transpose", node.start, token.end, (node,), "'", token.start)
+        return node
+
+    def atom(self) -> Node:
+        token = self.next()
+        if token.kind == "number":
+            return Node("number", token.start, token.end, (), token.text)
+        if token.text == "(":
+            self.inside.append("(")
+            inner = self.expression()
+            self.inside.pop()
+            closing = self.expect(")")
+            return Node("group", token.start, closing.end, (inner,))
+        if token.text == "[":
+            return self.matrix(token)
+        if token.kind == "name" and token.text not in _REFUSED and token.text not in ("end", "function"):
+            if self.peek().text == "(" and not (self.ends_element()):
+                self.next()
+                parts = self.arguments(")")
+                return Node("call", token.start, self.tokens[self.at - 1].end, parts, token.text, token.start)
+            return Node("name", token.start, token.end, (), token.text)
+        raise self.refusal(f"a value is needed here, got {token.text!r}", token)
+
+    def arguments(self, closing: str) -> tuple[Node, ...]:
+        parts: list[Node] = []
+        self.inside.append("(")
+        while self.peek().text != closing:
+            if self.peek().text == ":" and self.peek(1).text in (",", ")"):
+                token = self.next()
+                parts.append(Node("all", token.start, token.end))
+            else:
+                parts.append(self.expression())
+            if self.peek().text == ",":
+                self.next()
+            elif self.peek().text != closing:
+                raise self.refusal(f"',' or ')' is needed here, got {self.peek().text!r}")
+        self.next()
+        self.inside.pop()
+        return tuple(parts)
+
+    def matrix(self, opening: Token) -> Node:
+        """Rows are separated by semicolons or new lines, elements by commas or blanks."""
+        rows: list[Node] = []
+        row: list[Node] = []
+        self.inside.append("[")
+        while self.peek().text != "]":
+            token = self.peek()
+            if token.kind == "end":
+                raise self.refusal("the matrix is not closed", opening)
+            if token.text == ";" or token.kind == "newline":
+                self.next()
+                if row:
+                    rows.append(Node("row", row[0].start, row[-1].end, tuple(row)))
+                row = []
+            elif token.text == ",":
+                self.next()
+            else:
+                row.append(self.expression())
+        if row:
+            rows.append(Node("row", row[0].start, row[-1].end, tuple(row)))
+        self.inside.pop()
+        closing = self.next()
+        return Node("matrix", opening.start, closing.end, tuple(rows))

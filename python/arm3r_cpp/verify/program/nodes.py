@@ -1,0 +1,83 @@
+"""Parts of a program's text, the same for Python and for MATLAB, and edits of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+
+@dataclass
+class Node:
+    """A part of an expression or a statement; offsets count the characters of the text."""
+
+    kind: str
+    """name, number, unary, binary, call, index, matrix, transpose, assign or other"""
+    start: int
+    end: int
+    parts: tuple[Node, ...] = ()
+    word: str = ""
+    """The name, the number's text, the operator, or the function that is called."""
+    at: int = -1
+    """Where the operator or the function's name begins, where it has a place of its own."""
+    info: object = field(default=None, compare=False)
+
+    def walk(self) -> Iterator[Node]:
+        yield self
+        for part in self.parts:
+            yield from part.walk()
+
+
+class Edit(NamedTuple):
+    """The replacement of the text from start to end by new text."""
+
+    start: int
+    end: int
+    new: str
+    rank: int = 0
+    """How far-fetched it is: of edits with the same effect, the one with the smallest rank is shown."""
+
+    def apply(self, text: str) -> str:
+        return text[: self.start] + self.new + text[self.end :]
+
+
+class Constant(NamedTuple):
+    """A number that is assigned to a name once, such as `a2 = 1`."""
+
+    name: str
+    value: float
+    start: int
+    end: int
+
+
+def line_and_column(text: str, offset: int) -> tuple[int, int]:
+    """From 1, in characters."""
+    line = text.count("\n", 0, offset) + 1
+    return line, offset - (text.rfind("\n", 0, offset) + 1) + 1
+
+
+class Call(NamedTuple):
+    """How a program is given its inputs: from the columns of a table with a row for each evaluation."""
+
+    slots: tuple[tuple[int, ...] | int, ...]
+    """For each argument the column of a scalar, or the columns of a vector."""
+    lifted: dict[str, int]
+    """Constants of the program whose values are taken from columns."""
+
+
+class ProgramError(Exception):
+    """The user's program failed: it raised, hung, or returned no numbers.
+
+    Attributes:
+        line: in the user's text, where it is known.
+    """
+
+    def __init__(self, message: str, line: int | None = None) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+def numbers_of(text: Sequence[str]) -> str:
+    """The digits that names end with, in one word: "321" for t3, t2, t1; "" where one has none."""
+    digits = [name[-1:] for name in text]
+    return "".join(digits) if all(digit.isdigit() for digit in digits) else ""

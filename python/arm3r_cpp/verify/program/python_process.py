@@ -1,0 +1,154 @@
+"""Runs a user's Python file in a process of its own, which is confined and ends with its work."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+import weakref
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .child import HEAD, send
+from .nodes import Call, Edit, ProgramError
+
+Floats = NDArray[np.float64]
+_START = "from arm3r_cpp.verify.program.child import main; main()"
+_MOST_BYTES = 64 << 20  # of an answer
+STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s
+
+
+class PythonProcess:
+    """A function of a Python file; its process starts with the first evaluation."""
+
+    forbid_own_package = False
+
+    def __init__(self, text: str, function: str, file: str) -> None:
+        self.text, self.function, self.file = text, function, file
+        self.unbarred: list[str] = []
+        self._process: subprocess.Popen[bytes] | None = None
+        self._answers = -1
+        self._hung = 0
+
+    def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats:
+        """A row of numbers for each row of the table, in the shape that the function returns.
+
+        Raises:
+            ProgramError: the function failed, or its process ended or took too long.
+        """
+        if edit and self._hung > 3:
+            raise ProgramError("too many edits made it hang")
+        if self._process is None:
+            self._start()
+        head = {"rows": len(table), "slots": call.slots, "lifted": call.lifted, "edit": edit and list(edit)}
+        self._send(head, np.ascontiguousarray(table).tobytes())
+        head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
+        if "error" in head:
+            line = head.get("line")
+            raise ProgramError(str(head["error"])[:300], line if isinstance(line, int) else None)
+        shape = head.get("shape")
+        if not isinstance(shape, list) or not all(isinstance(size, int) and size >= 0 for size in shape):
+            raise ProgramError("returns no numbers")
+        if int(np.prod(shape)) * 8 != len(body) or shape[:1] != [len(table)]:
+            raise ProgramError("returns no numbers")
+        return np.frombuffer(body).reshape(shape)
+
+    def _start(self) -> None:
+        answers, writing = os.pipe()
+        environment = {
+            "PATH": os.defpath,
+            "LANG": "C.UTF-8",
+            "OPENBLAS_NUM_THREADS": "1",
+            "OMP_NUM_THREADS": "1",
+            "MPLBACKEND": "Agg",
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "HOME": "/",
+        }
+        self._process = subprocess.Popen(
+            [sys.executable, "-I", "-c", _START, str(writing)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            pass_fds=(writing,),
+            env=environment,
+            start_new_session=True,
+            cwd="/",
+        )
+        os.close(writing)
+        self._answers = answers
+        self._end = weakref.finalize(self, _end_process, self._process, answers)
+        folder = os.path.dirname(os.path.abspath(self.file)) if os.path.isfile(self.file) else ""
+        self._send(
+            {
+                "text": self.text,
+                "function": self.function,
+                "file": self.file,
+                "folder": folder,
+                "forbid": self.forbid_own_package,
+            },
+            b"",
+        )
+        head, _ = self._receive(STARTING_TIME)
+        self.unbarred = [str(one) for one in head.get("unbarred", [])]
+
+    def _send(self, head: dict[str, Any], body: bytes) -> None:
+        assert self._process and self._process.stdin
+        try:
+            send(self._process.stdin, head, body)
+        except OSError:
+            self._fail("ends its process")
+
+    def _receive(self, seconds: float) -> tuple[Any, bytes]:
+        deadline = time.monotonic() + seconds
+        lengths = HEAD.unpack(self._read(HEAD.size, deadline))
+        if sum(lengths) > _MOST_BYTES:
+            self._fail("returns too many numbers")
+        text, body = (self._read(length, deadline) for length in lengths)
+        try:
+            head = json.loads(text)
+        except ValueError:
+            head = None
+        if not isinstance(head, dict):
+            self._fail("returns no numbers")
+        return head, body
+
+    def _read(self, count: int, deadline: float) -> bytes:
+        parts = b""
+        while len(parts) < count:
+            ready, _, _ = select.select([self._answers], [], [], max(deadline - time.monotonic(), 0))
+            if not ready:
+                self._hung += 1
+                self._fail("takes too long: it was stopped")
+            part = os.read(self._answers, count - len(parts))
+            if not part:
+                self._fail("ends its process")
+            parts += part
+        return parts
+
+    def _fail(self, message: str) -> None:
+        self.close()
+        raise ProgramError(message)
+
+    def close(self) -> None:
+        """End the process and all that it started."""
+        if self._process is not None:
+            self._end()
+            self._process = None
+
+
+def _end_process(process: subprocess.Popen[bytes], answers: int) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    with contextlib.suppress(OSError):
+        os.close(answers)
+    if process.stdin:
+        with contextlib.suppress(OSError):
+            process.stdin.close()

@@ -1,0 +1,226 @@
+"""Runs a function of a Python text: many states in one call, with lifted constants, and with an edit of the text."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import contextlib
+import io
+import traceback
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .nodes import Call, Edit, ProgramError
+
+Floats = NDArray[np.float64]
+LIFTED = "__arm3r_lifted__"
+_NUMBER = (ast.Constant, ast.UnaryOp, ast.BinOp)
+
+
+def number_in(node: ast.AST) -> float | None:
+    """The value of an expression of numbers only, such as 9.81/6."""
+    allowed = (ast.Expression, *_NUMBER, ast.operator, ast.unaryop)
+    if not all(isinstance(inner, allowed) for inner in ast.walk(node)):
+        return None
+    if not all(type(inner.value) in (int, float) for inner in ast.walk(node) if isinstance(inner, ast.Constant)):
+        return None
+    if any(isinstance(inner, ast.Pow) for inner in ast.walk(node)):
+        return None
+    try:
+        return float(eval(compile(ast.fix_missing_locations(ast.Expression(node)), "", "eval"), {"__builtins__": {}}))  # type: ignore[arg-type]
+    except (ArithmeticError, TypeError, ValueError):
+        return None
+
+
+def pairs(statement: ast.AST) -> list[tuple[ast.Name, ast.expr]]:
+    """The names that a statement assigns, and what: `a = 1`, `a: float = 1`, `a, b = 1, 2`, `a = b = 1`."""
+    if isinstance(statement, ast.AnnAssign):
+        given: list[tuple[ast.expr, ast.expr]] = [(statement.target, statement.value)] if statement.value else []
+    elif isinstance(statement, ast.Assign):
+        given = [(target, statement.value) for target in statement.targets]
+    else:
+        return []
+    found: list[tuple[ast.Name, ast.expr]] = []
+    for target, value in given:
+        if isinstance(target, ast.Name):
+            found.append((target, value))
+        elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple) and len(target.elts) == len(value.elts):
+            found += [
+                (one, other) for one, other in zip(target.elts, value.elts, strict=True) if isinstance(one, ast.Name)
+            ]
+    return found
+
+
+class PythonProgram:
+    """A function of a Python text, which this process executes."""
+
+    def __init__(
+        self,
+        text: str,
+        function: str,
+        file: str = "<formula>",
+        namespace: dict[str, Any] | None = None,
+        make_array: bool = True,
+    ) -> None:
+        self.text, self.function, self.file = text, function, file
+        self.given = namespace
+        self.make_array = make_array
+        self.names: set[str] = set()
+        self.namespace: dict[str, Any] = {}
+        self._body: list[tuple[int, int, Any]] = []
+        self._spans: list[tuple[int, int, str]] = []
+        self._lifted_text = text
+        self._offsets = [0]
+        for line in text.split("\n"):
+            self._offsets.append(self._offsets[-1] + len(line) + 1)
+
+    def offset(self, line: int, column: int) -> int:
+        """Of a place as `ast` gives it: its columns count bytes of UTF-8."""
+        start = self._offsets[line - 1]
+        row = self.text[start : self._offsets[line] - 1]
+        return start + (column if row.isascii() else len(row.encode()[:column].decode(errors="ignore")))
+
+    def load(self, lifted: dict[str, int]) -> None:
+        """Compile the text, with some constants lifted: their numbers become look-ups."""
+        try:
+            tree = ast.parse(self.text)
+            self._spans = self._lifted_spans(tree, set(lifted)) if lifted else []
+            self._lifted_text = self.text
+            for start, end, name in reversed(self._spans):
+                self._lifted_text = f"{self._lifted_text[:start]}{LIFTED}[{name!r}]{self._lifted_text[end:]}"
+            self.names = set(lifted)
+            spans = [self._span(node) for node in tree.body]
+            self._body = [(start, end, self._compiled(start, end, None)) for start, end in spans]
+        except (SyntaxError, ValueError, RecursionError) as error:
+            raise ProgramError(
+                f"is not Python: {getattr(error, 'msg', error)}", getattr(error, "lineno", None)
+            ) from None
+
+    def _lifted_spans(self, tree: ast.Module, names: set[str]) -> list[tuple[int, int, str]]:
+        """Where the numbers of lifted constants stand."""
+        found = {}
+        for statement in ast.walk(tree):
+            for target, value in pairs(statement):
+                if target.id in names and number_in(value) is not None:
+                    start = self.offset(value.lineno, value.col_offset)
+                    found[start] = (self.offset(value.end_lineno or 0, value.end_col_offset or 0), target.id)
+        return [(start, *rest) for start, rest in sorted(found.items())]
+
+    def _moved(self, place: int) -> int:
+        """A place of the text in the text with lifted constants."""
+        shift = sum(
+            len(LIFTED) + len(repr(name)) + 2 - (end - start) for start, end, name in self._spans if end <= place
+        )
+        return place + shift
+
+    def _span(self, node: ast.stmt) -> tuple[int, int]:
+        first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", []))])
+        return self.offset(first, 0), self.offset(node.end_lineno or node.lineno, node.end_col_offset or 0)
+
+    def _compiled(self, start: int, end: int, edit: Edit | None) -> Any:
+        """The code of a statement, in its own line of the file."""
+        first, last = self._moved(start), self._moved(end)
+        segment = self._lifted_text[first:last]
+        if edit:
+            place = edit._replace(start=self._moved(edit.start) - first, end=self._moved(edit.end) - first)
+            return compile(place.apply(segment), self.file, "exec", dont_inherit=True)
+        lines = "\n" * self.text.count("\n", 0, start)
+        return compile(lines + segment, self.file, "exec", dont_inherit=True)
+
+    def _run_body(self, values: dict[str, float], replaced: tuple[int, Any] | None = None) -> None:
+        if self.given is None:
+            self.namespace = {"__name__": "__formula__", "__file__": self.file, "__builtins__": builtins}
+        else:
+            self.namespace = dict(self.given)
+            self.namespace.update({name: value for name, value in values.items() if name in self.given})
+        self.namespace[LIFTED] = values
+        for number, (_, _, code) in enumerate(self._body):
+            exec(replaced[1] if replaced and replaced[0] == number else code, self.namespace)
+
+    def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats:
+        """A row of numbers for each row of the table, in the shape that the function returns.
+
+        Raises:
+            ProgramError: the function failed.
+        """
+        if not self._body or self.names != set(call.lifted):
+            self.load(call.lifted)
+        replaced = self._edited(edit) if edit else None
+        results, before = [], None
+        try:
+            with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"):
+                for row in table:
+                    values = {name: float(row[column]) for name, column in call.lifted.items()}
+                    if values != before:
+                        self._run_body(values, replaced)
+                        before = values
+                    function = self.namespace.get(self.function)
+                    if not callable(function):
+                        raise ProgramError(f"there is no function {self.function}")
+                    results.append(_numbers(function(*(self._argument(slot, row) for slot in call.slots))))
+        except ProgramError:
+            raise
+        except BaseException as error:  # whatever a user's program raises, SystemExit too
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            raise ProgramError(*self._describe(error)) from None
+        if len({result.shape for result in results}) > 1:
+            raise ProgramError("returns arrays of different shapes at different states")
+        return np.array(results)
+
+    def _argument(self, slot: Any, row: Floats) -> Any:
+        if isinstance(slot, int):
+            return float(row[slot])
+        values = row[list(slot)]
+        return values if self.make_array else values.tolist()
+
+    def _edited(self, edit: Edit) -> tuple[int, Any]:
+        """The statement of the text that an edit changes, and its code."""
+        if any(start < edit.end and edit.start < end for start, end, _ in self._spans):
+            raise ProgramError("the edit is one of a lifted constant")
+        for number, (start, end, _) in enumerate(self._body):
+            if start <= edit.start and edit.end <= end:
+                try:
+                    with warnings.catch_warnings():
+                        warnings.simplefilter("ignore")
+                        return number, self._compiled(start, end, edit)
+                except (SyntaxError, ValueError, RecursionError):
+                    break
+        raise ProgramError("the edit gives no Python")
+
+    def _describe(self, error: BaseException) -> tuple[str, int | None]:
+        frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == self.file]
+        message = str(error).split("\n")[0][:200]
+        return f"raises {type(error).__name__}{f': {message}' if message else ''}", frames[
+            -1
+        ].lineno if frames else None
+
+
+def _numbers(result: Any) -> Floats:
+    """An array of real numbers.
+
+    Raises:
+        ProgramError: the result is none.
+    """
+    kind = type(result).__name__
+    if result is None:
+        raise ProgramError("returns None instead of numbers")
+    if hasattr(result, "tolist") and kind.endswith("Matrix"):  # sympy's
+        result = result.tolist()
+    try:
+        array = np.asarray(result)
+        if array.dtype == object:
+            array = np.array([float(value) for value in array.ravel()]).reshape(array.shape)
+        if np.iscomplexobj(array):
+            raise ProgramError("returns complex numbers")
+        if array.dtype.kind not in "fiub":
+            raise ProgramError(f"returns {kind} instead of numbers")
+        return array.astype(np.float64)
+    except (TypeError, ValueError):
+        try:
+            return np.concatenate([np.atleast_1d(np.asarray(part, np.float64)).ravel() for part in result])
+        except Exception:
+            raise ProgramError(f"returns {kind} that is no array of numbers") from None

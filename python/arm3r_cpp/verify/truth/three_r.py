@@ -1,0 +1,191 @@
+"""The scenario's arm as the truth, through the C++ functions, in either convention and with other parameters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ..._native import Floats
+from ...arm import Arm
+from ...params import param_index
+from ...scenario import Scenario
+
+CONVENTIONS = ("simscape", "slide")
+_LINK = re.compile(r"(length|com|mass|inertia)(\d)")
+_RANGES = {"length": (0.5, 1.6), "com": (0.2, 0.45), "mass": (0.4, 2.5), "inertia": (0.02, 0.2)}
+
+
+class ThreeR:
+    """An arm of a scenario.
+
+    Its quantities are "length2", "com2", "mass2", "inertia2" (about an axis across the link), the same for link 3,
+    "mass1", "height" (of joint 2 above the base frame) and "gravity" (its magnitude).
+    """
+
+    joints = 3
+    revolute = (True, True, True)
+    groups = ((0,), (1, 2))
+    """Joints with parallel axes: their angles occur as sums."""
+    conventions: tuple[str, ...] = CONVENTIONS
+
+    def __init__(self, scenario: Scenario | Arm | None = None) -> None:
+        """By default the lecture's arm."""
+        self._params = scenario.params if scenario is not None else Scenario().params
+        self.is_default = scenario is None
+        self.convention = CONVENTIONS[int(self._params[param_index("arm.convention")])]
+        self._arms: dict[tuple[Any, ...], Arm] = {}
+        self.values_of_quantities = self._measure()
+
+    def _measure(self) -> dict[str, float]:
+        """The arm's own quantities, from its functions: a shape in the scenario does not tell mass and centre."""
+        number = self._number
+        plain = self._params.copy()
+        for name in ("arm.payload.mass", "arm.armature[0]", "arm.armature[1]", "arm.armature[2]", "arm.base_height"):
+            plain[param_index(name)] = 0
+        plain[param_index("arm.convention")] = 1
+        for axis, value in enumerate((0, 0, -1)):
+            plain[param_index(f"arm.gravity[{axis}]")] = value
+        arm = Arm(plain)
+        centres, stretched = arm.centres(np.zeros(3)), np.zeros(3)
+        a2, a3 = number("arm.link2.length"), number("arm.link3.length")
+        l2, l3 = float(centres[1][0]), float(centres[2][0]) - a2
+        torque, mass = arm.gravity_torque(stretched), arm.mass_matrix(stretched)
+        m3 = number("arm.link3.mass", float(torque[2]) / l3 if l3 else 0.0)
+        m2 = number("arm.link2.mass", (float(torque[1] - torque[2]) - m3 * a2) / l2 if l2 else 0.0)
+        i3 = float(mass[2, 2]) - m3 * l3**2
+        i2 = float(mass[1, 1]) - i3 - m3 * (a2 + l3) ** 2 - m2 * l2**2
+        gravity = [number(f"arm.gravity[{axis}]") for axis in range(3)]
+        return {
+            "length2": a2,
+            "length3": a3,
+            "com2": l2,
+            "com3": l3,
+            "mass1": number("arm.link1.mass", 0.0),
+            "mass2": m2,
+            "mass3": m3,
+            "inertia2": i2,
+            "inertia3": i3,
+            "height": number("arm.base_height"),
+            "gravity": float(np.linalg.norm(gravity)),
+        }
+
+    def _number(self, name: str, otherwise: float = 0.0) -> float:
+        value = float(self._params[param_index(name)])
+        return otherwise if np.isnan(value) else value
+
+    def random_quantities(self, names: set[str], random: np.random.Generator) -> dict[str, float]:
+        """Generic values for some of the quantities: unequal, and none of them a simple number."""
+        drawn = {}
+        for name in sorted(names):
+            low, high = _RANGES.get(name.rstrip("0123456789"), (4.0, 13.0) if name == "gravity" else (0.2, 1.0))
+            drawn[name] = float(random.uniform(low, high))
+        return drawn
+
+    def arm(self, convention: str, quantities: Mapping[str, float], inertia: str = "scaled") -> Arm:
+        """The arm with some quantities changed.
+
+        Args:
+            inertia: "scaled" keeps the links' shapes where length and mass change; "fixed" keeps the inertia's numbers;
+                "slender" makes the links ideal rods.
+        """
+        key = (convention, inertia, *sorted(quantities.items()))
+        if key not in self._arms:
+            if len(self._arms) > 500:
+                self._arms.clear()
+            self._arms[key] = Arm(self._changed(convention, quantities, inertia))
+        return self._arms[key]
+
+    def _changed(self, convention: str, quantities: Mapping[str, float], inertia: str) -> Floats:
+        params, own = self._params.copy(), self.values_of_quantities
+        params[param_index("arm.convention")] = CONVENTIONS.index(convention)
+        value = {**own, **quantities}
+        params[param_index("arm.base_height")] = value["height"]
+        scale = value["gravity"] / own["gravity"] if own["gravity"] else 0.0
+        for axis in range(3):
+            params[param_index(f"arm.gravity[{axis}]")] *= scale
+        for link in (2, 3):
+            names = {f"{what}{link}" for what in ("length", "com", "mass", "inertia")}
+            if names & set(quantities) or inertia != "scaled":
+                self._change_link(params, link, value, quantities, inertia)
+        return params
+
+    def _change_link(
+        self, params: Floats, link: int, value: Mapping[str, float], given: Mapping[str, float], inertia: str
+    ) -> None:
+        own, length, mass = self.values_of_quantities, value[f"length{link}"], value[f"mass{link}"]
+        at = {what: param_index(f"arm.link{link}.{what}") for what in ("length", "mass", "com")}
+        axes = [param_index(f"arm.link{link}.inertia[{axis}]") for axis in range(3)]
+        has_own_com, has_own_inertia = not np.isnan(params[at["com"]]), not np.isnan(params[axes]).any()
+        params[at["length"]], params[at["mass"]] = length, mass
+        if f"com{link}" in given:
+            params[at["com"]] = value[f"com{link}"]
+        elif has_own_com:
+            params[at["com"]] = own[f"com{link}"] * length / own[f"length{link}"]
+        across = own[f"inertia{link}"]
+        axial, ratio = self._axial(link), self._ratio(link)
+        if f"inertia{link}" in given:
+            across, axial = value[f"inertia{link}"], min(axial, value[f"inertia{link}"])
+        elif inertia == "slender":
+            across, axial, ratio = mass * length**2 / 12, 0.0, 1.0
+        elif inertia == "scaled" and not has_own_inertia:
+            return  # the library derives it from the shape, for any length and mass
+        elif inertia == "scaled":
+            old_mass, old_length = own[f"mass{link}"], own[f"length{link}"]
+            across = mass / old_mass * (across + old_mass * (length**2 - old_length**2) / 12)
+            axial *= mass / old_mass
+        params[axes] = (axial, across * ratio, across)
+
+    def _axial(self, link: int) -> float:
+        """The inertia about the link's own axis: what remains of M11 when only this link stands beside the axis."""
+        given = self._number(f"arm.link{link}.inertia[0]", -1.0)
+        if given >= 0:
+            return given
+        height, width = (self._number(f"arm.link{link}.section[{axis}]") for axis in (0, 1))
+        radius = self._number(f"arm.link{link}.radius")
+        squares = 6 * radius**2 if radius else height**2 + width**2
+        return self.values_of_quantities[f"mass{link}"] * squares / 12
+
+    def _ratio(self, link: int) -> float:
+        """I_y / I_z of the link as it is."""
+        y, z = (self._number(f"arm.link{link}.inertia[{axis}]") for axis in (1, 2))
+        return y / z if z else 1.0
+
+    def values(
+        self,
+        kind: str,
+        convention: str,
+        states: Mapping[str, Floats],
+        quantities: Mapping[str, float],
+        *,
+        inertia: str = "scaled",
+        rows: int = 3,
+    ) -> Floats:
+        """What is right at the states, (N, ...)."""
+        arm = self.arm(convention, quantities, inertia)
+        q, qd = states["q"], states["qd"]
+        if kind == "jacobian":
+            return arm.geometric_jacobian(q) if rows == 6 else arm.jacobian(q)
+        if kind == "gravity":
+            return arm.gravity_torque(q)
+        if kind == "kinematics":
+            return arm.tip_position(q)
+        if kind == "mass":
+            return arm.mass_matrix(q)
+        if kind == "coriolis":
+            return arm.velocity_product(q, qd)
+        if kind == "inverse":
+            return arm.inverse_dynamics(q, qd, states["qdd"])
+        return arm.forward_dynamics(q, qd, states["tau"])
+
+    def rotation(self, convention: str, q: Floats) -> Floats:
+        """From the tip's axes to the base: x along link 3, y across the arm's plane."""
+        sign = 1.0 if convention == "simscape" else -1.0
+        pitch = sign * (q[:, 1] + q[:, 2])
+        c1, s1, c, s = np.cos(q[:, 0]), np.sin(q[:, 0]), np.cos(pitch), np.sin(pitch)
+        zero = np.zeros_like(c)
+        return np.stack(
+            [np.stack([c1 * c, -s1, c1 * s], 1), np.stack([s1 * c, c1, s1 * s], 1), np.stack([-s, zero, c], 1)], 1
+        )

@@ -1,0 +1,35 @@
+"""The verdict on a user's formula: the findings, as text, as data, and as a table."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from .finding import Finding, Judgement
+from .words import report, table
+
+__all__ = ["Finding", "Verdict"]
+
+
+@dataclass
+class Verdict(Judgement):
+    """The verdict on a formula; it is true where the formula is right."""
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `arm3r verify --json` prints."""
+        whole = asdict(self)
+        del whole["text"]
+        return whole
+
+    def to_json(self) -> str:
+        return json.dumps(self.to_dict(), indent=2, ensure_ascii=False)
+
+    def __str__(self) -> str:
+        return report(self)
+
+    def _repr_html_(self) -> str:
+        return table(self)

@@ -1,0 +1,102 @@
+"""A verdict in words, and as a table for notebooks."""
+
+from __future__ import annotations
+
+import html
+from itertools import groupby
+
+import numpy as np
+
+from .finding import Finding, Judgement
+from .kinds import KINDS, entry_name
+
+
+def report(verdict: Judgement) -> str:
+    """What `arm3r verify` prints of a formula: a line for the whole, then each finding."""
+    lines = [f"{verdict.file}: {_head(verdict)}"]
+    findings = sorted(verdict.findings, key=_edit_of)
+    for _, same in groupby(findings, key=_edit_of):
+        lines += [f"  {line}" for line in _block(verdict, list(same))]
+    lines += [f"  also possible: {words}" for words in verdict.alternatives]
+    lines += [f"  note: {words}" for words in verdict.warnings]
+    return "\n".join(lines)
+
+
+def _head(verdict: Judgement) -> str:
+    kind = KINDS[verdict.kind].words
+    parts = [kind, *verdict.found]
+    if verdict.ok:
+        return f"{', '.join(parts)}: right"
+    count = int(np.prod(verdict.shape)) if verdict.shape else 0
+    wrong = len({tuple(one.entry) for one in verdict.findings if one.entry})
+    if wrong and count:
+        parts.append(f"{wrong} of {count} entries wrong, by up to {verdict.residual:.3g} {KINDS[verdict.kind].unit}")
+    return ", ".join(parts)
+
+
+def _edit_of(finding: Finding) -> tuple[int, int, str, str]:
+    if finding.old is None:
+        return (10**9, 0, finding.cause, "")
+    return (finding.line or 0, finding.column or 0, finding.old, finding.new or "")
+
+
+def _block(verdict: Judgement, findings: list[Finding]) -> list[str]:
+    first = findings[0]
+    kind = KINDS[verdict.kind]
+    lines = []
+    for one in findings:
+        if one.entry and one.reads is not None:
+            lines.append(f"{entry_name(kind, one.entry)} reads {one.reads}, due is {one.due}")
+    names = ", ".join(entry_name(kind, one.entry) for one in findings if one.entry)
+    if not lines or first.reads is None or " reads " not in first.cause:
+        cause = first.cause if not names or first.cause.startswith(names) else f"{names}: {_lower(first.cause)}"
+        if first.old is None or not lines:
+            lines.append(cause)
+    lines += [f"  {line}" for line in _place(verdict, first)]
+    unseen = {name for one in findings for name, seen in one.seen_by.items() if not seen}
+    lines += [f"  {name} cannot see it" for name in sorted(unseen)]
+    return lines
+
+
+def _lower(text: str) -> str:
+    return text[:1].lower() + text[1:] if text[1:2].islower() or text[1:2] == " " else text
+
+
+def _place(verdict: Judgement, finding: Finding) -> list[str]:
+    """The line of the source, with carets below what is to be replaced."""
+    if finding.line is None or verdict.text is None or finding.old is None:
+        return [f"line {finding.line}"] if finding.line else []
+    source = verdict.text.splitlines()[finding.line - 1]
+    head = f"line {finding.line}:  "
+    before = source[: (finding.column or 1) - 1]
+    blanks = "".join("\t" if character == "\t" else " " for character in before.lstrip())
+    width = max(len(finding.old.splitlines()[0]) if finding.old else 1, 1)
+    due = f"{finding.new} is due" if finding.new else "this is too much"
+    return [f"{head}{source.strip()}", f"{' ' * len(head)}{blanks}{'^' * width}  {due}"]
+
+
+def table(verdict: Judgement) -> str:
+    """The entries in a table: green where they are right, red where they are wrong, with what they read."""
+    shape = verdict.shape or [0]
+    rows, columns = (shape[0], shape[1]) if len(shape) > 1 else (shape[0], 1)
+    found = {tuple(one.entry): one for one in verdict.findings if one.entry}
+    cells = []
+    for row in range(1, rows + 1):
+        line = ""
+        for column in range(1, columns + 1):
+            one = found.get((row, column) if len(shape) > 1 else (row,))
+            colour = "#f8d0d0" if one else "#d0f0d0"
+            text = "right" if one is None else _cell(one)
+            line += f'<td style="background:{colour};color:#000;padding:0.4em;text-align:left">{text}</td>'
+        cells.append(f"<tr>{line}</tr>")
+    return (
+        f"<p>{html.escape(_head(verdict))}</p><table>{''.join(cells)}</table><pre>{html.escape(report(verdict))}</pre>"
+    )
+
+
+def _cell(finding: Finding) -> str:
+    if finding.reads is not None:
+        return f"<u>{html.escape(finding.reads)}</u><br>due: {html.escape(finding.due or '')}"
+    if finding.old is not None:
+        return f"<u>{html.escape(finding.old)}</u><br>due: {html.escape(finding.new or '')}"
+    return "wrong"

@@ -1,0 +1,301 @@
+"""Formulas that are judged: the lecture's listings, mistakes planted in them, and the command."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import subprocess
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from arm3r_cpp.verify.formula import from_file
+from arm3r_cpp.verify.functions import formula_verdict
+from formulas import reading, runner
+from formulas.mutants import mutants, two_mistakes
+from formulas.programs import MATLAB_GRAVITY, MATLAB_JACOBIAN, PROGRAMS, Program
+from formulas.rewriting import rewritten
+
+SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
+LECTURE_JACOBIAN = MATLAB_JACOBIAN.replace("SIGN(j32)", "-j32").replace("SIGN(j33)", "-j33")
+LECTURE_GRAVITY = MATLAB_GRAVITY.replace("SIGN(", "-(")
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Any:
+    def write(name: str, text: str) -> Path:
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def command(scripts: Path) -> Any:
+    def call(*arguments: object) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [scripts / "arm3r", "verify", *map(str, arguments)], capture_output=True, text=True, timeout=60
+        )
+
+    return call
+
+
+# ---- the lecture ----------------------------------------------------------------------------------------------------
+
+
+def test_the_lectures_listings_are_right(written: Any) -> None:
+    assert arm3r.verify.jacobian(written("j.m", LECTURE_JACOBIAN)).ok
+    verdict = arm3r.verify.gravity(written("g.m", LECTURE_GRAVITY))
+    assert verdict.ok and verdict.convention == "simscape"
+    assert "outputs in the order t3, t2, t1" in verdict.found
+
+
+def test_the_first_listing_drives_joint_1(written: Any) -> None:
+    verdict = arm3r.verify.gravity(written("g.m", LECTURE_GRAVITY.replace("t1 = q1*0", "t1 = q1")))
+    (finding,) = verdict.findings
+    assert not verdict.ok and finding.entry == [1]
+    assert (finding.reads, finding.due) == ("q1", "0")
+    assert (finding.line, finding.column, finding.old, finding.new) == (7, 6, "q1", "0")
+
+
+def test_a_lost_angle_is_named_in_its_line(written: Any, command: Any) -> None:
+    path = written("my_jacobian.m", LECTURE_JACOBIAN.replace("j23 = -a3*sin(q2+q3)", "j23 = -a3*sin(q2)"))
+    done = command(path)
+    assert done.returncode == 11
+    lines = done.stdout.splitlines()
+    assert "jacobian, arguments in the order q3, q2, q1, convention simscape, 1 of 9 entries wrong" in lines[0]
+    assert lines[1] == "  J(2,3) reads -a3 S1 S2, due is -a3 S1 S23"
+    assert lines[2].strip() == "line 11:  j23 = -a3*sin(q2)*sin(q1);"
+    assert lines[3].index("^^") == lines[2].index("q2)") and lines[3].endswith("q2+q3 is due")
+    assert lines[-1] == "1 mistake in 1 file"
+
+
+def test_equal_lengths_hide_nothing(written: Any) -> None:
+    """a1/2 and a2/2 in the place of a3/2, as the lecture's slides print it."""
+    path = written("g.m", LECTURE_GRAVITY.replace("t3 = -(m3*g*(a3/2)", "t3 = -(m3*g*(a2/2)"))
+    (finding,) = arm3r.verify.gravity(path).findings
+    assert (finding.entry, finding.reads, finding.due) == ([3], "-1/2 m3 g a2 C23", "-1/2 m3 g a3 C23")
+    assert (finding.old, finding.new) == ("a2", "a3")
+
+
+def test_numbers_that_are_not_the_arms(written: Any) -> None:
+    path = written("g.m", LECTURE_GRAVITY.replace("g=9.80665", "g=9.81"))
+    verdict = arm3r.verify.gravity(path)
+    assert [finding.entry for finding in verdict.findings] == [[2], [3]]
+    assert {(one.line, one.old, one.new) for one in verdict.findings} == {(4, "9.81", "9.80665")}
+    assert "g is 9.81 in line 4; the lecture's arm has 9.80665" in verdict.findings[0].cause
+
+
+# ---- mistakes of the formula as a whole -----------------------------------------------------------------------------
+
+ARM = arm3r.Scenario()
+
+
+def lecture_jacobian(q: Any) -> Any:
+    return ARM.arm.jacobian(q)
+
+
+WHOLE = {
+    "in degrees": lambda q: lecture_jacobian(np.deg2rad(q)),
+    "the joints are taken in the order q3, q2, q1": lambda q: lecture_jacobian(np.asarray(q)[::-1]),
+    "the matrix is transposed": lambda q: lecture_jacobian(q).T,
+    "row 2 has the wrong sign": lambda q: lecture_jacobian(q) * np.array([[1], [-1], [1]]),
+    "column 2 has the wrong sign": lambda q: lecture_jacobian(q) * np.array([1, -1, 1]),
+    "the rows stand in the order 2, 1, 3": lambda q: lecture_jacobian(q)[[1, 0, 2]],
+    "millimetres": lambda q: 1000 * lecture_jacobian(q),
+    "the angular rows stand above the linear ones": lambda q: np.roll(ARM.arm.geometric_jacobian(q), 3, axis=0),
+    "q3 is taken as the absolute angle": lambda q: lecture_jacobian([q[0], q[1], q[2] - q[1]]),
+    "twice what is due": lambda q: 2 * lecture_jacobian(q),
+}
+
+
+@pytest.mark.parametrize("words", WHOLE)
+def test_mistakes_of_the_whole_are_named(words: str) -> None:
+    verdict = arm3r.verify.jacobian(WHOLE[words])
+    assert not verdict.ok
+    assert any(words in cause.lower() for cause in (verdict.findings[0].cause, *verdict.alternatives))
+
+
+def test_the_convention_is_found() -> None:
+    scenario = arm3r.Scenario()
+    scenario["arm.convention"] = "slide"
+    verdict = arm3r.verify.jacobian(lambda q: scenario.arm.jacobian(q))
+    assert verdict.ok and verdict.convention == "slide"
+
+
+# ---- mutants --------------------------------------------------------------------------------------------------------
+
+
+def with_edit(text: str, finding: Any) -> str:
+    """The text after the edit that a finding names, at the place that it names."""
+    lines = text.split("\n")
+    start = sum(len(line) + 1 for line in lines[: finding.line - 1]) + finding.column - 1
+    assert text[start : start + len(finding.old)] == finding.old
+    return text[:start] + finding.new + text[start + len(finding.old) :]
+
+
+def judged(program: Program, text: str, folder: Path) -> str:
+    """ "right", "fails", "missed", "false", "named" or "unexplained"."""
+    wrong = {convention: runner.wrong_entries(program, text, convention) for convention in ("simscape", "slide")}
+    path = folder / ("program.py" if program.language == "python" else "program.m")
+    path.write_text(text)
+    if None in wrong.values():
+        return "fails"
+    verdict = formula_verdict(from_file(path), program.kind)
+    if not all(wrong.values()):
+        return "right" if verdict.ok else "alarm"
+    located = {tuple(finding.entry) for finding in verdict.findings}
+    if located != wrong[verdict.convention]:
+        return "missed"
+    if any(is_false(program, text, verdict, finding) for finding in verdict.findings):
+        return "false"
+    named = [one.reads is not None or one.old is not None for one in verdict.findings]
+    return "named" if all(named) or " explain it" not in verdict.findings[named.index(False)].cause else "unexplained"
+
+
+def is_false(program: Program, text: str, verdict: Any, finding: Any) -> bool:
+    """Whether what a finding says does not hold for the program as it is."""
+    entry = tuple(place - 1 for place in finding.entry)
+    numbers = dict(zip(runner.NAMES, runner.ARMS[0], strict=True))
+    for q in runner.STATES[:3]:
+        got = runner.values(program, text, numbers, q)
+        right = runner.due(program.kind, runner.arm_of(verdict.convention, numbers), q)
+        for sentence, value in ((finding.reads, got), (finding.due, right)):
+            if sentence is not None and value is not None:
+                said = reading.value(sentence, q, numbers)
+                if not abs(said - value[entry]) <= 1e-6 * (1 + abs(value[entry])):
+                    return True
+    if finding.old is None:
+        return False
+    left = runner.wrong_entries(program, with_edit(text, finding), verdict.convention)
+    return left is None or tuple(finding.entry) in left
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda program: program.name)
+def test_right_programs_are_right(program: Program, tmp_path: Path) -> None:
+    assert runner.wrong_entries(program, program.text) == set()
+    path = tmp_path / ("program.py" if program.language == "python" else "program.m")
+    path.write_text(program.text)
+    verdict = formula_verdict(from_file(path), program.kind)
+    assert verdict.ok and verdict.convention in (program.convention, "simscape"), str(verdict)
+
+
+def counted(count: int, seed: int, folder: Path, *, two: bool = False) -> Counter[str]:
+    """The outcomes for random mutants that differ from what is right and run."""
+    print(f"ARM3R_SEED={seed}")
+    choose = random.Random(seed)
+    outcomes: Counter[str] = Counter()
+    while sum(outcomes[one] for one in ("missed", "false", "named", "unexplained")) < count:
+        program = choose.choice(PROGRAMS)
+        if two:
+            text = next(two_mistakes(program.text, program.language, choose.randrange(10**9), 1), None)
+        else:
+            text = choose.choice(mutants(program.text, program.language))
+        if text is not None:
+            outcome = judged(program, text, folder)
+            outcomes[outcome] += 1
+            if outcome in ("missed", "false", "alarm"):
+                print(outcome, program.name, text, sep="\n")
+    print(dict(outcomes))
+    return outcomes
+
+
+def test_single_mistakes_are_found_and_named(tmp_path: Path) -> None:
+    outcomes = counted(6, SEED, tmp_path)
+    assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("part", range(10))
+def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
+    outcomes = counted(100, SEED + part, tmp_path)
+    assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+    assert outcomes["named"] >= 99
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("part", range(5))
+def test_many_pairs_of_mistakes(part: int, tmp_path: Path) -> None:
+    outcomes = counted(60, SEED + part, tmp_path, two=True)
+    assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+    assert outcomes["named"] >= 54
+
+
+def no_alarms(count: int, seed: int, folder: Path) -> None:
+    print(f"ARM3R_SEED={seed}")
+    choose = random.Random(seed)
+    programs = [program for program in PROGRAMS if program.language == "python"]
+    for _ in range(count):
+        program = choose.choice(programs)
+        text = rewritten(program.text, choose.randrange(10**9))
+        path = folder / "program.py"
+        path.write_text(text)
+        verdict = formula_verdict(from_file(path), program.kind)
+        assert verdict.ok, f"{text}\n{verdict}"
+
+
+def test_equivalent_programs_raise_no_alarm(tmp_path: Path) -> None:
+    no_alarms(25, SEED, tmp_path)
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("part", range(10))
+def test_no_alarm_on_ten_thousand_right_programs(part: int, tmp_path: Path) -> None:
+    no_alarms(1000, SEED + part, tmp_path)
+
+
+# ---- the command ----------------------------------------------------------------------------------------------------
+
+
+def test_the_command_prints_json(written: Any, command: Any) -> None:
+    right = written("my_jacobian.m", LECTURE_JACOBIAN)
+    wrong = written("gravity.py", "def gravity(q):\n    return [q[0], 0, 0]\n")
+    done = command(right, wrong, "--json")
+    first, second = json.loads(done.stdout)
+    assert done.returncode == 11 and first["ok"] and not second["ok"]
+    assert set(first) >= {"ok", "kind", "convention", "residual", "findings", "alternatives", "unexplained", "coverage"}
+    assert set(second["findings"][0]) >= {"entry", "reads", "due", "cause", "line", "column", "old", "new", "seen_by"}
+    assert command(right).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("missing.m", None, "cannot be read"),
+        ("x.m", "function J = jac(q)\nfor i = 1:3\n", "x.m:2:1: `for` is not read"),
+        ("x.py", "def jacobian(q:\n", "x.py:1: this is not Python"),
+        ("x.py", "def f(q):\n    return q\n", "--kind"),
+        ("x.py", "def jacobian(q, friction, y, z):\n    return q\n", "the argument friction is not understood"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(written: Any, command: Any, name: str, text: str | None, words: str) -> None:
+    path = written(name, text) if text is not None else name
+    done = command(path)
+    assert done.returncode == 2 and words in done.stderr and "Traceback" not in done.stderr
+
+
+HOSTILE = {
+    "raise ValueError('no')": "raises ValueError: no",
+    "while True: pass": "takes too long",
+    "import os; os._exit(0)": "ends its process",
+    "return None": "returns None instead of numbers",
+    "return 'J'": "returns str",
+    "return [[1, 2], [3]]": "returns",
+    "import sys; sys.exit()": "raises SystemExit",
+    "return [1] * 10**12": "",
+    "import random; return [[random.random()] * 3] * 3": "gives different numbers",
+}
+
+
+@pytest.mark.parametrize("body", HOSTILE)
+def test_a_hostile_file_is_one_clear_line(written: Any, body: str, monkeypatch: Any) -> None:
+    monkeypatch.setattr("arm3r_cpp.verify.program.python_process.ANSWER_TIME", 1.0)
+    verdict = arm3r.verify.jacobian(written("jacobian.py", f"def jacobian(q):\n    {body}\n"))
+    (finding,) = verdict.findings
+    assert not verdict.ok and finding.entry is None and HOSTILE[body] in finding.cause
+    assert len(str(verdict).splitlines()) <= 4
