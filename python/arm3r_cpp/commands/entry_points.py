@@ -24,6 +24,8 @@ def animate() -> int:
 
 def examples() -> int:
     return _call("examples")
+
+
 def verify() -> int:
     return _call("verify")
 

@@ -8,9 +8,9 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from .._progress_bar import Bar
 from ..errors import Arm3rError
 from .exit_codes import WRONG_FORMULA, attempt, print_line
-from .progress_bar import Bar
 
 if TYPE_CHECKING:
     from ..verify.verdict import Verdict
