@@ -156,14 +156,15 @@ class Scenario:
         return changed
 
     def _check_keys(self, path: str) -> None:
-        """ScenarioError: a key at a path, or below it, exists under no choice."""
+        """ScenarioError: a key on the way to a path, at it or below it, exists under no choice."""
         try:
             _native.text(lib.arm3r_scenario_name, self._handle)
         except Arm3rError as error:
             unknown = [
                 problem
                 for problem in error.problems
-                if problem["code"] == "scenario.unknown_key" and _is_part(problem["path"], path)
+                if problem["code"] == "scenario.unknown_key"
+                and (_is_part(problem["path"], path) or _is_part(path, problem["path"]))
             ]
             if unknown:
                 message = "\n".join(map(describe, unknown))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import pickle
+import random
 import subprocess
 import warnings
 from typing import Any
@@ -57,6 +58,21 @@ def test_every_key_of_the_schema_can_be_put(scenario: arm3r.Scenario) -> None:
     for index in range(arm3r.param_count()):
         path = arm3r.param_key(index).path
         scenario.copy()[path] = {} if arm3r.param_key(index).kind == "section" else 1
+
+
+def test_every_key_that_is_mistyped_is_refused_at_once(scenario: arm3r.Scenario) -> None:
+    paths = {arm3r.param_key(index).path for index in range(arm3r.param_count())}
+    before, seed = scenario.to_yaml(), random.randrange(2**32)
+    rng = random.Random(seed)
+    for path in sorted(paths):
+        place = rng.randrange(len(path))
+        wrong = path[:place] + rng.choice([letter for letter in "bxz_" if letter != path[place]]) + path[place + 1 :]
+        if wrong in paths:  # reference.x and reference.y are both keys
+            continue
+        with pytest.raises(arm3r.ScenarioError, match="no such key"):
+            scenario[wrong] = 1
+            pytest.fail(f"{wrong} was taken, seed {seed}")
+    assert scenario.to_yaml() == before
 
 
 def test_keys_of_another_choice_are_judged_when_the_scenario_is_used(scenario: arm3r.Scenario) -> None:
