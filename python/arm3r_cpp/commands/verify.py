@@ -34,16 +34,21 @@ def parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("formulas", nargs="+", metavar="FILE[:FUNCTION]", help="a Python file, or a MATLAB function file")
     add("--kind", choices=KINDS, help="what the formulas compute (default: found from names)")
-    add("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
+    arm = parser.add_mutually_exclusive_group()
+    arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
+    arm.add_argument("--urdf", metavar="FILE", help="a serial chain of up to 7 joints")
+    arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: docs/verify.md says how it is written")
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser
 
 
 def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
     """Judge each formula; a file that cannot be read ends it."""
-    from ..verify.functions import formula_verdict, truth_of
+    from ..verify.functions import Chain, formula_verdict, truth_of
 
     arm: Any = truth_of(options.arm)
+    if options.urdf or options.dh:
+        arm = Chain.from_urdf(options.urdf) if options.urdf else Chain.from_dh(options.dh)
     failure: Arm3rError | None = None
     for formula in options.formulas:
         bar = Bar("repair", "edits")

@@ -65,7 +65,7 @@ def _inputs(truth: Truth, states: States, joints: int, kind: str) -> Iterator[Hy
                 words + " (and in the derivatives, too)",
                 partial(_absolute_columns, with_q(absolute), joint),
             )
-    for order in list(permutations(range(joints)))[1:] if joints <= 4 else []:
+    for order in list(permutations(range(joints)))[1:] if joints <= 4 else [tuple(range(joints))[::-1]]:
         names = ", ".join(f"q{joint + 1}" for joint in np.argsort(order))
         moved = {vector: values[:, order] for vector, values in states.items()}
         yield Hypothesis(f"the joints are taken in the order {names}", partial(truth, {**states, **moved}, {}))

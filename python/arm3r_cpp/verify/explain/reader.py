@@ -43,15 +43,16 @@ def read_entries(case: Any, wrong: frozenset[int]) -> dict[int, Reading]:
     if case.kind.name not in _VARIED:
         return {}
     found = {}
+    sampled: dict[bytes, Floats] = {}
     for place in sorted(wrong):
         try:
-            found[place] = _entry(case, place)
+            found[place] = _entry(case, place, sampled)
         except (ProgramError, np.linalg.LinAlgError, FloatingPointError):
             continue
     return found
 
 
-def _entry(case: Any, place: int) -> Reading:
+def _entry(case: Any, place: int, sampled: dict[bytes, Floats]) -> Reading:
     own = case.truth.values_of_quantities
     varied = [name for name in _VARIED[case.kind.name] if own.get(name) or name in case.known]
     lifted = [name for name in case.known if name in varied or name in ("com2", "com3")]
@@ -61,12 +62,17 @@ def _entry(case: Any, place: int) -> Reading:
     }
     due_terms, monomials = _due(case, place, sorted({*varied, *lifted}), shown)
     arms = _arms(case, case.known, len(case.known) + 5 if case.known else 1)
-    fixed = {shown[name]: own[name] for name in varied if name not in case.known and own.get(name)}
+    fixed = {
+        shown[name]: own[name] for name in varied if name not in case.known and own.get(name)
+    } | case.truth.named_numbers
     values = {shown[name]: np.array([arm[name] for arm in arms]) for name in case.known}
     parameters = Parameters(values, fixed, len(arms))
 
     def user(q: Floats) -> Floats:
-        return _at(case, q, arms, case.values)
+        key = q.tobytes()
+        if key not in sampled:
+            sampled[key] = _at(case, q, arms, case.values)
+        return sampled[key]
 
     spectrum = read(user, case.truth.groups, case.truth.revolute, place)
     due_words = sum_words(due_terms) if due_terms is not None else None
@@ -92,7 +98,7 @@ def _due(case: Any, place: int, varied: list[str], shown: dict[str, str]) -> tup
     """The terms of the truth with all quantities varied, and their monomials."""
     arms = _arms(case, varied, len(varied) + 5)
     values = {shown[name]: np.array([arm[name] for arm in arms]) for name in varied}
-    parameters = Parameters(values, {}, len(arms))
+    parameters = Parameters(values, dict(case.truth.named_numbers), len(arms))
 
     def truth(q: Floats) -> Floats:
         return _at(case, q, arms, case.due)

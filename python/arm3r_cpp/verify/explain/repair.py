@@ -69,9 +69,9 @@ def influential(
             if changed.shape == values.shape:
                 rows = len(values)
                 flat = changed.reshape(rows, -1)[:, places], values.reshape(rows, -1)[:, places]
-                if np.array_equal(*flat, equal_nan=True) and np.abs(flat[0]).max() > 0:
+                if np.isfinite(flat[0]).all() and np.array_equal(*flat) and np.abs(flat[0]).max() > 0:
                     zero = evaluate(Edit(inner.start, inner.end, f"1.3+({text[inner.start : inner.end]})"), False)
-                    if np.array_equal(zero.reshape(rows, -1)[:, places], flat[1], equal_nan=True):
+                    if np.array_equal(zero.reshape(rows, -1)[:, places], flat[1]):
                         continue
         except (ProgramError, ValueError):
             pass

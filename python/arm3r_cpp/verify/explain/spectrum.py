@@ -12,6 +12,7 @@ from ..._native import Floats
 
 Sampler = Callable[[Floats], Floats]
 """Joint vectors (S, n) to values (arms, S, entries)."""
+_POINTS = 16  # along one joint, from which its order is found
 _OFFSET = 0.137  # of the grid's angles: no point of it is a special pose
 
 
@@ -58,17 +59,16 @@ class Axis:
     inverse: Floats
 
 
-def axis(joints: tuple[int, ...], kind: str, order: int, total: int) -> Axis:
+def axis(joints: tuple[int, ...], kind: str, orders: tuple[int, ...], total: int) -> Axis:
     """kind: "angle", "degree" (an angle in degrees) or "power" (a length, or an angle that stands by itself)."""
     if kind == "power":
-        points = np.array([[-0.9], [0.2], [1.1], [1.7]])[: max(order, 2) + 1]
+        points = np.array([[-0.9], [0.2], [1.1]])[: orders[0] + 1]
         waves = [Wave(), *(Wave("power", joints, (power,)) for power in range(1, len(points)))]
     else:
         period, suffix = (360.0, " deg") if kind == "degree" else (2 * np.pi, "")
-        one = (np.arange(2 * order + 1) / (2 * order + 1) + _OFFSET) * period
-        points = np.array(list(product(one, repeat=len(joints))))
+        points = np.array(list(product(*(_circle(order, period) for order in orders))))
         waves = [Wave()]
-        for factors in product(range(-order, order + 1), repeat=len(joints)):
+        for factors in product(*(range(-order, order + 1) for order in orders)):
             first = next((factor for factor in factors if factor), 0)
             if first > 0:
                 used = [(joint, factor) for joint, factor in zip(joints, factors, strict=True) if factor]
@@ -110,31 +110,44 @@ def spectrum(sampler: Sampler, axes: Sequence[Axis], total: int) -> Spectrum:
     return Spectrum(waves, values.reshape(arms, -1, entries))
 
 
-def kinds_of_axes(sampler: Sampler, revolute: Sequence[bool], entry: int) -> list[str] | None:
-    """For each joint what the entry is in it: "angle", "degree", "power"; None where it is neither."""
-    random = np.random.default_rng(11)
-    n = len(revolute)
-    base = random.uniform(-2, 2, (3, n))
+def _circle(order: int, period: float) -> Floats:
+    return (np.arange(2 * order + 1) / (2 * order + 1) + _OFFSET) * period
+
+
+def kinds_of_axes(sampler: Sampler, revolute: Sequence[bool], entry: int) -> list[tuple[str, int]] | None:
+    """For each joint what the entry is in it ("angle", "degree", "power"), and its order; None where it is neither."""
+    base = np.random.default_rng(11).uniform(-2, 2, (2, len(revolute)))
     kinds = []
-    for joint in range(n):
-
-        def moved(by: float, joint: int = joint) -> Floats:
-            q = base.copy()
-            q[:, joint] += by
-            return sampler(q)[..., entry]
-
-        here = moved(0.0)
-        limit = 1e-7 * (1e-3 + np.abs(here).max())
-        if revolute[joint] and np.abs(moved(2 * np.pi) - here).max() < limit:
-            kinds.append("angle")
-        elif np.abs(moved(360.0) - here).max() < limit:
-            kinds.append("degree")
-        else:
-            cubic = moved(3.0) - 3 * moved(2.0) + 3 * moved(1.0) - here
-            if not np.abs(cubic).max() < 10 * limit:
-                return None
-            kinds.append("power")
+    for joint, turns in enumerate(revolute):
+        found = _kind_of_axis(sampler, base, joint, turns, entry)
+        if found is None:
+            return None
+        kinds.append(found)
     return kinds
+
+
+def _kind_of_axis(sampler: Sampler, base: Floats, joint: int, turns: bool, entry: int) -> tuple[str, int] | None:
+    def along(steps: Floats) -> Floats:
+        """(arms, bases, steps)"""
+        q = np.repeat(base, len(steps), axis=0)
+        q[:, joint] += np.tile(steps, len(base))
+        values = sampler(q)[..., entry]
+        return values.reshape(len(values), len(base), len(steps))
+
+    for kind, period in (("angle", 2 * np.pi), ("degree", 360.0)):
+        values = along(np.append(np.arange(_POINTS) / _POINTS, 1.0) * period)
+        scale = 1e-3 + np.abs(values).max()
+        if (turns or kind == "degree") and np.abs(values[..., -1] - values[..., 0]).max() < 1e-9 * scale:
+            harmonics = np.abs(np.fft.rfft(values[..., :-1])).max(axis=(0, 1)) / _POINTS
+            orders = np.flatnonzero(harmonics > 1e-11 * scale)
+            return kind, int(orders.max(initial=0))
+    values = along(np.arange(4.0))
+    limit = 1e-9 * (1e-3 + np.abs(values).max())
+    for order in range(3):
+        values = np.diff(values)
+        if np.abs(values).max() < limit:
+            return "power", order
+    return None
 
 
 def read(
@@ -151,17 +164,15 @@ def read(
     n = len(revolute)
     split: list[tuple[tuple[int, ...], str]] = []
     for group in groups:
-        angles = tuple(joint for joint in group if kinds[joint] == "angle")
-        split += [((joint,), kinds[joint]) for joint in group if kinds[joint] != "angle"]
+        angles = tuple(joint for joint in group if kinds[joint][0] == "angle")
+        split += [((joint,), kinds[joint][0]) for joint in group if kinds[joint][0] != "angle"]
         split += [(angles, "angle")] if angles else []
+    points = np.prod([order + 1 if kind == "power" else 2 * order + 1 for kind, order in kinds])
+    if points > budget or max(order for _, order in kinds) >= _POINTS // 2:
+        return None
+    axes = [axis(joints, kind, tuple(kinds[joint][1] for joint in joints), n) for joints, kind in sorted(split)]
+    found = spectrum(lambda q: sampler(q)[..., [entry]], axes, n)
     probe = np.random.default_rng(12).uniform(-3, 3, (12, n))
     due = sampler(probe)[..., [entry]]
     limit = 1e-8 * (np.abs(due).max() + 1e-6)
-    for order in (1, 2, 3, 4):
-        axes = [axis(joints, kind, order, n) for joints, kind in sorted(split)]
-        if np.prod([len(one.points) for one in axes]) > budget:
-            return None
-        found = spectrum(lambda q: sampler(q)[..., [entry]], axes, n)
-        if np.abs(found.at(probe) - due).max() < limit:
-            return found
-    return None
+    return found if np.abs(found.at(probe) - due).max() < limit else None

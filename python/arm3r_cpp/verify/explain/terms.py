@@ -127,7 +127,7 @@ class Parameters:
 
     def term(self, number: float, powers: Sequence[int], waves: tuple[Wave, ...]) -> Term:
         named = [(name, power) for name, power in zip(self.names, powers, strict=True) if power]
-        if not self.is_simple(number) and self.fixed:
+        if self.fixed and Fraction(number).limit_denominator(4) != number:
             found = self._named_number(number)
             if found:
                 number, more = found

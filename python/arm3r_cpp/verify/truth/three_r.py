@@ -30,6 +30,7 @@ class ThreeR:
     groups = ((0,), (1, 2))
     """Joints with parallel axes: their angles occur as sums."""
     conventions: tuple[str, ...] = CONVENTIONS
+    named_numbers: Mapping[str, float] = {}
 
     def __init__(self, scenario: Scenario | Arm | None = None) -> None:
         """By default the lecture's arm."""

@@ -1,0 +1,223 @@
+"""Any serial chain of up to seven joints, by an outward and inward Newton-Euler recursion in numpy."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..._native import Floats
+from ...errors import UsageError
+
+MAX_JOINTS = 7
+GRAVITY = (0.0, 0.0, -9.80665)  # m/s^2
+
+
+def rotation_about(axis: Floats, angle: Floats) -> Floats:
+    """Rodrigues' formula: (S, 3, 3) for angles (S,)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    sine, cosine = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
+    return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
+
+
+@dataclass
+class Joint:
+    """A joint and the link behind it; the link's frame is the joint's, moved by the joint."""
+
+    is_revolute: bool
+    axis: Floats
+    """A unit vector in the joint's frame."""
+    rotation: Floats
+    """Of the joint's frame in the frame before it, (3, 3)."""
+    origin: Floats
+    """Of the joint's frame in the frame before it, (3,), m."""
+    mass: float = 0.0
+    centre: Floats = field(default_factory=lambda: np.zeros(3))
+    """Of mass, in the link's frame, m."""
+    inertia: Floats = field(default_factory=lambda: np.zeros((3, 3)))
+    """About the centre of mass, in the axes of the link's frame, kg m^2."""
+    armature: float = 0.0
+
+
+class Chain:
+    """A serial chain as the truth: kinematics, Jacobian, gravity torque, mass matrix, and both dynamics.
+
+    >>> chain = Chain.from_dh("ur5.csv")
+    >>> verdict = verify.jacobian(my_jacobian, chain)
+    """
+
+    conventions: tuple[str, ...] = ("",)
+    convention = ""
+    is_default = False
+
+    def __init__(
+        self,
+        joints: Sequence[Joint],
+        *,
+        tool_rotation: Floats | None = None,
+        tool: Sequence[float] | Floats = (0, 0, 0),
+        gravity: Sequence[float] = GRAVITY,
+        name: str = "the chain",
+        named_numbers: Mapping[str, float] | None = None,
+    ) -> None:
+        """
+        Args:
+            tool: the tip in the frame of the last link, m.
+            gravity: in the base frame, m/s^2.
+            named_numbers: what sentences call the chain's numbers.
+
+        Raises:
+            UsageError: there is no joint, or there are more than seven.
+        """
+        if not 1 <= len(joints) <= MAX_JOINTS:
+            raise UsageError(f"{name}: a chain has 1 to {MAX_JOINTS} joints, got {len(joints)}")
+        self.parts, self.name = list(joints), name
+        self.joints = len(joints)
+        self.revolute = tuple(joint.is_revolute for joint in joints)
+        self.tool_rotation = np.eye(3) if tool_rotation is None else tool_rotation
+        self.tool, self.gravity = np.array(tool, float), np.array(gravity, float)
+        self.groups = self._parallel_groups()
+        self.values_of_quantities: dict[str, float] = {}
+        self.named_numbers = dict(named_numbers or {})
+
+    @classmethod
+    def from_urdf(cls, path: str | os.PathLike[str], *, tip: str | None = None) -> Chain:
+        """The chain from the base link of a URDF to a link, by default the last one."""
+        from .urdf import read_urdf
+
+        return read_urdf(path, tip)
+
+    @classmethod
+    def from_dh(cls, path: str | os.PathLike[str]) -> Chain:
+        """The chain of a DH table, see docs/verify.md."""
+        from .dh import read_dh
+
+        return read_dh(path)
+
+    def _parallel_groups(self) -> tuple[tuple[int, ...], ...]:
+        """Neighbouring revolute joints with parallel axes."""
+        groups: list[list[int]] = [[0]]
+        for place in range(1, self.joints):
+            before, joint = self.parts[place - 1], self.parts[place]
+            is_parallel = np.linalg.norm(np.cross(before.axis, joint.rotation @ joint.axis)) < 1e-9
+            if is_parallel and joint.is_revolute and before.is_revolute:
+                groups[-1].append(place)
+            else:
+                groups.append([place])
+        return tuple(tuple(group) for group in groups)
+
+    def random_quantities(self, names: set[str], random: np.random.Generator) -> dict[str, float]:
+        return {}
+
+    # ---- kinematics --------------------------------------------------------------------------------------------------
+
+    def _steps(self, q: Floats) -> list[tuple[Floats, Floats]]:
+        """Of each joint: rotation (S, 3, 3) and origin (S, 3) of the link's frame in that of the link before."""
+        steps = []
+        for place, joint in enumerate(self.parts):
+            value = q[:, place]
+            if joint.is_revolute:
+                rotation = joint.rotation @ rotation_about(joint.axis, value)
+                origin = np.broadcast_to(joint.origin, (len(q), 3))
+            else:
+                rotation = np.broadcast_to(joint.rotation, (len(q), 3, 3))
+                origin = joint.origin + value[:, None] * (joint.rotation @ joint.axis)
+            steps.append((rotation, origin))
+        return steps
+
+    def frames(self, q: Floats) -> tuple[list[Floats], list[Floats]]:
+        """Rotations (S, 3, 3) and origins (S, 3) of all links in the base frame, and behind them of the tip."""
+        rotation, origin = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
+        rotations, origins = [], []
+        for step_rotation, step_origin in self._steps(q):
+            origin = origin + np.einsum("sij,sj->si", rotation, step_origin)
+            rotation = rotation @ step_rotation
+            rotations.append(rotation)
+            origins.append(origin)
+        return [*rotations, rotation @ self.tool_rotation], [*origins, origin + rotation @ self.tool]
+
+    def jacobian(self, q: Floats) -> Floats:
+        """(S, 6, n): linear rows of the tip first."""
+        rotations, origins = self.frames(q)
+        columns = []
+        for place, joint in enumerate(self.parts):
+            axis = rotations[place] @ joint.axis
+            if joint.is_revolute:
+                columns.append(np.concatenate([np.cross(axis, origins[-1] - origins[place]), axis], axis=1))
+            else:
+                columns.append(np.concatenate([axis, np.zeros_like(axis)], axis=1))
+        return np.stack(columns, axis=2)
+
+    def rotation(self, convention: str, q: Floats) -> Floats:
+        """Of the tip's frame in the base frame."""
+        return self.frames(q)[0][-1]
+
+    # ---- dynamics ----------------------------------------------------------------------------------------------------
+
+    def torque(self, q: Floats, qd: Floats, qdd: Floats, gravity: Floats) -> Floats:
+        """Newton-Euler: outward velocities and accelerations, inward forces and moments, in the links' own frames."""
+        steps = self._steps(q)
+        count = len(q)
+        spin, turning = np.zeros((count, 3)), np.zeros((count, 3))
+        acceleration = np.broadcast_to(-gravity, (count, 3))
+        forces, moments = [], []
+        for place, (joint, (rotation, origin)) in enumerate(zip(self.parts, steps, strict=True)):
+            back = np.swapaxes(rotation, 1, 2)
+            acceleration = acceleration + np.cross(turning, origin) + np.cross(spin, np.cross(spin, origin))
+            spin, turning, acceleration = (np.einsum("sij,sj->si", back, one) for one in (spin, turning, acceleration))
+            rate, change = qd[:, place, None] * joint.axis, qdd[:, place, None] * joint.axis
+            if joint.is_revolute:
+                turning = turning + change + np.cross(spin, rate)
+                spin = spin + rate
+            else:
+                acceleration = acceleration + change + 2 * np.cross(spin, rate)
+            at_centre = acceleration + np.cross(turning, joint.centre) + np.cross(spin, np.cross(spin, joint.centre))
+            force = joint.mass * at_centre
+            momentum = spin @ joint.inertia.T
+            moments.append(turning @ joint.inertia.T + np.cross(spin, momentum) + np.cross(joint.centre, force))
+            forces.append(force)
+        return self._inward(steps, forces, moments) + np.array([joint.armature for joint in self.parts]) * qdd
+
+    def _inward(self, steps: list[tuple[Floats, Floats]], forces: list[Floats], moments: list[Floats]) -> Floats:
+        """The components of forces and moments along the joints' axes."""
+        tau = np.zeros((len(forces[0]), self.joints))
+        force, moment = np.zeros_like(forces[0]), np.zeros_like(forces[0])
+        for place in range(self.joints - 1, -1, -1):
+            force, moment = force + forces[place], moment + moments[place]
+            joint, (rotation, origin) = self.parts[place], steps[place]
+            tau[:, place] = (moment if joint.is_revolute else force) @ joint.axis
+            force, moment = (np.einsum("sij,sj->si", rotation, one) for one in (force, moment))
+            moment = moment + np.cross(origin, force)
+        return tau
+
+    def mass_matrix(self, q: Floats) -> Floats:
+        """(S, n, n): a column is the torque of a unit acceleration."""
+        zero = np.zeros_like(q)
+        columns = [self.torque(q, zero, zero + unit, np.zeros(3)) for unit in np.eye(self.joints)]
+        return np.stack(columns, axis=2)
+
+    def values(self, kind: str, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],
+               *, inertia: str = "scaled", rows: int = 3) -> Floats:  # fmt: skip
+        """What is right at the states, (S, ...)."""
+        q, qd = states["q"], states["qd"]
+        zero = np.zeros_like(q)
+        if kind == "jacobian":
+            return self.jacobian(q)[:, :rows]
+        if kind == "kinematics":
+            return self.frames(q)[1][-1]
+        if not any(joint.mass for joint in self.parts):
+            raise UsageError(f"{self.name} has no masses, which a {kind} formula needs")
+        if kind == "gravity":
+            return self.torque(q, zero, zero, self.gravity)
+        if kind == "mass":
+            return self.mass_matrix(q)
+        if kind == "coriolis":
+            return self.torque(q, qd, zero, np.zeros(3))
+        if kind == "inverse":
+            return self.torque(q, qd, states["qdd"], self.gravity)
+        bias = self.torque(q, qd, zero, self.gravity)
+        acceleration = np.linalg.solve(self.mass_matrix(q), (states["tau"] - bias)[..., None])[..., 0]
+        return np.asarray(acceleration, np.float64)

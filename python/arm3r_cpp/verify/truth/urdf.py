@@ -1,0 +1,152 @@
+"""Chains from URDF files."""
+
+from __future__ import annotations
+
+import os
+import xml.etree.ElementTree as ElementTree
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._native import Floats
+from ...errors import UsageError
+from .chain import Chain, Joint
+
+_MOST_BYTES = 10_000_000
+
+
+class _Link(NamedTuple):
+    mass: float
+    centre: Floats
+    inertia: Floats
+
+
+def read_urdf(path: str | os.PathLike[str], tip: str | None = None) -> Chain:
+    """The chain from the root link to a link; fixed joints join links into one.
+
+    Raises:
+        UsageError: the file is no URDF, branches and names no tip, or has joints of other types.
+    """
+    file = os.fspath(path)
+    root = _parsed(file)
+    links = {link.get("name", ""): link for link in root.findall("link")}
+    by_child = {_name(file, joint, "child"): joint for joint in root.findall("joint")}
+    parents = {_name(file, joint, "parent") for joint in root.findall("joint")}
+    if tip is None:
+        ends = [name for name in links if name not in parents]
+        if len(ends) != 1:
+            raise UsageError(f"{file}: the tree ends in {', '.join(ends) or 'no link'}; name the tip's link")
+        (tip,) = ends
+    if tip not in links:
+        raise UsageError(f"{file}: there is no link {tip!r}; it has {', '.join(links)}")
+    path_of_joints: list[ElementTree.Element] = []
+    name = tip
+    while name in by_child and len(path_of_joints) <= len(links):
+        path_of_joints.insert(0, by_child[name])
+        name = _name(file, by_child[name], "parent")
+    return _chain(file, path_of_joints, links)
+
+
+def _parsed(file: str) -> ElementTree.Element:
+    try:
+        if os.path.getsize(file) > _MOST_BYTES:
+            raise UsageError(f"{file}: a URDF of at most {_MOST_BYTES} bytes is read")
+        with open(file, encoding="utf-8") as stream:
+            text = stream.read()
+        if "<!ENTITY" in text or "<!DOCTYPE" in text:
+            raise UsageError(f"{file}: a URDF has no document type")
+        root = ElementTree.fromstring(text)
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except ElementTree.ParseError as error:
+        raise UsageError(f"{file}:{error.position[0]}: this is not XML: {error}") from None
+    if root.tag != "robot":
+        raise UsageError(f"{file}: a URDF begins with <robot>, got <{root.tag}>")
+    return root
+
+
+def _name(file: str, joint: ElementTree.Element, end: str) -> str:
+    found = joint.find(end)
+    if found is None or "link" not in found.attrib:
+        raise UsageError(f"{file}: the joint {joint.get('name')!r} has no {end} link")
+    return found.attrib["link"]
+
+
+def _numbers(file: str, element: ElementTree.Element | None, key: str, default: str) -> Floats:
+    text = element.get(key, default) if element is not None else default
+    try:
+        values = np.array([float(part) for part in text.split()])
+    except ValueError:
+        values = np.zeros(0)
+    if len(values) != len(default.split()) or not np.isfinite(values).all():
+        raise UsageError(f"{file}: {key} has {len(default.split())} numbers, got {text!r}")
+    return values
+
+
+def _pose(file: str, element: ElementTree.Element | None) -> tuple[Floats, Floats]:
+    """Rotation and origin of an <origin>: roll, pitch, yaw about fixed axes x, y, z."""
+    origin = element.find("origin") if element is not None else None
+    (cr, cp, cy), (sr, sp, sy) = (one(_numbers(file, origin, "rpy", "0 0 0")) for one in (np.cos, np.sin))
+    rotation = np.array([
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ])  # fmt: skip
+    return rotation, _numbers(file, origin, "xyz", "0 0 0")
+
+
+def _link(file: str, element: ElementTree.Element) -> _Link:
+    inertial = element.find("inertial")
+    if inertial is None:
+        return _Link(0.0, np.zeros(3), np.zeros((3, 3)))
+    rotation, centre = _pose(file, inertial)
+    (mass,) = _numbers(file, inertial.find("mass"), "value", "0")
+    xx, yy, zz, xy, xz, yz = (
+        float(_numbers(file, inertial.find("inertia"), key, "0")[0])
+        for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    )
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return _Link(float(mass), centre, rotation @ inertia @ rotation.T)
+
+
+def _joined(one: _Link, other: _Link, rotation: Floats, origin: Floats) -> _Link:
+    """Two links that a fixed joint joins, in the frame of the first (parallel axis theorem)."""
+    moved = _Link(other.mass, origin + rotation @ other.centre, rotation @ other.inertia @ rotation.T)
+    mass = one.mass + moved.mass
+    if mass == 0:
+        return one
+    centre = (one.mass * one.centre + moved.mass * moved.centre) / mass
+    inertia = np.zeros((3, 3))
+    for part in (one, moved):
+        arm = part.centre - centre
+        inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return _Link(mass, centre, inertia)
+
+
+def _chain(file: str, path: list[ElementTree.Element], links: dict[str, ElementTree.Element]) -> Chain:
+    joints: list[Joint] = []
+    bodies: list[_Link] = []
+    rotation, origin = np.eye(3), np.zeros(3)  # of the current link in the frame of the last moving one
+    for element in path:
+        step_rotation, step_origin = _pose(file, element)
+        origin, rotation = origin + rotation @ step_origin, rotation @ step_rotation
+        kind = element.get("type")
+        link = _link(file, links[_name(file, element, "child")])
+        if kind == "fixed":
+            if bodies:
+                bodies[-1] = _joined(bodies[-1], link, rotation, origin)
+            continue
+        if kind not in ("revolute", "continuous", "prismatic"):
+            raise UsageError(
+                f"{file}: the joint {element.get('name')!r} is {kind}; revolute, continuous and prismatic are known"
+            )
+        axis = _numbers(file, element.find("axis"), "xyz", "1 0 0")
+        length = np.linalg.norm(axis)
+        if not length > 0:
+            raise UsageError(f"{file}: the joint {element.get('name')!r} has no axis")
+        joints.append(Joint(kind != "prismatic", axis / length, rotation, origin))
+        bodies.append(link)
+        rotation, origin = np.eye(3), np.zeros(3)
+    for joint, body in zip(joints, bodies, strict=True):
+        joint.mass, joint.centre, joint.inertia = body
+    return Chain(joints, tool=origin, tool_rotation=rotation, name=os.path.basename(file))

@@ -1,0 +1,282 @@
+"""Serial chains as the truth: the recursion against Pinocchio and against DH transforms, and formulas judged by it."""
+
+from __future__ import annotations
+
+import os
+import random
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from arm3r_cpp import UsageError, verify
+from arm3r_cpp.verify import Chain
+from arm3r_cpp.verify.formula import from_file
+from formulas.mutants import mutants
+from numpy.typing import NDArray
+
+ROBOTS = Path(__file__).parent / "robots"
+TABLES = ("ur5", "puma560", "panda", "rpp")
+Floats = NDArray[np.float64]
+
+
+def chain_of(name: str) -> Chain:
+    return Chain.from_urdf(ROBOTS / "elbow.urdf") if name == "elbow" else Chain.from_dh(ROBOTS / f"{name}.csv")
+
+
+def states(joints: int, count: int = 12) -> tuple[Floats, ...]:
+    random = np.random.default_rng(3)
+    return tuple(random.uniform(-2.5, 2.5, (count, joints)) for _ in range(4))
+
+
+def pinocchio_of(chain: Chain) -> tuple[Any, Any]:
+    """The same chain, built joint by joint in Pinocchio, with a frame at the tip."""
+    model = pin.Model()
+    model.gravity.linear = chain.gravity
+    parent = 0
+    for number, joint in enumerate(chain.parts):
+        kind = pin.JointModelRevoluteUnaligned if joint.is_revolute else pin.JointModelPrismaticUnaligned
+        parent = model.addJoint(parent, kind(joint.axis), pin.SE3(joint.rotation, joint.origin), f"joint{number}")
+        model.appendBodyToJoint(parent, pin.Inertia(joint.mass, joint.centre, joint.inertia), pin.SE3.Identity())
+    model.addFrame(pin.Frame("tip", parent, pin.SE3(chain.tool_rotation, chain.tool), pin.FrameType.OP_FRAME))
+    return model, model.createData()
+
+
+def compare(chain: Chain, model: Any, data: Any, tip: int) -> None:
+    q, qd, qdd, tau = states(chain.joints)
+    given = {"q": q, "qd": qd, "qdd": qdd, "tau": tau}
+    ours = {kind: chain.values(kind, "", given, {}, rows=6) for kind in
+            ("jacobian", "kinematics", "gravity", "mass", "coriolis", "inverse", "forward")}  # fmt: skip
+    for row in range(len(q)):
+        pin.crba(model, data, q[row])
+        mass = np.triu(data.M) + np.triu(data.M, 1).T
+        theirs = {
+            "jacobian": pin.computeFrameJacobian(model, data, q[row], tip, pin.LOCAL_WORLD_ALIGNED).copy(),
+            "mass": mass.copy(),
+            "gravity": pin.computeGeneralizedGravity(model, data, q[row]).copy(),
+            "inverse": pin.rnea(model, data, q[row], qd[row], qdd[row]).copy(),
+            "coriolis": pin.nonLinearEffects(model, data, q[row], qd[row])
+            - pin.computeGeneralizedGravity(model, data, q[row]),
+            "forward": pin.aba(model, data, q[row], qd[row], tau[row]).copy(),
+        }
+        pin.framesForwardKinematics(model, data, q[row])
+        theirs["kinematics"] = data.oMf[tip].translation.copy()
+        for kind, right in theirs.items():
+            scale = 1 + np.abs(right).max()
+            assert np.abs(ours[kind][row] - right).max() < 1e-9 * scale, kind
+
+
+@pytest.mark.parametrize("name", [*TABLES, "elbow"])
+def test_the_recursion_is_pinocchios(name: str) -> None:
+    chain = chain_of(name)
+    model, data = pinocchio_of(chain)
+    compare(chain, model, data, model.getFrameId("tip"))
+
+
+def test_a_urdf_is_read_as_pinocchio_reads_it() -> None:
+    model = pin.buildModelFromUrdf(str(ROBOTS / "elbow.urdf"))
+    chain = chain_of("elbow")
+    model.gravity.linear = chain.gravity
+    assert chain.revolute == (True, True, False)
+    q, qd, qdd, _ = states(3)
+    for row in range(len(q)):
+        there = np.array(
+            [np.cos(q[row, 0]), np.sin(q[row, 0]), q[row, 1], q[row, 2]]
+        )  # a continuous joint has two numbers
+        data = model.createData()
+        tau = pin.rnea(model, data, there, qd[row], qdd[row])
+        given = {"q": q[[row]], "qd": qd[[row]], "qdd": qdd[[row]]}
+        assert np.allclose(chain.values("inverse", "", given, {}), tau, rtol=0, atol=1e-10)
+        pin.framesForwardKinematics(model, data, there)
+        tip = data.oMf[model.getFrameId("hand")].translation
+        assert np.allclose(chain.values("kinematics", "", given, {}), tip, rtol=0, atol=1e-12)
+
+
+def transform(word: str, row: list[float], value: float, is_revolute: bool) -> Floats:
+    """The textbook's matrix of a row, Spong's for a standard table and Craig's for a modified one."""
+    a, alpha, d, theta = row
+    theta, d = (theta + value, d) if is_revolute else (theta, d + value)
+    c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    if word == "standard":
+        return np.array([[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, d], [0, 0, 0, 1]])
+    return np.array([[c, -s, 0, a], [s * ca, c * ca, -sa, -d * sa], [s * sa, c * sa, ca, d * ca], [0, 0, 0, 1]])
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_is_read_as_the_textbooks_write_it(name: str) -> None:
+    chain = chain_of(name)
+    lines = [line for line in (ROBOTS / f"{name}.csv").read_text().splitlines() if not line.startswith("#")]
+    cells = [line.split(",") for line in lines[2:]]
+    numbers = {"pi/2": np.pi / 2, "-pi/2": -np.pi / 2, "30 deg": np.pi / 6}
+    rows = [[numbers[cell] if cell in numbers else float(cell) for cell in line[1:5]] for line in cells]
+    q = states(chain.joints)[0]
+    for state in q:
+        whole = np.eye(4)
+        for line, row, value in zip(cells, rows, [*state, 0.0], strict=False):
+            whole = whole @ transform(lines[0], row, value, line[0] != "P")
+        tip = chain.values("kinematics", "", {"q": state[None], "qd": state[None]}, {})[0]
+        assert np.allclose(tip, whole[:3, 3], rtol=0, atol=1e-12)
+        assert np.allclose(chain.rotation("", state[None])[0], whole[:3, :3], rtol=0, atol=1e-12)
+
+
+# ---- formulas -------------------------------------------------------------------------------------------------------
+
+PROGRAM = """
+import numpy as np
+TABLE = {table}
+
+def frame(a, alpha, d, theta):
+    c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    return np.array({matrix})
+
+def frames(q):
+    T = np.eye(4)
+    found = [T]
+    for i, (kind, a, alpha, d, theta) in enumerate(TABLE):
+        if kind == 'R':
+            T = T @ frame(a, alpha, d, theta + q[i])
+        else:
+            T = T @ frame(a, alpha, d + q[i], theta)
+        found.append(T)
+    return found
+
+def jacobian(q):
+    found = frames(q)
+    tip = (found[-1] @ np.array([0, 0, {tool}, 1]))[:3]
+    columns = []
+    for i, row in enumerate(TABLE):
+        T = found[i + {first}]
+        z = T[:3, 2]
+        if row[0] == 'R':
+            columns.append(np.cross(z, tip - T[:3, 3]))
+        else:
+            columns.append(z)
+    return np.array(columns).T
+
+def gravity(q):
+    g = 9.80665
+    found = frames(q)
+    tau = np.zeros(len(TABLE))
+    for j, (mass, centre) in enumerate({masses}):
+        p = (found[j + 1] @ np.array([*centre, 1]))[:3]
+        for i in range(j + 1):
+            T = found[i + {first}]
+            if TABLE[i][0] == 'R':
+                tau[i] += mass*g*np.cross(T[:3, 2], p - T[:3, 3])[2]
+            else:
+                tau[i] += mass*g*T[2, 2]
+    return tau
+"""
+STANDARD = "[[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]]"
+MODIFIED = "[[c, -s, 0, a], [s*ca, c*ca, -sa, -d*sa], [s*sa, c*sa, ca, d*ca], [0, 0, 0, 1]]"
+
+
+def program_of(name: str) -> str:
+    lines = [line for line in (ROBOTS / f"{name}.csv").read_text().splitlines() if not line.startswith("#")]
+    rows = [line.split(",") for line in lines[2:]]
+    joints = [row for row in rows if row[0] != "tool"]
+    words = {"pi/2": "np.pi/2", "-pi/2": "-np.pi/2", "30 deg": "np.pi/6"}
+    table = ", ".join(f"('{row[0]}', {', '.join(words.get(cell, cell) for cell in row[1:5])})" for row in joints)
+    masses = ", ".join(f"({row[5]}, ({row[6]}, {row[7]}, {row[8]}))" for row in joints)
+    tool = rows[-1][3] if rows[-1][0] == "tool" else "0"
+    is_modified = lines[0] == "modified"
+    return PROGRAM.format(table=f"[{table}]", matrix=MODIFIED if is_modified else STANDARD, tool=tool,
+                          first=1 if is_modified else 0, masses=f"[{masses}]")  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("kind", ["jacobian", "gravity"])
+def test_right_formulas_of_other_arms(name: str, kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "arm.py"
+    path.write_text(program_of(name))
+    verdict = verify.formula_verdict(f"{path}:{kind}", kind, chain_of(name))
+    assert verdict.ok, str(verdict)
+
+
+@pytest.mark.parametrize("name", ["rpp", pytest.param("ur5", marks=pytest.mark.gate)])
+def test_a_wrong_transform_is_repaired(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "arm.py"
+    path.write_text(program_of(name).replace("c*ca, -c*sa", "c*ca, c*sa"))
+    verdict = verify.formula_verdict(f"{path}:jacobian", "jacobian", chain_of(name))
+    (place,) = {(one.line, one.old, one.new) for one in verdict.findings}
+    assert "c*sa" in path.read_text().splitlines()[place[0] - 1]
+
+
+def wrong_entries(text: str, kind: str, chain: Chain) -> set[tuple[int, ...]] | None:
+    """The entries, from 1, in which a text differs from the recursion; None where it fails."""
+    names: dict[str, Any] = {}
+    found: set[tuple[int, ...]] = set()
+    try:
+        exec(text, names)
+        for q in states(chain.joints)[0]:
+            due = chain.values(kind, "", {"q": q[None], "qd": q[None]}, {})[0]
+            got = np.asarray(names[kind](q), float)
+            wrong = np.argwhere(~(np.abs(got - due) <= 1e-8 * np.abs(due).max()))
+            found |= {tuple(int(one) + 1 for one in place) for place in wrong}
+    except Exception:
+        return None
+    return found
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("name", ["rpp", "ur5", "panda"])
+@pytest.mark.parametrize("kind", ["jacobian", "gravity"])
+def test_mistakes_in_formulas_of_other_arms(name: str, kind: str, tmp_path: Path) -> None:
+    seed = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
+    print(f"ARM3R_SEED={seed}")
+    choose, chain, path = random.Random(seed), chain_of(name), tmp_path / "arm.py"
+    every = mutants(program_of(name), "python")
+    judged = named = 0
+    while judged < 30:
+        text = choose.choice(every)
+        wrong = wrong_entries(text, kind, chain)
+        if not wrong:
+            continue
+        path.write_text(text)
+        verdict = verify.formula_verdict(from_file(f"{path}:{kind}"), kind, chain)
+        assert {tuple(one.entry) for one in verdict.findings} == wrong, text
+        judged += 1
+        named += all(one.old is not None or one.reads is not None for one in verdict.findings)
+    print(f"{named} of {judged} read or repaired")
+    assert named >= 0.9 * judged
+
+
+def test_terms_of_a_black_box_carry_the_tables_names() -> None:
+    chain = chain_of("ur5")
+
+    def wrong(q: Any) -> Any:
+        q = np.asarray(q)
+        values = chain.jacobian(q[None])[0, :3].copy()
+        values[2, 1] -= -0.425 * np.cos(q[1])
+        return values
+
+    (finding,) = verify.jacobian(wrong, chain).findings
+    assert finding.entry == [3, 2] and "a2 C2" in finding.due and "a2 C2" not in finding.reads
+    assert "a3 C23" in finding.reads
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("type,a\n", "the first line says which table it is"),
+        ("standard\ntype,a,alpha,d\n", ":2: the header is type,a,alpha,d,theta"),
+        ("standard\ntype,a,alpha,d,theta\nR,0,ninety,0,0\n", ":3: alpha is a number"),
+        ("standard\ntype,a,alpha,d,theta\nQ,0,0,0,0\n", ":3: the type of a joint is R or P"),
+        ("standard\ntype,a,alpha,d,theta\n" + "R,0,0,0,0\n" * 8, "1 to 7 joints, got 8"),
+    ],
+)
+def test_what_is_no_table_is_refused(text: str, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "arm.csv"
+    path.write_text(text)
+    with pytest.raises(UsageError, match=words):
+        Chain.from_dh(path)
+
+
+def test_what_is_no_urdf_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    for text, words in (("<robot", "this is not XML"), ("<arm/>", "begins with <robot>"),
+                        ((ROBOTS / "elbow.urdf").read_text().replace("prismatic", "planar"), "is planar")):  # fmt: skip
+        path.write_text(text)
+        with pytest.raises(UsageError, match=words):
+            Chain.from_urdf(path)
