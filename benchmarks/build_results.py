@@ -28,8 +28,8 @@ METHODS = ("dopri5", "rodas4", "auto", "rk4", "taylor")
 STIFFNESSES = np.geomspace(500, 1e4, 11)  # more runs than there are lanes, and no multiple of them
 BATCHES: dict[str, dict[str, Any]] = {
     "moving_wall.yaml": {"wall.contact.stiffness": STIFFNESSES, "wall.acts_on_arm": True},
-    "force_control/b9a_hybrid.yaml": {"wall.contact.stiffness": STIFFNESSES},
-    "force_control/sampled_with_sensors.yaml": {"wall.contact.stiffness": STIFFNESSES},
+    "force_control/hybrid_moving_wall.yaml": {"wall.contact.stiffness": STIFFNESSES},
+    "sampled_control/sampled_with_sensors.yaml": {"wall.contact.stiffness": STIFFNESSES},
 }
 SWEEPS: dict[str, list[str]] = {
     "poses": ["--set", "time.log_every=0.1"],  # 1000 runs, each with rows for its statistics

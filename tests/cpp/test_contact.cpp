@@ -376,7 +376,7 @@ static Params bouncing() {
         .set("time.stop", 0.3);
 }
 
-BOOST_AUTO_TEST_CASE(a_bounce_leaves_at_twice_the_walls_speed_and_the_books_close) {
+BOOST_AUTO_TEST_CASE(a_bounce_leaves_at_twice_the_walls_speed_and_the_energy_balance_closes) {
     const Run run = bouncing().set("wall.contact.stiffness", 1e6).set("time.stop", 0.05).run();
     BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
     BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
@@ -391,7 +391,7 @@ BOOST_AUTO_TEST_CASE(a_bounce_leaves_at_twice_the_walls_speed_and_the_books_clos
     BOOST_TEST(run.energy_residual_max <= 1e-9);
 }
 
-BOOST_AUTO_TEST_CASE(the_books_close_over_many_contacts_with_everything_at_work) {
+BOOST_AUTO_TEST_CASE(the_energy_balance_closes_over_many_contacts_with_everything_at_work) {
     Params params = held(0.02)
                         .set("wall.acts_on_arm", 1)
                         .set("arm.damping", {0.3, 0.2, 0.1})
@@ -413,7 +413,7 @@ BOOST_AUTO_TEST_CASE(the_books_close_over_many_contacts_with_everything_at_work)
     BOOST_TEST(run.energy_residual_max <= 1e-8);
 }
 
-BOOST_AUTO_TEST_CASE(what_the_spring_holds_at_the_edge_is_booked_as_lost) {
+BOOST_AUTO_TEST_CASE(what_the_spring_holds_at_the_edge_counts_as_lost) {
     Params params =
         held(-0.001, {-1, 0, 0}).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 1e4).set("wall.size", {1, 1});
     params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.001, 0.4, 0)))
@@ -438,7 +438,7 @@ BOOST_AUTO_TEST_CASE(letting_go_over_the_face_loses_nothing) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(rows_after_an_edge_within_a_fixed_step_have_booked_the_loss) {
+BOOST_AUTO_TEST_CASE(rows_after_an_edge_within_a_fixed_step_show_the_loss) {
     Params params = held(-0.05, {-1, 0, 0}).set("wall.acts_on_arm", 1).set("wall.contact.stiffness", 100);
     params.set("wall.size", {0.02, 0.5}).set("wall.motion.velocity", {0, 0.3, 0}).set("time.stop", 0.1);
     params.choose("solver.method", "rk4").set("solver.step", 0.004);
@@ -469,7 +469,7 @@ BOOST_AUTO_TEST_CASE(steps_in_contact_follow_the_stiffness_of_the_wall) {
     BOOST_TEST(double(run.steps.accepted) >= 0.95 * stop / (0.25 * M_PI * std::sqrt(m_n / stiffness)));
 }
 
-BOOST_AUTO_TEST_CASE(one_way_contact_leaves_the_arm_and_its_books_alone) {
+BOOST_AUTO_TEST_CASE(one_way_contact_leaves_the_arm_and_its_energy_balance_alone) {
     const Run with = bouncing().set("wall.acts_on_arm", 0).run(), without = bouncing().set("wall", 0).run();
     BOOST_TEST(last(with, "f_on_wall_x") > 1);
     for (const char* name : {"q1", "q2", "q3", "qd1", "qd2", "qd3", "work_actuators", "energy_residual"})

@@ -47,7 +47,7 @@ static Params kelvin_voigt_impact(double zeta) {
     return Impact::params("kelvin_voigt", k).set("wall.contact.damping", 2 * zeta * std::sqrt(k * Impact::mass()));
 }
 
-static void check_books(const Run& run, double e) {
+static void check_balance(const Run& run, double e) {
     BOOST_TEST(std::abs(run.dissipated / Impact::energy() - (1 - e * e)) <= 1e-8);
     BOOST_TEST(run.ledger_residual <= 1e-9 * Impact::energy());
     BOOST_TEST(std::abs(run.impulse / (Impact::mass() * Impact::speed) - (1 + e)) <= 1e-8);
@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(kelvin_voigt_returns_the_speed_of_its_closed_form) {
         const Run run = kelvin_voigt_impact(zeta).run();
         BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
         BOOST_TEST(std::abs(Impact::restitution(run) - e) <= 1e-8, zeta << ": " << Impact::restitution(run));
-        check_books(run, e);
+        check_balance(run, e);
     }
     BOOST_TEST(std::abs(Impact::restitution(kelvin_voigt_impact(0.1).run()) - 0.744079398) <= 1e-8);
     BOOST_TEST(std::abs(Impact::restitution(kelvin_voigt_impact(1.0).run()) - 0.135335283) <= 1e-8);
@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(hunt_crossley_returns_the_speed_of_its_implicit_form_and_si
             BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
             BOOST_TEST(std::abs(Impact::restitution(run) - e) <= 1e-8,
                        y << ", " << p << ": " << Impact::restitution(run));
-            check_books(run, e);
+            check_balance(run, e);
             double deepest = 0;
             for (const double depth : column(run, "depth")) deepest = std::max(deepest, depth);
             const double energy = Impact::mass() * (y - std::log1p(y)) / (beta * beta);
@@ -246,7 +246,7 @@ static std::vector<Params> restless_ones() {
     return all;
 }
 
-BOOST_AUTO_TEST_CASE(the_books_close_whatever_the_wall_is_and_does) {
+BOOST_AUTO_TEST_CASE(the_energy_balance_closes_whatever_the_wall_is_and_does) {
     for (const Params& params : restless_ones()) {
         const Run run = params.run();
         BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
@@ -348,7 +348,7 @@ BOOST_AUTO_TEST_CASE(a_plate_that_slid_away_and_comes_back_pushes_no_more) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_a_plate_holds_where_it_slides_away_is_booked_as_lost) {
+BOOST_AUTO_TEST_CASE(what_a_plate_holds_where_it_slides_away_counts_as_lost) {
     Params params = lecture_wall().set("wall.size", {1, 1}).set("wall.contact.stiffness", 1e4).set("time.stop", 0.01);
     params.set("wall.point", Vec3<double>(start_of(params) + Vec3<double>(-0.002, 0.499, 0)));
     params.set("wall.motion.velocity", {0, 0.5, 0}).choose("wall.motion.type", "constant");

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
+from conftest import scenario_files
 
-FOLDER = Path(__file__).parents[2] / "scenarios" / "force_control"
+FILES = {path.stem: path for path in scenario_files() if path.parent.name not in ("scenarios", "lecture")}
+"""The file of each scenario of contact and control, by its name."""
 
 
 def read(name: str, changes: Mapping[str, Any] | None = None) -> arm3r.Scenario:
     """The scenario of that name with values changed in their order, without its checks."""
-    return changed(arm3r.Scenario.load(FOLDER / f"{name}.yaml"), {"checks": [], **(changes or {})})
+    return changed(arm3r.Scenario.load(FILES[name]), {"checks": [], **(changes or {})})
 
 
 def changed(scenario: arm3r.Scenario, changes: Mapping[str, Any]) -> arm3r.Scenario:

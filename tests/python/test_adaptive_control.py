@@ -21,7 +21,7 @@ SPEED = 0.05
 
 @pytest.mark.parametrize("speed", [0.0, SPEED, -0.02])
 def test_parallel_control_is_its_linear_loop(speed: float) -> None:
-    run = read("b10a_parallel_moving_wall", {"wall.motion.velocity": speed, "time.stop": 2}).run()
+    run = read("parallel_moving_wall", {"wall.motion.velocity": speed, "time.stop": 2}).run()
     loop = linear.parallel_loop(**PARALLEL, k=5000, v=speed, u0=0.004, ahead=0.0)
     assert np.abs(run["force"] - loop.forces(run["t"])).max() < 1e-6
     aside = np.array([0.1, -0.05])[:, None] * (1 - second_order(run["t"], 100.0, 80.0))
@@ -39,7 +39,7 @@ def second_order(t: Any, K: float, D: float) -> Any:
 def test_parallel_control_is_stable_up_to_its_integral_gain(share: float) -> None:
     gain = share * 80 * (100 + 5000 * 0.5) / 5000
     changes = {"controller.force_integral_gain": gain, "wall.motion.velocity": 0.001, "time.stop": 3}
-    run = read("b10a_parallel_moving_wall", changes).run()
+    run = read("parallel_moving_wall", changes).run()
     loop = linear.parallel_loop(**{**PARALLEL, "K_I": gain}, k=5000, v=0.001, u0=0.004, ahead=0.0)
     assert np.abs(run["force"] - loop.forces(run["t"])).max() < 1e-6
     error = np.abs(run["force"] - 20)
@@ -53,7 +53,7 @@ def test_parallel_control_is_stable_up_to_its_integral_gain(share: float) -> Non
 @pytest.mark.parametrize(("speed", "gain"), [(SPEED, 0.02), (SPEED, 0.05), (-0.03, 0.02), (0.001, 0.212)])
 def test_an_integrated_reference_is_its_linear_loop(speed: float, gain: float) -> None:
     changes = {"wall.motion.velocity": speed, "controller.reference_gain": gain, "time.stop": 2}
-    run = read("b10b_adaptive_reference", changes).run()
+    run = read("adaptive_reference_moving_wall", changes).run()
     loop = linear.seeking_loop(k_r=gain, **SEEKING, k=5000, v=speed, u0=0.004, ahead=0.1)
     inside = run["t"] < (run.events[1].t if len(run.events) > 1 else np.inf)
     assert inside.sum() > 3
@@ -63,7 +63,7 @@ def test_an_integrated_reference_is_its_linear_loop(speed: float, gain: float) -
 
 @pytest.mark.parametrize("assumed", [3000.0, 5000.0, 8000.0])
 def test_a_computed_reference_is_as_good_as_the_stiffness(assumed: float) -> None:
-    run = read("b10d_reference_too_stiff", {"controller.assumed_stiffness": assumed}).run()
+    run = read("wall_stiffness_overestimated", {"controller.assumed_stiffness": assumed}).run()
     expected = estimation.force_of_wrong_stiffness(20, 5000, assumed, 500)
     assert run["force"][-1] == pytest.approx(expected, abs=1e-6)
     ahead = 20 / assumed + 20 / 500
@@ -73,7 +73,7 @@ def test_a_computed_reference_is_as_good_as_the_stiffness(assumed: float) -> Non
 
 def test_an_estimate_takes_the_place_of_the_assumed_stiffness() -> None:
     changes = {"sampling.rate": 2000, "controller.switching": "always", "estimator.wall": "fixed"}
-    run = read("b10d_reference_too_stiff", changes).run()
+    run = read("wall_stiffness_overestimated", changes).run()
     told = run["identifiable"] == 1
     assert told[2:].all() and not told[0]
     assert run["stiffness_estimate"][told] == pytest.approx(np.full(told.sum(), 5000), abs=1e-5)
@@ -87,28 +87,28 @@ def test_an_estimate_takes_the_place_of_the_assumed_stiffness() -> None:
 def test_stiffness_and_speed_of_a_wall(stiffness: float, speed: float) -> None:
     wall = {"contact.stiffness": stiffness, "motion.velocity": speed, "point": [XA[0] - 20 / stiffness, 0, 0]}
     changes = {f"wall.{key}": value for key, value in wall.items()}
-    run = read("b10c_stiffness_estimate", changes).run()
+    run = read("wall_stiffness_estimate", changes).run()
     assert run["identifiable"][-1] == 1
     assert run["stiffness_estimate"][-1] == pytest.approx(stiffness, abs=1e-6)
     assert run["wall_speed_estimate"][-1] == pytest.approx(speed, abs=1e-9)
 
 
 def test_the_force_with_a_dither_is_that_of_the_simulator() -> None:
-    run = read("b10c_stiffness_estimate", {"time.stop": 1}).run()
-    other = run_of(SETTINGS["B10c"], rtol=1e-9)
+    run = read("wall_stiffness_estimate", {"time.stop": 1}).run()
+    other = run_of(SETTINGS["wall stiffness estimate"], rtol=1e-9)
     assert np.abs(run["force"] - other.pressing(run["t"])).max() < 1e-5
 
 
 def test_what_is_no_estimate_is_not_given() -> None:
     for changes in ({}, {"estimator.largest_condition": 1e4}, {"estimator.largest_condition": 1e9}):
-        run = read("b10c_no_stiffness_estimate", changes).run()
+        run = read("wall_stiffness_not_identifiable", changes).run()
         assert not run["stiffness_estimate"][run["t"] > 2].any()
         assert not run["identifiable"][run["t"] > 2].any()
 
 
 def test_without_contact_nothing_is_estimated() -> None:
     changes = {"wall.point": [XA[0] + 1, 0, 0], "wall.motion.velocity": 0.0, "time.stop": 1.5}
-    run = read("b10c_stiffness_estimate", changes).run()
+    run = read("wall_stiffness_estimate", changes).run()
     assert not run["stiffness_estimate"].any() and not run["identifiable"].any()
 
 
@@ -116,21 +116,21 @@ def test_without_contact_nothing_is_estimated() -> None:
 
 
 def test_a_tank_bounds_the_energy() -> None:
-    run = read("x2_energy_tank").run()
+    run = read("variable_stiffness_tank").run()
     stored = energy(run)
     assert stored[0] == pytest.approx(0.0225, abs=1e-12)
     assert (stored + run["tank_energy"]).max() <= 0.0725 + 1e-9
     assert (np.diff(stored + run["tank_energy"]) < 1e-9).all()
     assert run["tank_energy"].min() > 0
-    other = run_of(SETTINGS["X2"], rtol=1e-9, atol=1e-12)
+    other = run_of(SETTINGS["variable stiffness tank"], rtol=1e-9, atol=1e-12)
     assert np.abs(run["tip"] - other.tips(run["t"])).max() < 1e-6
     assert np.abs(run["tank_energy"] - [other.state(t)[6] for t in run["t"]]).max() < 1e-7
 
 
 def test_without_a_tank_it_grows_a_thousandfold() -> None:
-    run = read("x2_energy_tank_off").run()
+    run = read("variable_stiffness_no_tank").run()
     assert energy(run)[-1] > 1000 * energy(run)[0]
-    other = run_of(SETTINGS["X2 no tank"], rtol=1e-9, atol=1e-12)
+    other = run_of(SETTINGS["variable stiffness no tank"], rtol=1e-9, atol=1e-12)
     assert np.abs(run["tip"] - other.tips(run["t"])).max() < 1e-5
 
 

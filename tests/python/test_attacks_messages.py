@@ -45,7 +45,7 @@ def all_columns(cli: Any) -> list[str]:
 
 
 @pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
-def test_f2_a_check_is_refused_exactly_where_the_run_lacks_its_column(cli: Any, section: str) -> None:
+def test_a_check_is_refused_exactly_where_the_run_lacks_its_column(cli: Any, section: str) -> None:
     text = HEAD + "time: {stop: 0}\n" + section
     present = set(arm3r.Scenario(text).run().columns)
     names = [name for name in all_columns(cli) if name.replace("_", "").isalnum()]
@@ -58,7 +58,7 @@ def test_f2_a_check_is_refused_exactly_where_the_run_lacks_its_column(cli: Any, 
             assert name not in present, error
 
 
-def test_f2_the_message_has_place_columns_and_hint() -> None:
+def test_the_message_has_place_columns_and_hint() -> None:
     text = HEAD + "time: {stop: 0.1}\nchecks: [{name: a, column: residual1, of: final, equals: 0}]\n"
     (problem,) = problems_of(text)
     assert (problem["line"], problem["column"], problem["path"]) == (3, 28, "checks[0].column")
@@ -68,7 +68,7 @@ def test_f2_the_message_has_place_columns_and_hint() -> None:
     assert "joint_pd" in problems_of(HEAD + minus)[0]["hint"]
 
 
-def test_f2_nothing_is_simulated_for_such_a_check(cli: Any, tmp_path: Path) -> None:
+def test_nothing_is_simulated_for_such_a_check(cli: Any, tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(HEAD + "checks: [{column: depth, of: final, equals: 0}]\n")
     for call in (["check", "s.yaml"], ["run", "s.yaml", "-o", "s.csv"]):
         done = cli(*call, cwd=tmp_path)
@@ -76,7 +76,7 @@ def test_f2_nothing_is_simulated_for_such_a_check(cli: Any, tmp_path: Path) -> N
     assert [path.name for path in tmp_path.iterdir()] == ["s.yaml"]
 
 
-def test_f2_no_check_is_refused_for_what_another_mistake_hides() -> None:
+def test_no_check_is_refused_for_what_another_mistake_hides() -> None:
     text = HEAD + "controller: {type: joint_pdd}\nchecks: [{column: q_ref1, of: final, equals: 0}]\n"
     assert [problem["path"] for problem in problems_of(text)] == ["controller.type"]
 
@@ -141,7 +141,7 @@ def test_an_unknown_key_names_what_was_meant(text: str, words: list[str], absent
         ("initial: {q_0: 1}", ["did you mean q?"]),
     ],
 )
-def test_s2_what_people_write_is_known(text: str, words: list[str]) -> None:
+def test_what_people_write_is_known(text: str, words: list[str]) -> None:
     found = message(HEAD + text + "\n")
     assert all(word in found for word in words), found
 
@@ -164,7 +164,7 @@ def _with(choice: str, word: str, more: str = "") -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize("choice", CHOICES)
-def test_s2_only_keys_of_the_chosen_word_are_listed(choice: str) -> None:
+def test_only_keys_of_the_chosen_word_are_listed(choice: str) -> None:
     """No key of the list belongs to another word, and at an unknown key nothing is suggested."""
     section, _, name = choice.rpartition(".")
     words = next(problem["allowed"] for problem in _with(choice, "no_such_word") if problem["path"] == choice)
@@ -177,14 +177,14 @@ def test_s2_only_keys_of_the_chosen_word_are_listed(choice: str) -> None:
         assert not {"scenario.other_choice", "scenario.unknown_key"} & {judged.get(f"{section}.{key}") for key in keys}
 
 
-def test_s2_under_an_unknown_word_no_keys_are_listed() -> None:
+def test_under_an_unknown_word_no_keys_are_listed() -> None:
     problems = problems_of(HEAD + "controller: {type: impedanc, kp: 3}\n")
     assert [problem["path"] for problem in problems] == ["controller.type", "controller.kp"]
     assert problems[1]["allowed"] == "" and "depends on controller.type" in problems[1]["hint"]
 
 
 @pytest.mark.parametrize("key", ["tau", "foo", "f_x"])
-def test_s2_no_far_fetched_hints(key: str) -> None:
+def test_no_far_fetched_hints(key: str) -> None:
     (problem,) = problems_of(HEAD + f"controller: {{type: joint_pd, {key}: 3}}\n")
     assert problem["hint"] == "", problem["hint"]
 
@@ -267,7 +267,7 @@ def warnings_of(text: str) -> list[str]:
 @pytest.mark.parametrize(
     ("law", "rest", "uses"), [(*law, True) for law in USES_FORCE.items()] + [(*law, False) for law in DOES_NOT.items()]
 )
-def test_s1_a_force_that_the_arm_does_not_feel_warns_every_law_that_uses_it(law: str, rest: str, uses: bool) -> None:
+def test_a_force_that_the_arm_does_not_feel_warns_every_law_that_uses_it(law: str, rest: str, uses: bool) -> None:
     controller = f"controller: {{type: {law}{rest}}}\n"
     felt = "wall: {point: [1.8, 0, 0], acts_on_arm: true}\n"
     assert any("write acts_on_arm: true" in line for line in warnings_of(WALL + controller)) == uses
@@ -276,7 +276,7 @@ def test_s1_a_force_that_the_arm_does_not_feel_warns_every_law_that_uses_it(law:
 
 @pytest.mark.parametrize("gravity", ["[0, 0, 0]", "[0, 0, -1.62]", "[0, 5, -8]", "[0, 0, 9.80665]"])
 @pytest.mark.parametrize("law", ["gravity_compensation", "joint_pd", "impedance", "computed_torque"])
-def test_p8_a_gravity_that_nobody_gave_the_controller_warns(law: str, gravity: str) -> None:
+def test_a_gravity_that_nobody_gave_the_controller_warns(law: str, gravity: str) -> None:
     arm, controller = f"arm: {{gravity: {gravity}}}\n", f"controller: {{type: {law}"
     said = [line for line in warnings_of(arm + controller + "}\n") if "default of controller.gravity" in line]
     assert len(said) == 1 and f"controller.gravity: {gravity}" in said[0]
@@ -286,7 +286,7 @@ def test_p8_a_gravity_that_nobody_gave_the_controller_warns(law: str, gravity: s
         assert not any("controller.gravity" in line for line in said)
 
 
-def test_p8_what_uses_no_gravity_does_not_warn() -> None:
+def test_what_uses_no_gravity_does_not_warn() -> None:
     for controller in (
         "{type: none}",
         "{type: constant, torque: [0, 0, 0]}",
@@ -295,7 +295,7 @@ def test_p8_what_uses_no_gravity_does_not_warn() -> None:
         assert warnings_of(f"arm: {{gravity: [0, 0, -1.62]}}\ncontroller: {controller}\n") == []
 
 
-def test_p8_warnings_reach_the_command_line_and_json(cli: Any, tmp_path: Path) -> None:
+def test_warnings_reach_the_command_line_and_json(cli: Any, tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(HEAD + "arm: {gravity: [0, 0, 0]}\ncontroller: {type: gravity_compensation}\n")
     assert "s.yaml: warning: the plant feels the gravity [0, 0, 0]" in cli("check", "s.yaml", cwd=tmp_path).stderr
     summary = json.loads(cli("run", "s.yaml", "--json", "--set", "time.stop=0", cwd=tmp_path).stdout)

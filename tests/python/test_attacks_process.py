@@ -61,25 +61,25 @@ def end_of(code: str, *arguments: object, seconds: float = 10.0) -> subprocess.C
 
 
 @pytest.mark.parametrize("code", ENDS.values(), ids=ENDS)
-def test_e8_the_interpreter_ends_while_a_daemon_thread_runs(code: str, tmp_path: Path) -> None:
+def test_the_interpreter_ends_while_a_daemon_thread_runs(code: str, tmp_path: Path) -> None:
     done = end_of(code, tmp_path / "out")
     assert done.returncode == 0, done.stderr
     assert "FATAL" not in done.stderr and "terminate called" not in done.stderr
 
 
-def test_e8_what_is_no_daemon_runs_to_its_end() -> None:
+def test_what_is_no_daemon_runs_to_its_end() -> None:
     code = "start(lambda: print(len(a.Scenario('format: 1\\ntime: {stop: 300}').run()), flush=True), daemon=False)"
     assert end_of(code).stdout == "30001\n"
 
 
 @pytest.mark.parametrize("work", ["s.run", "batch", "lambda: s.run(controller=law)"])
-def test_e8_ctrl_c_in_the_main_thread_while_a_daemon_thread_runs(work: str) -> None:
+def test_ctrl_c_in_the_main_thread_while_a_daemon_thread_runs(work: str) -> None:
     done = end_of(f"start({work}); os.kill(os.getpid(), signal.SIGINT); time.sleep(10)")
     assert done.returncode == -signal.SIGINT and "KeyboardInterrupt" in done.stderr, done
     assert "FATAL" not in done.stderr and "terminate called" not in done.stderr
 
 
-def test_e12_a_sub_interpreter_is_refused_at_import() -> None:
+def test_a_sub_interpreter_is_refused_at_import() -> None:
     code = (
         "try:\n    import _xxsubinterpreters as interpreters\n"
         "except ImportError:\n    import _interpreters as interpreters\n"
@@ -132,7 +132,7 @@ print("same")
 
 
 @pytest.mark.parametrize("kind", ["rounding", "traps"])
-def test_d14_the_hosts_rounding_and_traps_change_nothing_and_stay(kind: str) -> None:
+def test_the_hosts_rounding_and_traps_change_nothing_and_stay(kind: str) -> None:
     done = subprocess.run([sys.executable, "-c", ENVIRONMENT, kind], capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stdout) == (0, "same\n"), done.stderr
 
@@ -265,7 +265,7 @@ os._exit(0)  # the thread that ended itself left the interpreter's lock and stat
 """
 
 
-def test_d9_a_function_called_back_may_throw_and_may_end_its_thread(tmp_path: Path) -> None:
+def test_a_function_called_back_may_throw_and_may_end_its_thread(tmp_path: Path) -> None:
     native_law(tmp_path, THROWS)
     call = [sys.executable, "-c", CALLS_BACK, str(tmp_path / "law.so")]
     done = subprocess.run(call, capture_output=True, text=True, timeout=60)

@@ -85,12 +85,12 @@ def refused(check) -> Refused:
 
 
 @pytest.mark.parametrize("text", ["", "# nothing\n", "\n\n", "---\n"])
-def test_a1_an_empty_file_points_to_the_template(refused, text):
+def test_an_empty_file_points_to_the_template(refused, text):
     message = refused(text)
     assert "the scenario is empty" in message and "arm3r template" in message
 
 
-def test_a2_unreadable_files_exit_2_with_the_reason(cli, tmp_path):
+def test_unreadable_files_exit_2_with_the_reason(cli, tmp_path):
     for path, reason in [(tmp_path, "Is a directory"), (tmp_path / "none.yaml", "No such file")]:
         result = cli("check", path)
         assert result.returncode == USAGE_EXIT
@@ -98,7 +98,7 @@ def test_a2_unreadable_files_exit_2_with_the_reason(cli, tmp_path):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
-def test_a2_no_permission(cli, tmp_path):
+def test_no_permission(cli, tmp_path):
     path = tmp_path / "closed.yaml"
     path.write_text(HEAD)
     path.chmod(0)
@@ -106,7 +106,7 @@ def test_a2_no_permission(cli, tmp_path):
     assert result.returncode == USAGE_EXIT and "Permission denied" in result.stderr
 
 
-def test_a3_only_regular_files_and_standard_input(cli, tmp_path):
+def test_only_regular_files_and_standard_input(cli, tmp_path):
     fifo = tmp_path / "fifo"
     os.mkfifo(fifo)
     for path in [fifo, "/dev/zero"]:
@@ -118,7 +118,7 @@ def test_a3_only_regular_files_and_standard_input(cli, tmp_path):
 
 
 @pytest.mark.timed
-def test_a4_a_file_of_1_gib_is_refused_at_the_cap_at_once(cli, tmp_path):
+def test_a_file_of_1_gib_is_refused_at_the_cap_at_once(cli, tmp_path):
     huge = tmp_path / "huge.yaml"
     with huge.open("wb") as file:
         file.truncate(1 << 30)
@@ -132,48 +132,48 @@ def test_a4_a_file_of_1_gib_is_refused_at_the_cap_at_once(cli, tmp_path):
     assert once_within(0.1, refused)
 
 
-def test_a5_the_number_of_values_is_capped(refused):
+def test_the_number_of_values_is_capped(refused):
     assert "more than 50000 values" in refused(HEAD + "checks: [" + "1," * 100_000 + "1]\n")
 
 
-def test_a5_the_number_of_keys_in_a_map_is_capped(refused):
+def test_the_number_of_keys_in_a_map_is_capped(refused):
     assert "more than 1000 keys" in refused(HEAD + "".join(f"k{i}: 1\n" for i in range(40_000)))
 
 
-def test_a6_a_long_value_is_refused_at_its_place(refused):
+def test_a_long_value_is_refused_at_its_place(refused):
     assert "s.yaml:2:7: error[yaml.scalar_length]" in refused(HEAD + "name: " + "x" * 100_000 + "\n")
 
 
 @pytest.mark.parametrize("text", ["[" * 100_000, "{a: " * 20_000, HEAD + "arm: " + "[" * 65, "- " * 50_000])
-def test_a7_deep_nesting_says_so(refused, text):
+def test_deep_nesting_says_so(refused, text):
     assert "nesting deeper than 64" in refused(text)
 
 
 @pytest.mark.parametrize("text", ["&x [*x]", "&x {a: *x}", "a: &a [*b]\nb: &b [*a]", "a: &x 1\n&y *x : 2"])
-def test_a8_cycles_and_aliases(refused, text):
+def test_cycles_and_aliases(refused, text):
     assert "anchors and aliases are not supported" in refused(text)
 
 
-def test_a9_billion_laughs(refused):
+def test_billion_laughs(refused):
     text = "a0: &a0 [1,1]\n" + "".join(f"a{i}: &a{i} [{','.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 12))
     assert "s.yaml:1:5: error[yaml.anchor]" in refused(text)
 
 
-def test_a10_undefined_alias_and_alias_key(refused):
+def test_undefined_alias_and_alias_key(refused):
     assert "s.yaml:2:4: error[yaml.alias]" in refused(HEAD + "a: *x\n")
     assert "error[yaml.alias]" in refused(HEAD + "a: &x 1\n*x : 1\n")
 
 
-def test_a11_merge_keys(refused):
+def test_merge_keys(refused):
     assert "s.yaml:3:3: error[yaml.merge]" in refused(HEAD + "arm:\n  <<: {damping: [1, 1, 1]}\n")
 
 
-def test_a12_a_duplicate_key_shows_both_lines(refused):
+def test_a_duplicate_key_shows_both_lines(refused):
     message = refused(HEAD + "arm:\n  link2:\n    mass: 1\n    length: 1\n    mass: 2\n")
     assert "s.yaml:6:5: error[yaml.duplicate_key]: arm.link2.mass" in message and "line 4" in message
 
 
-def test_a13_a_second_document(refused):
+def test_a_second_document(refused):
     assert re.search(
         r"s\.yaml:[23]:1: error\[yaml.documents\]: .*one document per file", refused(HEAD + "---\nformat: 1\n")
     )
@@ -181,11 +181,11 @@ def test_a13_a_second_document(refused):
 
 
 @pytest.mark.parametrize("tag", ["!!python/object:os.system", "!include", "!!binary", "!!float"])
-def test_a14_tags(refused, tag):
+def test_tags(refused, tag):
     assert "s.yaml:2:7: error[yaml.tag]" in refused(HEAD + f"name: {tag} x\n")
 
 
-def test_a15_a_tab_names_its_column(refused):
+def test_a_tab_names_its_column(refused):
     assert "tab at column 1 of line 3; use spaces" in refused(HEAD + "arm:\n\tdamping: [0, 0, 0]\n")
 
 
@@ -205,16 +205,16 @@ def test_a15_a_tab_names_its_column(refused):
         (b"format: 1\n\x0cname: x\n", 10),
     ],
 )
-def test_a16_what_is_not_plain_utf8_is_refused_with_its_byte(refused, text, offset):
+def test_what_is_not_plain_utf8_is_refused_with_its_byte(refused, text, offset):
     message = refused(text)
     assert "error[yaml.encoding]" in message and f"at byte {offset};" in message
 
 
-def test_a16_a_byte_order_mark_is_accepted(check):
+def test_a_byte_order_mark_is_accepted(check):
     assert check(b"\xef\xbb\xbf" + HEAD.encode()).code == 0
 
 
-def test_a17_line_ends(check, refused):
+def test_line_ends(check, refused):
     assert check(FULL.replace("\n", "\r\n")).code == 0
     assert check(HEAD.strip()).code == 0
     assert "s.yaml:3:1: error[scenario.unknown_key]: armm" in refused("format: 1\r\nname: x\r\narmm: {}\r\n")
@@ -246,22 +246,22 @@ def judge_shipped(each: int | None) -> None:
             accepted_or_refused(piece)
 
 
-def test_a18_m2_every_prefix_and_every_deletion_is_valid_or_refused() -> None:
+def test_every_prefix_and_every_deletion_is_valid_or_refused() -> None:
     assert accepted_or_refused(FULL)
     for piece in shortened(FULL):
         accepted_or_refused(piece)
 
 
-def test_a18_m2_some_prefixes_and_deletions_of_every_shipped_scenario() -> None:
+def test_some_prefixes_and_deletions_of_every_shipped_scenario() -> None:
     judge_shipped(each=60)
 
 
 @pytest.mark.gate
-def test_a18_m2_all_prefixes_and_deletions_of_every_shipped_scenario() -> None:
+def test_all_prefixes_and_deletions_of_every_shipped_scenario() -> None:
     judge_shipped(each=None)
 
 
-def test_a18_a_section_that_was_cut_off_is_not_filled_with_defaults(refused):
+def test_a_section_that_was_cut_off_is_not_filled_with_defaults(refused):
     for section in ["arm", "wall", "initial", "controller", "time"]:
         assert f"s.yaml:2:1: error[scenario.type]: {section}: expects a map, got nothing" in refused(
             HEAD + section + ":\n"
@@ -287,7 +287,7 @@ def mutant(chance: random.Random, texts: list[str]) -> str:
 
 
 @pytest.mark.parametrize("count", [3000, pytest.param(130_000, marks=pytest.mark.gate)])
-def test_m1_mutated_scenarios_never_crash(count: int) -> None:
+def test_mutated_scenarios_never_crash(count: int) -> None:
     chance = random.Random(sample_seed())
     print("ARM3R_SEED =", sample_seed())
     texts = [FULL, *(file.read_text() for file in scenario_files())]
@@ -310,7 +310,7 @@ def test_m1_mutated_scenarios_never_crash(count: int) -> None:
     ],
     ids=["deep", "long", "wide", "complex keys", "anchors", "keys", "lines", "comment"],
 )
-def test_m4_the_worst_file_within_the_caps_is_judged_in_little_time_and_memory(executable, tmp_path, text):
+def test_the_worst_file_within_the_caps_is_judged_in_little_time_and_memory(executable, tmp_path, text):
     path = tmp_path / "worst.yaml"
     path.write_text(text[: 1 << 20])
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (512 << 20, 512 << 20))  # noqa: E731  address space, not only what is used
@@ -324,18 +324,18 @@ def test_m4_the_worst_file_within_the_caps_is_judged_in_little_time_and_memory(e
     assert once_within(0.3, judged)  # a hundredth to a tenth where nothing else shares the core
 
 
-def test_a19_control_codes_never_reach_the_terminal(refused):
+def test_control_codes_never_reach_the_terminal(refused):
     message = refused(HEAD + '"k\\x1b[31m": 1\nname: "a\\x1b]0;x\\x07"\n')
     assert "\x1b" not in message and "\x07" not in message and "\\u001b" in message
 
 
-def test_a19_control_codes_in_a_file_name(cli, tmp_path):
+def test_control_codes_in_a_file_name(cli, tmp_path):
     path = tmp_path / "\x1b[31m.yaml"
     path.write_text("format: x\n")
     assert "\x1b" not in cli("check", path).stderr
 
 
-def test_a20_a_long_key_is_cut_short(refused):
+def test_a_long_key_is_cut_short(refused):
     message = refused(HEAD + "k" * 900 + ": 1\n")
     assert len(message) < 500 and "..." in message
 
@@ -352,25 +352,25 @@ def test_a20_a_long_key_is_cut_short(refused):
         ("arm: {log_evry: 1}\n", "2:7", "arm.log_evry", "time.log_every"),
     ],
 )
-def test_a21_an_unknown_key_meets_the_nearest_one(refused, text, place, path, meant):
+def test_an_unknown_key_meets_the_nearest_one(refused, text, place, path, meant):
     message = refused(HEAD + text)
     assert f"s.yaml:{place}: error[scenario.unknown_key]: {path}: " in message and f"did you mean {meant}?" in message
 
 
-def test_a22_a_key_in_the_wrong_section_is_sent_to_the_right_one(refused):
+def test_a_key_in_the_wrong_section_is_sent_to_the_right_one(refused):
     assert "`stiffness` belongs to wall.contact" in refused(HEAD + "wall: {stiffness: 500}\n")
     assert "`section` belongs to shape brick; here the shape is cylinder" in refused(
         HEAD + "arm: {link2: {shape: cylinder, radius: 0.1, section: [0.01, 0.01]}}\n"
     )
 
 
-def test_a22_the_controllers_copy_of_the_arm_belongs_to_controllers_that_use_it(refused):
+def test_the_controllers_copy_of_the_arm_belongs_to_controllers_that_use_it(refused):
     message = refused(HEAD + "controller: {model: {link2: {mass: 1}}}\n")
     assert "`mass` does not go with type none; take it out, or choose another controller.type" in message
     assert "`model` belongs to controller" in refused(HEAD + "model: {link2: {mass: 1}}\n")
 
 
-def test_a23_a_missing_key_names_its_parent(refused):
+def test_a_missing_key_names_its_parent(refused):
     message = refused(HEAD + "wall:\n  motion: {type: sinusoid, frequency: 1}\n")
     assert "s.yaml:3:3: error[scenario.missing_key]: wall.motion.amplitude" in message and "a number, m" in message
 
@@ -389,12 +389,12 @@ def test_a23_a_missing_key_names_its_parent(refused):
         ("checks: 5\n", "2:9", "a list of checks", "5"),
     ],
 )
-def test_a24_wrong_shapes(refused, text, place, expected, got):
+def test_wrong_shapes(refused, text, place, expected, got):
     message = refused(HEAD + text)
     assert f"s.yaml:{place}: " in message and f"expects {expected}, got {got}" in message
 
 
-def test_a25_all_errors_at_once_in_the_order_of_the_file(refused):
+def test_all_errors_at_once_in_the_order_of_the_file(refused):
     message = refused(
         HEAD + "nam: x\narm: {dampin: 1}\nwall: {size: 7}\ntime: {stop: 1s}\nsolver: {rtol: -1, atol: 'x'}\n"
     )
@@ -402,26 +402,26 @@ def test_a25_all_errors_at_once_in_the_order_of_the_file(refused):
     assert lines == [2, 3, 4, 5, 6, 6] or lines == [2, 3, 4, 5, 6]
 
 
-def test_a25_no_more_than_20(refused):
+def test_no_more_than_20(refused):
     assert len(refused(HEAD + "".join(f"key{i}: 1\n" for i in range(50))).splitlines()) == 20
 
 
-def test_a26_another_format(check):
+def test_another_format(check):
     outcome = check("format: 3\nnothing: known\n")
     assert outcome.code == FORMAT_EXIT
     assert "s.yaml:1:9: error[scenario.format]: format: written for format 3, this is 1" in outcome.message
 
 
-def test_a26_the_format_must_be_given(refused):
+def test_the_format_must_be_given(refused):
     assert "write `format: 1`" in refused("name: x\n")
 
 
 @pytest.mark.parametrize("name", ["../../x", "/etc/x", "a/b", '"a\\nb"', ".hidden", "-o", '""', "x" * 300])
-def test_a27_a_name_cannot_lead_elsewhere(refused, name):
+def test_a_name_cannot_lead_elsewhere(refused, name):
     assert "error[scenario.name]" in refused(HEAD + f"name: {name}\n")
 
 
-def test_a27_a_link_or_a_device_is_not_written_through(cli, tmp_path, moving_wall):
+def test_a_link_or_a_device_is_not_written_through(cli, tmp_path, moving_wall):
     target, link = tmp_path / "precious", tmp_path / "link.csv"
     target.write_text("precious")
     link.symlink_to(target)
@@ -431,7 +431,7 @@ def test_a27_a_link_or_a_device_is_not_written_through(cli, tmp_path, moving_wal
     assert result.returncode == 6 and stat.S_ISCHR(os.stat("/dev/full").st_mode)
 
 
-def test_a28_no_scenario_loads_code(refused):
+def test_no_scenario_loads_code(refused):
     assert "error[scenario.unknown_key]" in refused(HEAD + "controller: {library: ./evil.so}\n")
     assert "error[scenario.unknown_word]" in refused(HEAD + "controller: {type: ./evil.so}\n")
 
@@ -451,21 +451,21 @@ def number(refused, value: str) -> str:
 @pytest.mark.parametrize(
     "value", ["1e999", "-1e999", "1.7976931348623159e308", "1" + "0" * 400, "1e99999999999999999999"]
 )
-def test_b1_too_large(refused, value):
+def test_too_large(refused, value):
     assert "out of double range" in number(refused, value)
 
 
 @pytest.mark.parametrize("value", ["1e-999", "4.9e-324", "0." + "0" * 400 + "1", "-1e-99999999999999999999"])
-def test_b2_too_small(refused, value):
+def test_too_small(refused, value):
     assert "underflows" in number(refused, value)
 
 
 @pytest.mark.parametrize("value", [".nan", ".inf", "nan", "inf", "NaN", "-inf", "-.INF", "Infinity"])
-def test_b3_only_finite_numbers(refused, value):
+def test_only_finite_numbers(refused, value):
     assert "error[number.syntax]" in number(refused, value)
 
 
-def test_b3_except_where_no_limit_is_meant(check, refused):
+def test_except_where_no_limit_is_meant(check, refused):
     assert check(HEAD + "arm: {torque_limit: [inf, 5, inf]}\n").code == 0
     assert "write inf" in refused(HEAD + "arm: {torque_limit: [.inf, 5, inf]}\n")
     assert "error[scenario.range]" in refused(HEAD + "arm: {torque_limit: [-inf, 5, inf]}\n")
@@ -478,11 +478,11 @@ def test_b3_except_where_no_limit_is_meant(check, refused):
     [("010", "write 10"), ("-010.5", "write -10.5"), ("00", "write 0"), ("0o10", "would be 8"), ("0x10", "would be 16"),
      ("0b101", "would be 5"), ("1_000", "write 1000"), ("60:30", "sexagesimal")],
 )  # fmt: skip
-def test_b4_decimal_only(refused, value, hint):
+def test_decimal_only(refused, value, hint):
     assert hint in number(refused, value)
 
 
-def test_b5_a_comma_and_a_locale_with_commas(refused, cli, tmp_path):
+def test_a_comma_and_a_locale_with_commas(refused, cli, tmp_path):
     assert "use a point: 1.5" in refused(HEAD + "time:\n  stop: 1,5\n")
     assert "use a point: 1.5" in refused(HEAD + "time: {stop: 1,5}\n")
     assert "in a number use a point" in refused(HEAD + "arm: {gravity: [0, 0, -9,81]}\n")
@@ -495,7 +495,7 @@ def test_b5_a_comma_and_a_locale_with_commas(refused, cli, tmp_path):
 @pytest.mark.parametrize(
     "value, meant", [("NO", "false"), ("y", "true"), ("on", "true"), ("Off", "false"), ("1", "true"), ("True", "true")]
 )
-def test_b6_flags_are_true_or_false(refused, value, meant):
+def test_flags_are_true_or_false(refused, value, meant):
     assert f"write {meant}" in refused(HEAD + f"wall: {{acts_on_arm: {value}}}\n")
 
 
@@ -506,11 +506,11 @@ def test_b6_flags_are_true_or_false(refused, value, meant):
      ("1.", "write 1 or 1.0"), ("1E5", "small e"), ("+-1", "not a number"),
      ("1e", "at character 2"), ("--1", "not a number"), ("e5", "not a number"), (".", "not a number")],
 )  # fmt: skip
-def test_b7_what_only_looks_like_a_number(refused, value, says):
+def test_what_only_looks_like_a_number(refused, value, says):
     assert says in number(refused, value)
 
 
-def test_b8_units_are_answered_with_the_plain_number(refused):
+def test_units_are_answered_with_the_plain_number(refused):
     assert "write 0.5 (m)" in refused(HEAD + "arm: {link2: {length: 50 cm}}\n")
     assert "write 30 deg" in refused(HEAD + "initial: {q: [0, 30deg, 0]}\n")
     assert "degrees" in refused(HEAD + "arm: {link2: {length: 50 deg}}\n")
@@ -519,16 +519,16 @@ def test_b8_units_are_answered_with_the_plain_number(refused):
 
 
 @pytest.mark.parametrize("value", ["3.7", "2147483648", "99999999999", "1e3", "0", "-5"])
-def test_b10_integers_neither_round_nor_wrap(refused, value):
+def test_integers_neither_round_nor_wrap(refused, value):
     assert "solver.max_steps" in refused(HEAD + f"solver: {{max_steps: {value}}}\n")
 
 
-def test_b11_negative_zero_is_zero():
+def test_negative_zero_is_zero():
     scenario = arm3r.Scenario(HEAD + "arm: {damping: [-0.0, -0, -0e5]}\n")
     assert "damping: [0, 0, 0]" in scenario.to_yaml()
 
 
-def test_b12_long_decimals_are_rounded_correctly():
+def test_long_decimals_are_rounded_correctly():
     text = "0.1" + "0" * 5000
     assert "stop: 0.1\n" in arm3r.Scenario(HEAD + f"time: {{stop: {text}}}\n").to_yaml()
     digits = "0.1000000000000000055511151231257827021181583404541015625" + "0" * 345
@@ -845,7 +845,7 @@ def test_the_template_is_a_scenario(cli):
 
 
 @pytest.mark.parametrize("call", ["check", "run"])
-def test_c18_a_run_that_would_be_too_large_is_refused_before_it_begins(cli, tmp_path, call):
+def test_a_run_that_would_be_too_large_is_refused_before_it_begins(cli, tmp_path, call):
     path = tmp_path / "long.yaml"
     path.write_text("format: 1\ntime: {stop: 1e9, log_every: 1e-9}\n")
     result = cli(call, path)

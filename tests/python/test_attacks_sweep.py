@@ -36,7 +36,7 @@ def expected(tmp_path: Path) -> bytes:
 # ---- workers --------------------------------------------------------------------------------------------------------
 
 
-def test_g2_the_job_of_a_worker_that_is_killed_is_done_by_another(expected: bytes, tmp_path: Path) -> None:
+def test_the_job_of_a_worker_that_is_killed_is_done_by_another(expected: bytes, tmp_path: Path) -> None:
     """Where the executor begins such a job anew, as Dask does; a pool of processes ends the sweep, to be resumed."""
     distributed = pytest.importorskip("distributed")
     cluster = distributed.LocalCluster(
@@ -54,7 +54,7 @@ def test_g2_the_job_of_a_worker_that_is_killed_is_done_by_another(expected: byte
     assert killed and table.path.read_bytes() == expected
 
 
-def test_g14_a_shard_that_is_too_large_for_the_memory_is_refused_by_its_runs(scripts: Path, tmp_path: Path) -> None:
+def test_a_shard_that_is_too_large_for_the_memory_is_refused_by_its_runs(scripts: Path, tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(
         "format: 1\nscenario: {time: {stop: 0}}\nshard: 1000000\n"
         "axes: [{key: time.log_every, linspace: [1, 2, 1000000]}]\n"
@@ -68,9 +68,7 @@ def test_g14_a_shard_that_is_too_large_for_the_memory_is_refused_by_its_runs(scr
     assert not (tmp_path / "out" / "table.csv").exists()
 
 
-def test_g14_memory_that_ends_while_rows_are_written_is_told_alike(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_memory_that_ends_while_rows_are_written_is_told_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def too_large(*_: Any) -> bytes:
         raise MemoryError
 
@@ -84,7 +82,7 @@ def test_g14_memory_that_ends_while_rows_are_written_is_told_alike(
 
 @pytest.mark.parametrize("kind", ["csv", "parquet"])
 @pytest.mark.parametrize("width", [1000, pytest.param(10_000, marks=pytest.mark.gate)])
-def test_h9_a_table_of_very_many_columns_is_a_table(kind: str, width: int, tmp_path: Path) -> None:
+def test_a_table_of_very_many_columns_is_a_table(kind: str, width: int, tmp_path: Path) -> None:
     if kind == "parquet":
         pytest.importorskip("pyarrow")
     columns = {f"c{i}": np.array([i, np.nan, -i / 3]) for i in range(width)}
@@ -111,7 +109,7 @@ class _Nowhere(io.RawIOBase):
 
 
 @pytest.mark.gate
-def test_h9_memory_does_not_grow_with_the_number_of_shards() -> None:
+def test_memory_does_not_grow_with_the_number_of_shards() -> None:
     pytest.importorskip("pyarrow")
     columns = {f"c{i}": np.arange(200.0) + i for i in range(50)}
     piece = sweep_encode.encode(columns, "parquet", lambda: None)
@@ -124,7 +122,7 @@ def test_h9_memory_does_not_grow_with_the_number_of_shards() -> None:
     assert merged(20_000) - few < 200e6
 
 
-def test_h9_groups_of_rows_are_neither_many_nor_without_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_groups_of_rows_are_neither_many_nor_without_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     monkeypatch.setattr(sweep_encode, "ROWS_OF_A_GROUP", 5)
     table = arm3r.sweep(PLAN, out=tmp_path / "out", parquet=True)
@@ -137,7 +135,7 @@ def test_h9_groups_of_rows_are_neither_many_nor_without_bound(tmp_path: Path, mo
 
 
 @pytest.mark.parametrize("parquet", [False, True])
-def test_h11_what_a_file_system_loses_after_the_write_reaches_no_table(parquet: bool, tmp_path: Path) -> None:
+def test_what_a_file_system_loses_after_the_write_reaches_no_table(parquet: bool, tmp_path: Path) -> None:
     if parquet:
         pytest.importorskip("pyarrow")
     table = arm3r.sweep(PLAN, out=tmp_path / "expected", parquet=parquet)
@@ -156,7 +154,7 @@ def test_h11_what_a_file_system_loses_after_the_write_reaches_no_table(parquet: 
     assert again.path.read_bytes() == table.path.read_bytes()
 
 
-def test_h11_a_file_system_without_locks_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_system_without_locks_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def none(*_: Any) -> None:
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
 
@@ -184,7 +182,7 @@ int close(int file) {
 
 
 @pytest.mark.skipif(os.uname().sysname != "Linux", reason="a library is put before another by Linux's loader")
-def test_h11_an_error_that_comes_with_close_leaves_no_file(cli: Any, tmp_path: Path) -> None:
+def test_an_error_that_comes_with_close_leaves_no_file(cli: Any, tmp_path: Path) -> None:
     library = tmp_path / "late.so"
     compiler = [os.environ.get("CC", "cc"), "-shared", "-fPIC", "-xc", "-", "-o", library, "-ldl"]
     subprocess.run(compiler, input=LATE, text=True, check=True)

@@ -26,7 +26,7 @@ ADAPTIVE = ["dopri5", "taylor", "rodas4", "auto"]
 
 @pytest.mark.parametrize("method", ADAPTIVE)
 @pytest.mark.parametrize(("gap", "events"), [(-1e-9, 4), (-1e-11, 4), (1e-11, 0), (1e-9, 0)])
-def test_c7_a_wall_that_grazes_the_tip_touches_it_or_does_not(method: str, gap: float, events: int) -> None:
+def test_a_wall_that_grazes_the_tip_touches_it_or_does_not(method: str, gap: float, events: int) -> None:
     """The wall turns back where it has come `gap` (m) to the tip of an arm at rest; two turns in the run."""
     tip = np.sqrt(3)  # of the lecture's pose
     wall = f"point: [{float(tip) + 0.02 + gap!r}, 0, 0], motion: {{type: sinusoid, amplitude: 0.02, frequency: 0.5}}"
@@ -37,7 +37,7 @@ def test_c7_a_wall_that_grazes_the_tip_touches_it_or_does_not(method: str, gap: 
 
 @pytest.mark.parametrize("restitution", [0.95, 0.5, 0.1])
 @pytest.mark.parametrize("method", ["dopri5", "rodas4", "auto"])
-def test_c13_a_tip_that_bounces_ever_less_comes_to_rest_on_the_wall(method: str, restitution: float) -> None:
+def test_a_tip_that_bounces_ever_less_comes_to_rest_on_the_wall(method: str, restitution: float) -> None:
     contact = f"{{law: hunt_crossley, stiffness: 1e5, restitution: {restitution}, impact_speed: 0.1}}"
     text = f"""\
 wall: {{point: [1.75, 0, 0], motion: {{type: fixed}}, acts_on_arm: true, contact: {contact}}}
@@ -53,7 +53,7 @@ solver: {{method: {method}}}
 # ---- times and tiny numbers -----------------------------------------------------------------------------------------
 
 
-def test_c21_steps_that_would_not_move_the_time_are_refused_before_the_run() -> None:
+def test_steps_that_would_not_move_the_time_are_refused_before_the_run() -> None:
     text = "time: {stop: 1e9, log_every: 1e8}\nsolver: {method: rk4, step: 1e-9, max_steps: 1000000000}\n"
     with pytest.raises(arm3r.BudgetError, match="too many steps"):
         arm3r.Scenario(HEAD + text).run()
@@ -68,7 +68,7 @@ def test_c21_steps_that_would_not_move_the_time_are_refused_before_the_run() -> 
         ("taylor", "sampling: {rate: 1e6}\ncontroller: {type: joint_pd}", "sampling.rate"),
     ],
 )
-def test_c21_a_start_so_late_that_periods_cannot_be_counted_is_refused(
+def test_a_start_so_late_that_periods_cannot_be_counted_is_refused(
     method: str, more: str, path: str, start: float
 ) -> None:
     every = 1e-8 if path == "time.log_every" else 0.01
@@ -79,14 +79,14 @@ def test_c21_a_start_so_late_that_periods_cannot_be_counted_is_refused(
 
 
 @pytest.mark.parametrize("method", ["rk4, step: 1e-3", "taylor"])
-def test_c21_rows_of_a_late_run_never_stand_still(method: str) -> None:
+def test_rows_of_a_late_run_never_stand_still(method: str) -> None:
     text = f"time: {{start: 9e8, stop: {9e8 + 0.5}, log_every: 1e-5}}\nsolver: {{method: {method}}}\n"
     t = arm3r.Scenario(HEAD + text).run().t
     assert len(t) == 50_001 and np.all(np.diff(t) > 0)
 
 
 @pytest.mark.parametrize("method", ["rk4, step: 1e-3", "dopri5", "taylor"])
-def test_c24_rates_that_fall_below_normal_numbers_take_no_longer_and_are_the_same_where_the_host_flushes_them(
+def test_rates_that_fall_below_normal_numbers_take_no_longer_and_are_the_same_where_the_host_flushes_them(
     method: str, tmp_path: Path
 ) -> None:
     text = """\
@@ -123,7 +123,7 @@ initial: {qd: [3e-308, 3e-308, 3e-308]}
         ("checks: [{column: q1, of: max, above: 2, below: 1}]", ["above 2", "below 1"]),
     ],
 )
-def test_b13_of_two_limits_in_the_wrong_order_both_are_named(text: str, words: list[str]) -> None:
+def test_of_two_limits_in_the_wrong_order_both_are_named(text: str, words: list[str]) -> None:
     with pytest.raises(arm3r.ScenarioError) as raised:
         arm3r.Scenario(HEAD + text + "\n").validate()
     assert all(word in str(raised.value) for word in words)
@@ -132,7 +132,7 @@ def test_b13_of_two_limits_in_the_wrong_order_both_are_named(text: str, words: l
 # ---- the library ----------------------------------------------------------------------------------------------------
 
 
-def test_d12_two_copies_of_the_library_in_a_process_and_many_loads_of_it(package: Path, tmp_path: Path) -> None:
+def test_two_copies_of_the_library_in_a_process_and_many_loads_of_it(package: Path, tmp_path: Path) -> None:
     for name in ("libarm3r.so", "libarm3r-yaml-cpp.so"):
         shutil.copy(package / "lib" / name, tmp_path / name)
     code = """
@@ -163,7 +163,7 @@ assert a.Scenario(text).run().summary["hash"] == expected
     subprocess.run([sys.executable, "-c", code, tmp_path / "libarm3r.so"], check=True, timeout=120)
 
 
-def test_d15_a_message_outlives_what_it_is_about() -> None:
+def test_a_message_outlives_what_it_is_about() -> None:
     scenario = ffi.new("arm3r_scenario **")
     text = b"format: 1\ntime: {stop: -1}\n"
     assert lib.arm3r_scenario_create(text, len(text), b"s", 1, scenario) == 0
@@ -187,7 +187,7 @@ shard: 2
 """
 
 
-def test_a29_a_scenario_that_changes_while_its_sweep_runs_changes_nothing(tmp_path: Path) -> None:
+def test_a_scenario_that_changes_while_its_sweep_runs_changes_nothing(tmp_path: Path) -> None:
     base, plan = tmp_path / "base.yaml", tmp_path / "sweep.yaml"
     base.write_text(HEAD + "time: {stop: 0.1}\n")
     plan.write_text(SWEEP)
@@ -202,7 +202,7 @@ def test_a29_a_scenario_that_changes_while_its_sweep_runs_changes_nothing(tmp_pa
     assert "stop: 0.1" in (tmp_path / "changed" / "sweep.json").read_text()
 
 
-def test_h7_who_reads_a_result_while_it_is_written_sees_the_whole_file(tmp_path: Path) -> None:
+def test_who_reads_a_result_while_it_is_written_sees_the_whole_file(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     runs = [arm3r.Scenario(HEAD + f"time: {{stop: {stop}}}\n").run() for stop in (2, 4)]
     runs[0].to_csv(path)
@@ -222,7 +222,7 @@ def test_h7_who_reads_a_result_while_it_is_written_sees_the_whole_file(tmp_path:
     thread.join()
 
 
-def test_g11_work_that_is_done_twice_is_stored_once(tmp_path: Path) -> None:
+def test_work_that_is_done_twice_is_stored_once(tmp_path: Path) -> None:
     from concurrent.futures import Executor, Future, ThreadPoolExecutor
 
     class Twice(Executor):
@@ -244,7 +244,7 @@ def test_g11_work_that_is_done_twice_is_stored_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("runs", [1, 3])
-def test_h9_a_table_of_one_run_is_a_table(runs: int, tmp_path: Path) -> None:
+def test_a_table_of_one_run_is_a_table(runs: int, tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     plan = {"format": 1, "scenario": {"time": {"stop": 0}}, "axes": [{"key": "initial.q[1]", "values": [0.1] * runs}]}
     for parquet in (False, True):
@@ -255,7 +255,7 @@ def test_h9_a_table_of_one_run_is_a_table(runs: int, tmp_path: Path) -> None:
 # ---- clocks and builds ----------------------------------------------------------------------------------------------
 
 
-def test_i8_no_duration_is_taken_from_a_clock_that_can_be_set(root: Path) -> None:
+def test_no_duration_is_taken_from_a_clock_that_can_be_set(root: Path) -> None:
     sources = [*(root / "cpp" / "src").rglob("*.[ch]pp"), *(root / "python" / "arm3r_cpp").rglob("*.py")]
     assert len(sources) > 150
     for path in sources:
@@ -263,7 +263,7 @@ def test_i8_no_duration_is_taken_from_a_clock_that_can_be_set(root: Path) -> Non
 
 
 @pytest.mark.parametrize("flag", ["-Ofast", "-funsafe-math-optimizations", "-ffp-contract=fast"])
-def test_j4_flags_that_change_results_are_refused(root: Path, scripts: Path, tmp_path: Path, flag: str) -> None:
+def test_flags_that_change_results_are_refused(root: Path, scripts: Path, tmp_path: Path, flag: str) -> None:
     environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
     call = ["cmake", "-S", root, "-B", tmp_path, f"-DCMAKE_CXX_FLAGS={flag}"]
     done = subprocess.run(call, capture_output=True, text=True, env=environment)
@@ -302,7 +302,7 @@ int hide(void) {
 """
 
 
-def test_j1_a_processor_without_avx_gives_the_same_bits(python: Any, tmp_path: Path) -> None:
+def test_a_processor_without_avx_gives_the_same_bits(python: Any, tmp_path: Path) -> None:
     """Every method, and batches and the arm's functions, whose widest variant the library chooses for the processor."""
     if not (compiler := shutil.which("gcc")) or os.uname().machine != "x86_64":
         pytest.skip("cpuid is a matter of x86-64, and hidden by a small program in C")
@@ -329,7 +329,7 @@ print(s.arm.mass_matrix(q[0]).tobytes().hex(), s.arm.forward_dynamics(*q, 0 * q[
 
 
 @pytest.mark.parametrize("offset", [0, 1, 8, 24])
-def test_j4_arrays_of_a_host_need_no_alignment(offset: int) -> None:
+def test_arrays_of_a_host_need_no_alignment(offset: int) -> None:
     """The C interface knows no type of Eigen, whose alignment depends on flags: doubles may lie anywhere."""
     q = np.random.default_rng(4).uniform(-1, 1, (37, 3))
     room = np.zeros(q.nbytes + 64, np.uint8)
@@ -343,7 +343,7 @@ def test_j4_arrays_of_a_host_need_no_alignment(offset: int) -> None:
     assert all(here[name].tobytes() == there[name].tobytes() for name in here)
 
 
-def test_j5_the_library_needs_nothing_but_the_run_time_of_c_and_cpp(package: Path) -> None:
+def test_the_library_needs_nothing_but_the_run_time_of_c_and_cpp(package: Path) -> None:
     for part in ("lib/libarm3r.so", "bin/arm3r", "_arm3r.abi3.so"):
         text = subprocess.run(["readelf", "-d", package / part], check=True, capture_output=True, text=True).stdout
         needed = set(re.findall(r"\(NEEDED\).*\[(.*)\]", text))
@@ -352,7 +352,7 @@ def test_j5_the_library_needs_nothing_but_the_run_time_of_c_and_cpp(package: Pat
 
 
 @pytest.mark.gate
-def test_j6_without_a_compiler_nothing_is_half_installed(root: Path, tmp_path: Path) -> None:
+def test_without_a_compiler_nothing_is_half_installed(root: Path, tmp_path: Path) -> None:
     environment = {**os.environ, "CC": "/bin/false", "CXX": "/bin/false", "SKBUILD_BUILD_DIR": str(tmp_path / "build")}
     target = tmp_path / "target"
     call = [sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-deps", "--target", target, root]

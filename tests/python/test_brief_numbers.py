@@ -37,7 +37,7 @@ HOLD = {"controller": {"type": "gravity_compensation"}}
 WALL = {**HOLD, "wall": {}, "time__log_every": 1.0}
 
 
-# ---- B1: the lecture's wall, one-way --------------------------------------------------------------------------------
+# ---- the lecture's wall, one-way ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_turned_arm_misses_the_plate_but_not_the_plane(convention: str) -> None:
     assert plate.run().events[0].t == pytest.approx(7.448092746, abs=1e-9, rel=0)
 
 
-# ---- B2: gravity compensation ---------------------------------------------------------------------------------------
+# ---- gravity compensation -------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("algorithm", ["closed_form", "recursion"])
@@ -123,7 +123,7 @@ def test_torque_limit_of_joint_2(convention: str, limit: float, holds: bool) -> 
     assert moved <= 1e-9 if holds else moved > 1
 
 
-# ---- B3: motion without losses --------------------------------------------------------------------------------------
+# ---- motion without losses ------------------------------------------------------------------------------------------
 
 SLENDER = {f"arm__link{i}": {"length": 1.0, "shape": "slender", "mass": 0.785} for i in (2, 3)}
 HANGING = np.array([0, -np.pi / 2, 0])
@@ -172,7 +172,7 @@ def test_spin_keeps_momentum_and_energy(convention: str) -> None:
     assert energy == pytest.approx(7.103649802083, rel=1e-8)
 
 
-# ---- B4: the bounce off the lecture's wall ---------------------------------------------------------------------------
+# ---- the bounce off the lecture's wall ------------------------------------------------------------------------------
 
 MASS, SPEED = 0.5535415113, 0.05
 

@@ -24,7 +24,7 @@ def torque_of(force: Any) -> np.ndarray:
 
 @pytest.mark.parametrize("gain", [[50.0, 50.0, 50.0], [20.0, 50.0, 120.0]])
 def test_a_step_goes_through_a_first_order_filter(gain: list[float]) -> None:
-    run = read("b11a_observer_step", {"observer.gain": gain, "time.stop": 0.1}).run()
+    run = read("observer_force_step", {"observer.gain": gain, "time.stop": 0.1}).run()
     expected = torque_of(PUSH) * (1 - np.exp(-np.multiply.outer(run["t"], gain)))
     assert np.abs(run["residual"] - expected).max() < 1e-6
     forces = np.linalg.solve(Arm().at(QA).J.T, expected.T).T
@@ -34,14 +34,14 @@ def test_a_step_goes_through_a_first_order_filter(gain: list[float]) -> None:
 @pytest.mark.parametrize(("rate", "gain"), [(1000, 50.0), (500, 90.0)])
 def test_in_samples_it_is_a_recursion(rate: int, gain: float) -> None:
     changes = {"sampling.rate": rate, "observer.gain": gain, "time.log_every": 1 / rate, "time.stop": 60 / rate}
-    run = read("b11c_observer_sampled", changes).run()
+    run = read("observer_sampled", changes).run()
     shares = sampled.observer_samples(gain, 1 / rate, 60)
     assert np.abs(run["residual"] / torque_of(PUSH) - shares[:, None]).max() < 1e-12
 
 
 def test_the_wall_is_felt_through_the_filter() -> None:
-    run = read("b11b_observer_on_the_wall").run()
-    setting = SETTINGS["B11b"]
+    run = read("observer_moving_wall").run()
+    setting = SETTINGS["observer moving wall"]
     law = laws.observed(laws.joint_pd([400, 400, 200], [60, 60, 25], QA), 50.0)
 
     def with_filter(t: float, s: Any, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -58,7 +58,7 @@ def test_the_wall_is_felt_through_the_filter() -> None:
 
 def test_the_residual_is_the_filtered_torque_of_its_own_run() -> None:
     """By the trapezoidal rule between rows, which is exact to 1e-7 here."""
-    run = read("b11b_observer_on_the_wall", {"time.stop": 6, "time.log_every": 2e-4}).run()
+    run = read("observer_moving_wall", {"time.stop": 6, "time.log_every": 2e-4}).run()
     torques = np.einsum("kji,kj->ki", arm_of(run).jacobian(run["q"]), run["f_on_tip"])
     h, r = 2e-4, np.zeros(3)
     decay, slope = np.exp(-50 * h), (1 - np.exp(-50 * h)) / (50 * h)
@@ -80,7 +80,7 @@ def test_a_ramp_is_seen_late(newtons: float, threshold: float) -> None:
         "push.force": [-newtons, 0, 0], "push.rise": 1, "observer.threshold": [1e3, 1e3, threshold],
         "time.stop": 0.1,
     }  # fmt: skip
-    run = read("b11e_observer_ramp", changes).run()
+    run = read("observer_force_ramp", changes).run()
     seen = run["t"][np.flatnonzero(run["collision"])[0]]
     assert seen == pytest.approx(expected, abs=1.01e-4)
 
@@ -91,7 +91,7 @@ def test_a_collision_is_over_when_it_has_been_quiet() -> None:
         "push": {"force": [-20, 0, 0], "duration": 0.02}, "observer.hold": 0.03, "time.stop": 0.2,
         "observer.threshold": [1e3, 1e3, 0.5],
     }  # fmt: skip
-    run = read("b11e_observer_ramp", changes).run()
+    run = read("observer_force_ramp", changes).run()
     peak, decay = 10 * (1 - 0.995**200), -np.log(0.995) / 1e-4
     over = run["t"][np.flatnonzero(run["collision"])[-1]] + 1e-4
     assert over == pytest.approx(0.02 + np.log(peak / 0.25) / decay + 0.03, abs=1.01e-4)
@@ -110,7 +110,7 @@ def test_a_collision_ends_at_the_same_sample_with_every_method_and_at_every_star
                 "observer.threshold": [1e3, 1e3, 0.5], "sampling.rate": rate, "solver": solver,
                 "time": {"start": start, "stop": start + 0.25, "log_every": 1 / rate},
             }  # fmt: skip
-            run = read("b11c_observer_sampled", changes).run()
+            run = read("observer_sampled", changes).run()
             is_loud = np.abs(run["residual"][:, 2]) > 0.25
             lengths.add(int(np.flatnonzero(run["collision"])[-1] - np.flatnonzero(is_loud)[-1]))
     assert lengths == {periods - 1}
@@ -121,17 +121,17 @@ def test_a_collision_ends_at_the_same_sample_with_every_method_and_at_every_star
 
 @pytest.mark.parametrize("gain", [0.0, 1.0, 3.0])
 def test_a_reflex_lightens_the_arm(gain: float) -> None:
-    run = read("b11d_reflex_lightens", {"observer.reflex_gain": gain}).run()
+    run = read("reflex_apparent_mass", {"observer.reflex_gain": gain}).run()
     for row in (5, 10, 20):
         closed = -estimation.yielding_speed(0.01, M_N, gain, 50.0, run["t"][row])
         assert run["tip_vx"][row] == pytest.approx(closed, rel=3e-3)
 
 
-@pytest.mark.parametrize(("reaction", "name"), [("ignore", "R0"), ("stop", "R1"), ("float", "R2"), ("reflex", "R3")])
-def test_reactions_are_those_of_the_simulator(reaction: str, name: str) -> None:
-    run = read(f"c13_reaction_{reaction}", {"time.stop": 0.5, "time.log_every": 1e-3}).run()
+@pytest.mark.parametrize("reaction", ["ignore", "stop", "float", "reflex"])
+def test_reactions_are_those_of_the_simulator(reaction: str) -> None:
+    run = read(f"reaction_{reaction}", {"time.stop": 0.5, "time.log_every": 1e-3}).run()
     changes = {"wall": {"point": [np.sqrt(3) + 0.0025, 0, 0]}, "start": MAKE, "stop": 0.5}
-    other = run_of(varied(SETTINGS[f"C13 {name}"], **changes), rtol=1e-8)
+    other = run_of(varied(SETTINGS[f"reaction {reaction}"], **changes), rtol=1e-8)
     assert run["t"][np.flatnonzero(run["collision"])[0]] == pytest.approx(MAKE + 0.025419602, abs=1e-3)
     late = np.flatnonzero(run["t"] > MAKE)[::5]
     assert np.abs(run["force"][late] - other.pressing(run["t"][late])).max() < 0.03
@@ -141,7 +141,7 @@ def test_reactions_are_those_of_the_simulator(reaction: str, name: str) -> None:
 def test_a_retreat_moves_the_pose_with_the_residual() -> None:
     """From a collision that is there from the first sample on: memory of the model is that of the observer and q_d."""
     changes = {"observer.threshold": 1e-9, "wall": None, "push": {"force": [-2, 1, 0.5]}, "time": {"stop": 0.5}}
-    run = read("c13_reaction_retreat", changes).run()
+    run = read("reaction_retreat", changes).run()
     pd = {"Kp": [400, 400, 200], "Kd": [60, 60, 25]}
 
     def law(t: float, s: Any, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -158,13 +158,13 @@ def test_a_retreat_moves_the_pose_with_the_residual() -> None:
 def test_the_first_collision_latches_the_reaction() -> None:
     """Floating goes on after the push: the arm that it set moving coasts, where a PD would bring it back."""
     changes = {"wall": None, "push": {"force": [-5, 0, 0], "duration": 0.1}, "time": {"stop": 0.6}}
-    floating = read("c13_reaction_float", changes).run()
-    held = read("c13_reaction_ignore", changes).run()
+    floating = read("reaction_float", changes).run()
+    held = read("reaction_ignore", changes).run()
     assert floating["tip_x"][-1] < np.sqrt(3) - 0.1
     assert held["tip_x"][-1] > np.sqrt(3) - 0.05
     assert floating["collision"][-1] == 0 and floating["collision"].max() == 1
 
 
 def test_the_peaks_stand_in_order() -> None:
-    peaks = [read(f"c13_reaction_{name}").run().summary["peak_force"] for name in ("reflex", "float", "stop", "ignore")]
+    peaks = [read(f"reaction_{name}").run().summary["peak_force"] for name in ("reflex", "float", "stop", "ignore")]
     assert peaks == sorted(peaks)

@@ -47,8 +47,8 @@ def parts_of(run: arm3r.Run) -> np.ndarray:
 
 
 def test_the_parts_are_those_of_an_independent_simulation() -> None:
-    run = read("b5a_energy_ledger").run()
-    oracle = simulated(SETTINGS["B5a"], books=True, rtol=1e-8, atol=1e-11)
+    run = read("energy_balance").run()
+    oracle = simulated(SETTINGS["energy balance"], energies=True, rtol=1e-8, atol=1e-11)
     _, state = oracle.piece(run["t"][-1])
     joints, contact, friction = state[-3:]
     assert parts_of(run)[-1] == pytest.approx([joints, contact, friction, 0], abs=1e-8)

@@ -169,7 +169,7 @@ def test_many_random_laws_create_no_energy_in_samples() -> None:
 @pytest.mark.parametrize("delay", [0, 0.5, 1, 2, 3])
 def test_a_passive_wall_gives_back_no_more_than_it_took(delay: float) -> None:
     """With a delay of one sample the arm left at 0.236 m/s where it had come at 0.2."""
-    run = read("b12d_passive", {"sampling.delay": delay, "time.stop": 0.08}).run()
+    run = read("virtual_wall_passive", {"sampling.delay": delay, "time.stop": 0.08}).run()
     assert bool(run.summary["warnings"]) == (delay == 0.5)
     assert run["tip_vy"][-1] == pytest.approx(-0.2, abs=1e-3 if delay == 0.5 else 5e-5)
     assert -run["tip_vy"][-1] <= 0.2 * (1 + 1e-9)
@@ -183,7 +183,7 @@ def test_a_tank_in_samples_is_a_tank(rate: float, amplitude: float) -> None:
         "controller.stiffness_amplitude": amplitude, "sampling.rate": rate,
         "time": {"stop": 4, "log_every": 1 / rate},
     }  # fmt: skip
-    made = read("x2_energy_tank", changes)
+    made = read("variable_stiffness_tank", changes)
     run = made.run()
     target = np.array([1.7320508075688772, 0, 0])
     stored = run["energy_kinetic"] + 100 * ((run["tip"] - target) ** 2).sum(axis=1) + run["tank_energy"]
@@ -202,7 +202,7 @@ def test_a_tank_in_samples_does_not_pay_for_a_reference_that_moves(delay: float)
         "sampling": {"rate": 500, "delay": delay}, "time": {"stop": 2, "log_every": 0.002},
         "reference": {"type": "minimum_jerk", "tip": target, "duration": 1.5}, "controller.tank_capacity": 50,
     }  # fmt: skip
-    made = read("x2_energy_tank", changes)
+    made = read("variable_stiffness_tank", changes)
     run = made.run()
     wanted = run["tip_ref"]
     stored = run["energy_kinetic"] + 100 * ((run["tip"] - wanted) ** 2).sum(axis=1) + run["tank_energy"]
@@ -223,5 +223,5 @@ def test_outside_its_region_the_promise_is_not_made() -> None:
         ({"arm.torque_limit": [50, 50, 50]}, "is at arm.torque_limit, which a spring pressed by"),
     ]
     for changes, words in cases:
-        warnings = read("b12d_passive", changes).run().summary["warnings"]
+        warnings = read("virtual_wall_passive", changes).run().summary["warnings"]
         assert any(words in str(text) for text in warnings), (changes, warnings)

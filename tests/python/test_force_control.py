@@ -4,17 +4,15 @@ another make where there is none."""
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from force_control_oracles import LECTURE_CONTACT, QA, SETTINGS, XA, Arm, Run, impact, linear, run_of, statics, varied
+from force_scenarios import FILES, read
 from scipy.linalg import expm
 
-FOLDER = Path(__file__).parents[2] / "scenarios" / "force_control"
-FILES = sorted(path.stem for path in FOLDER.glob("*.yaml"))
 D = np.array([1, -1, -1])
 PI = {"f_d": 20.0, "kP": 0.5, "kI": 5.0, "m_f": 1.0, "b": 70.0}
 M_N = 0.5535415113
@@ -24,12 +22,8 @@ in_both_conventions = pytest.mark.parametrize("convention", ["slide", "simscape"
 
 
 def scenario_of(name: str, changes: Changes, *, convention: str = "slide") -> arm3r.Scenario:
-    """The scenario whose file begins so, with other values; its angles are those of the slide convention."""
-    (path,) = FOLDER.glob(f"{name}_*.yaml")
-    scenario = arm3r.Scenario.load(path)
-    scenario["checks"] = []
-    for key, value in changes.items():
-        scenario[key] = value
+    """The scenario of this name with other values; its angles are those of the slide convention."""
+    scenario = read(name, changes)
     return scenario if convention == "slide" else lowering(scenario)
 
 
@@ -59,7 +53,7 @@ def close(value: Any, abs: float) -> Any:
 
 @pytest.mark.parametrize("name", FILES)
 def test_every_balance_of_energy_closes(name: str) -> None:
-    run = finished(arm3r.Scenario.load(FOLDER / f"{name}.yaml"))
+    run = finished(arm3r.Scenario.load(FILES[name]))
     assert np.abs(run["energy_residual"]).max() <= 1e-7
 
 
@@ -67,7 +61,7 @@ def test_every_balance_of_energy_closes(name: str) -> None:
 
 
 def near_balance(k: float) -> Changes:
-    """The tip 0.1 mm deeper than where the admittance of B8c balances on a wall k."""
+    """The tip 0.1 mm deeper than where the admittance balances on a wall k."""
     balance = [XA[0] + 10 / (200 + k), 0, 0]
     return {
         "initial.q": Arm().reach([balance[0] + 1e-4, 0, 0]),
@@ -92,41 +86,47 @@ COMPENSATED = {
     "initial.q": [0.1, 0.4, -0.9],
     "reference": {"type": "point", "q": QA},
 }
-X1_DYNAMIC = {"controller.variant": "dynamic", "controller.position_gain": 25, "controller.velocity_gain": 10}
+INSTABILITY_DYNAMIC = {"controller.variant": "dynamic", "controller.position_gain": 25, "controller.velocity_gain": 10}
 CASES = [
-    Case("b5a", "B5a", tip=1e-7, force=1e-3),
-    Case("b5c", "B5c", force=1e-4),
-    Case("b6a", "B6a", until=2.0),
-    Case("b6a", "B6a compensated", COMPENSATED, until=2.0),
-    Case("b6b", "B6b"),
-    Case("b6c", "B6c", until=2.0),
-    Case("b7a", "B7a", until=0.4),
-    Case("b7b", "B7b", until=5.8),
+    Case("energy_balance", "energy balance", tip=1e-7, force=1e-3),
+    Case("restitution", "restitution", force=1e-4),
+    Case("joint_pd_sag", "joint PD sag", until=2.0),
+    Case("joint_pd_sag", "joint PD with gravity compensation", COMPENSATED, until=2.0),
+    Case("computed_torque", "computed torque"),
+    Case("computed_torque_push", "computed torque push", until=2.0),
+    Case("stiffness_fixed_wall", "stiffness fixed wall", until=0.4),
+    Case("stiffness_moving_wall", "stiffness moving wall", until=5.8),
     *(
-        Case("b7c", f"B7c {mm} mm", {"initial.q": Arm().reach([1.70 + mm / 1000, 0, 0])}, force=1e-5, until=0.4)
+        Case(
+            "joint_stiffness_fixed_wall",
+            f"joint stiffness {mm} mm",
+            {"initial.q": Arm().reach([1.70 + mm / 1000, 0, 0])},
+            force=1e-5,
+            until=0.4,
+        )
         for mm in (50.0, 5.0, 0.5)
     ),
-    Case("b8a", "B8a"),
-    Case("b8b", "B8b"),
-    Case("b8c", "B8c below", until=1.0),
-    Case("b8c", "B8c above", near_balance(1483.2), until=1.0),
-    Case("b8c", "B8c soft", near_balance(200.0), until=1.0),
-    Case("b9a", "B9a", until=1.0),
-    Case("b9a", "B9a kI 0", WITHOUT_INTEGRAL, until=1.0),
-    Case("b9b", "B9b", force=1e-5, until=6.4),
-    Case("b9b", "B9b kI 0", WITHOUT_INTEGRAL, force=1e-5, until=6.4),
-    Case("b9c", "B9c", until=1.0),
-    Case("b9d", "B9d", until=1.0),
-    Case("x1", "X1 a", tip=1e-10),
-    Case("x1", "X1 b", {"controller.variant": "projected"}, tip=1e-13),
-    Case("x1", "X1 d", X1_DYNAMIC, tip=1e-13),
+    Case("shaped_impedance_step", "shaped impedance step"),
+    Case("impedance_step", "impedance step"),
+    Case("admittance_stability_limit", "admittance below the limit", until=1.0),
+    Case("admittance_stability_limit", "admittance above the limit", near_balance(1483.2), until=1.0),
+    Case("admittance_stability_limit", "admittance soft wall", near_balance(200.0), until=1.0),
+    Case("hybrid_moving_wall", "hybrid moving wall", until=1.0),
+    Case("hybrid_moving_wall", "hybrid moving wall, kI 0", WITHOUT_INTEGRAL, until=1.0),
+    Case("hybrid_first_contact", "hybrid first contact", force=1e-5, until=6.4),
+    Case("hybrid_first_contact", "hybrid first contact, kI 0", WITHOUT_INTEGRAL, force=1e-5, until=6.4),
+    Case("hybrid_biased_sensor", "hybrid biased sensor", until=1.0),
+    Case("hybrid_jacobian_transpose", "hybrid Jacobian transpose", until=1.0),
+    Case("hybrid_kinematic_instability", "instability raibert_craig", tip=1e-10),
+    Case("hybrid_kinematic_instability", "instability projected", {"controller.variant": "projected"}, tip=1e-13),
+    Case("hybrid_kinematic_instability", "instability dynamic", INSTABILITY_DYNAMIC, tip=1e-13),
 ]
 
 
 @cache
 def simulated(setting: str, until: float | None) -> Run:
-    loose = setting.startswith("B5a")
-    atol = 1e-16 if setting.startswith("X1") else 1e-12
+    loose = setting.startswith("energy balance")
+    atol = 1e-16 if setting.startswith("instability") else 1e-12
     known = SETTINGS[setting]
     return run_of(varied(known, stop=until or known["stop"]), rtol=1e-8 if loose else 1e-10, atol=atol)
 
@@ -146,7 +146,7 @@ def test_the_whole_run_is_that_of_another_simulation(case: Case, convention: str
         assert np.abs(forces).max() > 1e-3
 
 
-# ---- B5: restitution, and the plate's edge --------------------------------------------------------------------------
+# ---- restitution, and the plate's edge ------------------------------------------------------------------------------
 
 TURNING = """
 format: 1
@@ -183,7 +183,7 @@ def mass_across() -> float:
 
 
 @pytest.mark.parametrize("zeta", [0.02, 0.1, 0.3, 0.8, 1.0, 2.5])
-def test_b5c_restitution_of_a_damped_spring(zeta: float) -> None:
+def test_restitution_of_a_damped_spring(zeta: float) -> None:
     k = 1e7
     damping = 2 * zeta * np.sqrt(k * mass_across())
     e, run = bounced({"law": "kelvin_voigt", "stiffness": k, "damping": damping}, 0.1)
@@ -193,7 +193,7 @@ def test_b5c_restitution_of_a_damped_spring(zeta: float) -> None:
 
 @pytest.mark.parametrize("y", [0.05, 0.3, 1.0, 3.0])
 @pytest.mark.parametrize("p", [1.0, 1.5, 2.2])
-def test_b5c_restitution_of_hunt_and_crossley(y: float, p: float) -> None:
+def test_restitution_of_hunt_and_crossley(y: float, p: float) -> None:
     k, speed = 10 ** (5.0 * p + 2.0), 0.1
     contact = {"law": "hunt_crossley", "stiffness": k, "exponent": p, "dissipation": y / speed}
     assert bounced(contact, speed)[0] == close(impact.hunt_crossley_restitution(y), 1e-8)
@@ -205,7 +205,7 @@ def test_b5c_restitution_of_hunt_and_crossley(y: float, p: float) -> None:
     [{"law": "kelvin_voigt", "stiffness": 1e7}, {"law": "hunt_crossley", "stiffness": 3e9, "impact_speed": 0.1}],
     ids=lambda law: law["law"],
 )
-def test_b5c_a_restitution_that_was_asked_for(law: Changes, e: float) -> None:
+def test_a_restitution_that_was_asked_for(law: Changes, e: float) -> None:
     assert bounced({**law, "restitution": e}, 0.1)[0] == close(e, 1e-8)
 
 
@@ -215,10 +215,10 @@ def leaving_over_coming(run: arm3r.Run) -> float:
     return -after / before
 
 
-def test_b5c_an_arm_is_a_free_mass_to_a_hard_wall() -> None:
+def test_an_arm_is_a_free_mass_to_a_hard_wall() -> None:
     gaps = []
     for k in (1e7, 1e9):
-        e = leaving_over_coming(run_named("b5c", {"wall.contact.stiffness": k, "time.log_every": 0.1}))
+        e = leaving_over_coming(run_named("restitution", {"wall.contact.stiffness": k, "time.log_every": 0.1}))
         gaps.append(e - impact.hunt_crossley_restitution(0.3))
         if k == 1e7:
             assert e == close(0.833439, 1e-6)
@@ -230,8 +230,8 @@ HELD = {"arm.armature": [1e12, 1e12, 1e12], "wall.acts_on_arm": True}
 
 @pytest.mark.parametrize("across", [[0, 1, 0], [0, 0, 1], [0, -0.6, 0.8]])
 @pytest.mark.parametrize("acts", [False, True])
-def test_b5d_an_edge_takes_the_energy_of_the_dent(across: list[float], acts: bool) -> None:
-    run = run_named("b5d", {"wall.motion.direction": across, **(HELD if acts else {})})
+def test_a_plate_edge_takes_the_energy_of_the_dent(across: list[float], acts: bool) -> None:
+    run = run_named("plate_edge", {"wall.motion.direction": across, **(HELD if acts else {})})
     leaves = 0.5 / max(np.abs(across)) / 0.1
     if leaves < 5.5:
         (make, leave) = run.events
@@ -247,16 +247,18 @@ def test_b5d_an_edge_takes_the_energy_of_the_dent(across: list[float], acts: boo
     assert run["energy_dissipated"][before] == close(0.0, 1e-12)
 
 
-# ---- B6: joint PD, computed torque ----------------------------------------------------------------------------------
+# ---- joint PD, computed torque --------------------------------------------------------------------------------------
 
 
 @in_both_conventions
-def test_b6b_tracks_a_sine_after_a_rough_start(convention: str) -> None:
+def test_computed_torque_tracks_a_sine_after_a_rough_start(convention: str) -> None:
     """From rest where the sine is moving already: e = e'(0) t exp(-10 t), e'(0) its rate at first."""
     size, w = np.array([0.3, -0.2, 0.4]), 2 * np.pi * 0.7
     signs = D if convention == "simscape" else 1
     scenario = scenario_of(
-        "b6b", {"reference": {"type": "sinusoid", "q_amplitude": signs * size, "frequency": 0.7}}, convention=convention
+        "computed_torque",
+        {"reference": {"type": "sinusoid", "q_amplitude": signs * size, "frequency": 0.7}},
+        convention=convention,
     )
     run = finished(scenario)
     wanted = scenario["initial.q"] + np.multiply.outer(np.sin(w * run.t), signs * size)
@@ -268,14 +270,14 @@ def test_b6b_tracks_a_sine_after_a_rough_start(convention: str) -> None:
 
 @pytest.mark.parametrize("gain", [50.0, 100.0, 400.0])
 @pytest.mark.parametrize("push", [[-10, 4, 3], [3, -5, 8]])
-def test_b6c_yields_by_inertia_times_gain(push: list[float], gain: float) -> None:
+def test_computed_torque_yields_by_inertia_times_gain(push: list[float], gain: float) -> None:
     changes = {
         "controller.position_gain": gain,
         "controller.velocity_gain": 2 * np.sqrt(gain),
         "push.force": push,
         "time.stop": 8.0,
     }
-    end = Arm().at(run_named("b6c", changes)["q"][-1])
+    end = Arm().at(run_named("computed_torque_push", changes)["q"][-1])
     assert end.q == close(statics.computed_torque_rest(gain, QA, push).q, 1e-8)
     assert end.M @ (gain * (QA - end.q)) == close(-end.J.T @ push, 1e-6)
 
@@ -325,7 +327,7 @@ def assert_linear(run: arm3r.Run, loop: linear.Loop, *, k: float, depth: float, 
 
 
 HYBRIDS = {
-    "as in B9": PI,
+    "as in the scenario": PI,
     "no integral": PI | {"kI": 0.0},
     "heavy": {"f_d": 35.0, "kP": 0.8, "kI": 12.0, "m_f": 2.5, "b": 90.0},
     "slow": {"f_d": 12.0, "kP": 0.1, "kI": 0.4, "m_f": 1.0, "b": 30.0},
@@ -346,7 +348,7 @@ def force_law(kind: str, gains: dict[str, float]) -> Changes:
 @pytest.mark.parametrize("v", [0.0, 0.05, -0.01])
 @pytest.mark.parametrize("gains", HYBRIDS.values(), ids=HYBRIDS)
 @pytest.mark.parametrize("kind", ["hybrid", "operational_space"])
-def test_b9a_force_loop(kind: str, gains: dict[str, float], v: float, convention: str) -> None:
+def test_the_force_loop_of_hybrid_control(kind: str, gains: dict[str, float], v: float, convention: str) -> None:
     k, depth = 5000.0, 0.003
     loop = linear.hybrid_loop(**gains, k=k, v=v, u0=depth)
     reference = {"type": "hold", "force": {"value": gains["f_d"]}}
@@ -359,9 +361,7 @@ def test_b9a_force_loop(kind: str, gains: dict[str, float], v: float, convention
 @in_both_conventions
 @pytest.mark.parametrize("gains", [(400.0, 40.0), (900.0, 20.0)])
 @pytest.mark.parametrize("kind", ["hybrid", "operational_space"])
-def test_b9a_across_the_wall_position_has_a_loop_of_its_own(
-    kind: str, gains: tuple[float, float], convention: str
-) -> None:
+def test_across_the_wall_position_has_a_loop_of_its_own(kind: str, gains: tuple[float, float], convention: str) -> None:
     """The force does not notice that the tip goes 10 cm along the face meanwhile."""
     k, depth, v = 5000.0, 0.003, 0.05
     (K, damping), way = gains, 0.1 * np.cross(NORMAL, [0.6, 0.0, 0.8])
@@ -380,7 +380,7 @@ def test_b9a_across_the_wall_position_has_a_loop_of_its_own(
 @in_both_conventions
 @pytest.mark.parametrize("gains", [(2.0, 40.0, 200.0), (0.7, 15.0, 900.0), (5.0, 250.0, 50.0)])
 @pytest.mark.parametrize("kind", ["shaped_impedance", "admittance"])
-def test_b8a_impedance_loop(kind: str, gains: tuple[float, float, float], convention: str) -> None:
+def test_the_loop_of_a_shaped_impedance(kind: str, gains: tuple[float, float, float], convention: str) -> None:
     """An admittance over an exact inner loop is the same; it starts where it wants to be, pushed by a wanted force."""
     (M, B, K), k, ahead = gains, 1000.0, 0.05
     loop = linear.impedance_loop(M, B, K, k=k, ahead=ahead)
@@ -422,21 +422,23 @@ def test_the_force_loop_sees_a_small_error_of_the_model(slip: Changes) -> None:
     ],
     ids=["rodas4", "auto", "rk4", "rough"],
 )
-def test_b9a_by_every_method(solver: Changes, off: float) -> None:
+def test_hybrid_control_by_every_method(solver: Changes, off: float) -> None:
     loop = linear.hybrid_loop(**PI, k=5000.0, v=0.05, u0=0.004)
-    run = scenario_of("b9a", {"solver": solver}).run()
+    run = scenario_of("hybrid_moving_wall", {"solver": solver}).run()
     assert run["force"] == close(loop.forces(run.t), off)
     assert run.summary["peak_force"] == close(loop.peak(0.5)[1], off)
 
 
-# ---- B7: Cartesian stiffness ----------------------------------------------------------------------------------------
+# ---- Cartesian stiffness --------------------------------------------------------------------------------------------
 
 
 @in_both_conventions
 @pytest.mark.parametrize("ahead", [0.001, 0.01, 0.05, 0.15])
 @pytest.mark.parametrize("K", [200.0, 500.0])
 @pytest.mark.parametrize("kind", ["stiffness", "impedance"])
-def test_b7a_series_springs_at_any_displacement(kind: str, K: float, ahead: float, convention: str) -> None:
+def test_stiffness_control_is_series_springs_at_any_displacement(
+    kind: str, K: float, ahead: float, convention: str
+) -> None:
     law = {"type": kind, "stiffness": K, "damping": 100}
     reference = {"type": "point", "tip": start() - ahead * NORMAL}
     k = 5000.0
@@ -447,7 +449,7 @@ def test_b7a_series_springs_at_any_displacement(kind: str, K: float, ahead: floa
 
 @pytest.mark.parametrize("v", [0.05, 0.02])
 @pytest.mark.parametrize("K, damping", [(500.0, 100.0), (200.0, 150.0)])
-def test_b7b_a_wall_that_comes(K: float, damping: float, v: float) -> None:
+def test_stiffness_control_on_a_wall_that_comes(K: float, damping: float, v: float) -> None:
     changes = {
         "wall.motion.velocity": v,
         "wall.point": [1.75, 0, 0],
@@ -455,7 +457,7 @@ def test_b7b_a_wall_that_comes(K: float, damping: float, v: float) -> None:
         "controller.damping": damping,
         "time.stop": 3.0,
     }
-    run = run_named("b7b", changes)
+    run = run_named("stiffness_moving_wall", changes)
     ahead = XA[0] - (1.75 - v * run.t)
     late = run.t > 2
     expected = statics.moving_series_force(K, damping, 5000.0, v, ahead[late])
@@ -465,22 +467,22 @@ def test_b7b_a_wall_that_comes(K: float, damping: float, v: float) -> None:
 
 @in_both_conventions
 @pytest.mark.parametrize(("mm", "percent"), [(50.0, -10.236), (5.0, -0.9563), (0.5, -0.0950)])
-def test_b7c_stiffness_in_the_joints_holds_near_its_pose(mm: float, percent: float, convention: str) -> None:
+def test_joint_stiffness_holds_near_its_pose(mm: float, percent: float, convention: str) -> None:
     q = Arm().reach([1.70 + mm / 1000, 0, 0])
-    run = run_named("b7c", {"initial.q": q}, convention=convention)
+    run = run_named("joint_stiffness_fixed_wall", {"initial.q": q}, convention=convention)
     force = run["force"][-1]
     assert 100 * (force / statics.series_force(500.0, 5000.0, mm / 1000) - 1) == close(percent, 0.01)
     rest = statics.joint_stiffness_rest(500.0, q, x_E=1.70, k=5000.0)
     assert force == close(5000.0 * (rest.x[0] - 1.70), 1e-6)
 
 
-# ---- B8: impedance and admittance -----------------------------------------------------------------------------------
+# ---- impedance and admittance ---------------------------------------------------------------------------------------
 
 
 @in_both_conventions
 @pytest.mark.parametrize("damping", [5.0, 40.0])
-def test_b8b_energy_never_rises(damping: float, convention: str) -> None:
-    run = run_named("b8b", {"controller.damping": damping}, convention=convention)
+def test_the_energy_of_an_impedance_never_rises(damping: float, convention: str) -> None:
+    run = run_named("impedance_step", {"controller.damping": damping}, convention=convention)
     off = run["tip"] - [XA[0] + 0.05, 0, 0]
     storage = run["energy_kinetic"] + 100 * (off**2).sum(axis=1) + run["energy_contact"]
     assert np.diff(storage).max() <= 1e-12
@@ -490,8 +492,8 @@ def test_b8b_energy_never_rises(damping: float, convention: str) -> None:
 
 @pytest.mark.parametrize("k, amplitude", [(1396.8, 2.7e-5), (1483.2, 1.59e-4)])
 @in_both_conventions
-def test_b8c_decays_or_grows(k: float, amplitude: float, convention: str) -> None:
-    run = run_named("b8c", near_balance(k), convention=convention)
+def test_admittance_decays_or_grows(k: float, amplitude: float, convention: str) -> None:
+    run = run_named("admittance_stability_limit", near_balance(k), convention=convention)
     loop = linear.admittance_loop(2, 40, 200, 50, 1, k=k, ahead=0.05, off=1e-4)
     assert run["force"] == close(loop.forces(run.t), 1e-6)
     late = np.abs(run["force"][run.t > 5] - loop.settled).max() / k
@@ -499,20 +501,20 @@ def test_b8c_decays_or_grows(k: float, amplitude: float, convention: str) -> Non
     assert (late > 1e-4) == (k > linear.admittance_limit(2, 40, 200, 50, 1)[0])
 
 
-def test_b8c_settles_on_a_soft_wall() -> None:
+def test_admittance_settles_on_a_soft_wall() -> None:
     changes = {"wall.contact.stiffness": 200, "reference": {"type": "point", "tip": [XA[0] + 0.05, 0, 0]}}
-    run = run_named("b8c", {**changes, "initial.q": QA})
+    run = run_named("admittance_stability_limit", {**changes, "initial.q": QA})
     assert run["force"][-1] == close(5.0, 1e-6)
     assert run["tip"][-1] == close([XA[0] + 0.025, 0, 0], 1e-8)
 
 
-# ---- B9: hybrid position/force --------------------------------------------------------------------------------------
+# ---- hybrid position/force ------------------------------------------------------------------------------------------
 
 
 @in_both_conventions
 @pytest.mark.parametrize(("kI", "settled", "poles"), [(0.0, 27.0, 2), (5.0, 20.0, 3)])
-def test_b9b_from_the_lectures_contact_on(kI: float, settled: float, poles: int, convention: str) -> None:
-    run = run_named("b9b", {"controller.force_integral_gain": kI}, convention=convention)
+def test_hybrid_from_first_contact_on(kI: float, settled: float, poles: int, convention: str) -> None:
+    run = run_named("hybrid_first_contact", {"controller.force_integral_gain": kI}, convention=convention)
     assert [event.t for event in run.events] == [close(LECTURE_CONTACT, 1e-9)]
     loop = linear.hybrid_loop(**PI | {"kI": kI}, k=5000.0, v=0.05, u0=0.0)
     after = run.t > LECTURE_CONTACT
@@ -520,16 +522,18 @@ def test_b9b_from_the_lectures_contact_on(kI: float, settled: float, poles: int,
     assert not run["force"][~after].any()
     assert (loop.settled, len(loop.poles)) == (close(settled, 1e-9), poles)
     assert run["tip"][-1] == close([1.4 + settled / 5000, 0, 0], 1e-9)
-    in_balance = run_named("b9a", {"controller.force_integral_gain": kI})
+    in_balance = run_named("hybrid_moving_wall", {"controller.force_integral_gain": kI})
     assert run.summary["peak_force"] == close(loop.peak(0.5)[1], 1e-6)
     assert run.summary["peak_force"] > in_balance.summary["peak_force"]
 
 
-def test_b9b_goes_for_the_wall_at_a_speed_of_its_own() -> None:
+def test_hybrid_goes_for_the_wall_at_a_speed_of_its_own() -> None:
     """From the start on, `always`: kP f_d/b in free space, then the force loop from that speed."""
     gap, kP, b = 0.02, 0.5, 70.0
     changes = {"wall.point": [XA[0] + gap, 0, 0], "wall.motion": {"type": "fixed"}, "time.stop": 1.0}
-    run = run_named("b9b", {**changes, "controller.switching": "always", "controller.force_integral_gain": 0})
+    run = run_named(
+        "hybrid_first_contact", {**changes, "controller.switching": "always", "controller.force_integral_gain": 0}
+    )
     speed = kP * 20 / b
     come = speed * (run.t - (1 - np.exp(-b * run.t)) / b)
     (make,) = run.events
@@ -543,10 +547,10 @@ def test_b9b_goes_for_the_wall_at_a_speed_of_its_own() -> None:
 
 @pytest.mark.parametrize("bias", [1.5, -4.0])
 @pytest.mark.parametrize("ideal", [True, False])
-def test_b9c_a_biased_sensor(bias: float, ideal: bool) -> None:
+def test_hybrid_with_a_biased_sensor(bias: float, ideal: bool) -> None:
     """The force is short of the bias; where the read force is cancelled, the tip yields across too."""
     changes = {"sensors.force.bias": [-bias, 0, 0], "controller.ideal_cancellation": ideal}
-    run = run_named("b9c", changes)
+    run = run_named("hybrid_biased_sensor", changes)
     assert run["force"][-1] == close(20 - bias, 1e-6)
     assert run["force_measured"][-1] == close(20, 1e-6)
     end = Arm().at(run["q"][-1])
@@ -556,7 +560,7 @@ def test_b9c_a_biased_sensor(bias: float, ideal: bool) -> None:
 
 
 @pytest.mark.parametrize("gains", [(1.0, 20.0, 70.0), (2.0, 30.0, 100.0)])
-def test_b9d_transposed_jacobian(gains: tuple[float, float, float]) -> None:
+def test_hybrid_by_the_transposed_jacobian(gains: tuple[float, float, float]) -> None:
     kP, kI, b = gains
     changes = {
         "controller.force_gain": kP,
@@ -564,19 +568,19 @@ def test_b9d_transposed_jacobian(gains: tuple[float, float, float]) -> None:
         "controller.force_damping": b,
         "time.stop": 6.0,
     }
-    run = run_named("b9d", changes)
+    run = run_named("hybrid_jacobian_transpose", changes)
     assert run["force"][-1] == close(20, 1e-3)
     assert np.abs(run["tip_z"]).max() > 1e-4
     moved = run["tip_x"][-1] - run["tip_x"][-101]
     assert moved == close(-0.05, 1e-6)
 
 
-# ---- X: instability of J^-1 S_p, invariance -------------------------------------------------------------------------
+# ---- instability of J^-1 S_p, invariance ----------------------------------------------------------------------------
 
 
 @in_both_conventions
-def test_x1_offsets_grow_at_the_linear_rate(convention: str) -> None:
-    run = run_named("x1", convention=convention)
+def test_kinematic_instability_grows_at_the_linear_rate(convention: str) -> None:
+    run = run_named("hybrid_kinematic_instability", convention=convention)
     pose = np.deg2rad([0, -75, 45])
     s = Arm().at(pose)
     stiff = np.linalg.solve(s.M, np.linalg.solve(s.J, np.diag([1, 1, 0]) @ s.J))
@@ -593,9 +597,9 @@ def test_x1_offsets_grow_at_the_linear_rate(convention: str) -> None:
 
 @in_both_conventions
 @pytest.mark.parametrize("variant", ["projected", "dynamic"])
-def test_x1_other_variants_decay(variant: str, convention: str) -> None:
-    changes = X1_DYNAMIC if variant == "dynamic" else {"controller.variant": variant}
-    run = run_named("x1", changes, convention=convention)
+def test_other_variants_of_hybrid_control_decay(variant: str, convention: str) -> None:
+    changes = INSTABILITY_DYNAMIC if variant == "dynamic" else {"controller.variant": variant}
+    run = run_named("hybrid_kinematic_instability", changes, convention=convention)
     off = run["tip_x"] - run["tip_ref_x"]
     assert abs(off[-1]) < 0.1 * off[0]
     assert np.abs(off).max() == close(1e-6, 1e-12)
@@ -628,11 +632,26 @@ def rotation(angle: float) -> np.ndarray:
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
 
 
-TURNED = ["b5a", "b5c", "b6b", "b6c", "b7a", "b7b", "b7c", "b8a", "b8b", "b8c", "b9a", "b9b", "b9c", "b9d"]
+TURNED = [
+    "energy_balance",
+    "restitution",
+    "computed_torque",
+    "computed_torque_push",
+    "stiffness_fixed_wall",
+    "stiffness_moving_wall",
+    "joint_stiffness_fixed_wall",
+    "shaped_impedance_step",
+    "impedance_step",
+    "admittance_stability_limit",
+    "hybrid_moving_wall",
+    "hybrid_first_contact",
+    "hybrid_biased_sensor",
+    "hybrid_jacobian_transpose",
+]
 
 
 @pytest.mark.parametrize("name", TURNED)
-def test_x5_turned_by_37_degrees(name: str) -> None:
+def test_turned_by_37_degrees(name: str) -> None:
     angle, R = np.deg2rad(37), rotation(np.deg2rad(37))
     run = finished(scenario_of(name, {}))
     other = finished(turned(scenario_of(name, {}), angle))
@@ -640,11 +659,11 @@ def test_x5_turned_by_37_degrees(name: str) -> None:
     assert other["tip"] == close(run["tip"] @ R.T, 1e-9)
     if "force" in run:
         assert other["force"] == close(run["force"], 1e-7)
-    assert other["f_on_tip"] == close(run["f_on_tip"] @ R.T, 1e-4 if name == "b5a" else 1e-6)
+    assert other["f_on_tip"] == close(run["f_on_tip"] @ R.T, 1e-4 if name == "energy_balance" else 1e-6)
 
 
-@pytest.mark.parametrize("name", [*TURNED, "x1", "x5"])
-def test_x5_both_conventions_move_the_tip_alike(name: str) -> None:
+@pytest.mark.parametrize("name", [*TURNED, "hybrid_kinematic_instability", "hybrid_rotated"])
+def test_both_conventions_move_the_tip_alike(name: str) -> None:
     slide, simscape = run_named(name), run_named(name, convention="simscape")
     assert simscape["tip"] == close(slide["tip"], 4e-11)
     assert simscape["f_on_tip"] == close(slide["f_on_tip"], 1e-6)

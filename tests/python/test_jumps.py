@@ -100,7 +100,7 @@ def test_a_push_on_the_grid_costs_rk4_nothing() -> None:
 
 
 @pytest.mark.parametrize(("text", "changes"), SHARP)
-def test_rk4_keeps_order_four_where_the_jump_lies_on_the_grid(text: str, changes: dict[str, Any]) -> None:
+def test_keeps_order_four_where_the_jump_lies_on_the_grid(text: str, changes: dict[str, Any]) -> None:
     steps = [0.01, 0.005, 0.0025]
     coarse, half, quarter = (end_of(text, {**changes, "solver": {"method": "rk4", "step": h}}) for h in steps)
     ratio = np.linalg.norm(coarse - half) / np.linalg.norm(half - quarter)

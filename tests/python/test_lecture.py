@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 NAMES = sorted(str(path.relative_to(SCENARIOS)) for path in scenario_files())
 LECTURE = [name for name in NAMES if name.startswith("lecture/")]
-BESIDE_THE_PLATE = {"force_control/b5d_plate_edge.yaml"}  # the tip is deeper than the face, and nothing touches it
+BESIDE_THE_PLATE = {"contact/plate_edge.yaml"}  # the tip is deeper than the face, and nothing touches it
 D = np.array([1, -1, -1])
 Array = NDArray[np.float64]
 G, G_MOON = 9.80665, 1.62

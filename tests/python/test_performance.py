@@ -30,15 +30,15 @@ def test_the_path_error_of_a_law_in_joints_is_that_of_the_true_arm(solver: str) 
 
 # ---- the numbers of a summary against a dense log -------------------------------------------------------------------
 
-SCORED = ["b9a_hybrid", "b9d_hybrid_transpose", "b10a_parallel_moving_wall", "b10b_adaptive_reference", "b7a_stiffness",
-          "b8a_shaped_impedance", "b8c_admittance", "b5a_energy_ledger"]  # fmt: skip
+SCORED = ["hybrid_moving_wall", "hybrid_jacobian_transpose", "parallel_moving_wall", "adaptive_reference_moving_wall",
+          "stiffness_fixed_wall", "shaped_impedance_step", "admittance_stability_limit", "energy_balance"]  # fmt: skip
 METHODS: dict[str, dict[str, Any]] = {
     "dopri5": {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13},
     "rodas4": {"method": "rodas4", "rtol": 1e-10, "atol": 1e-13},
     "rk4": {"method": "rk4", "step": 2.5e-5},
 }
 STOP, ROWS = 0.6, 24000
-DENSER = {"b5a_energy_ledger": 4}
+DENSER = {"energy_balance": 4}
 """times as many rows, where friction on the wall turns round within 50 us"""
 
 
@@ -247,7 +247,7 @@ def test_numbers_of_a_sampled_run_are_those_of_its_rows(method: str) -> None:
         "reference": {"type": "circle", "radius": 0.1, "period": 1, "force": {"value": 20}},
         "time.stop": 1.0, "time.log_every": 1e-4,
     }  # fmt: skip
-    run = read("b9a_hybrid", changes).run()
+    run = read("hybrid_moving_wall", changes).run()
     assert not (wrong := wrong_numbers(run, 1e-8)), wrong
 
 

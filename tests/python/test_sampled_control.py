@@ -53,7 +53,7 @@ def test_computed_torque_on_a_hold_is_its_recursion(zeta: float, period: float) 
         "controller.velocity_gain": 40 * zeta, "sampling.rate": 1 / period, "time.stop": 60 * period,
         "time.log_every": period,
     }  # fmt: skip
-    run = read("b12a_hold_stable", changes).run()
+    run = read("sampling_period_stable", changes).run()
     A, e = sampled.held_recursion(400.0, 40.0 * zeta, period), np.array([1e-7, 0.0])
     largest = 0.0
     for row in range(61):
@@ -67,7 +67,7 @@ def test_a_period_that_the_gains_do_not_bear_is_warned_of(zeta: float) -> None:
     limit = sampled.longest_period(400.0, 40.0 * zeta)
     for share, count in ((0.98, 0), (1.02, 1)):
         changes = {"controller.velocity_gain": 40 * zeta, "sampling.rate": 1 / (share * limit), "time.stop": 0.1}
-        warnings = read("b12a_hold_stable", changes).run().summary["warnings"]
+        warnings = read("sampling_period_stable", changes).run().summary["warnings"]
         assert len([each for each in warnings if "stable" in str(each)]) == count, warnings
 
 
@@ -351,16 +351,16 @@ def test_contact_is_judged_with_hysteresis(on: float, off: float) -> None:
 # ---- delay and filter in the force loop -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["b12b_delay_short", "b12b_delay_long"])
+@pytest.mark.parametrize("name", ["force_delay_stable", "force_delay_unstable"])
 def test_a_late_force_grows_beyond_the_delay_margin(name: str) -> None:
     run, delay = read(name).run(), read(name)["sensors.force.delay"]
     margin = linear.delay_margin(**PI, k=5000)[2]
     assert margin == pytest.approx(24.826e-3, abs=5e-7)
-    assert delay / 5000 / margin == pytest.approx(0.95 if name.endswith("short") else 1.05, abs=1e-6)
+    assert delay / 5000 / margin == pytest.approx(0.95 if name.endswith("_stable") else 1.05, abs=1e-6)
     forces = late_loop(delay, 1 / 5000, len(run["t"][1:]) * 50)
     assert np.abs(run["force"] - forces[::50]).max() < 0.01 * np.abs(forces - 20).max()
     early, late = (np.abs(forces[a:b] - 20).max() for a, b in ((5000, 7500), (15000, 17500)))
-    assert (late > early) == name.endswith("long")
+    assert (late > early) == name.endswith("unstable")
 
 
 def late_loop(delay: float, period: float, ticks: int) -> Any:
@@ -385,7 +385,9 @@ def late_loop(delay: float, period: float, ticks: int) -> Any:
 def test_a_filtered_force_is_the_linear_loop(share: float) -> None:
     limit = linear.filter_limit(**PI, k=5000)
     assert limit == pytest.approx(21.434, abs=5e-4)
-    run = read("b12c_filter_slow", {"sensors.force.analog_cutoff": share * limit / (2 * np.pi), "time.stop": 2}).run()
+    run = read(
+        "force_filter_unstable", {"sensors.force.analog_cutoff": share * limit / (2 * np.pi), "time.stop": 2}
+    ).run()
     loop = linear.filtered_hybrid_loop(20.0, **PI, k=5000, rate=share * limit, u0=0.0041)
     started = linear.loop(loop.A, loop.c, [0.0041, 0, 0, -0.5], 5000)
     assert np.abs(run["force"] - started.forces(run["t"])).max() < 1e-6
@@ -401,7 +403,7 @@ def test_a_sampled_wall_gives_energy_unless_it_is_kept_passive(
     controlled: bool, stiffness: float, speed: float
 ) -> None:
     changes = {"controller.stiffness": stiffness, "initial.qd": [speed / np.sqrt(3), 0, 0], "time.stop": 0.05}
-    run = read("b12d_passive" if controlled else "b12d_virtual_wall", changes).run()
+    run = read("virtual_wall_passive" if controlled else "virtual_wall", changes).run()
     wall = (stiffness, 0.5, T, 1e-3, speed, 51)
     free = sampled.foreseen_run(*wall) if controlled else sampled.passivity_run(*wall, controlled=False)
     assert np.abs(run["tip_y"] - (free[:, 0] + 1e-3)).max() < 2e-8
@@ -432,7 +434,7 @@ def test_lanes_are_single_runs() -> None:
 
 
 def test_reactions_in_lanes_are_single_runs() -> None:
-    base = read("c13_reaction_reflex", {"sampling.rate": 1000, "solver": {"method": "rk4"}, "time": {"stop": 0.4}})
+    base = read("reaction_reflex", {"sampling.rate": 1000, "solver": {"method": "rk4"}, "time": {"stop": 0.4}})
     batch = base.batch({"observer.threshold": [0.2, 0.5, 1.0, 2.0, 5.0], "observer.reflex_gain": [0, 1, 2, 3, 1]})
     for lane in range(5):
         alone = batch.run(lane)

@@ -1,4 +1,4 @@
-"""Stiff contact: how many steps each method takes (X4), and that they agree."""
+"""Stiff contact: how many steps each method takes, and that they agree."""
 
 from __future__ import annotations
 

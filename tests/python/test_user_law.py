@@ -539,7 +539,7 @@ def _told(run: arm3r.Run) -> dict[str, Any]:
 @pytest.mark.parametrize("sensors", ["null", NOISY])
 def test_a_copy_forgets_nothing(root: Path, method: str, sensors: str) -> None:
     """In stiff contact, with a force filter, with events: the rows and every number of the summary are the run's."""
-    path = root / "scenarios/force_control/x4_stiff_damping.yaml"
+    path = root / "scenarios/contact/stiff_damping.yaml"
     scenario = arm3r.Scenario(path.read_text().split("checks:")[0])
     scenario["controller"] = {"type": "user"}
     scenario["sampling"] = {"rate": 100}

@@ -214,7 +214,7 @@ def test_a_push_is_no_contact_with_the_wall(solver: dict[str, Any]) -> None:
         ({"estimator.start": 0.0123}, "the nearest is 0.012 s"),
     ],
 )
-def test_rk4_takes_the_estimators_samples_on_its_steps_or_not_at_all(changes: dict[str, float], told: str) -> None:
+def test_takes_the_estimators_samples_on_its_steps_or_not_at_all(changes: dict[str, float], told: str) -> None:
     made = arm3r.Scenario(ONE_OF_ITS_OWN)
     made["solver"] = {"method": "rk4", "step": 1e-3}
     made["estimator.start"] = 0.012

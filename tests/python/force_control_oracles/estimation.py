@@ -1,4 +1,4 @@
-"""C12 to C14 in closed form: what an observer says, how far a pushed arm yields, what forces tell of a wall."""
+"""In closed form: what an observer says, how far a pushed arm yields, what forces tell of a wall."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ def ramp_delay(slope: float, threshold: float, K_O: float) -> float:
 
 
 def yielding_speed(F: float, m_n: float, K_R: float, K_O: float, t: float) -> float:
-    """C13 R3: speed of a mass m_n at rest under a constant F, along it."""
+    """The reflex of (8.6): speed of a mass m_n at rest under a constant F, along it."""
     return F / m_n * (t + K_R * (t - observer_step(K_O, t) / K_O))
 
 
 def fitted_wall(s: np.ndarray, t: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, float]:
-    """C14 (a): (k_e, speed v, place s_E at t = 0) of f = k_e (s - s_E + v t), and the condition of the problem."""
+    """(8.7): (k_e, speed v, place s_E at t = 0) of f = k_e (s - s_E + v t), and the condition of the problem."""
     phi = np.stack([s, np.ones_like(s), t], axis=1)
     k, offset, drift = np.linalg.lstsq(phi, f, rcond=None)[0]
     return np.array([k, drift / k, -offset / k]), float(np.linalg.cond(phi))
 
 
 def reference_for(f_d: float, s_E: float, k_e: float, K: float) -> float:
-    """C14 (a): where the reference of an impedance K must stand."""
+    """(7.18), `indirect`: where the reference of an impedance K must stand."""
     return s_E + f_d / k_e + f_d / K
 
 

@@ -1,4 +1,4 @@
-"""Control laws C2 to C15, a few lines each. The model is the plant; the true force is cancelled where a law cancels."""
+"""The control laws of docs/model.md, a few lines each. The model is the plant, a cancelled force the true one."""
 
 from __future__ import annotations
 
@@ -39,17 +39,17 @@ def sideways(p_in: Vector) -> np.ndarray:
 
 
 def constant(torque: Vector) -> Control:
-    """C1."""
+    """A torque that does not change."""
     return lambda t, s, force, z: (np.asarray(torque, dtype=float), NONE)
 
 
 def gravity_compensation() -> Control:
-    """C2."""
+    """The torque that holds the arm at rest."""
     return lambda t, s, force, z: (s.gravity, NONE)
 
 
 def joint_pd(Kp: Vector, Kd: Vector, q_d: Vector, *, gravity: bool = True) -> Control:
-    """C3."""
+    """(7.6)."""
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.multiply(Kp, np.subtract(q_d, s.q)) - np.multiply(Kd, s.qd) + gravity * s.gravity, NONE
@@ -58,7 +58,7 @@ def joint_pd(Kp: Vector, Kd: Vector, q_d: Vector, *, gravity: bool = True) -> Co
 
 
 def computed_torque(Kp: float, Kd: float, q_d: Vector | Reference, *, cancel: bool = True) -> Control:
-    """C4 in the joints."""
+    """(7.7)."""
     reference = reference_of(q_d)
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -70,7 +70,7 @@ def computed_torque(Kp: float, Kd: float, q_d: Vector | Reference, *, cancel: bo
 
 
 def hold_tip(K: float, D: float, x_d: Vector, *, selected: Vector = (1, 1, 1)) -> Control:
-    """C4 in the task; selected leaves directions alone, as C9 (d) does without its force part."""
+    """(7.8); selected leaves directions alone, as `hybrid` does without its force part."""
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return inverse_dynamics(s, np.multiply(selected, K * (x_d - s.x) - D * s.xd), force), NONE
@@ -79,18 +79,18 @@ def hold_tip(K: float, D: float, x_d: Vector, *, selected: Vector = (1, 1, 1)) -
 
 
 def cartesian_stiffness(K_P: float, K_D: float, x_d: Vector) -> Control:
-    """C5, and C6 at rest."""
+    """(7.9), and (7.11) with a reference at rest."""
     return lambda t, s, force, z: (s.gravity + s.J.T @ (K_P * (x_d - s.x) - K_D * s.xd), NONE)
 
 
 def joint_stiffness(K_P: float, K_D: float, q_d: Vector) -> Control:
-    """C5, K_q = J_d^T K_P J_d."""
+    """(7.10), K_q = J_d^T K_P J_d."""
     J = Arm().at(q_d).J
     return lambda t, s, force, z: (s.gravity + J.T @ (K_P * (J @ (q_d - s.q)) - K_D * (J @ s.qd)), NONE)
 
 
 def natural_impedance(B: float, K: float, x_d: Vector | Reference) -> Control:
-    """C6."""
+    """(7.11)."""
     reference = reference_of(x_d)
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -103,7 +103,7 @@ def natural_impedance(B: float, K: float, x_d: Vector | Reference) -> Control:
 
 
 def impedance(M: float, B: float, K: float, x_d: Vector | Reference) -> Control:
-    """C7."""
+    """(7.12)."""
     reference = reference_of(x_d)
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -115,7 +115,7 @@ def impedance(M: float, B: float, K: float, x_d: Vector | Reference) -> Control:
 
 
 def operational_space(s: Motion, a: np.ndarray, force: np.ndarray, forward: np.ndarray) -> np.ndarray:
-    """C8: (i) with the force that acts and forward = 0, (ii) with force = 0 and the wanted one fed forward."""
+    """(7.13): cancelled (the force that acts, forward = 0), or force = 0 and the wanted force fed forward."""
     inertia = np.linalg.inv(s.mobility)
     mu_xd = np.linalg.solve(s.J.T, s.rates) - inertia @ s.bias
     p = np.linalg.solve(s.J.T, s.gravity)
@@ -123,7 +123,7 @@ def operational_space(s: Motion, a: np.ndarray, force: np.ndarray, forward: np.n
 
 
 def hybrid_joints(Kp: float, Kv: float, x_d: Vector, position: Vector, *, projected: bool = False) -> Control:
-    """C9 (a), (b) without their force part; position is the diagonal of S_p."""
+    """(7.14), raibert_craig and projected, without their force part; position is the diagonal of S_p."""
     S_p = np.diag(position).astype(float)
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -136,7 +136,7 @@ def hybrid_joints(Kp: float, Kv: float, x_d: Vector, position: Vector, *, projec
 def hybrid_transposed(
     f_d: float, kP: float, kI: float, b: float, K: float, D: float, x_d: Vector, p_in: Vector = X
 ) -> Control:
-    """C9 (c). Memory: int e_f."""
+    """(7.14), jacobian_transpose. Memory: int e_f."""
     S_p = sideways(p_in)
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -163,7 +163,7 @@ def hybrid(
     filter_rate: float | None = None,
     felt: Callable[[float, float], float] | None = None,
 ) -> Control:
-    """C9 (d). Memory: int e_f[, e_f after the filter]. dither: N, Hz, on f_d. felt(t, f): what the sensor says of f."""
+    """(7.14), dynamic. Memory: int e_f[, e_f after the filter]. dither: N, Hz, on f_d. felt(t, f): the measured f."""
     S_p = sideways(p_in)
 
     def error(t: float, force: np.ndarray) -> float:
@@ -185,7 +185,7 @@ def hybrid(
 def parallel(
     f_d: float, m: float, K_D: float, K_P: float, K_F: float, K_I: float, x_d: Vector, p_in: Vector = X
 ) -> Control:
-    """C10, x_d at rest. Memory: int e_f."""
+    """(7.16), x_d at rest. Memory: int e_f."""
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         e_f = f_d - pressing(force, p_in)
@@ -196,7 +196,7 @@ def parallel(
 
 
 def admittance(M: float, B: float, K: float, x_d: Vector, w: float, zeta: float, *, forward: bool = False) -> Control:
-    """C11 (ii), with forward (i). Memory: x_c, xd_c."""
+    """(7.17), inner loop `position`, with forward `exact`. Memory: x_c, xd_c."""
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         x_c, xd_c = z[:3], z[3:6]
@@ -208,7 +208,7 @@ def admittance(M: float, B: float, K: float, x_d: Vector, w: float, zeta: float,
 
 
 def observed(law: Control, K_O: float, *, yielding: float = 0.0) -> Control:
-    """C12 beside a law without memory, from rest; yielding is K_R of C13 R3. Memory: int (tau + C^T qd - tau_g + r)."""
+    """(8.4) beside a law without memory, from rest; yielding: K_R of (8.6). Memory: int (tau + C^T qd - tau_g + r)."""
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         r = reaction(s, z, K_O)
@@ -224,7 +224,7 @@ def reaction(s: Motion, memory: np.ndarray, K_O: float) -> np.ndarray:
 
 
 def seeking(f_d: float, k_r: float, M: float, B: float, K: float, x_r: Vector, p_in: Vector = X) -> Control:
-    """C14 (b), x_r at first. Memory: how far the reference has gone along p_in."""
+    """(7.18), `integral`, from x_r on. Memory: how far the reference has gone along p_in."""
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         a = (force - B * s.xd - K * (s.x - x_r - np.multiply(z[0], p_in))) / M
@@ -250,7 +250,7 @@ def tank(
     *,
     bounded: bool = True,
 ) -> Control:
-    """C15 (a), dK = swing[0] sin(2 pi swing[1] t). Memory: E, filled until 90 to 100 % of E_max."""
+    """(7.19), dK = swing[0] sin(2 pi swing[1] t). Memory: E, filled until 90 to 100 % of E_max."""
 
     def control(t: float, s: Motion, force: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         e = s.x - x_d

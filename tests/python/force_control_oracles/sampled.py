@@ -48,7 +48,7 @@ def filtered_noise(alpha: float) -> float:
 def passivity_run(
     k: float, m: float, period: float, gap: float, speed: float, ticks: int, *, controlled: bool
 ) -> np.ndarray:
-    """C15 (b): a free mass against a sampled spring wall. Rows at the ticks: x (into the wall), v, E observed, f."""
+    """(7.20): a free mass against a sampled spring wall. Rows at the ticks: x (into the wall), v, E observed, f."""
     x, v, E = -gap, speed, 0.0
     rows, before = [], None
     for _ in range(ticks):

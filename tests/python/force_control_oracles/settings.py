@@ -42,49 +42,49 @@ HYBRID = {"type": "hybrid", "f_d": F_D, "kP": 0.5, "kI": 5.0, "m_f": 1.0, "b": 7
 ADMITTANCE = {"type": "admittance", "M": 2.0, "B": 40.0, "K": 200.0, "w": 50.0, "zeta": 1.0}
 AHEAD = [XA[0] + 0.05, 0.0, 0.0]
 PUSH = [-10.0, 4.0, 3.0]
-X1_POSE = np.deg2rad([0.0, -75.0, 45.0]).tolist()
-X1_TIP = Arm().at(X1_POSE).x.tolist()
-B5_START = [0.1, *QA[1:]]
-B5_NORMAL = [-float(np.cos(0.3)), -float(np.sin(0.3)), 0.0]
+UNSTABLE_POSE = np.deg2rad([0.0, -75.0, 45.0]).tolist()
+UNSTABLE_TIP = Arm().at(UNSTABLE_POSE).x.tolist()
+TURNED_START = [0.1, *QA[1:]]
+OBLIQUE_NORMAL = [-float(np.cos(0.3)), -float(np.sin(0.3)), 0.0]
 SWING = {"amplitude": 0.02, "frequency": 1.0}
 
-B5A: Setting = {
+ENERGY_BALANCE: Setting = {
     "arm": {"armature": [0.02, 0.02, 0.01], "viscous": [0.2, 0.3, 0.1], "coulomb": [0.1, 0.2, 0.05], "eps": 1e-2},
-    "q": B5_START,
+    "q": TURNED_START,
     "wall": {
-        "point": (Arm().at(B5_START).x + 0.005 * np.array(B5_NORMAL)).tolist(),
-        "normal": B5_NORMAL,
+        "point": (Arm().at(TURNED_START).x + 0.005 * np.array(OBLIQUE_NORMAL)).tolist(),
+        "normal": OBLIQUE_NORMAL,
         "sinusoid": SWING,
         "contact": {"law": "kelvin_voigt", "k": 2e4, "c": 20.0, "friction": 0.3, "slip": 1e-3},
     },
-    "controller": {"type": "joint_pd", "Kp": [200, 200, 100], "Kd": [20, 20, 8], "q_d": B5_START},
+    "controller": {"type": "joint_pd", "Kp": [200, 200, 100], "Kd": [20, 20, 8], "q_d": TURNED_START},
     "stop": 2.0,
 }
-B6A: Setting = {
+JOINT_PD_SAG: Setting = {
     "q": QA,
     "controller": {"type": "joint_pd", "Kp": [200, 200, 100], "Kd": [30, 30, 10], "q_d": QA, "gravity": False},
     "stop": 12.0,
 }
-B6B: Setting = {
+COMPUTED_TORQUE: Setting = {
     "q": (np.array(QA) - [0.3, -0.2, 0.4]).tolist(),
     "controller": {"type": "computed_torque", "Kp": 100.0, "Kd": 20.0, "q_d": QA},
     "stop": 0.5,
 }
-B6C: Setting = {
+COMPUTED_TORQUE_PUSH: Setting = {
     "q": QA,
     "controller": {"type": "computed_torque", "Kp": 100.0, "Kd": 20.0, "q_d": QA, "cancel": False},
     "push": PUSH,
     "stop": 4.0,
 }
-B7A: Setting = {
+STIFFNESS_FIXED_WALL: Setting = {
     "q": QA,
     "wall": spring_wall(1.70, 5000.0),
     "controller": {"type": "cartesian_stiffness", "K_P": 500.0, "K_D": 100.0, "x_d": [1.75, 0.0, 0.0]},
     "stop": 6.0,
 }
-B7B = varied(B7A, wall=LECTURE_WALL, controller={"x_d": XA}, start=5.3, stop=12.0)
-B7C: dict[str, Setting] = {
-    f"B7c {mm} mm": {
+STIFFNESS_MOVING_WALL = varied(STIFFNESS_FIXED_WALL, wall=LECTURE_WALL, controller={"x_d": XA}, start=5.3, stop=12.0)
+JOINT_STIFFNESS: dict[str, Setting] = {
+    f"joint stiffness {mm} mm": {
         "q": tip_at(1.70 + mm / 1000, 0, 0),
         "wall": spring_wall(1.70, 5000.0),
         "controller": {"type": "joint_stiffness", "K_P": 500.0, "K_D": 100.0, "q_d": tip_at(1.70 + mm / 1000, 0, 0)},
@@ -92,13 +92,15 @@ B7C: dict[str, Setting] = {
     }
     for mm in (50.0, 5.0, 0.5)
 }
-B8A: Setting = {
+SHAPED_IMPEDANCE_STEP: Setting = {
     "q": QA,
     "wall": spring_wall(XA[0], 1000.0),
     "controller": {"type": "impedance", "M": 2.0, "B": 40.0, "K": 200.0, "x_d": AHEAD},
     "stop": 2.0,
 }
-B8B = varied(B8A, controller={"type": "cartesian_stiffness", "K_P": 200.0, "K_D": 40.0, "x_d": AHEAD})
+IMPEDANCE_STEP = varied(
+    SHAPED_IMPEDANCE_STEP, controller={"type": "cartesian_stiffness", "K_P": 200.0, "K_D": 40.0, "x_d": AHEAD}
+)
 
 
 def admittance_near_balance(k: float) -> Setting:
@@ -113,21 +115,21 @@ def admittance_near_balance(k: float) -> Setting:
     }
 
 
-B9A: Setting = {
+HYBRID_MOVING_WALL: Setting = {
     "q": QA,
     "wall": spring_wall(PRESSED, 5000.0, SPEED),
     "controller": HYBRID,
     "memory": [0.0],
     "stop": 3.0,
 }
-B9B: Setting = {
+HYBRID_FIRST_CONTACT: Setting = {
     "q": QA,
     "wall": LECTURE_WALL,
     "controller": {"type": "hold_tip", "K": 400.0, "D": 40.0, "x_d": XA},
     "after contact": {"controller": HYBRID, "memory": [0.0]},
     "stop": 12.0,
 }
-B10A: Setting = {
+PARALLEL_FIXED_WALL: Setting = {
     "q": QA,
     "wall": spring_wall(PRESSED, 5000.0),
     "controller": {
@@ -137,13 +139,13 @@ B10A: Setting = {
     "memory": [0.0],
     "stop": 12.0,
 }  # fmt: skip
-B10D: Setting = {
+WRONG_STIFFNESS: Setting = {
     "q": QA,
     "wall": spring_wall(XA[0], 5000.0),
     "controller": {"type": "impedance", "M": 2.0, "B": 100.0, "K": 500.0},
     "stop": 2.0,
 }
-B11A: Setting = {
+OBSERVER_FORCE_STEP: Setting = {
     "q": QA,
     "controller": {"type": "constant", "torque": (Arm().at(QA).gravity - Arm().at(QA).J.T @ PUSH).tolist()},
     "observer": {"K_O": 50.0},
@@ -151,7 +153,7 @@ B11A: Setting = {
     "push": PUSH,
     "stop": 0.1,
 }
-B11B: Setting = {
+OBSERVER_MOVING_WALL: Setting = {
     "q": QA,
     "wall": spring_wall(2.0, 2000.0, SPEED),
     "controller": OBSERVED_PD,
@@ -161,16 +163,16 @@ B11B: Setting = {
     "stop": 8.0,
 }
 REACTIONS: dict[str, Setting] = {
-    "R0": {"memory": None},
-    "R1": {"memory": None, "controller": OBSERVED_PD | {"q_d": None}},
-    "R2": {"memory": None, "controller": {"type": "gravity_compensation"}},
-    "R3": {
+    "ignore": {"memory": None},
+    "stop": {"memory": None, "controller": OBSERVED_PD | {"q_d": None}},
+    "float": {"memory": None, "controller": {"type": "gravity_compensation"}},
+    "reflex": {
         "memory": None,
         "controller": {"type": "gravity_compensation"},
         "observer": {"K_O": 50.0, "yielding": 1.0},
     },
 }
-B11D: Setting = {
+REFLEX: Setting = {
     "q": QA,
     "controller": {"type": "gravity_compensation"},
     "observer": {"K_O": 50.0, "yielding": 0.0},
@@ -178,14 +180,14 @@ B11D: Setting = {
     "push": [-0.01, 0.0, 0.0],
     "stop": 0.2,
 }
-B12A: Setting = {
+SAMPLING_PERIOD: Setting = {
     "arm": {"gravity": [0.0, 0.0, 0.0]},
     "q": (np.array(QA) + 1e-7).tolist(),
     "controller": {"type": "computed_torque", "Kp": 400.0, "Kd": 40.0, "q_d": QA},
     "period": 0.049,
     "ticks": 60,
 }
-B12B: Setting = {
+FORCE_DELAY: Setting = {
     "q": tip_at(XA[0] + 1e-6, 0, 0),
     "wall": spring_wall(PRESSED, 5000.0),
     "controller": HYBRID,
@@ -193,12 +195,12 @@ B12B: Setting = {
     "delay": 0.95 * 0.024826254913580644,
     "stop": 2.5,
 }
-X1: Setting = {
-    "q": tip_at(X1_TIP[0] + 1e-6, 0, X1_TIP[2], elbow=1),
-    "controller": {"type": "hybrid_joints", "Kp": 25.0, "Kv": 10.0, "x_d": X1_TIP, "position": [1, 0, 0]},
+INSTABILITY: Setting = {
+    "q": tip_at(UNSTABLE_TIP[0] + 1e-6, 0, UNSTABLE_TIP[2], elbow=1),
+    "controller": {"type": "hybrid_joints", "Kp": 25.0, "Kv": 10.0, "x_d": UNSTABLE_TIP, "position": [1, 0, 0]},
     "stop": 1.0,
 }
-X2: Setting = {
+VARIABLE_STIFFNESS_TANK: Setting = {
     "q": tip_at(XA[0] + 0.010, 0.005, 0.010),
     "controller": {
         "type": "tank", "K_0": 200.0, "swing": [120.0, 6.25], "D": 0.3, "x_d": XA,
@@ -209,34 +211,34 @@ X2: Setting = {
 }  # fmt: skip
 
 SETTINGS: dict[str, Setting] = {
-    "B5a": B5A,
-    "B5b": varied(B5A, modes=2),
-    "B5c": {
+    "energy balance": ENERGY_BALANCE,
+    "energy balance, two contact modes": varied(ENERGY_BALANCE, modes=2),
+    "restitution": {
         "q": QA,
         "wall": varied(LECTURE_WALL, contact={"law": "hunt_crossley", "k": 1e7, "p": 1.5, "beta": 6.0}),
         "controller": {"type": "gravity_compensation"},
         "start": 5.3,
         "stop": 5.4,
     },
-    "B6a": B6A,
-    "B6a compensated": varied(B6A, q=[0.1, 0.4, -0.9], controller={"gravity": True}),
-    "B6b": B6B,
-    "B6c": B6C,
-    "B7a": B7A,
-    "B7b": B7B,
-    **B7C,
-    "B8a": B8A,
-    "B8b": B8B,
-    "B8c below": admittance_near_balance(1396.8),
-    "B8c above": admittance_near_balance(1483.2),
-    "B8c soft": admittance_near_balance(200.0),
-    "B9a": B9A,
-    "B9a kI 0": varied(B9A, controller={"kI": 0.0}),
-    "B9b": B9B,
-    "B9b kI 0": varied(B9B, **{"after contact": {"controller": {"kI": 0.0}}}),
-    "B9c": varied(B9A, wall={"speed": 0.0}, controller={"bias": 1.5}),
-    "B9d": varied(
-        B9A,
+    "joint PD sag": JOINT_PD_SAG,
+    "joint PD with gravity compensation": varied(JOINT_PD_SAG, q=[0.1, 0.4, -0.9], controller={"gravity": True}),
+    "computed torque": COMPUTED_TORQUE,
+    "computed torque push": COMPUTED_TORQUE_PUSH,
+    "stiffness fixed wall": STIFFNESS_FIXED_WALL,
+    "stiffness moving wall": STIFFNESS_MOVING_WALL,
+    **JOINT_STIFFNESS,
+    "shaped impedance step": SHAPED_IMPEDANCE_STEP,
+    "impedance step": IMPEDANCE_STEP,
+    "admittance below the limit": admittance_near_balance(1396.8),
+    "admittance above the limit": admittance_near_balance(1483.2),
+    "admittance soft wall": admittance_near_balance(200.0),
+    "hybrid moving wall": HYBRID_MOVING_WALL,
+    "hybrid moving wall, kI 0": varied(HYBRID_MOVING_WALL, controller={"kI": 0.0}),
+    "hybrid first contact": HYBRID_FIRST_CONTACT,
+    "hybrid first contact, kI 0": varied(HYBRID_FIRST_CONTACT, **{"after contact": {"controller": {"kI": 0.0}}}),
+    "hybrid biased sensor": varied(HYBRID_MOVING_WALL, wall={"speed": 0.0}, controller={"bias": 1.5}),
+    "hybrid Jacobian transpose": varied(
+        HYBRID_MOVING_WALL,
         controller={
             "type": "hybrid_transposed",
             "f_d": F_D,
@@ -249,9 +251,9 @@ SETTINGS: dict[str, Setting] = {
         },
         stop=4.0,
     ),
-    "B10a": B10A,
-    "B10a moving": varied(B10A, wall={"speed": SPEED}),
-    "B10b": {
+    "parallel fixed wall": PARALLEL_FIXED_WALL,
+    "parallel moving wall": varied(PARALLEL_FIXED_WALL, wall={"speed": SPEED}),
+    "adaptive reference moving wall": {
         "q": QA,
         "wall": spring_wall(PRESSED, 5000.0, SPEED),
         "controller": {
@@ -266,13 +268,17 @@ SETTINGS: dict[str, Setting] = {
         "memory": [0.0],
         "stop": 6.0,
     },
-    "B10c": varied(B9A, controller={"dither": [2.0, 2.0]}),
-    "B10c no dither": B9A,
-    "B10d 1.2": varied(B10D, controller={"x_d": [XA[0] + F_D / 6000 + F_D / 500, 0.0, 0.0]}),
-    "B10d 0.8": varied(B10D, controller={"x_d": [XA[0] + F_D / 4000 + F_D / 500, 0.0, 0.0]}),
-    "B11a": B11A,
-    "B11a by a wall": varied(
-        B11A,
+    "wall stiffness estimate": varied(HYBRID_MOVING_WALL, controller={"dither": [2.0, 2.0]}),
+    "wall stiffness not identifiable": HYBRID_MOVING_WALL,
+    "wall stiffness overestimated": varied(
+        WRONG_STIFFNESS, controller={"x_d": [XA[0] + F_D / 6000 + F_D / 500, 0.0, 0.0]}
+    ),
+    "wall stiffness underestimated": varied(
+        WRONG_STIFFNESS, controller={"x_d": [XA[0] + F_D / 4000 + F_D / 500, 0.0, 0.0]}
+    ),
+    "observer force step": OBSERVER_FORCE_STEP,
+    "observer force step by a wall": varied(
+        OBSERVER_FORCE_STEP,
         push=[0.0, 0.0, 0.0],
         wall={
             "point": (np.array(XA) + np.array(PUSH) / 1000).tolist(),
@@ -281,24 +287,30 @@ SETTINGS: dict[str, Setting] = {
             "contact": {"law": "spring", "k": 1000.0},
         },
     ),
-    "B11b": B11B,
-    "B11d K_R 0": B11D,
-    "B11d K_R 1": varied(B11D, observer={"yielding": 1.0}),
-    "B11d K_R 3": varied(B11D, observer={"yielding": 3.0}),
+    "observer moving wall": OBSERVER_MOVING_WALL,
+    "reflex K_R 0": REFLEX,
+    "reflex K_R 1": varied(REFLEX, observer={"yielding": 1.0}),
+    "reflex K_R 3": varied(REFLEX, observer={"yielding": 3.0}),
     **{
-        f"C13 {name}": varied(
-            B11B, threshold=0.5, start=LECTURE_CONTACT, stop=LECTURE_CONTACT + 1, **{"after detection": then}
+        f"reaction {name}": varied(
+            OBSERVER_MOVING_WALL,
+            threshold=0.5,
+            start=LECTURE_CONTACT,
+            stop=LECTURE_CONTACT + 1,
+            **{"after detection": then},
         )
         for name, then in REACTIONS.items()
     },
-    "B12a zeta 1": B12A,
-    "B12a zeta 0.3": varied(B12A, controller={"Kd": 12.0}, period=0.98 * 0.06),
-    "B12b below": B12B,
-    "B12b above": varied(B12B, delay=1.05 * 0.024826254913580644),
-    "X1 a": X1,
-    "X1 b": varied(X1, controller={"projected": True}),
-    "X1 d": varied(X1, controller={"type": "hold_tip", "K": 25.0, "D": 10.0, "x_d": X1_TIP, "selected": [1, 0, 0]}),
-    "X2": X2,
-    "X4": varied(B7B, start=LECTURE_CONTACT, stop=LECTURE_CONTACT + 0.4),
-    "X2 no tank": varied(X2, controller={"bounded": False}),
+    "sampling period zeta 1": SAMPLING_PERIOD,
+    "sampling period zeta 0.3": varied(SAMPLING_PERIOD, controller={"Kd": 12.0}, period=0.98 * 0.06),
+    "force delay below the margin": FORCE_DELAY,
+    "force delay above the margin": varied(FORCE_DELAY, delay=1.05 * 0.024826254913580644),
+    "instability raibert_craig": INSTABILITY,
+    "instability projected": varied(INSTABILITY, controller={"projected": True}),
+    "instability dynamic": varied(
+        INSTABILITY, controller={"type": "hold_tip", "K": 25.0, "D": 10.0, "x_d": UNSTABLE_TIP, "selected": [1, 0, 0]}
+    ),
+    "variable stiffness tank": VARIABLE_STIFFNESS_TANK,
+    "stiff damping": varied(STIFFNESS_MOVING_WALL, start=LECTURE_CONTACT, stop=LECTURE_CONTACT + 0.4),
+    "variable stiffness no tank": varied(VARIABLE_STIFFNESS_TANK, controller={"bounded": False}),
 }

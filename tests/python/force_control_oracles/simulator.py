@@ -19,7 +19,7 @@ Control = Callable[[float, Motion, np.ndarray, np.ndarray], tuple[np.ndarray, np
 
 @dataclass
 class Run:
-    """Dense output, piece by piece: (start, end, mode, t -> state). State: q, qd, memory, the five books if kept."""
+    """Dense output, piece by piece: (start, end, mode, t -> state). State: q, qd, memory[, energies]."""
 
     arm: Arm
     wall: Wall | None
@@ -80,7 +80,7 @@ def simulate(
     modes: int = 3,
     until_contact: bool = False,
     until: Callable[[float, Motion, np.ndarray], float] | None = None,
-    books: bool = False,
+    energies: bool = False,
     rtol: float = 1e-11,
     atol: float = 1e-13,
     method: str = "DOP853",
@@ -91,7 +91,7 @@ def simulate(
     until(t, motion, memory): the run ends where it rises through 0.
     """
     known = len(memory)
-    y = np.concatenate([q, qd, memory, np.zeros(5 if books else 0)])
+    y = np.concatenate([q, qd, memory, np.zeros(5 if energies else 0)])
     run = Run(arm, wall)
     if mode is None:
         mode = CONTACT if wall and wall.depth(start, arm.at(q).x) >= 0 else FREE
@@ -104,8 +104,8 @@ def simulate(
             touch = wall.force(t, s) if wall and now == CONTACT else np.zeros(3)
             force = touch + push
             torque, memory_rate = control(t, s, force, y[6 : 6 + known])
-            ledger = powers(t, s, torque, touch, wall, now) if books else ()
-            return np.concatenate([s.qd, s.acceleration(torque, force), memory_rate, ledger])
+            rates = powers(t, s, torque, touch, wall, now) if energies else ()
+            return np.concatenate([s.qd, s.acceleration(torque, force), memory_rate, rates])
 
         doors = exits(arm, wall, now, modes)
         if until:
@@ -166,7 +166,7 @@ def powers(t: float, s: Motion, torque: np.ndarray, force: np.ndarray, wall: Wal
 
 
 def residual(run: Run, times: Sequence[float]) -> np.ndarray:
-    """What the books of a run leave unexplained, J."""
+    """The residual of the energy balance of a run, J."""
 
     def balance(t: float) -> float:
         mode, y = run.piece(t)

@@ -19,17 +19,17 @@ def rest(balance: Callable[[Motion], np.ndarray], near: Sequence[float]) -> Moti
 
 
 def joint_pd_rest(Kp: Sequence[float], q_d: Sequence[float]) -> Motion:
-    """C3 without compensation."""
+    """Of (7.6) without compensation."""
     return rest(lambda s: np.multiply(Kp, q_d - s.q) - s.gravity, q_d)
 
 
 def computed_torque_rest(Kp: float, q_d: Sequence[float], force: Sequence[float]) -> Motion:
-    """C4 that does not cancel the force on the tip."""
+    """Of (7.7) that does not cancel the force on the tip."""
     return rest(lambda s: s.M @ (Kp * (q_d - s.q)) + s.J.T @ force, q_d)
 
 
 def joint_stiffness_rest(K_P: float, q_d: Sequence[float], *, x_E: float, k: float) -> Motion:
-    """C5 in the joints against the plane x = x_E."""
+    """Of (7.10) against the plane x = x_E."""
     J = Arm().at(q_d).J
     return rest(lambda s: K_P * (J.T @ J) @ (q_d - s.q) - s.J[0] * k * (s.x[0] - x_E), q_d)
 
@@ -40,5 +40,5 @@ def series_force(K: float, k: float, ahead: float) -> float:
 
 
 def moving_series_force(K: float, D: float, k: float, v: float, ahead: float) -> float:
-    """C5 on a wall that comes at v, after the transient; `ahead` now."""
+    """Of (7.9) on a wall that comes at v, after the transient; `ahead` now."""
     return series_force(K, k, ahead) + D * v * (k / (K + k)) ** 2
