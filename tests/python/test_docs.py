@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -46,35 +44,3 @@ def test_every_link_between_pages_leads_somewhere(root: Path) -> None:
 def test_the_readme_leads_to_every_page(root: Path) -> None:
     readme = (root / "README.md").read_text()
     assert [page.name for page in root.glob("docs/*.md") if f"(docs/{page.name})" not in readme] == []
-
-
-def _block(root: Path, language: str, section: str) -> str:
-    text = (root / "README.md").read_text().split(f"\n## {section}\n")[1]
-    return text.split(f"```{language}\n")[1].split("```")[0]
-
-
-def test_the_readmes_python_prints_what_it_says(root: Path, tmp_path: Path) -> None:
-    """In an empty folder: the installed package has all that it reads."""
-    code = _block(root, "python", "Python")
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
-    promised = re.findall(r"print\(.*\)\s+# (.*)", code)
-    assert promised
-    for line in promised:
-        assert line in done.stdout
-    assert (tmp_path / "overview.png").stat().st_size > 10_000
-
-
-def test_the_readmes_shell_lines_run(root: Path, tmp_path: Path, scripts: Path) -> None:
-    """In an empty folder, into which the line above the block copies the scenarios."""
-    assert "`arm3r examples --copy scenarios`" in (root / "README.md").read_text()
-    lines = "arm3r examples --copy scenarios > /dev/null\n" + _block(root, "sh", "Shell")
-    done = subprocess.run(
-        ["bash", "-ec", lines],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PATH": f"{scripts}:{os.environ['PATH']}"},
-    )
-    assert done.returncode == 0, done.stderr
-    assert "FAIL" not in done.stdout
-    assert list((tmp_path / "figures").glob("*.png"))

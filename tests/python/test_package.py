@@ -13,6 +13,7 @@ from typing import Any
 
 import arm3r_cpp as arm3r
 import pytest
+import yaml
 
 
 def _dynamic(file: Path, tag: str) -> set[str]:
@@ -24,6 +25,9 @@ def test_one_version_everywhere(root: Path, cli: Any) -> None:
     written = re.search(r'^version = "(.*?)"', (root / "pyproject.toml").read_text(), re.M)[1]
     assert arm3r.__version__ == metadata.version("arm3r_cpp") == written
     assert written in cli("--version").stdout
+    citation = yaml.safe_load((root / "CITATION.cff").read_text())
+    assert citation["version"] == written
+    assert citation["authors"] == [{"name": "the arm3r authors"}]
 
 
 def test_parts_are_in_place(package: Path) -> None:
