@@ -2,7 +2,8 @@
 
 The blocks run in their order; one that fails ends the program with its traceback. The Python blocks of a page share
 their names, and each of their print lines shows what it prints. A YAML block is a scenario or a sweep and is
-validated. A block whose first line is a comment that consists of a file name is written to this file.
+validated. A console block shows commands after `$` and what they print. A block whose first line is a comment that
+consists of a file name is written to this file.
 
 A block under the line MARK is left out without --clone. With --clone the current folder is a clone of the
 repository, and the shell blocks that run are those with the mark.
@@ -61,6 +62,14 @@ def run_shell(block: Block) -> None:
     assert "FAIL" not in done.stdout, done.stdout
 
 
+def run_console(block: Block) -> None:
+    for command, promised in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", block.text, re.M):
+        printed = subprocess.run(
+            command, shell=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        ).stdout
+        assert printed == promised, f"printed:\n{printed}"
+
+
 def run_yaml(block: Block) -> None:
     import arm3r_cpp as arm3r
 
@@ -79,6 +88,8 @@ def run(block: Block, page: str, names: dict[str, object], in_clone: bool) -> No
         run_python(block, page, names)
     elif block.language == "sh" and block.is_marked == in_clone:
         run_shell(block)
+    elif block.language == "console":
+        run_console(block)
     elif block.language == "yaml":
         run_yaml(block)
 
