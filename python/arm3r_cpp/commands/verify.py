@@ -38,6 +38,7 @@ def parser() -> argparse.ArgumentParser:
     arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
     arm.add_argument("--urdf", metavar="FILE", help="a serial chain of up to 7 joints")
     arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: docs/verify.md says how it is written")
+    add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: does it see the mistakes?")
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser
 
@@ -53,7 +54,7 @@ def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
     for formula in options.formulas:
         bar = Bar("repair", "edits")
         try:
-            verdict = formula_verdict(formula, options.kind, arm, progress=bar.draw)
+            verdict = formula_verdict(formula, options.kind, arm, seen_by=options.seen_by, progress=bar.draw)
         except Arm3rError as error:
             failure = failure or error
             continue

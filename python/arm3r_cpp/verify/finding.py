@@ -26,6 +26,8 @@ class Finding:
     """What is to stand in the place of `old`."""
     seen_by: dict[str, bool] = field(default_factory=dict)
     """For each test whether it sees this entry's error."""
+    unseen_because: dict[str, str] = field(default_factory=dict)
+    """For each test that does not see it the special value that hides it."""
 
 
 @dataclass

@@ -19,6 +19,7 @@ from .names import quantities_of, slots_of
 from .program.matlab_program import MatlabProgram
 from .program.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
 from .program.python_nodes import PythonText
+from .program.python_process import PythonProcess
 from .program.python_program import PythonProgram, _numbers
 from .samples import Samples, columns
 
@@ -66,6 +67,14 @@ class Formula:
     """The names of several outputs in their order, where they have names."""
     global_numbers: dict[str, float] = field(default_factory=dict)
     """Numbers outside of the text that a function in memory uses."""
+
+    def edited(self, edit: Edit) -> Formula | None:
+        """The formula of a file with an edit of its text."""
+        if self.text is None or not isinstance(self.program, (MatlabProgram, PythonProgram, PythonProcess)):
+            return None
+        if isinstance(self.program, PythonProgram) and self.program.given is not None:
+            return None
+        return from_text(edit.apply(self.text), self.file, self.name, sandbox=type(self.program))
 
     @property
     def order(self) -> list[int] | None:
@@ -165,6 +174,15 @@ def from_file(path: str | os.PathLike[str], *, sandbox: Any = None) -> Formula:
         text = Path(file).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    return from_text(text, file, function, sandbox=sandbox)
+
+
+def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None) -> Formula:
+    """A function of a text.
+
+    Raises:
+        UsageError: the text cannot be read, or has no such function.
+    """
     if file.endswith(".m"):
         program = MatlabProgram(text, file, function)
         outputs = program.outputs if len(program.outputs) > 1 else []

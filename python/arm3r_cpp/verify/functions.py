@@ -66,7 +66,7 @@ def formula_verdict(
         else from_callable(f)
     )
     chosen = KINDS[kind] if kind else kind_of(formula, truth.joints)
-    return judge(formula, chosen, truth, seen_by={}, progress=progress)
+    return judge(formula, chosen, truth, seen_by=seen_by, progress=progress)
 
 
 def jacobian(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ def judge(
     kind: Kind,
     truth: Any,
     *,
-    seen_by: Mapping[str, Any] | None = None,
+    seen_by: Sequence[Any] = (),
     progress: Progress | None = None,
 ) -> Verdict:
     """The verdict on a formula of a known kind."""
@@ -51,7 +52,7 @@ def judge(
         verdict.alternatives.append(f"in the convention {other} as many entries would be wrong")
     _judge_constants(verdict, case)
     verdict.ok = not verdict.findings
-    seen_by_tests(verdict, case, seen_by or {})
+    seen_by_tests(verdict, case, seen_by)
     return verdict
 
 
@@ -157,13 +158,17 @@ def _explain(verdict: Verdict, case: Comparison, wrong: frozenset[int], progress
     repairs = _repairs(case, wrong, progress)
     reads = read_entries(case, wrong)
     chosen = cover(repairs, wrong)
+    left = wrong - frozenset(place for one in chosen for place in one.mended)
+    joint = None
+    if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress)):
+        joint, chosen = chosen[0].edit, [*chosen, *more]
     for place in sorted(wrong):
         found = reads.get(place)
         finding = Finding(case.entry(place), "", found.reads if found else None, found.due if found else None)
         repair = next((one for one in chosen if place in one.mended), None)
         if repair:
             _put_edit(finding, case, repair.edit)
-        finding.cause = _cause(case, place, finding, causes, repair)
+        finding.cause = _cause(case, place, finding, causes, repair, joint)
         verdict.findings.append(finding)
         if not (repair or causes or (found and found.reads)):
             verdict.unexplained.append(case.entry(place))
@@ -227,6 +232,26 @@ def _repairs(case: Comparison, wrong: frozenset[int], progress: Progress | None)
     return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
 
 
+def _after(case: Comparison, edit: Edit, left: frozenset[int], progress: Progress | None) -> list[Repair]:
+    """The edit that mends more entries in the text with a first edit, moved to its place in the text without it."""
+    formula = case.formula.edited(edit)
+    if formula is None:
+        return []
+    other = replace(case, formula=formula)
+    other.shape = case.shape
+    found = [one for one in _repairs(other, left, progress) if not _overlap(one.edit, edit)]
+    shift = len(edit.new) - (edit.end - edit.start)
+    moved = [
+        one.edit.start - shift if one.edit.start >= edit.start + len(edit.new) else one.edit.start for one in found
+    ]
+    return [one._replace(edit=one.edit._replace(start=start, end=start + one.edit.end - one.edit.start))
+            for one, start in zip(found[:1], moved, strict=False)]  # fmt: skip
+
+
+def _overlap(later: Edit, first: Edit) -> bool:
+    return later.start < first.start + len(first.new) and first.start < later.end
+
+
 def _is_confirmed(case: Comparison, repair: Repair, wrong: frozenset[int]) -> bool:
     try:
         return case.wrong(case.values(case.fresh, repair.edit), case.fresh) <= wrong - repair.mended
@@ -263,13 +288,18 @@ def _put_edit(finding: Finding, case: Comparison, edit: Edit) -> None:
         finding.old, finding.new = text[start : edit.end], text[start : edit.start] + edit.new
 
 
-def _cause(case: Comparison, place: int, finding: Finding, causes: list[str], repair: Repair | None) -> str:
+def _cause(
+    case: Comparison, place: int, finding: Finding, causes: list[str], repair: Repair | None, first: Edit | None
+) -> str:
     if causes:
         return f"{causes[0][0].upper()}{causes[0][1:]}."
     name = entry_name(case.kind, case.entry(place))
     if repair and finding.old is not None:
         stands = f"stands where `{finding.new}` is due" if finding.new else "is too much"
         others = f"; this line spoils {len(repair.mended)} entries" if len(repair.mended) > 1 else ""
+        if first and first != repair.edit:
+            line, _ = line_and_column(case.formula.text or "", first.start)
+            others += f", together with the mistake in line {line}"
         return f"{name}: in line {finding.line} `{finding.old}` {stands}{others}."
     if finding.reads is not None:
         return f"{name} reads {finding.reads}; {finding.due} is due."

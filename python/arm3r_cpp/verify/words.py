@@ -19,6 +19,7 @@ def report(verdict: Judgement) -> str:
         lines += [f"  {line}" for line in _block(verdict, list(same))]
     lines += [f"  also possible: {words}" for words in verdict.alternatives]
     lines += [f"  note: {words}" for words in verdict.warnings]
+    lines += [f"  {_covered(verdict, name)}" for name in verdict.coverage]
     return "\n".join(lines)
 
 
@@ -32,6 +33,15 @@ def _head(verdict: Judgement) -> str:
     if wrong and count:
         parts.append(f"{wrong} of {count} entries wrong, by up to {verdict.residual:.3g} {KINDS[verdict.kind].unit}")
     return ", ".join(parts)
+
+
+def _covered(verdict: Judgement, name: str) -> str:
+    """What a test excites, and how many planted mistakes it sees."""
+    test = verdict.coverage[name]
+    count = int(np.prod(verdict.shape)) if verdict.shape else 0
+    joints = ", ".join(map(str, test["joints"])) or "none"
+    text = f"{name}: excites joints {joints} and {len(test['entries'])} of {count} entries"
+    return text + (f", sees {test['seen']} of {test['planted']} planted mistakes" if "planted" in test else "")
 
 
 def _edit_of(finding: Finding) -> tuple[int, int, str, str]:
@@ -53,8 +63,8 @@ def _block(verdict: Judgement, findings: list[Finding]) -> list[str]:
         if first.old is None or not lines:
             lines.append(cause)
     lines += [f"  {line}" for line in _place(verdict, first)]
-    unseen = {name for one in findings for name, seen in one.seen_by.items() if not seen}
-    lines += [f"  {name} cannot see it" for name in sorted(unseen)]
+    unseen = {name: first.unseen_because.get(name, "") for name, seen in first.seen_by.items() if not seen}
+    lines += [f"  {name} cannot see it{f': {why}' if why else ''}" for name, why in unseen.items()]
     return lines
 
 

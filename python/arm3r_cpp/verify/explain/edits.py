@@ -9,7 +9,7 @@ from ..program.nodes import Edit, Node
 
 _TRIGONOMETRIC = {"sin": "cos", "cos": "sin", "sind": "cosd", "cosd": "sind", "tan": "sin"}
 _ADDITIVE, _MULTIPLICATIVE = ("+", "-"), ("*", "/", ".*", "./")
-_MOST = 6000
+_MOST = 3500
 
 
 class Editor:
