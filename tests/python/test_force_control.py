@@ -10,10 +10,9 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from force_control_oracles import LECTURE_CONTACT, QA, SETTINGS, XA, Arm, Run, impact, linear, run_of, statics, varied
-from force_scenarios import FILES, read
+from force_scenarios import FILES, D, mirrored, read
 from scipy.linalg import expm
 
-D = np.array([1, -1, -1])
 PI = {"f_d": 20.0, "kP": 0.5, "kI": 5.0, "m_f": 1.0, "b": 70.0}
 M_N = 0.5535415113
 
@@ -24,16 +23,7 @@ in_both_conventions = pytest.mark.parametrize("convention", ["slide", "simscape"
 def scenario_of(name: str, changes: Changes, *, convention: str = "slide") -> arm3r.Scenario:
     """The scenario of this name with other values; its angles are those of the slide convention."""
     scenario = read(name, changes)
-    return scenario if convention == "slide" else lowering(scenario)
-
-
-def lowering(scenario: arm3r.Scenario) -> arm3r.Scenario:
-    """The same in the simscape convention."""
-    angles = {key: D * scenario[key] for key in ("initial.q", "reference.q") if key in scenario}
-    scenario["arm.convention"] = "simscape"
-    for key, value in angles.items():
-        scenario[key] = value
-    return scenario
+    return scenario if convention == "slide" else mirrored(scenario)
 
 
 def finished(scenario: arm3r.Scenario) -> arm3r.Run:
@@ -257,7 +247,7 @@ def test_computed_torque_tracks_a_sine_after_a_rough_start(convention: str) -> N
     signs = D if convention == "simscape" else 1
     scenario = scenario_of(
         "computed_torque",
-        {"reference": {"type": "sinusoid", "q_amplitude": signs * size, "frequency": 0.7}},
+        {"reference": {"type": "sinusoid", "q_amplitude": size, "frequency": 0.7}},
         convention=convention,
     )
     run = finished(scenario)
@@ -309,7 +299,7 @@ def oblique(
     scenario["controller"] = law
     scenario["reference"] = reference
     scenario["time.stop"] = stop
-    return finished(scenario if convention == "slide" else lowering(scenario))
+    return finished(scenario if convention == "slide" else mirrored(scenario))
 
 
 def start() -> np.ndarray:

@@ -11,13 +11,13 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from conftest import scenario_files
+from force_scenarios import D, mirrored
 from numpy.typing import NDArray
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 NAMES = sorted(str(path.relative_to(SCENARIOS)) for path in scenario_files())
 LECTURE = [name for name in NAMES if name.startswith("lecture/")]
 BESIDE_THE_PLATE = {"contact/plate_edge.yaml"}  # the tip is deeper than the face, and nothing touches it
-D = np.array([1, -1, -1])
 Array = NDArray[np.float64]
 G, G_MOON = 9.80665, 1.62
 
@@ -72,12 +72,7 @@ def test_contact_flag_force_and_depth_tell_the_same_story(name: str) -> None:
 
 @every_scenario
 def test_the_other_convention_tells_the_same_story(name: str) -> None:
-    here = arm3r.Scenario.load(SCENARIOS / name)
-    there = here.copy()
-    there["arm.convention"] = {"simscape": "slide", "slide": "simscape"}[here["arm.convention"]]
-    for key in ("initial.q", "initial.qd", "reference.q", "reference.q_amplitude"):
-        if key in here:
-            there[key] = D * here[key]
+    there = mirrored(arm3r.Scenario.load(SCENARIOS / name))
     there["checks"] = []
     one, other = run_of(name), there.run()
     for column in ("tip", "tip_v", "f_on_wall"):
