@@ -154,7 +154,7 @@ template <class Peer>
 
 std::vector<Contender> contenders() {
     const std::string zero_crossing = "RK4 step, free fall", pushed = "RK4 step, compensation and two-way wall";
-    const std::string quadratures = ", with the books";
+    const std::string quadratures = ", with the energy balance";
     return {
         {"forward dynamics", "arm3r", our_build,
          [] {

@@ -5,7 +5,7 @@
 >>> run["f_on_wall_x"][-1], run.events, run.passed
 
 `Scenario` reads, changes and runs scenarios, `Run` holds results, `Arm` has the functions of the model, `plot` draws,
-and the errors are told apart by class (`Arm3rError` is the base of all). Units are SI and radians.
+and each kind of error has its class (`Arm3rError` is the base of all). Units are SI and radians.
 """
 
 from __future__ import annotations

@@ -61,7 +61,7 @@ def _check_abi() -> None:
 
 
 def error(status: int, states: States | None = None) -> Arm3rError:
-    """The error of this thread's last failed call, its places told in the shapes of the states it was made with."""
+    """The error of this thread's last failed call, which names places in the shapes of the states that were given."""
     report = json.loads(ffi.string(lib.arm3r_error_json()))
     message, problems, index = report["message"], report["problems"], None
     for problem in problems:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 Index = int | tuple[int, ...]
 
-# Codes of errors that no number could mend: the axes are wrong as such, not one of the runs.
+# Codes of errors of the axes themselves, which no other number in a run would avoid.
 AXIS_ERRORS = {f"scenario.{error}" for error in ("unknown_word", "type", "unknown_key", "other_choice", "missing_key")}
 AXIS_ERRORS.add("number.syntax")
 

@@ -1,4 +1,4 @@
-"""What can go wrong, told apart by what the caller can do about it."""
+"""The errors, one class for each way in which a caller can react."""
 
 from __future__ import annotations
 

@@ -272,7 +272,7 @@ const std::vector<Effect>& effects() {
         {"limit by one factor, back-calculation", limited("scale", "back_calculation"), false},
         {"observer", reaction("ignore"), true, false},
         {"observer that stops", reaction("stop")},
-        {"observer that lets go", reaction("float")},
+        {"observer with reaction float", reaction("float")},
         {"observer with a reflex", reaction("reflex")},
         {"observer that retreats", reaction("retreat")},
         {"estimator",

@@ -66,19 +66,19 @@ BOOST_AUTO_TEST_CASE(kelvin_voigt_returns_the_speed_of_its_closed_form) {
 }
 
 // The force ends while the depth is still positive, the tip moves out freely, and contact ends at depth zero.
-BOOST_AUTO_TEST_CASE(contact_outlasts_the_force_by_the_way_out_of_the_dent) {
+BOOST_AUTO_TEST_CASE(contact_lasts_longer_than_the_force_by_the_return_of_the_surface) {
     for (const double zeta : {0.1, 0.3, 0.8}) {
         const Params params = kelvin_voigt_impact(zeta);
         const double omega = std::sqrt(1e8 / Impact::mass()), damped = omega * std::sqrt(1 - zeta * zeta);
         const double until = 2 * std::acos(zeta) / damped, e = std::exp(-zeta * omega * until);
-        const double dent = Impact::speed / damped * e * std::sin(damped * until);
+        const double deformation = Impact::speed / damped * e * std::sin(damped * until);
         const Run run = Params(params).set("time.log_every", 8e-3 / omega).run();
         BOOST_REQUIRE_EQUAL(run.events.size(), 2u);
-        BOOST_TEST(std::abs(run.contact_time / (until + dent / (e * Impact::speed)) - 1) <= 1e-8);
+        BOOST_TEST(std::abs(run.contact_time / (until + deformation / (e * Impact::speed)) - 1) <= 1e-8);
         const auto t = column(run, "t"), force = column(run, "f_on_tip_y"), depth = column(run, "depth"),
                    flag = column(run, "contact"), stored = column(run, "energy_contact"),
                    residual = column(run, "energy_residual");
-        int dented = 0;
+        int still_deformed = 0;
         for (std::size_t i = 0; i < run.rows; ++i) {
             const double since = t[i] - run.events[0].t;
             BOOST_TEST((force[i] < 0) == (flag[i] == 1 && since < until));
@@ -86,9 +86,9 @@ BOOST_AUTO_TEST_CASE(contact_outlasts_the_force_by_the_way_out_of_the_dent) {
             BOOST_TEST((flag[i] == 1) == (depth[i] > 0));
             BOOST_TEST(std::abs(stored[i] - flag[i] * 0.5e8 * depth[i] * depth[i]) <= 1e-12 * Impact::energy());
             BOOST_TEST(std::abs(residual[i]) <= 1e-9 * Impact::energy());
-            dented += flag[i] == 1 && force[i] == 0;
+            still_deformed += flag[i] == 1 && force[i] == 0;
         }
-        BOOST_TEST(dented > 5);
+        BOOST_TEST(still_deformed > 5);
     }
 }
 

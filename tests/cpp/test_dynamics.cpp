@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) 
     });
 }
 
-BOOST_AUTO_TEST_CASE(inverse_kinematics_tells_a_point_out_of_reach_from_one_within) {
+BOOST_AUTO_TEST_CASE(inverse_kinematics_distinguishes_points_out_of_reach) {
     for_random_cases(7, [](const Case& c) {
         const double a2 = c.arm.link2.length, a3 = c.arm.link3.length;
         const Vec3<double> shoulder(0, 0, c.arm.base_height), direction = c.f.normalized();
@@ -244,7 +244,7 @@ BOOST_AUTO_TEST_CASE(friction_always_takes_energy) {
 }
 
 // Plant and controller each with a gravity of its own, upright or oblique.
-BOOST_AUTO_TEST_CASE(the_equation_of_motion_knows_either_gravity) {
+BOOST_AUTO_TEST_CASE(the_equation_of_motion_takes_any_gravity) {
     Random random(18);
     const Vec3<double> upright(0, 0, -9), oblique(2, -3, -7);
     for (const auto& [feels, compensates] : {std::pair(upright, oblique), std::pair(oblique, upright)}) {

@@ -498,7 +498,7 @@ BOOST_AUTO_TEST_CASE(computed_torque_makes_the_joint_errors_linear) {
     });
 }
 
-BOOST_AUTO_TEST_CASE(resolved_acceleration_and_hybrid_make_the_tip_accelerate_as_told) {
+BOOST_AUTO_TEST_CASE(resolved_acceleration_and_hybrid_give_the_tip_the_acceleration_that_was_asked_for) {
     for (const ControllerType type :
          {ControllerType::resolved_acceleration, ControllerType::hybrid, ControllerType::operational_space})
         for_scenes(type, [&](RowContext scene) {

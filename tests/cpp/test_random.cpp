@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(chi_square_is_neither_too_large_nor_too_small) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_number_tells_nothing_of_the_next_ones) {
+BOOST_AUTO_TEST_CASE(a_number_is_independent_of_the_next_ones) {
     for (const Numbers& x : {uniforms(4, 5), normals(4, 5)})
         for (std::size_t lag = 1; lag <= 32; ++lag) BOOST_TEST(std::abs(correlation(x, x, lag)) < 4.5, "lag " << lag);
 }

@@ -288,7 +288,7 @@ BOOST_AUTO_TEST_CASE(the_next_step_follows_the_fourth_root_of_the_error_between_
 }
 
 // 1 - h gamma df/dy = 0; a derivative that is NaN; a stage that is NaN, of the motion or of a quadrature.
-BOOST_AUTO_TEST_CASE(a_step_without_an_end_is_told) {
+BOOST_AUTO_TEST_CASE(a_step_without_an_end_is_reported) {
     const auto is_taken = [](double df_dy, double value, double book) {
         const auto f = [&](double, const State<double, 2>&, State<double, 2>& dy) { dy = {value, book}; };
         const Linearization<2> linearization{{State<double, 2>{df_dy, 0.0}, State<double, 2>{0.0, 0.0}}, {0.0, 0.0}};

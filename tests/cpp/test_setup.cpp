@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(taylor_is_refused_where_the_wall_has_no_series) {
 
 // ---- the wall
 
-BOOST_AUTO_TEST_CASE(a_damped_law_is_told_once_how_much_it_damps) {
+BOOST_AUTO_TEST_CASE(a_damped_law_takes_damping_or_restitution_but_not_both) {
     const Params walled = unequal_params().set("wall", 1);
     const Params voigt = damped(walled, "kelvin_voigt"), crossley = damped(walled, "hunt_crossley");
     check_refusal(voigt, "scenario.missing_key", "wall.contact.damping");
@@ -313,7 +313,7 @@ BOOST_AUTO_TEST_CASE(shapes_give_mass_centre_and_inertia) {
     BOOST_TEST(params.set("arm.link1.inertia_axial", std::nan("")).arm().link1.inertia_axial == 0);
 }
 
-BOOST_AUTO_TEST_CASE(the_controllers_copy_differs_only_where_it_is_told_to) {
+BOOST_AUTO_TEST_CASE(the_controllers_model_differs_only_in_the_keys_that_are_given) {
     Params params = unequal_params();
     params.choose("controller.type", "gravity_compensation")
         .set("controller.model.link3.mass", 0.9)

@@ -233,7 +233,7 @@ BOOST_AUTO_TEST_CASE(flags_are_as_they_were_set) {
     BOOST_TEST(controller_of(with_law("hybrid").set("controller.ideal_cancellation", 1)).ideal_cancellation);
 }
 
-BOOST_AUTO_TEST_CASE(every_law_believes_in_a_gravity_of_its_own) {
+BOOST_AUTO_TEST_CASE(every_law_has_its_own_gravity) {
     for (const std::string& law : laws) {
         const Params params = with_law(law).set("controller.gravity", 5).set("controller.model.link3.length", 0.7);
         const Setup setup = make_setup(params);
@@ -279,7 +279,7 @@ BOOST_AUTO_TEST_CASE(a_law_holds_what_it_works_in) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_target_may_be_told_as_joint_angles_of_the_model) {
+BOOST_AUTO_TEST_CASE(a_target_may_be_given_as_joint_angles_of_the_model) {
     const Vec3<double> q(-0.3, 0.5, -1.1);
     const Params params = with_law("stiffness").set("controller.model.link3.length", 0.5).set("reference.q", q);
     for (const char* path : {"point", "line", "minimum_jerk"})
@@ -441,7 +441,7 @@ BOOST_AUTO_TEST_CASE(sections_that_are_absent_are_off) {
     BOOST_TEST((setup.plant.controller.type == ControllerType::hybrid));
 }
 
-BOOST_AUTO_TEST_CASE(of_a_digital_controller_the_plant_sees_a_torque) {
+BOOST_AUTO_TEST_CASE(a_digital_controller_gives_the_plant_a_torque) {
     const Params params = with_law("hybrid").set("sampling", 1).set("observer", 1).set("controller.gravity", 5);
     const Setup setup = make_setup(params);
     BOOST_TEST((setup.plant.controller.type == ControllerType::constant));

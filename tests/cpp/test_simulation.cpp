@@ -316,7 +316,7 @@ BOOST_AUTO_TEST_CASE(every_flow_of_energy_widens_the_limit_of_the_balance) {
     check_limit(params, lower, start.potential - energies(setup.plant, 0, lower, ContactMode::free).potential);
 }
 
-BOOST_AUTO_TEST_CASE(rounding_at_rest_is_no_complaint_and_a_residual_that_is_no_number_is_the_largest) {
+BOOST_AUTO_TEST_CASE(rounding_at_rest_gives_no_warning_and_a_nan_residual_is_the_largest) {
     const Setup setup = make_setup(unequal_params());
     const FullState rest{setup.q[0], setup.q[1], setup.q[2]};
     EnergyBalance balance(setup.plant, 0, rest, ContactMode::free);
@@ -474,7 +474,7 @@ struct Reports {
     }
 };
 
-BOOST_AUTO_TEST_CASE(the_progress_function_is_told_and_may_end_the_run) {
+BOOST_AUTO_TEST_CASE(the_progress_function_is_called_and_may_end_the_run) {
     Reports on{.answer = 0}, enough{.answer = 1}, failing{.answer = -1};
     BOOST_TEST(falling().run({.progress = Reports::note, .user = &on}).outcome == ARM3R_RUN_OK);
     BOOST_TEST(juggled().run({.progress = Reports::note, .user = &enough}).outcome == ARM3R_RUN_STOPPED);

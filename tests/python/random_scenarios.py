@@ -491,7 +491,7 @@ def _wanted_force(draw: Draw, stop: float) -> Keys:
 
 
 def _sampling(draw: Draw, decay: float) -> Keys:
-    """A rate and a delay that the law's damping bears: a decay at c 1/s under a hold of T s needs c T well below 2."""
+    """A rate and a delay that leave the law stable: a decay at c 1/s under a hold of T s needs c T well below 2."""
     delay = draw.one_of([0, 0, 0, 0.25, 0.4, 0.5, 1, 1, 1.4, 2, 3])
     rates = [100, 200, 250, 333, 500, 730, 1000, 1000, 2000]
     rate = draw.one_of([rate for rate in rates if decay * (0.5 + delay) < 0.4 * rate] or [4000])

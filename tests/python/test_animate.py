@@ -308,7 +308,7 @@ def test_a_film_of_a_csv(here: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert animate_cli.main(["hybrid.csv", "--speed", "4", "--fps", "10"]) == 0
     said = capsys.readouterr()
     assert said.out == "hybrid.gif\n"
-    assert said.err == ""  # no bar where nobody watches
+    assert said.err == ""  # no bar without a terminal
     with Image.open("hybrid.gif") as film:
         assert film.n_frames == 11
 

@@ -206,7 +206,7 @@ def test_no_far_fetched_hints(key: str) -> None:
         ("name: a: b\n", ["colon"]),
     ],
 )
-def test_yaml_that_cannot_be_read_is_told_in_plain_words(text: str, words: list[str]) -> None:
+def test_yaml_that_cannot_be_read_is_reported_in_plain_words(text: str, words: list[str]) -> None:
     found = message(HEAD + text)
     assert all(word in found for word in words), found
     assert not any(word in found for word in ("illegal", "not found", "scalar", "flow")), found
@@ -276,7 +276,7 @@ def test_a_force_that_the_arm_does_not_feel_warns_every_law_that_uses_it(law: st
 
 @pytest.mark.parametrize("gravity", ["[0, 0, 0]", "[0, 0, -1.62]", "[0, 5, -8]", "[0, 0, 9.80665]"])
 @pytest.mark.parametrize("law", ["gravity_compensation", "joint_pd", "impedance", "computed_torque"])
-def test_a_gravity_that_nobody_gave_the_controller_warns(law: str, gravity: str) -> None:
+def test_a_default_gravity_of_the_controller_warns(law: str, gravity: str) -> None:
     arm, controller = f"arm: {{gravity: {gravity}}}\n", f"controller: {{type: {law}"
     said = [line for line in warnings_of(arm + controller + "}\n") if "default of controller.gravity" in line]
     assert len(said) == 1 and f"controller.gravity: {gravity}" in said[0]

@@ -599,7 +599,7 @@ def test_the_resolved_scenario_is_a_scenario_with_the_same_numbers(root):
         assert again.to_yaml() == first.to_yaml()
 
 
-def test_every_value_tells_where_it_comes_from(cli, tmp_path):
+def test_every_value_names_its_origin(cli, tmp_path):
     (tmp_path / "s.yaml").write_text(FULL)
     text = cli("check", "s.yaml", "--set", "time.stop=1", cwd=tmp_path).stdout
     lines = [line for line in text.splitlines() if ": " in line and not line.strip().startswith(("#", "-"))]

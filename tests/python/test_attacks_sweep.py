@@ -68,7 +68,9 @@ def test_a_shard_that_is_too_large_for_the_memory_is_refused_by_its_runs(scripts
     assert not (tmp_path / "out" / "table.csv").exists()
 
 
-def test_memory_that_ends_while_rows_are_written_is_told_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_memory_that_ends_while_rows_are_written_is_reported_in_the_same_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def too_large(*_: Any) -> bytes:
         raise MemoryError
 

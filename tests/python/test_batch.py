@@ -193,7 +193,7 @@ def test_threads_are_a_whole_number(hit: arm3r.Scenario, threads: Any) -> None:
         hit.batch({"time.stop": [1.0]}, threads=threads)
 
 
-def test_a_table_that_fits_nowhere_is_told_first(hit: arm3r.Scenario) -> None:
+def test_a_table_that_is_too_large_is_refused_first(hit: arm3r.Scenario) -> None:
     many = np.broadcast_to(1.0, (10**7,))
     with pytest.raises(arm3r.BudgetError, match="100000000000000 runs are a table of"):
         hit.batch({"wall.contact.stiffness": many, "time.stop": many}, grid=True)
@@ -226,7 +226,7 @@ def test_copies_are_batches(hit: arm3r.Scenario, copied: Any) -> None:
 
 
 @pytest.mark.parametrize("index", [None, True, slice(0, 1), [0], ..., 1.0, "0"])
-def test_one_run_is_told_by_whole_numbers(hit: arm3r.Scenario, index: Any) -> None:
+def test_one_run_is_chosen_by_whole_numbers(hit: arm3r.Scenario, index: Any) -> None:
     batch = hit.batch({"time.stop": [0.5, 1.0]})
     with pytest.raises(IndexError, match="whole numbers"):
         batch.run(index)
@@ -247,7 +247,7 @@ def test_the_base_is_validated() -> None:
         arm3r.Scenario("{format: 1, time: {stop: -1}}").batch({"time.stop": [1.0]})
 
 
-def test_progress_is_told_and_can_stop(hit: arm3r.Scenario) -> None:
+def test_progress_is_reported_and_can_stop(hit: arm3r.Scenario) -> None:
     told: list[tuple[int, int]] = []
 
     def stop_soon(done: int, runs: int) -> bool:

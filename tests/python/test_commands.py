@@ -54,7 +54,7 @@ def test_the_help_lists_every_command(command: Any) -> None:
             assert command(name, "--help").stdout.startswith(f"usage: arm3r-{name}" if name in scripts else "usage: ")
 
 
-def test_a_mistyped_command_is_told_the_right_one(command: Any) -> None:
+def test_a_mistyped_command_names_the_right_one(command: Any) -> None:
     for typed, meant in {"plto": "plot", "exmaples": "examples", "rnu": "run"}.items():
         done = command(typed)
         assert done.returncode == 2 and f"did you mean {meant}?" in done.stderr

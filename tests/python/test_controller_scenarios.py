@@ -460,7 +460,7 @@ def test_defaults_are_no_slip(warned, type_name: str) -> None:
             WALL + controller("parallel", "force_integral_gain: 50"),
             "s^3, s^2, s and 1 have 1, 80, 600 and 50000, and controller.force_integral_gain must stay below 48 1/s",
         ),
-        (WALL + controller("hybrid", "force_damping: 0"), "and nothing damps it"),
+        (WALL + controller("hybrid", "force_damping: 0"), "and it has no damping"),
         (
             "wall: {acts_on_arm: true, contact: {stiffness: 1483.2}}\n" + controller("admittance", "inner: position"),
             "wall.contact.stiffness is 1483.2 N/m, and this admittance over this inner loop is stable on walls up to "
@@ -506,7 +506,7 @@ def test_defaults_are_no_slip(warned, type_name: str) -> None:
         ),
         (
             WALL + controller("hybrid") + "reference: {force: {type: sinusoid, value: 1, amplitude: 2}}\n",
-            "the wanted force falls to -1 N: a wall cannot pull",
+            "the reference of the force falls to -1 N: a wall cannot pull",
         ),
         (
             WALL + controller("hybrid") + "reference: {force: {type: step, start: 20}}\n",

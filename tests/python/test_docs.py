@@ -44,3 +44,23 @@ def test_every_link_between_pages_leads_somewhere(root: Path) -> None:
 def test_the_readme_leads_to_every_page(root: Path) -> None:
     readme = (root / "README.md").read_text()
     assert [page.name for page in root.glob("docs/*.md") if f"(docs/{page.name})" not in readme] == []
+
+
+FIGURES_OF_SPEECH = re.compile(
+    r"\bbooks\b|arm3r CALL|\bleaves? over\b|so-manieth|\blets? go\b|\bbears\b|\bdent(ed)?\b|slip of typing|"
+    r"shall believe|\b[Ww]hoever\b|\bheld against\b|\bof one's own\b|\b[Nn]obody\b|\btold apart\b|bats it"
+)
+
+
+def test_texts_use_the_words_of_the_field(root: Path) -> None:
+    """Pages, messages, help and comments: no figure of speech that was found once and replaced."""
+    found = []
+    for folder in ("docs", "python", "cpp", "scenarios", "benchmarks", "tests"):
+        for path in (root / folder).rglob("*"):
+            if path.suffix in (".md", ".py", ".hpp", ".cpp", ".h", ".c", ".yaml") and path != Path(__file__):
+                for number, line in enumerate(path.read_text().splitlines(), 1):
+                    found += [f"{path.relative_to(root)}:{number}: {m[0]}" for m in FIGURES_OF_SPEECH.finditer(line)]
+    for path in root.glob("*.md"):
+        if path.name != "CHANGELOG.md":
+            found += [f"{path.name}: {m[0]}" for m in FIGURES_OF_SPEECH.finditer(path.read_text())]
+    assert found == []

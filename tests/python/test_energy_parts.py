@@ -1,6 +1,6 @@
 """The dissipated energy in parts: joints, contact, friction along the wall, edges of the plate; docs/model.md (4.9).
 
-The parts are held against an independent simulation, against quadratures over dense rows, and against their sum.
+The parts are compared with an independent simulation, with quadratures over dense rows, and with their sum.
 Random scenarios; a failure prints the seed and the YAML.
 """
 

@@ -1,4 +1,4 @@
-"""One table, whoever computes it: threads, processes, Dask, MPI."""
+"""The table is the same for every executor: threads, processes, Dask, MPI."""
 
 from __future__ import annotations
 

@@ -227,13 +227,13 @@ def test_a_plate_edge_takes_the_energy_of_the_dent(across: list[float], acts: bo
         (make, leave) = run.events
         assert (make.t, leave.t) == (0, close(leaves, 1e-8))
     before, after = run.t < leaves - 1e-6, run.t > leaves + 1e-6
-    force, dent = np.linalg.norm(run["f_on_wall"], axis=1), 1e4 * 0.002**2 / 2 if acts else 0.0
+    force, elastic = np.linalg.norm(run["f_on_wall"], axis=1), 1e4 * 0.002**2 / 2 if acts else 0.0
     assert force[before] == close(20.0, 1e-5 if acts else 1e-9)
-    assert run["energy_contact"][before] == close(dent, 1e-7)
+    assert run["energy_contact"][before] == close(elastic, 1e-7)
     if leaves < 5.5:
         assert not force[after].any()
         assert not run["energy_contact"][after].any()
-        assert run["energy_dissipated"][after] == close(dent, 1e-7)
+        assert run["energy_dissipated"][after] == close(elastic, 1e-7)
     assert run["energy_dissipated"][before] == close(0.0, 1e-12)
 
 

@@ -71,7 +71,7 @@ def test_contact_flag_force_and_depth_tell_the_same_story(name: str) -> None:
 
 
 @every_scenario
-def test_the_other_convention_tells_the_same_story(name: str) -> None:
+def test_the_other_convention_gives_the_same_results(name: str) -> None:
     there = mirrored(arm3r.Scenario.load(SCENARIOS / name))
     there["checks"] = []
     one, other = run_of(name), there.run()

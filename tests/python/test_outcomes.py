@@ -235,7 +235,7 @@ def test_the_works_of_a_stiff_step_that_an_event_cuts_have_the_order_of_the_meth
 
 
 def _balance(rng: np.random.Generator) -> tuple[str, float]:
-    """Of a random scenario: the outcome, and what its energy balance leaves over."""
+    """The outcome of a random scenario, and the residual of its energy balance."""
     scenario, tolerance = random_scenario(rng, longest=3), 10 ** rng.uniform(-11, -5)
     methods = [{"method": method, "rtol": tolerance, "atol": tolerance * 1e-3} for method in ADAPTIVE]
     solver = [*methods, {"method": "taylor", "tol": tolerance}][rng.integers(4)]
@@ -254,7 +254,7 @@ def _balance(rng: np.random.Generator) -> tuple[str, float]:
 
 
 def _hold_balance(scenarios: int, limits: dict[float, float]) -> None:
-    """The limits: to each share of the scenarios, the most that its balances may leave over."""
+    """The limits: to each share of the scenarios, the largest residual of its balances."""
     rng = np.random.default_rng(sample_seed())
     print("ARM3R_SEED =", sample_seed())
     runs = [_balance(rng) for _ in range(scenarios)]

@@ -227,7 +227,7 @@ def test_out_of_reach_is_named_by_index(arm: arm3r.Arm) -> None:
     ("q", "qd", "place"),
     [((3,), (3,), (1,)), ((4, 3), (3,), (2, 1)), ((2, 4, 3), (4, 3), (1, 2, 1)), ((2, 1, 3), (4, 3), (1, 0, 1))],
 )
-def test_places_are_told_in_the_shape_that_was_given(
+def test_places_are_named_in_the_shape_that_was_given(
     arm: arm3r.Arm, far: float, q: tuple[int, ...], qd: tuple[int, ...], place: tuple[int, ...]
 ) -> None:
     values = np.zeros(q)

@@ -189,7 +189,7 @@ def test_many_rows_do_not_depend_on_the_others() -> None:
 
 
 def law(t: float, state: arm3r.LawState) -> np.ndarray:
-    """Some torque of all that a law of one's own sees."""
+    """Some torque that depends on all that a user's law gets."""
     return state.tau_g - 3 * state.qd + 0.05 * np.sin(7 * t + state.q) + 0.01 * state.f_on_tip
 
 

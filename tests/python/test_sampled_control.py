@@ -254,7 +254,7 @@ def test_the_seed_makes_the_noise() -> None:
 HELD = Arm().at(QA)
 
 
-def test_a_limit_below_the_weight_lets_go() -> None:
+def test_with_a_limit_below_the_weight_the_arm_sinks() -> None:
     holding = HELD.gravity[1]
     assert holding == pytest.approx(13.3337086009, abs=1e-10)
     for limit in (holding + 1e-6, holding - 1e-3):

@@ -221,7 +221,7 @@ def test_damage_is_said_and_mended(reference: Path, started: Path, damage: Any) 
     assert len(changed) == 1
 
 
-def test_a_shard_without_its_line_is_not_believed(reference: Path, started: Path) -> None:
+def test_a_shard_without_its_line_is_not_accepted(reference: Path, started: Path) -> None:
     lines = (started / "ledger.jsonl").read_text().splitlines(keepends=True)
     (started / "ledger.jsonl").write_text("".join(lines[1:]))
     first = json.loads(lines[0])
@@ -260,7 +260,7 @@ def test_a_damaged_table_is_named_and_made_again(reference: Path, started: Path,
     assert resumed(started) == (bytes_of(reference), [])
 
 
-def test_shards_and_ledger_of_another_sweep_are_not_believed(reference: Path, started: Path, tmp_path: Path) -> None:
+def test_shards_and_ledger_of_another_sweep_are_not_accepted(reference: Path, started: Path, tmp_path: Path) -> None:
     other = arm3r.sweep(arm3r.Sweep(SWEEP.replace("stop: 1.2", "stop: 1.3")), out=tmp_path / "other").folder
     shutil.copytree(other / "shards", started / "shards", dirs_exist_ok=True)
     shutil.copy(other / "ledger.jsonl", started)
@@ -436,7 +436,7 @@ def wait_for(path: Path) -> None:
         time.sleep(0.005)
 
 
-def test_a_second_driver_is_told_who_is_there(long: Any, command: Cli, tmp_path: Path) -> None:
+def test_a_second_driver_learns_the_process_of_the_first(long: Any, command: Cli, tmp_path: Path) -> None:
     first = long()
     wait_for(tmp_path / "long/ledger.jsonl")
     first.send_signal(signal.SIGSTOP)

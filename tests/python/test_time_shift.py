@@ -185,7 +185,7 @@ def hold_random(count: int) -> None:
             text = scenario.to_yaml()
             raise AssertionError(f"seed {seed}, scenario {i}, {method}, moved by {by} s: {error}\n{text}") from error
     before, after = (sum(column) for column in zip(*counts, strict=True))
-    print(f"seed {seed}: {len(counts)} of {count} held against their shift; rejected steps {before}, after it {after}")
+    print(f"seed {seed}: {len(counts)} of {count} compared with their shift; rejected steps {before}, after it {after}")
     assert len(counts) > 0.8 * count
     assert after <= 1.05 * before + 20
 
@@ -242,7 +242,7 @@ def test_samples_count_from_the_start() -> None:
     assert len(seen) == 6
 
 
-def test_a_law_that_fails_is_told_its_sample() -> None:
+def test_a_law_that_fails_names_its_sample() -> None:
     def law(t: float, state: Any) -> Any:
         return state.tau_g if t < 0.73 else "no torque"
 

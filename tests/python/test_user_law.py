@@ -95,7 +95,7 @@ def test_a_rate_is_1_khz_unless_it_is_said(scenario: arm3r.Scenario) -> None:
 
 
 @pytest.mark.parametrize("convention", ["slide", "simscape"])
-def test_what_it_sees_is_what_the_arm_says(scenario: arm3r.Scenario, convention: str) -> None:
+def test_the_state_agrees_with_the_functions_of_the_arm(scenario: arm3r.Scenario, convention: str) -> None:
     scenario["arm.convention"] = convention
     scenario["time.log_every"] = 0.005
     arm, seen = scenario.arm, []
@@ -556,7 +556,7 @@ def test_a_copy_forgets_nothing(root: Path, method: str, sensors: str) -> None:
     assert _same(simulation.run, expected) and _told(simulation.run) == _told(expected)
 
 
-def test_a_simulation_tells_where_it_stands(scenario: arm3r.Scenario) -> None:
+def test_a_simulation_knows_its_time_and_its_end(scenario: arm3r.Scenario) -> None:
     simulation = Simulation(scenario, rate=100)
     assert simulation.t == 0 and np.array_equal(simulation.state.q, START)
     first = simulation.state
@@ -584,7 +584,7 @@ def test_a_bad_torque_changes_nothing(scenario: arm3r.Scenario, bad: Any) -> Non
     assert _same(_stepped(simulation), scenario.run(controller=damp))
 
 
-def test_a_run_that_ends_early_is_told(scenario: arm3r.Scenario) -> None:
+def test_a_run_that_ends_early_is_reported(scenario: arm3r.Scenario) -> None:
     scenario["solver.max_steps"] = 50
     simulation = Simulation(scenario)
     with pytest.raises(arm3r.BudgetError) as caught:

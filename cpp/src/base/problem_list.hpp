@@ -1,5 +1,5 @@
 #pragma once
-// A list of broken rules: with messages, or, if nobody reads them, only the information whether it is empty.
+// A list of broken rules: with messages, or, if they are not needed, only the information whether it is empty.
 
 #include <vector>
 

@@ -43,7 +43,7 @@ private:
     void run_with_law(const Setup& setup, std::size_t run);
     // The runs first to last - 1 were not started: their rows have no number but the outcome.
     void refuse(std::size_t first, std::size_t last, arm3r_outcome why);
-    void refuse_rest();  // all runs that nobody has started
+    void refuse_rest();  // all runs that no worker has started
 
     BatchJob& job_;
     std::vector<double> params_;

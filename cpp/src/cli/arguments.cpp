@@ -167,7 +167,7 @@ std::size_t read_option(const std::vector<std::string>& words, std::size_t at, A
 
 void check_fit(const Arguments& arguments, const Used& used) {
     const Call* call = find_call(arguments.call);
-    if (!call) usage_error(arguments.call.empty() ? "no call given; see arm3r --help" : unknown_call(arguments.call));
+    if (!call) usage_error(arguments.call.empty() ? "no command given; see arm3r --help" : unknown_call(arguments.call));
     for (const Option* option : used.options)
         if (!takes(call->name, *option))
             usage_error("arm3r " + arguments.call + " has no option " + std::string(option->name));
@@ -190,17 +190,17 @@ std::string option_line(const Option& option) {
 }
 
 std::string program_help() {
-    std::string out = "usage: arm3r CALL ...\n\n";
+    std::string out = "usage: arm3r COMMAND ...\n\n";
     const auto add = [&](const auto& entry) {
         out += two_columns(std::string(entry.name) + " " + std::string(entry.operands), entry.does);
     };
     std::for_each(std::begin(calls), std::end(calls), add);
-    out += "\nCalls of the Python package, which need it installed:\n\n";
+    out += "\nCommands of the Python package, which must be installed:\n\n";
     std::for_each(std::begin(programs), std::end(programs), add);
     out += two_columns("NAME ...", "any other NAME runs arm3r-NAME, found beside this program or on PATH") + "\n";
     for (const Option& option : options)
         if (option.calls.empty() || option.calls == no_call) out += option_line(option);
-    return out + "\narm3r CALL --help tells more of a call.\n\n" + std::string(exit_codes);
+    return out + "\narm3r COMMAND --help describes a command.\n\n" + std::string(exit_codes);
 }
 
 }  // namespace
@@ -209,7 +209,7 @@ bool is_call(std::string_view name) { return find_call(name) != nullptr; }
 
 std::string unknown_call(const std::string& name) {
     const std::string own = did_you_mean(name, calls), hint = own.empty() ? did_you_mean(name, programs) : own;
-    return "unknown call " + printable(name) + ", and no program arm3r-" + printable(name) +
+    return "unknown command " + printable(name) + ", and no program arm3r-" + printable(name) +
            (hint.empty() ? "; see" : hint + " See") + " arm3r --help";
 }
 

@@ -59,7 +59,7 @@ constexpr SummaryNumber numbers[] = {
     {"peak_force_time", "s", "when the normal contact force was largest", [](R r) { return r.peak_force_time; }},
     {"energy_dissipated_joints", "J", "the part lost to damping and friction of the joints",
      [](R r) { return r.dissipated_parts[0]; }},
-    {"energy_dissipated_contact", "J", "the part lost in the contact along its normal and by springs that let go",
+    {"energy_dissipated_contact", "J", "the part lost in the contact along its normal and by springs that are still loaded when contact ends",
      [](R r) { return r.dissipated_parts[1]; }},
     {"energy_dissipated_friction", "J", "the part lost to friction along the wall",
      [](R r) { return r.dissipated_parts[2]; }},

@@ -1,5 +1,5 @@
 #pragma once
-// The claims of a scenario file, each held against a run.
+// The checks of a scenario file, compared with a run.
 
 #include <limits>
 #include <optional>

@@ -296,7 +296,7 @@ private:
                 object({member("required", json_words({form.subject})), member("additionalProperties", "false"),
                         member("properties", object(properties))}));
         }
-        return R"({"description": "Claims that are held against the run.", "type": "array", "items": )"
+        return R"({"description": "Conditions on the run.", "type": "array", "items": )"
                R"({"type": "object", "oneOf": [)" +
                listed(variants, ",\n      ") + "]}}";
     }

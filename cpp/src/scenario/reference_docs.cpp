@@ -17,6 +17,7 @@ namespace {
 std::string when_text(const Key& key) {
     if (key.when_key.empty()) return "";
     const std::vector<std::string> without = words_without(key);
+    if (without.empty()) return "";
     return without.size() < key.when.size() ? "not where " + key.when_key + " is " + listed(without, " or ")
                                             : "only where " + key.when_key + " is " + listed(key.when, " or ");
 }
@@ -97,7 +98,7 @@ std::string numbers_text(const Key& key) {
 }
 
 std::string key_row(const Key& key) {
-    const std::string where = key.when_key.empty() ? "" : " *" + when_text(key) + "*";
+    const std::string when = when_text(key), where = when.empty() ? "" : " *" + when + "*";
     return row({"`" + key.path + "`", numbers_text(key), unit_text(key), default_text(key), range_text(key),
                 source_name(static_cast<int>(key.source)), key.doc + where});
 }
@@ -139,7 +140,7 @@ named. Law diagonal needs `stiffness: [kn, k1, k2]`, and hunt_crossley a number 
 
 The four lists of a wall's table are equally long.
 
-At the start the tip may stand in the wall, which is a make at that instant, but not deeper than 0.1 m.
+At the start the tip may stand in the wall, which counts as the event `make` at that instant, but not deeper than 0.1 m.
 
 ## Rows
 
@@ -169,7 +170,7 @@ believes; the others are as the plant.
 
 ## checks
 
-A list of claims, each held against the run; a claim that fails makes the executable exit with 10.
+A list of conditions on the run; one that fails makes the executable exit with 10.
 
 | Subject | Value |
 |---|---|

@@ -74,14 +74,14 @@ constexpr Column columns[] = {
     {"collision", "1", "1 from the start of a detected collision to its end; a sampled observer only", Need::observer},
     {"stiffness_estimate", "N/m", "the wall's stiffness by least squares; 0 where it is not identifiable",
      Need::estimator},
-    {"wall_speed_estimate", "m/s", "the wall's speed towards the arm by least squares; 0 likewise", Need::estimator},
+    {"wall_speed_estimate", "m/s", "the wall's speed towards the arm by least squares; 0 where it is not identifiable", Need::estimator},
     {"identifiable", "1", "1 where the data determine both stiffness and speed", Need::estimator},
     {"tank_energy", "J", "energy in the tank", Need::tank},
     {"saturated", "1", "1 where a torque is at its limit", Need::limits},
     {"energy_dissipated_joints", "J", "the part of energy_dissipated lost to damping and friction of the joints",
      Need::loss},
     {"energy_dissipated_contact", "J",
-     "the part lost in the contact: by damping along its normal, and by springs along the plate that let go",
+     "the part lost in the contact: by damping along its normal, and by springs along the plate that are still loaded when contact ends",
      Need::loss},
     {"energy_dissipated_friction", "J", "the part lost to friction along the wall", Need::loss},
     {"energy_dissipated_edges", "J", "the part lost where the tip left the plate across an edge", Need::loss},
@@ -98,9 +98,9 @@ std::string_view need_text(Need need) {
     switch (need) {
         case Need::nothing: return "";
         case Need::wall: return "only with a wall";
-        case Need::force_reference: return "only with a law that wants a force";
-        case Need::path: return "only with a law that wants tip positions";
-        case Need::joint_path: return "only with a law that wants joint angles";
+        case Need::force_reference: return "only with a law that controls force";
+        case Need::path: return "only with a law that follows a path of the tip";
+        case Need::joint_path: return "only with a law that follows a path of the joints";
         case Need::observer: return "only with an observer";
         case Need::estimator: return "only with an estimator";
         case Need::tank: return "only with an energy tank";

@@ -1,5 +1,5 @@
 #pragma once
-// Refuses runs before they start that would need more rows, steps or samples than anybody wants.
+// Refuses runs before they start that would need more rows, steps or samples than the limits allow.
 
 #include "setup/setup.hpp"
 

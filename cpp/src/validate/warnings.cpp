@@ -40,7 +40,7 @@ void warn_of_gravity(const Setup& setup, std::vector<std::string>& warnings) {
     if (uses_gravity(controller) && is_nearly_equal(feels, compensates))
         warnings.push_back("the plant feels g = " + shortest(norm(feels)) + " m/s^2 and the controller compensates " +
                            shortest(norm(compensates)) +
-                           ": less than 1 % apart but not equal, so the arm will drift; a slip of typing?");
+                           ": less than 1 % apart but not equal, so the arm will drift; is this a typing mistake?");
 }
 
 void warn_of_angles(const Setup& setup, std::vector<std::string>& warnings) {
@@ -102,7 +102,7 @@ void warn_of_contact_step(const Setup& setup, std::vector<std::string>& warnings
     const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
     const auto check = [&](const char* name, double product, double half, const char* limit) {
         if (product > half)
-            warnings.push_back(std::string(name) + " is " + shortest(product) + ", more than half of what rk4 bears (" +
+            warnings.push_back(std::string(name) + " is " + shortest(product) + ", more than half of the stability limit of rk4 (" +
                                limit + "): the contact will not be resolved; take a smaller solver.step");
     };
     if (contact.law != ContactLaw::hunt_crossley)
@@ -143,7 +143,7 @@ std::optional<std::string> default_gravity_warning(const Setup& setup) {
     return "the plant feels the gravity " + vector_text(feels) + " m/s^2 and the controller compensates " +
            vector_text(compensates) +
            " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
-           ", or what it shall believe instead";
+           ", or the value that its model must have";
 }
 
 std::vector<std::string> scenario_warnings(const Setup& setup) {

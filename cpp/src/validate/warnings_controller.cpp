@@ -50,7 +50,7 @@ void warn_of_cubic(double m, double b, double c, double d, double gain, const st
                        rounded(b) + ", " + rounded(c) + " and " + rounded(d) +
                        (b > 0 && c > 0 ? ", and controller.force_integral_gain must stay below " +
                                              rounded(gain * b * c / (m * d)) + " 1/s"
-                                       : ", and nothing damps it"));
+                                       : ", and it has no damping"));
 }
 
 void warn_of_force_loop(const Controller<double>& controller, const Loop& loop, Warnings& warnings) {
@@ -238,7 +238,7 @@ void warn_of_pressing(const Setup& setup, Warnings& warnings) {
     if (!tracks_force(controller.type) && controller.type != ControllerType::admittance) return;
     const Reference<double>& reference = controller.reference;
     if (const double least = min_force(reference); least < 0)
-        warnings.push_back("the wanted force falls to " + shortest(least) +
+        warnings.push_back("the reference of the force falls to " + shortest(least) +
                            " N: a wall cannot pull, so the tip will leave it");
     const bool changes = reference.force_profile == ForceProfile::step || reference.force_profile == ForceProfile::ramp;
     if (changes && reference.force_start > setup.stop)
@@ -286,7 +286,7 @@ void warn_of_held_spring(const Setup& setup, const Spring& spring, Warnings& war
     if (setup.controller().type == ControllerType::energy_tank && spring.stiffness * lag > spring.damping)
         warnings.push_back(held + ", and torques that act " + rounded(lag) +
                            " s late on average make such a spring give out more energy than controller.damping takes: "
-                           "the tank pays until it is empty, and then a brake works all the time; keep the stiffness "
+                           "the tank empties, and then the brake acts all the time; keep the stiffness "
                            "below " +
                            rounded(spring.damping / lag) + " N/m, or raise sampling.rate");
     const double turn = reach * std::sqrt(spring.stiffness / spring.mass);
@@ -315,14 +315,14 @@ void warn_of_counting(const Setup& setup, const std::string& law, Warnings& warn
     const Sensors<double>& sensors = setup.digital.sensors;
     if (sensors.has_encoder || sensors.velocity != VelocityEstimate::exact)
         warnings.push_back(
-            law + " counts its energy by what sensors.encoder and sensors.velocity tell" +
+            law + " computes its energy from sensors.encoder and sensors.velocity" +
             (sensors.has_encoder ? ", here in steps of " + rounded(sensors.encoder_step) + " rad" : std::string()) +
             ": it never creates energy only as far as they are exact");
     if (sampling.delay != std::floor(sampling.delay))
         warnings.push_back("sampling.delay is " + shortest(sampling.delay) +
                            " samples, and two torques act within each period of " + rounded(sampling.period) +
                            " s: " + law +
-                           " counts its energy to the third order of the period only; "
+                           " computes its energy to the third order of the period only; "
                            "whole delays are counted exactly");
     if (setup.controller().type != ControllerType::virtual_wall) return;
     const Gains<double>& g = setup.controller().gains;

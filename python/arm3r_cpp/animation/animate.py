@@ -29,7 +29,7 @@ def animate(
         path: NAME.gif, NAME.mp4 (by ffmpeg, which has to be on PATH), or a new folder for PNG files.
         fps: frames a second of the film; at most 50 for a GIF.
         speed: how many seconds of the run pass in one of the film.
-        every: show each so-manieth row instead; speed then means nothing.
+        every: show one row of this many instead; speed is then not used.
         progress: called as progress(frames_done, frames) after each frame.
 
     Raises:

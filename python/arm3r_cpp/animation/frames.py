@@ -25,7 +25,7 @@ class Frames(NamedTuple):
     joints: Floats
     """(frames, 3, 3): shoulder, elbow and tip"""
     reference: Floats | None
-    """(frames, 3): where the tip is wanted"""
+    """(frames, 3): reference of the tip"""
     plate: Floats | None
     """(frames, 4, 3): its corners"""
     force: Floats

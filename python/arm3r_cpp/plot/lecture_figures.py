@@ -145,7 +145,7 @@ def energies(run: Run) -> Figure:
     figure, (terms, residual) = panels(run, [2.0, 1.2])
     draw_energies(terms, run)
     finish(terms, run, "energy, J")
-    draw_residuals(residual, run, {"what the balance leaves over": abs(run["energy_residual"])})
+    draw_residuals(residual, run, {"residual of the energy balance": abs(run["energy_residual"])})
     finish(residual, run, "residual, J")
     event_legend(figure, run)
     return figure

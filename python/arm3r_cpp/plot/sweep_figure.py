@@ -146,7 +146,7 @@ def _curves(ax: Axes, table: SweepTable, metric: str, axis: Drawn, words: list[D
 
 
 def _series(words: list[Drawn], runs: int) -> list[tuple[str | None, NDArray[np.bool_]]]:
-    """The runs of each combination of words, with what to call it; too many of them are not told apart."""
+    """The runs of each combination of words, with what to call it; too many of them have one colour."""
     combinations = list(product(*(np.unique(word.values) for word in words)))
     if not words or len(combinations) > len(LOOKS):
         return [(None, np.ones(runs, np.bool_))]

@@ -102,9 +102,9 @@ class SweepTable:
 
     @property
     def outcomes(self) -> dict[str, int]:
-        """How many runs ended in which way, by the ledger. Raises UsageError: that is damaged."""
+        """How many runs ended in which way, by ledger.jsonl. Raises UsageError: the file is damaged."""
         try:
             with regular(self.folder / LEDGER).open("rb") as ledger:
                 return count_outcomes(map(json.loads, ledger))
         except (OSError, ValueError, RecursionError, KeyError, TypeError) as error:
-            raise UsageError(f"{self.folder}: {LEDGER} is damaged; --resume mends it", code="file") from error
+            raise UsageError(f"{self.folder}: {LEDGER} is damaged; --resume repairs it", code="file") from error

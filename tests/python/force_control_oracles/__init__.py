@@ -1,4 +1,4 @@
-"""What the force-control benchmarks are held against: a small simulator of its own, its control laws, closed forms.
+"""The reference of the force-control benchmarks: a small simulator of its own, its control laws, closed forms.
 
 Nothing of arm3r is used, scipy integrates. Convention: slide (positive q2, q3 raise the arm). SI units, radians, world
 axes. A force with three components is that on the tip; f >= 0 is what the wall feels along its inward normal p_in.

@@ -10,7 +10,7 @@ from .wall import Law
 
 
 def kelvin_voigt_restitution(zeta: float) -> float:
-    """e of the damping ratio c / (2 sqrt(k m)), let go at no force."""
+    """e of the damping ratio c / (2 sqrt(k m)), with contact that ends at zero force."""
     if zeta == 1:
         return float(np.exp(-2))
     if zeta < 1:

@@ -138,7 +138,7 @@ def open_force_loop(s: complex, kP: float, kI: float, m_f: float, b: float, k: f
 
 
 def delay_margin(kP: float, kI: float, m_f: float, b: float, *, k: float) -> tuple[float, float, float]:
-    """(7.14): crossover rad/s, phase margin rad, delay of e_f that it bears, s."""
+    """(7.14): crossover rad/s, phase margin rad, delay of e_f up to which it is stable, s."""
     crossover = brentq(lambda w: abs(open_force_loop(1j * w, kP, kI, m_f, b, k)) - 1, 1e-2, 1e4, xtol=1e-12)
     phase = np.pi + np.angle(open_force_loop(1j * crossover, kP, kI, m_f, b, k))
     return crossover, float(phase), float(phase / crossover)

@@ -12,7 +12,7 @@ from .arm import Motion
 
 @dataclass(frozen=True)
 class Law:
-    """Normal force (depth m, rate m/s) -> N and its elastic part; where `release` falls below 0, the tip is let go."""
+    """Normal force (depth m, rate m/s) -> N and its elastic part; where `release` falls below 0, contact ends."""
 
     normal: Callable[[float, float], float]
     elastic: Callable[[float], float]
@@ -69,7 +69,7 @@ class Wall:
         return xd - self.normal * (self.normal @ xd)
 
     def force(self, t: float, s: Motion) -> np.ndarray:
-        """On the tip, while it touches and is not let go."""
+        """On the tip, while contact lasts."""
         f = self.law.normal(self.depth(t, s.x), self.rate(t, s.xd))
         sliding = self.sliding(s.xd)
         drag = self.law.friction * f / np.sqrt(sliding @ sliding + self.law.slip**2)
