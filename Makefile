@@ -1,4 +1,4 @@
-# make run: build, replay the lecture's moving wall, draw its figures.   make test: build and pass everything.
+# make run: build, replay the lecture's moving wall, draw it and a force controller.   make test: build and pass everything.
 # Needed: python3 >= 3.10 with venv and headers, g++ and make. The rest comes from the package index into .venv.
 
 PYTHON ?= python3
@@ -19,7 +19,8 @@ PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist wo
 run: $(VENV)/installed
 	mkdir -p out
 	$(BIN)/arm3r run scenarios/moving_wall.yaml -o out/moving_wall.csv
-	$(BIN)/arm3r-plot out/moving_wall.csv --lecture -o out/
+	$(BIN)/arm3r-plot out/moving_wall.csv --lecture --panels strobe,wall,contact -o out/
+	$(BIN)/arm3r-plot scenarios/force_control/hybrid_first_contact.yaml -o out/
 
 test: $(VENV)/test $(BUILD)/tests
 	@failed=0; \

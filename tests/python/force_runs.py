@@ -119,20 +119,23 @@ def changed(run: arm3r.Run, columns: dict[str, Any], **summary: Any) -> arm3r.Ru
 def force_loop(t: Any, kp: float, ki: float, b: float) -> Any:
     """Depth: free until the wall is there, then m u'' = kp e + ki int e - b s', e = wanted - k u."""
 
-    def derivative(y: Any) -> Any:
-        u, s, z = y
+    def derivative(u: float, s: float, z: float) -> tuple[float, float, float]:
         error = WANTED - STIFFNESS * max(u, 0.0)
-        return np.array([s + SPEED, kp * error + ki * z - b * s, error] if u > 0 else [SPEED, 0.0, 0.0])
+        return (s + SPEED, kp * error + ki * z - b * s, error) if u > 0 else (SPEED, 0.0, 0.0)
 
-    y = np.array([-0.02, 0.0, 0.0])
-    states = [y]
+    def moved(y: tuple[float, ...], h: float, k: tuple[float, ...]) -> tuple[float, float, float]:
+        return y[0] + h * k[0], y[1] + h * k[1], y[2] + h * k[2]
+
+    y = (-0.02, 0.0, 0.0)
+    depths = [y[0]]
     for _ in t[1:]:
-        k1 = derivative(y)
-        k2 = derivative(y + FINE / 2 * k1)
-        k3 = derivative(y + FINE / 2 * k2)
-        y = y + FINE / 6 * (k1 + 2 * k2 + 2 * k3 + derivative(y + FINE * k3))
-        states.append(y)
-    return np.array(states)[:, 0]
+        k1 = derivative(*y)
+        k2 = derivative(*moved(y, FINE / 2, k1))
+        k3 = derivative(*moved(y, FINE / 2, k2))
+        k4 = derivative(*moved(y, FINE, k3))
+        y = moved(y, FINE / 6, tuple(a + 2 * b + 2 * c + d for a, b, c, d in zip(k1, k2, k3, k4, strict=True)))
+        depths.append(y[0])
+    return np.array(depths)
 
 
 def turn(t: Any) -> Any:
@@ -144,12 +147,15 @@ def turn(t: Any) -> Any:
 
 def track(t: Any, wanted: Any) -> Any:
     """Across the face: a double integrator with K 400, D 40 that knows no feedforward."""
-    position, velocity, path = wanted[0].copy(), np.zeros(2), []
-    for target in wanted:
-        path.append(position)
-        velocity = velocity + FINE * (400 * (target - position) - 40 * velocity)
-        position = position + FINE * velocity
-    return np.array(path)
+    paths = []
+    for targets in wanted.T.tolist():
+        position, velocity, path = targets[0], 0.0, []
+        for target in targets:
+            path.append(position)
+            velocity += FINE * (400 * (target - position) - 40 * velocity)
+            position += FINE * velocity
+        paths.append(path)
+    return np.array(paths).T
 
 
 def place(depth: Any, t: Any, across: Any) -> Any:
@@ -184,11 +190,14 @@ def rows_of(t: Any, tip: Any, reference: Any, force: Any, every: int) -> dict[st
 
 def lagged(signal: Any, rate: float, t: Any) -> Any:
     """Through a first-order filter."""
-    share, state, out = 1 - np.exp(-rate * (t[1] - t[0])), np.zeros(signal.shape[1]), []
-    for value in signal:
-        state = state + share * (value - state)
-        out.append(state)
-    return np.array(out)
+    share, filtered = 1 - float(np.exp(-rate * (t[1] - t[0]))), []
+    for values in signal.T.tolist():
+        state, out = 0.0, []
+        for value in values:
+            state += share * (value - state)
+            out.append(state)
+        filtered.append(out)
+    return np.array(filtered).T
 
 
 def triple(name: str, ends: str, values: Any) -> dict[str, Any]:

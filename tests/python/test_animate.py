@@ -17,6 +17,7 @@ from arm3r_cpp.animation.files import Film, write
 from arm3r_cpp.animation.frames import Frames, frame_times, frames_of
 from arm3r_cpp.animation.scene import Scene, newtons_per_metre, palette, sight
 from arm3r_cpp.commands import animate as animate_cli
+from arm3r_cpp.plot.run_part import part_of
 from matplotlib.colors import to_rgb
 from PIL import Image
 
@@ -313,6 +314,23 @@ def test_a_film_of_a_csv(here: Path, capsys: pytest.CaptureFixture[str]) -> None
         assert film.n_frames == 11
 
 
+def test_a_film_of_a_part_of_a_run(here: Path) -> None:
+    assert animate_cli.main(["hybrid.csv", "--from", "0.3", "--to", "0.5", "--speed", "0.1", "--fps", "10"]) == 0
+    with Image.open("hybrid.gif") as film:
+        assert film.n_frames == 21  # 0.2 s, ten times slower
+
+
+def test_the_frames_of_a_part_are_those_of_the_whole_film(hybrid: arm3r.Run) -> None:
+    part = part_of(hybrid, 1.0, 3.0)
+    _, whole = film_of(hybrid)
+    scene, frames = film_of(part)
+    shown = (whole.t > 1 - 1e-9) & (whole.t < 3 + 1e-9)
+    assert frames.t == pytest.approx(whole.t[shown])
+    assert frames.joints == pytest.approx(whole.joints[shown])
+    assert frames.contact.tolist() == whole.contact[shown].tolist() == [1] * len(frames.t)
+    assert scene.figure.axes[-1].get_xlim() == (1, 3)
+
+
 def test_a_film_of_a_scenario_that_fails_shows_how_far_it_came(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("short.yaml").write_text("{format: 1, solver: {max_steps: 20}, time: {stop: 5}}")
     assert animate_cli.main(["short.yaml", "-o", "short.gif"]) == 5
@@ -335,6 +353,7 @@ def test_a_film_of_a_scenario_that_fails_shows_how_far_it_came(here: Path, capsy
         (["hybrid.csv", "--speed", "-1"], 2, "speed"),
         (["hybrid.csv", "--speed", "1e-3"], 2, "--speed 0.033"),
         (["hybrid.csv", "--every", "0"], 2, "every"),
+        (["hybrid.csv", "--from", "5"], 2, "from 5 s to 4 s: there are 0 rows"),
         (["hybrid.csv", "-o", "hybrid.csv/film.gif"], 6, "hybrid.csv"),
     ],
 )
@@ -368,7 +387,7 @@ def test_pace_is_given_once(here: Path) -> None:
 def test_the_installed_command(scripts: Path) -> None:
     done = subprocess.run([scripts / "arm3r-animate", "--help"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0
-    for option in ("-o", "--fps", "--speed", "--every", "ffmpeg"):
+    for option in ("-o", "--fps", "--speed", "--every", "--from", "--to", "ffmpeg"):
         assert option in done.stdout
 
 

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from itertools import combinations, pairwise
+import shutil
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
 import force_runs
-import matplotlib
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 from arm3r_cpp.commands import plot as plot_cli
 from arm3r_cpp.plot.comparison import shortened
 from arm3r_cpp.plot.force_run import ForceRun
+from arm3r_cpp.plot.style import RC
 from arm3r_cpp.plot.wall_frame import wall_frame
+from figure_faults import crowded
+from matplotlib import rcParams
 from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
@@ -30,9 +28,9 @@ BELOW = ["pressing force, N", "along $e_2$, m"]
 
 
 @pytest.fixture(autouse=True)
-def no_figure_stays_open() -> Iterator[None]:
-    yield
-    plt.close("all")
+def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files of few pixels are written sooner."""
+    monkeypatch.setitem(RC, "savefig.dpi", 40)
 
 
 @pytest.fixture(scope="module")
@@ -66,12 +64,18 @@ def fall() -> arm3r.Run:
     return arm3r.Scenario("{format: 1, name: fall, time: {stop: 0.1}}").run()
 
 
+@cache
+def figure_of(run: arm3r.Run) -> Figure:
+    """The figure of a run that several tests look at and none changes."""
+    return arm3r.plot.force(run)
+
+
 def labels(figure: Figure) -> list[str]:
-    return [ax.get_ylabel() for ax in figure.axes if ax.axison]
+    return [ax.get_ylabel().replace("\n", " ") for ax in figure.axes if ax.axison]
 
 
 def panel(figure: Figure, label: str) -> Any:
-    return next(ax for ax in figure.axes if ax.get_ylabel() == label)
+    return next(ax for ax in figure.axes if ax.get_ylabel().replace("\n", " ") == label)
 
 
 def lines(ax: Any) -> dict[str, Any]:
@@ -202,7 +206,7 @@ def test_limits_come_from_the_summary_or_its_scenario(hybrid: arm3r.Run) -> None
 
 
 def test_all_panels(hybrid: arm3r.Run) -> None:
-    figure = arm3r.plot.force(hybrid)
+    figure = figure_of(hybrid)
     assert labels(figure) == PANELS + BELOW
     assert figure.axes[3].get_xlabel() == "t, s"
     assert figure.axes[0].get_xlim() == (0, 4)
@@ -236,7 +240,7 @@ def test_panels_of_other_laws(hybrid: arm3r.Run) -> None:
 
 
 def test_forces_are_drawn_as_they_were(hybrid: arm3r.Run) -> None:
-    drawn = lines(arm3r.plot.force(hybrid).axes[0])
+    drawn = lines(figure_of(hybrid).axes[0])
     assert np.interp(hybrid.t, *drawn["true"].get_data()) == pytest.approx(hybrid["force"])
     assert drawn["measured"].get_ydata().tolist() == hybrid["force_measured"].tolist()
     assert set(drawn["reference"].get_ydata()) == {20}
@@ -246,22 +250,22 @@ def test_forces_are_drawn_as_they_were(hybrid: arm3r.Run) -> None:
 def test_the_peak_is_marked_at_its_time_and_level(hybrid: arm3r.Run, bounce: arm3r.Run) -> None:
     t = hybrid.t[hybrid["force"].argmax()]
     label = f"peak {hybrid.summary['peak_force']:.4g} N, t = {t:.4f} s"
-    (mark,) = (line for line in arm3r.plot.force(hybrid).axes[0].lines if line.get_label() == label)
+    (mark,) = (line for line in figure_of(hybrid).axes[0].lines if line.get_label() == label)
     assert mark.get_xydata().tolist() == [[t, hybrid.summary["peak_force"]]]
-    marks = lines(arm3r.plot.force(bounce).axes[0])
+    marks = lines(figure_of(bounce).axes[0])
     (label,) = (label for label in marks if "peak" in label)
     assert label.startswith("peak 11.8 N, t ≈ 0.50")
     assert marks[label].get_ydata().tolist() == [11.8]
 
 
 def test_force_is_zero_where_contact_is_made_and_lost_between_rows(bounce: arm3r.Run) -> None:
-    t, force = lines(arm3r.plot.force(bounce).axes[0])["true"].get_data()
+    t, force = lines(figure_of(bounce).axes[0])["true"].get_data()
     for event in bounce.events:
         assert force[np.flatnonzero(t == event.t)].tolist() == [0]
 
 
 def test_settling_is_marked_with_its_band(hybrid: arm3r.Run) -> None:
-    ax = arm3r.plot.force(hybrid).axes[0]
+    ax = figure_of(hybrid).axes[0]
     assert "±5 %, settles in 0.215 s" in legend(ax)
     upright = [
         line.get_xdata()[0] for line in ax.lines if len(set(line.get_xdata())) == 1 and len(line.get_xdata()) == 2
@@ -274,18 +278,19 @@ def test_settling_is_marked_with_its_band(hybrid: arm3r.Run) -> None:
 
 
 def test_a_force_that_never_settles(proportional: arm3r.Run) -> None:
-    ax = arm3r.plot.force(proportional).axes[0]
+    ax = figure_of(proportional).axes[0]
     assert "±5 %, never settles" in legend(ax)
     assert not [line for line in ax.lines if len(set(line.get_xdata())) == 1 and len(line.get_xdata()) == 2]
 
 
 def test_a_summary_without_metrics_has_no_settling(hybrid: arm3r.Run) -> None:
-    assert not any("±" in text for text in legend(arm3r.plot.force(force_runs.changed(hybrid, {}, metrics={})).axes[0]))
+    figure = arm3r.plot.force(force_runs.changed(hybrid, {}, metrics={}), panels=["force"])
+    assert not any("±" in text for text in legend(figure.axes[0]))
 
 
 @pytest.mark.parametrize("label", PANELS)
 def test_contact_is_shaded(bounce: arm3r.Run, label: str) -> None:
-    ax = panel(arm3r.plot.force(bounce), label)
+    ax = panel(figure_of(bounce), label)
     faces = [(part, part.get_facecolor()) for part in ax.collections]
     (shade,) = (part for part, face in faces if len(face) and same_color(face[0][:3], "#E69F00"))
     (path,) = shade.get_paths()
@@ -296,13 +301,13 @@ def test_contact_is_shaded(bounce: arm3r.Run, label: str) -> None:
 
 def test_many_contacts_are_one_artist(bounce: arm3r.Run) -> None:
     events = [force_runs.event(("make", "break")[i % 2], 0.1 + 1e-4 * i) for i in range(4000)]
-    ax = arm3r.plot.force(force_runs.changed(bounce, {}, events=events)).axes[0]
+    ax = arm3r.plot.force(force_runs.changed(bounce, {}, events=events), panels=["force"]).axes[0]
     (shade,) = (part for part in ax.collections if part.get_label() == "contact")
     assert len(shade.get_paths()) == 2000
 
 
 def test_limits_are_drawn_in_their_joints_colours(hybrid: arm3r.Run) -> None:
-    ax = panel(arm3r.plot.force(hybrid), "torque, N m")
+    ax = panel(figure_of(hybrid), "torque, N m")
     drawn = lines(ax)
     levels = {line.get_ydata()[0]: line.get_color() for line in ax.lines if len(set(line.get_ydata())) == 1}
     for i, limit in zip("123", (20, 30, 25), strict=True):
@@ -321,7 +326,7 @@ def test_limits_are_drawn_in_their_joints_colours(hybrid: arm3r.Run) -> None:
     ],
 )
 def test_limits_of_every_kind(hybrid: arm3r.Run, limits: Any, text: str | None, drawn: set[float]) -> None:
-    ax = panel(arm3r.plot.force(force_runs.changed(hybrid, {}, torque_limit=limits)), "torque, N m")
+    ax = panel(arm3r.plot.force(force_runs.changed(hybrid, {}, torque_limit=limits), panels=["torques"]), "torque, N m")
     assert [entry for entry in legend(ax) if "limit" in entry] == ([text] if text else [])
     assert {
         line.get_ydata()[0] for line in ax.lines if len(line.get_ydata()) == 2 and len(set(line.get_ydata())) == 1
@@ -330,13 +335,13 @@ def test_limits_of_every_kind(hybrid: arm3r.Run, limits: Any, text: str | None, 
 
 def test_saturation_is_marked(hybrid: arm3r.Run) -> None:
     marked = force_runs.changed(hybrid, {"saturated": (hybrid.t > 1) & (hybrid.t < 1.5)})
-    ax = panel(arm3r.plot.force(marked), "torque, N m")
+    ax = panel(arm3r.plot.force(marked, panels=["torques"]), "torque, N m")
     assert "at a limit" in legend(ax)
-    assert "at a limit" not in legend(panel(arm3r.plot.force(hybrid), "torque, N m"))
+    assert "at a limit" not in legend(panel(figure_of(hybrid), "torque, N m"))
 
 
 def test_the_first_contact_has_a_panel_where_it_is_short(hybrid: arm3r.Run) -> None:
-    figure = arm3r.plot.force(hybrid)
+    figure = figure_of(hybrid)
     ax = figure.axes[4]
     assert ax.get_xlabel() == "time since the first contact, ms"
     make, low, high = hybrid.events[0].t, *ax.get_xlim()
@@ -345,7 +350,7 @@ def test_the_first_contact_has_a_panel_where_it_is_short(hybrid: arm3r.Run) -> N
     zero = [label for label in ax.get_xticklabels() if label.get_text() == "0"]
     assert zero[0].get_position()[0] == pytest.approx(make)
     brief = force_runs.hybrid(stop=0.8, every=1)
-    assert len(arm3r.plot.force(brief).axes) == len(figure.axes) - 1
+    assert not any("first contact" in ax.get_xlabel() for ax in arm3r.plot.force(brief).axes)
 
 
 def test_a_peak_of_a_later_contact_is_not_marked_in_the_first(bounce: arm3r.Run) -> None:
@@ -358,7 +363,7 @@ def test_a_peak_of_a_later_contact_is_not_marked_in_the_first(bounce: arm3r.Run)
 
 
 def test_the_path_on_the_face(hybrid: arm3r.Run) -> None:
-    ax = panel(arm3r.plot.force(hybrid), "along $e_2$, m")
+    ax = panel(figure_of(hybrid), "along $e_2$, m")
     on = hybrid["contact"] > 0
     across = (hybrid["tip"] - hybrid["wall"]) @ np.stack([force_runs.E1, force_runs.E2], axis=1)
     path = lines(ax)["tip in contact"].get_xydata()
@@ -379,12 +384,12 @@ def test_a_large_path_is_drawn_on_the_whole_plate() -> None:
 
 
 def test_a_point_is_drawn_in_millimetres(bounce: arm3r.Run) -> None:
-    ax = panel(arm3r.plot.force(bounce), "along $e_2$, mm")
+    ax = panel(arm3r.plot.force(bounce, panels=["face"]), "along $e_2$, mm")
     assert lines(ax)["reference"].get_xydata().tolist() == [pytest.approx([50, 130])]
 
 
 def test_a_run_without_force_control(pushed: arm3r.Run) -> None:
-    figure = arm3r.plot.force(pushed)
+    figure = figure_of(pushed)
     assert "reference" not in legend(figure.axes[0])
     force = lines(figure.axes[0])["true"].get_ydata()
     assert force.max() == pytest.approx(np.linalg.norm(pushed["f_on_wall"], axis=1).max())
@@ -409,48 +414,6 @@ def test_what_cannot_be_drawn_is_said(fall: arm3r.Run, hybrid: arm3r.Run) -> Non
 # ---- as a reader sees it --------------------------------------------------------------------------------------------
 
 
-def crowded(figure: Figure) -> list[str]:
-    """What a referee would send back: words that are cut off, labels that touch, a legend that hides data."""
-    figure.draw_without_rendering()
-    faults = []
-    for ax in (ax for ax in figure.axes if ax.axison):
-        for axis in (ax.xaxis, ax.yaxis):
-            boxes = [label.get_window_extent() for label in tick_labels(axis)]
-            faults += [
-                f"ticks of {ax.get_ylabel()}, {axis.axis_name}" for one, other in pairwise(boxes) if one.overlaps(other)
-            ]
-    inside = figure.bbox.padded(2)
-    ticks = {label for ax in figure.axes for axis in (ax.xaxis, ax.yaxis) for label in axis.get_ticklabels()}
-    shown = {*figure.findobj(matplotlib.text.Text)} - ticks
-    shown |= {label for ax in figure.axes if ax.axison for axis in (ax.xaxis, ax.yaxis) for label in tick_labels(axis)}
-    for text in shown:
-        box = text.get_window_extent()
-        if (
-            text.get_visible()
-            and text.get_text()
-            and not (inside.contains(box.x0, box.y0) and inside.contains(box.x1, box.y1))
-        ):
-            faults.append(f"cut off: {text.get_text()}")
-    legends = [ax.get_legend() for ax in figure.axes if ax.get_legend()]
-    for box, ax in ((found.get_window_extent().padded(-2), ax) for found in legends for ax in figure.axes):
-        if box.overlaps(ax.get_window_extent()):
-            faults.append(f"a legend over {ax.get_ylabel()}")
-    names = [ax.yaxis.label for ax in figure.axes if ax.axison] + [ax.xaxis.label for ax in figure.axes if ax.axison]
-    for one, other in combinations([name for name in names if name.get_text()], 2):
-        if one.get_window_extent().overlaps(other.get_window_extent()):
-            faults.append(f"{one.get_text()} over {other.get_text()}")
-    return faults
-
-
-def tick_labels(axis: Any) -> list[Any]:
-    """Those in sight, in order."""
-    low, high = sorted(axis.get_view_interval())
-    ticks = sorted(
-        (tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high), key=lambda tick: tick.get_loc()
-    )
-    return [tick.label1 for tick in ticks if tick.label1.get_visible() and tick.label1.get_text()]
-
-
 @pytest.mark.parametrize("width", [6.3, 3.4])
 @pytest.mark.parametrize("which", ["hybrid", "bounce", "proportional", "pushed"])
 def test_nothing_is_cut_off_or_hidden(which: str, width: float, request: pytest.FixtureRequest) -> None:
@@ -468,9 +431,9 @@ def test_nothing_is_cut_off_or_hidden_in_a_comparison(
 
 
 def test_drawing_changes_no_settings(hybrid: arm3r.Run) -> None:
-    before = dict(matplotlib.rcParams)
+    before = dict(rcParams)
     arm3r.plot.compare([hybrid, hybrid])
-    assert dict(matplotlib.rcParams) == before
+    assert dict(rcParams) == before
 
 
 # ---- comparison -----------------------------------------------------------------------------------------------------
@@ -561,6 +524,70 @@ def test_long_names_lose_their_middle(most: int) -> None:
     assert shortened("abc", 3) == "abc"
 
 
+# ---- what is drawn, and how large -----------------------------------------------------------------------------------
+
+
+def test_panels_are_those_asked_for_in_their_order(hybrid: arm3r.Run) -> None:
+    assert labels(arm3r.plot.force(hybrid, panels=["torques", "face", "force"])) == [PANELS[2], PANELS[0], BELOW[1]]
+    assert labels(arm3r.plot.overview(hybrid, panels=["depth", "angles"])) == ["depth, mm", "joint angle, rad"]
+    assert len(labels(arm3r.plot.compare([hybrid, hybrid], panels=["contact", "face"]))) == 2
+
+
+def test_what_a_run_cannot_show_is_no_panel(fall: arm3r.Run) -> None:
+    with pytest.raises(arm3r.UsageError, match=r"tank: the run has nothing .* this figure can have angles, tip"):
+        arm3r.plot.overview(fall, panels=["tank"])
+
+
+@pytest.mark.parametrize("height", [5.5, 12.0])
+def test_a_figure_is_as_high_as_asked(hybrid: arm3r.Run, height: float) -> None:
+    figure = arm3r.plot.force(hybrid, height=height, panels=["force", "torques", "face"], stamp=True)
+    assert figure.get_size_inches().tolist() == pytest.approx([6.3, height])
+    assert crowded(figure) == []
+
+
+def test_a_figure_of_a_column_fits_a_page(hybrid: arm3r.Run, proportional: arm3r.Run, pushed: arm3r.Run) -> None:
+    figures = [arm3r.plot.force(hybrid, width=3.4), arm3r.plot.overview(pushed, width=3.4)]
+    figures += [arm3r.plot.compare([hybrid, proportional], width=3.4, stamp=True)]
+    for figure in figures:
+        assert figure.get_figheight() <= 9.0 + 1e-9
+        assert crowded(figure) == []
+
+
+def test_a_part_of_a_run(hybrid: arm3r.Run) -> None:
+    figure = arm3r.plot.force(hybrid, start=1.0, end=2.5)
+    drawn_force = lines(figure.axes[0])["true"]
+    assert figure.axes[0].get_xlim() == pytest.approx((1, 2.5))
+    assert drawn_force.get_xdata().tolist() == hybrid.t[(hybrid.t >= 1) & (hybrid.t <= 2.5)].tolist()
+    assert not any("settles" in text for text in legend(figure.axes[0]))  # that was before
+    (shade,) = (part for part in figure.axes[0].collections if part.get_label() == "contact")
+    assert shade.get_paths()[0].vertices[:, 0].min() == pytest.approx(1)  # it goes on since 0.4 s
+
+
+def test_the_peak_of_a_part_is_its_own(hybrid: arm3r.Run) -> None:
+    later = hybrid["force"][hybrid.t >= 0.6].max()
+    (label,) = (text for text in legend(arm3r.plot.force(hybrid, start=0.6).axes[0]) if "peak" in text)
+    assert label.startswith(f"peak {later:.4g} N")
+    (label,) = (text for text in legend(arm3r.plot.force(hybrid, end=0.6).axes[0]) if "peak" in text)
+    assert label.startswith(f"peak {hybrid.summary['peak_force']:.4g} N")
+
+
+@pytest.mark.parametrize("convention", ["simscape", "slide"])
+@pytest.mark.parametrize("width", [3.4, 6.3])
+def test_a_stamp_says_where_the_numbers_come_from(convention: str, width: float) -> None:
+    run = arm3r.Scenario(f"{{format: 1, name: fall, arm: {{convention: {convention}}}, time: {{stop: 0.1}}}}").run()
+    plain, stamped = (arm3r.plot.overview(run, width=width, panels=["tip"], stamp=stamp) for stamp in (False, True))
+    (text,) = (text.get_text() for text in stamped.texts)
+    wanted = ["scenario fall", f"convention {convention}", f"hash {run.summary['hash']}"]
+    assert text.replace("\n", ", ").split(", ") == wanted
+    assert not plain.texts
+    assert crowded(stamped) == []
+
+
+def test_a_comparison_is_stamped_with_all_runs(hybrid: arm3r.Run, proportional: arm3r.Run) -> None:
+    (text,) = arm3r.plot.compare([hybrid, proportional], panels=["table"], stamp=True).texts
+    assert hybrid.summary["hash"] in text.get_text() and proportional.summary["hash"] in text.get_text()
+
+
 # ---- arm3r-plot -----------------------------------------------------------------------------------------------------
 
 
@@ -570,14 +597,23 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.fixture
-def files(here: Path, hybrid: arm3r.Run, proportional: arm3r.Run, pushed: arm3r.Run, fall: arm3r.Run) -> Path:
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory, pushed: arm3r.Run, fall: arm3r.Run) -> Path:
     """hybrid.csv; p.csv, other gains; same.csv, called as hybrid.csv; pushed.csv without force control; fall.csv."""
-    force_runs.stored(hybrid, here / "hybrid.csv")
-    force_runs.stored(hybrid, here / "same.csv")
-    force_runs.stored(proportional, here / "p.csv")
-    pushed.to_csv(here / "pushed.csv")
-    fall.to_csv(here / "fall.csv")
+    folder = tmp_path_factory.mktemp("runs")
+    hybrid = force_runs.hybrid(every=50)
+    force_runs.stored(hybrid, folder / "hybrid.csv")
+    force_runs.stored(hybrid, folder / "same.csv")
+    force_runs.stored(force_runs.hybrid(name="without integral", ki=0.0, every=50), folder / "p.csv")
+    pushed.to_csv(folder / "pushed.csv")
+    fall.to_csv(folder / "fall.csv")
+    return folder
+
+
+@pytest.fixture
+def files(here: Path, stored: Path) -> Path:
+    """A folder of its own for each test, with the stored runs."""
+    shutil.copytree(stored, here, dirs_exist_ok=True)
     return here
 
 
@@ -602,25 +638,25 @@ def test_force_on_request(files: Path) -> None:
 
 
 def test_compare_from_files(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert plot_cli.main(["--compare", "hybrid.csv", "p.csv", "-o", "new/folder"]) == 0
+    assert plot_cli.main(["--compare", "hybrid.csv", "p.csv", "-o", "new/folder", "--panels", "table"]) == 0
     assert capsys.readouterr().out == "new/folder/compare.png\n"
-    assert plot_cli.main(["hybrid.csv", "--compare", "p.csv", "-o", "two.svg"]) == 0
+    assert plot_cli.main(["hybrid.csv", "--compare", "p.csv", "-o", "two.svg", "--panels", "force"]) == 0
     assert "<!-- without integral -->" in drawn(files / "two.svg")
 
 
 def test_runs_of_one_name_are_called_as_their_files(files: Path) -> None:
-    assert plot_cli.main(["--compare", "hybrid.csv", "same.csv", "-o", "two.svg"]) == 0
+    assert plot_cli.main(["--compare", "hybrid.csv", "same.csv", "-o", "two.svg", "--panels", "force"]) == 0
     assert "<!-- same -->" in drawn(files / "two.svg")
     (files / "other").mkdir()
     force_runs.stored(arm3r.Run.load("hybrid.csv"), files / "other" / "hybrid.csv")
-    assert plot_cli.main(["--compare", "hybrid.csv", "other/hybrid.csv", "-o", "two.svg"]) == 0
+    assert plot_cli.main(["--compare", "hybrid.csv", "other/hybrid.csv", "-o", "two.svg", "--panels", "force"]) == 0
     assert "<!-- other/hybrid -->" in drawn(files / "two.svg")
 
 
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_the_same_run_is_the_same_bytes(files: Path, suffix: str) -> None:
     for name in ("one", "two"):
-        assert plot_cli.main(["hybrid.csv", "-o", f"{name}.{suffix}"]) == 0
+        assert plot_cli.main(["hybrid.csv", "-o", f"{name}.{suffix}", "--panels", "force,face", "--stamp"]) == 0
     assert (files / f"one.{suffix}").read_bytes() == (files / f"two.{suffix}").read_bytes()
 
 
@@ -635,9 +671,21 @@ def test_the_same_run_is_the_same_bytes(files: Path, suffix: str) -> None:
         (["--compare", "hybrid.csv", "hybrid.csv"], "given twice"),
         (["--compare", "hybrid.csv", "missing.csv"], "missing.csv"),
         (["--compare", "hybrid.csv", "damaged.csv"], "damaged.csv:3"),
-        (["pushed.csv", "--width", "4"], "--width"),
         (["hybrid.csv", "--lecture", "--width", "4"], "--width"),
         (["--compare", "hybrid.csv", "p.csv", "-o", "x.jpg"], "png, pdf, svg"),
+        (["hybrid.csv", "--lecture", "--height", "4"], "--height"),
+        (["hybrid.csv", "--panels", "torque"], "panels: torque: there is no such panel; did you mean torques?"),
+        (
+            ["hybrid.csv", "--panels", "tank"],
+            "panels: tank: the run has nothing to show there; this figure can have ",
+        ),
+        (["hybrid.csv", "--lecture", "--panels", "tank"], "there are tip, velocities"),
+        (["hybrid.csv", "--height", "3"], "height: 3 inches are too few"),
+        (
+            ["hybrid.csv", "--from", "3", "--to", "2"],
+            "from 3 s to 2 s: there are 0 rows, and 2 are needed",
+        ),
+        (["hybrid.csv", "--from", "9"], "0 rows"),
     ],
 )
 def test_failures_say_why_and_write_nothing(
@@ -654,7 +702,17 @@ def test_failures_say_why_and_write_nothing(
     assert set(files.rglob("*")) == before
 
 
-@pytest.mark.parametrize("arguments", [["--width", "2"], ["--width", "wide"], ["--force", "--lecture"], ["--compare"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--height", "0.5"],
+        ["--from", "soon"],
+        ["--width", "2"],
+        ["--width", "wide"],
+        ["--force", "--lecture"],
+        ["--compare"],
+    ],
+)
 def test_options_that_cannot_be(arguments: list[str], files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         plot_cli.main(["hybrid.csv", *arguments])
@@ -674,6 +732,6 @@ def test_figures_are_written_all_or_none(files: Path, monkeypatch: pytest.Monkey
         savefig(figure, *arguments, **options)
 
     monkeypatch.setattr(Figure, "savefig", failing)
-    assert plot_cli.main(["pushed.csv", "--lecture", "-o", "figures"]) == 6
+    assert plot_cli.main(["pushed.csv", "--lecture", "-o", "figures", "--panels", "torques,tip,contact"]) == 6
     assert [path.name for path in (files / "figures").iterdir()] == [old.name]
     assert old.read_text() == "old"

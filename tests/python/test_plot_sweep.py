@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
-import matplotlib
 import pytest
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 from arm3r_cpp.commands import plot as plot_cli
 from arm3r_cpp.plot.sweep_figure import sweep as draw
+from arm3r_cpp.plot.sweep_figure import words_of
 from matplotlib.figure import Figure
 
 SCENARIO = """\
@@ -28,12 +24,6 @@ METRICS = ["peak_force", "contact_time", "q2"]
 STIFFNESS = {"key": "wall.contact.stiffness", "geomspace": [1e2, 1e4, 5]}
 POINT = {"key": "wall.point[0]", "linspace": [1.6, 1.8, 3]}  # the nearest one begins inside: invalid
 METHOD = {"key": "solver.method", "values": ["rk4", "dopri5"]}
-
-
-@pytest.fixture(autouse=True)
-def no_figure_stays_open() -> Iterator[None]:
-    yield
-    plt.close("all")
 
 
 @pytest.fixture
@@ -53,7 +43,7 @@ def legends(figure: Figure) -> set[str]:
 def test_one_axis_is_a_curve(table: Any) -> None:
     figure = draw(table(STIFFNESS))
     (ax,) = figure.axes
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("wall.contact.stiffness, N/m", "peak_force, N")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("wall contact stiffness, N/m", "peak force, N")
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "linear")
     (line,) = ax.lines
     assert line.get_xdata().tolist() == pytest.approx([1e2, 316.22776601684, 1e3, 3162.2776601684, 1e4])
@@ -68,14 +58,14 @@ def test_listed_values_over_decades_get_a_logarithmic_axis(table: Any) -> None:
 
 def test_words_tell_lines_apart(table: Any) -> None:
     figure = draw(table(STIFFNESS, METHOD), metric="contact_time", log=True)
-    assert legends(figure) == {"solver.method = rk4", "solver.method = dopri5"}
-    assert figure.axes[0].get_yscale() == "log" and figure.axes[0].get_ylabel() == "contact_time, s"
+    assert legends(figure) == {"solver method = rk4", "solver method = dopri5"}
+    assert figure.axes[0].get_yscale() == "log" and figure.axes[0].get_ylabel() == "contact time, s"
     assert len({(line.get_color(), line.get_linestyle()) for line in figure.axes[0].lines}) == 2
 
 
 def test_lists_are_words_too(table: Any) -> None:
     figure = draw(table(STIFFNESS, {"key": "arm.damping", "values": [[0, 0, 0], [0.1, 0.1, 0.1]]}))
-    assert legends(figure) == {"arm.damping = [0, 0, 0]", "arm.damping = [0.1, 0.1, 0.1]"}
+    assert legends(figure) == {"arm damping = [0, 0, 0]", "arm damping = [0.1, 0.1, 0.1]"}
 
 
 def test_a_grid_of_two_is_a_heat_map_with_failed_runs_marked(table: Any) -> None:
@@ -84,8 +74,8 @@ def test_a_grid_of_two_is_a_heat_map_with_failed_runs_marked(table: Any) -> None
     (mesh,) = ax.collections
     assert mesh.get_array().shape == (3, 5) and mesh.get_array().mask.sum() == 5
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "linear")
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("wall.contact.stiffness, N/m", "wall.point[0], m")
-    assert bar.get_ylabel() == "peak_force, N"
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("wall contact stiffness, N/m", "wall point x, m")
+    assert bar.get_ylabel() == "peak force, N"
     assert legends(figure) == {"invalid: 5"} and len(ax.lines[0].get_xdata()) == 5
 
 
@@ -99,7 +89,7 @@ def test_the_heat_maps_cells_lie_where_their_runs_are(table: Any) -> None:
 def test_drawn_axes_are_points_a_panel_each(table: Any) -> None:
     axes = {"key": "wall.contact.stiffness", "log_uniform": [1e2, 1e4]}, {"key": "wall.point[0]", "uniform": [1.6, 1.8]}
     figure = draw(table(*axes, mode="random", runs=40))
-    assert [ax.get_xlabel() for ax in figure.axes] == ["wall.contact.stiffness, N/m", "wall.point[0], m"]
+    assert [ax.get_xlabel() for ax in figure.axes] == ["wall contact stiffness, N/m", "wall point x, m"]
     assert [ax.get_xscale() for ax in figure.axes] == ["log", "linear"]
     assert figure.axes[0].lines[0].get_linestyle() == "None"
     assert any(text.startswith("invalid: ") for text in legends(figure))
@@ -107,7 +97,7 @@ def test_drawn_axes_are_points_a_panel_each(table: Any) -> None:
 
 def test_words_alone_stand_along_the_axis(table: Any) -> None:
     figure = draw(table(METHOD), metric="q2")
-    assert figure.axes[0].get_xlabel() == "solver.method"
+    assert figure.axes[0].get_xlabel() == "solver method"
     figure.draw_without_rendering()
     assert {label.get_text() for label in figure.axes[0].get_xticklabels()} == {"rk4", "dopri5"}
 
@@ -147,6 +137,30 @@ def test_a_sweep_that_kept_nothing_is_not_drawn(tmp_path: Path) -> None:
     plan = {"format": 1, "scenario": {}, "axes": [{"key": "time.stop", "values": [0]}], "metrics": ["outcome"]}
     with pytest.raises(arm3r.UsageError, match="kept no metric"):
         draw(arm3r.sweep(plan, out=tmp_path / "out"))
+
+
+@pytest.mark.parametrize(
+    ("key", "unit", "words"),
+    [
+        ("wall.contact.stiffness", "N/m", "wall contact stiffness"),
+        ("wall.point[2]", "m", "wall point z"),
+        ("wall.motion.velocity[1]", "m/s", "wall motion velocity y"),
+        ("initial.q[1]", "rad", "initial q 2"),
+        ("peak_force", "N", "peak force"),
+    ],
+)
+def test_keys_become_words(key: str, unit: str, words: str) -> None:
+    assert words_of(key, unit) == words
+
+
+def test_a_figure_names_its_table(table: Any, tmp_path: Path) -> None:
+    made = table(STIFFNESS)
+    figure = draw(made, stamp=True)
+    digest = hashlib.sha256(made.path.read_bytes()).hexdigest()
+    (stamp,) = (text.get_text() for text in figure.texts)
+    assert stamp.replace("\n", ", ") == f"scenario base, convention simscape, hash sha256:{digest}"
+    figure.savefig(tmp_path / "figure.svg")
+    assert digest in (tmp_path / "figure.svg").read_text()
 
 
 # ---- the command ----------------------------------------------------------------------------------------------------

@@ -20,6 +20,8 @@ def animate(
     fps: float = 25.0,
     speed: float = 1.0,
     every: int | None = None,
+    start: float | None = None,
+    end: float | None = None,
     progress: Progress | None = None,
 ) -> None:
     """The arm and the wall from the side and from above, force and contact, over time.
@@ -30,12 +32,15 @@ def animate(
         fps: frames a second of the film; at most 50 for a GIF.
         speed: how many seconds of the run pass in one of the film.
         every: show one row of this many instead; speed is then not used.
+        start, end: of the part of the run that is shown, s; None: its first or last row.
         progress: called as progress(frames_done, frames) after each frame.
 
     Raises:
-        UsageError: an argument is out of range, the frames are too many, or there is no scenario or no ffmpeg.
+        UsageError: an argument is out of range, the frames are too many, too few rows lie from start to end, or there
+            is no scenario or no ffmpeg.
         OutputError: it cannot be written; then nothing is.
     """
+    from ..plot.run_part import part_of
     from ..scenario import Scenario
     from .frames import frame_times, frames_of
     from .scene import Scene, palette
@@ -48,6 +53,7 @@ def animate(
             "the run's summary holds no scenario, so that its arm is not known; run it again", code="usage"
         )
     scenario = Scenario(run.summary["scenario"])
+    run = part_of(run, start, end)
     frames = frames_of(run, scenario, frame_times(run, fps=fps, speed=speed, every=every))
     scene = Scene(run, scenario, frames)
     write(Film(scene.draw, len(frames.t), fps, palette(), progress), path)

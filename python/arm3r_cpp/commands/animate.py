@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .._progress_bar import Bar
 from .exit_codes import attempt, print_line
-from .run_source import add_set, read
+from .run_source import add_part, add_set, read
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -35,6 +35,7 @@ def parser() -> argparse.ArgumentParser:
         "folder for PNG files (default: RUN.gif here)")  # fmt: skip
     add("--fps", type=float, metavar="N", default=25.0, help="frames a second of the film (default: 25)")
     add_set(parser)
+    add_part(parser)
     pace = parser.add_mutually_exclusive_group()
     pick = pace.add_argument
     pick("--speed", type=float, metavar="X", default=1.0, help="seconds of the run in one of the film (default: 1)")
@@ -47,7 +48,8 @@ def film(options: argparse.Namespace, bar: Bar) -> None:
 
     out: Path = options.out or Path(f"{options.run.stem}.gif")
     run, failure = read(options.run, options.set)
-    animate(run, out, fps=options.fps, speed=options.speed, every=options.every, progress=bar.draw)
+    pace = {"fps": options.fps, "speed": options.speed, "every": options.every}
+    animate(run, out, **pace, start=options.start, end=options.end, progress=bar.draw)
     bar.clear()
     print_line(out)
     if failure:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from ..errors import UsageError
 from ..plot.figure_files import check_format, write
 from ..plot.style import FORMATS, WIDTH
 from .exit_codes import attempt, print_line
-from .run_source import add_set, read
+from .run_source import add_part, add_set, read
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from ..run import Run
 
 MIN_WIDTH, MAX_WIDTH = 3.0, 12.0  # inches
+MIN_HEIGHT, MAX_HEIGHT = 1.0, 30.0  # inches
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -48,7 +50,8 @@ def parser() -> argparse.ArgumentParser:
         prog="arm3r-plot",
         usage="arm3r-plot RUN [options] | arm3r-plot --compare RUN RUN ... [options]",
         description="Draw a run: its force control, if it controls force, else an overview; or the lecture's figures; "
-        "or several runs over each other. docs/figures.md says what stands on them.",
+        "or several runs over each other. A file names scenario, convention and hash in its metadata. docs/figures.md "
+        "says what stands on the figures.",
         epilog="arm3r-plot sweep DIR draws the table of a sweep: see arm3r-plot sweep --help.",
     )
     add = parser.add_argument
@@ -58,7 +61,9 @@ def parser() -> argparse.ArgumentParser:
     kind = parser.add_mutually_exclusive_group()
     pick = kind.add_argument
     pick(
-        "--overview", action="store_true", help="angles, tip, torques and force of any run (default without force_ref)"
+        "--overview",
+        action="store_true",
+        help="angles, tip, errors, torques and force of any run (default without force_ref)",
     )
     pick(
         "--force", action="store_true", help="the force-control figure of any run with a wall (default with force_ref)"
@@ -76,16 +81,32 @@ def parser() -> argparse.ArgumentParser:
     )
     add_set(parser)
     add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
-    width = f"of --force and --compare (default: {WIDTH}; 3.4 fits a journal's column)"
-    add("--width", type=inches, metavar="INCHES", help=width)
+    add_part(parser)
+    add_layout(parser)
     return parser
 
 
-def inches(text: str) -> float:
-    width = float(text)
-    if not MIN_WIDTH <= width <= MAX_WIDTH:
-        raise argparse.ArgumentTypeError(f"{MIN_WIDTH:g} to {MAX_WIDTH:g} inches are possible, got {text}")
-    return width
+def add_layout(parser: argparse.ArgumentParser) -> None:
+    """The options for what stands on a figure, and how large it is."""
+    add = parser.add_argument
+    names = "panels to draw, in order, such as force,torques; with --lecture figures; a wrong name lists what there is"
+    add("--panels", type=names_of, metavar="NAME,NAME", help=names)
+    width = f"width (default: {WIDTH}; 3.4 fits a journal's column; not with --lecture)"
+    add("--width", type=partial(inches, MIN_WIDTH, MAX_WIDTH), metavar="INCHES", help=width)
+    height = "height (default: what the panels need, at most a page of 9; not with --lecture)"
+    add("--height", type=partial(inches, MIN_HEIGHT, MAX_HEIGHT), metavar="INCHES", help=height)
+    add("--stamp", action="store_true", help="write scenario, convention and hash at the figure's foot")
+
+
+def inches(least: float, most: float, text: str) -> float:
+    size = float(text)
+    if not least <= size <= most:
+        raise argparse.ArgumentTypeError(f"{least:g} to {most:g} inches are possible, got {text}")
+    return size
+
+
+def names_of(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
 
 
 def paths_of(options: argparse.Namespace) -> list[Path]:
@@ -113,9 +134,6 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
 
 
 def save(runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path, str]) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
     stem, suffix = target
     files = {Path(f"{stem}{name}.{suffix}"): figure for name, figure in figures(runs, options).items()}
     write(files)
@@ -127,16 +145,18 @@ def figures(runs: dict[Path, Run], options: argparse.Namespace) -> dict[str, Fig
     """The figures by the ends of their files' names."""
     from ..plot import compare, force, lecture, overview
 
+    if options.lecture and (options.width or options.height):
+        given = "--width" if options.width else "--height"
+        raise UsageError(f"{given}: the lecture's figures have a size of their own; leave it away", code="usage")
+    part = {"start": options.start, "end": options.end, "panels": options.panels, "stamp": options.stamp}
+    size = {"width": options.width or WIDTH, "height": options.height}
     if options.compare:
-        return {"": compare(named(runs), width=options.width or WIDTH)}
+        return {"": compare(named(runs), **size, **part)}
     (run,) = runs.values()
-    if options.force or not (options.lecture or options.overview or "force_ref" not in run):
-        return {"": force(run, width=options.width or WIDTH)}
-    if options.width:
-        raise UsageError("--width: this figure has a width of its own; leave it away or add --force", code="usage")
     if options.lecture:
-        return {f"_{name}": figure for name, figure in lecture(run).items()}
-    return {"": overview(run)}
+        return {f"_{name}": figure for name, figure in lecture(run, **part).items()}
+    draws_force = options.force or ("force_ref" in run and not options.overview)
+    return {"": (force if draws_force else overview)(run, **size, **part)}
 
 
 def named(runs: dict[Path, Run]) -> dict[str, Run]:

@@ -24,13 +24,11 @@ def parser() -> argparse.ArgumentParser:
     add("-o", dest="out", type=Path, metavar="OUT.png", default=Path("sweep.png"), help="also .pdf or .svg")
     add("--metric", metavar="NAME", help="column that is drawn (default: the first one kept)")
     add("--log", action="store_true", help="logarithmic scale of the metric")
+    add("--stamp", action="store_true", help="write scenario, convention and hash at the figure's foot")
     return parser
 
 
 def save(options: argparse.Namespace) -> None:
-    import matplotlib
-
-    matplotlib.use("Agg")
     from .._files import check_folder
     from ..plot.figure_files import check_format, write
     from ..plot.sweep_figure import sweep
@@ -38,5 +36,6 @@ def save(options: argparse.Namespace) -> None:
 
     check_format(options.out)
     check_folder(options.out.parent)
-    write({options.out: sweep(SweepTable(options.folder), metric=options.metric, log=options.log)})
+    table = SweepTable(options.folder)
+    write({options.out: sweep(table, metric=options.metric, log=options.log, stamp=options.stamp)})
     print_line(options.out)

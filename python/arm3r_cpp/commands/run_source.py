@@ -21,6 +21,13 @@ def add_set(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help=help)
 
 
+def add_part(parser: argparse.ArgumentParser) -> None:
+    """The options for a part of a run."""
+    add = parser.add_argument
+    add("--from", dest="start", type=float, metavar="T", help="first time that is shown, s (default: the run's start)")
+    add("--to", dest="end", type=float, metavar="T", help="last time that is shown, s (default: the run's end)")
+
+
 def read(path: Path, edits: Sequence[str] = ()) -> tuple[Run, Arm3rError | None]:
     """The run, of a scenario with these edits; and why it is only a partial one, if it is."""
     from ..run import Run

@@ -1,8 +1,9 @@
-"""Figures and films of runs: `overview`, `lecture`, `force`, `compare` and `animate`.
+"""Figures and films of runs: `overview`, `lecture`, `force`, `compare` and `animate`; `show` opens them.
 
-In comes a finished or partial run, or the table of a sweep. Out goes a matplotlib Figure that is not shown. `figures`
-holds the public functions, `style` and `layout` decide how every figure looks, and the other modules draw one kind of
-figure each. The modules of this room must not know command lines, and they never run a scenario.
+In comes a finished or partial run, or the table of a sweep. Out goes a matplotlib Figure that pyplot does not know: a
+notebook shows it as the value of a cell, `show` opens a window. `figures` holds the public functions, `style` and
+`layout` decide how every figure looks, and the other modules draw one kind of figure each. The modules of this room
+must not know command lines, and they never run a scenario.
 matplotlib and numpy are imported when something is drawn, not before: the names below are loaded when they are used.
 """
 
@@ -15,9 +16,9 @@ if TYPE_CHECKING:
     from typing import Any
 
     from ..animation.animate import animate
-    from .figures import compare, force, lecture, overview
+    from .figures import compare, force, lecture, overview, show
 
-__all__ = ["animate", "compare", "force", "lecture", "overview"]
+__all__ = ["animate", "compare", "force", "lecture", "overview", "show"]
 
 
 def __getattr__(name: str) -> Any:

@@ -11,21 +11,26 @@ import numpy as np
 from ..errors import UsageError
 from .contact_plane import draw_contact_plane, locate, needs_locating
 from .force_figure import heights, since_contact, transient
-from .layout import Panel, lay_out
-from .style import BLACK, JOINTS, LOOKS, contact_spans, legend_above, widen_if_flat
+from .layout import PAD, TWO_PANELS, Named, Panel, Size, chosen, lay_out
+from .style import BLACK, JOINTS, LOOKS, contact_spans, legend_above, plain_ticks, widen_if_flat
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from .._native import Floats
     from .force_run import ForceRun
+    from .run_figure import RunFigure
 
 MAX_RUNS = len(LOOKS) - 1  # the last look is black: that of references
 LINE, LABELS = 0.17, 1.35  # inches: a line of the table, and its first column
 MIN_COLUMN, MAX_COLUMN = 0.62, 1.1  # inches: its other columns
 LETTER = 0.058  # inches: in its head
 MISSING = "–"
+FEW = 3  # runs: the table has one part where the figure is as wide as a column
+NARROW_WITHOUT = (
+    ("torques", "contact"),
+    ("torques", "contact", "first_contact", "face"),
+)  # to fit a page: few runs, many
 MAX_LETTERS = 30  # letters of a name in a legend
 SAME = ("wall.normal", "wall.size", "wall.rotation")  # what runs need to share for one face
 
@@ -51,30 +56,44 @@ ROWS = (
 )
 
 
-def compare_figure(runs: Sequence[ForceRun], *, width: float) -> Figure:
-    """width: inches.
-
+def compare_figure(runs: Sequence[ForceRun], names: Sequence[str] | None, size: Size) -> RunFigure:
+    """
     Raises:
-        UsageError: too few or too many runs, or walls that differ.
+        UsageError: too few or too many runs, or walls that differ; a name of no panel, or too low a figure.
     """
     check(runs)
-    panels = {
-        Panel(1.6, partial(draw_force, runs)): True,
-        Panel(0.75, partial(draw_force_error, runs), legend=False): any(run.reference is not None for run in runs),
-        Panel(0.75, partial(draw_path_error, runs), legend=False): any(run.path_error for run in runs),
-        Panel(0.75, partial(draw_joint_error, runs), legend=False): any(run.joint_error for run in runs),
-        **{Panel(0.75, partial(draw_torque, runs, joint), legend=False): True for joint in JOINTS},
-        Panel(0.1 * len(runs), partial(draw_contact, runs), legend=False): True,
-    }
-    below = [*transient_panel(runs), *face_panel(runs)]
+    panels = panels_of(runs, size.width)
+    left_out = NARROW_WITHOUT[len(runs) > FEW] if size.width < TWO_PANELS else ()
+    wanted = names or [name for name, found in panels.items() if found and name not in left_out]
+    over_time, below, last = chosen(panels, wanted, below=("first_contact", "face"), last=("table",))
     start, end = min(run.run.t[0] for run in runs), max(run.run.t[-1] for run in runs)
-    over_time = [panel for panel, has in panels.items() if has]
-    return lay_out(over_time, below, tables(runs, width), width=width, start=start, end=end)
+    return lay_out(over_time, below, last, size=size, start=start, end=end)
+
+
+def panels_of(runs: Sequence[ForceRun], width: float) -> Named:
+    """All panels by the names that users choose them by; none where no run has the columns."""
+
+    def over_time(draw: Callable[..., None], has: Callable[[ForceRun], bool]) -> list[Panel]:
+        return [Panel(0.9, partial(draw, runs))] if any(map(has, runs)) else []
+
+    return {
+        "force": [Panel(1.6, partial(draw_force, runs))],
+        "force_error": over_time(draw_force_error, lambda run: run.reference is not None),
+        "path_error": over_time(draw_path_error, lambda run: bool(run.path_error)),
+        "joint_error": over_time(draw_joint_error, lambda run: bool(run.joint_error)),
+        "torques": [Panel(0.75, partial(draw_torque, runs, joint)) for joint in JOINTS],
+        "contact": [Panel(0.1 * len(runs), partial(draw_contact, runs))],
+        "first_contact": transient_panel(runs),
+        "face": face_panel(runs),
+        "table": tables(runs, width),
+    }
 
 
 def check(runs: Sequence[ForceRun]) -> None:
     if not 2 <= len(runs) <= MAX_RUNS:
         raise UsageError(f"--compare: 2 to {MAX_RUNS} runs fit into one figure, got {len(runs)}", code="usage")
+    for run in runs:
+        run.check()
     first = runs[0]
     for run in runs[1:]:
         for key in SAME:
@@ -149,6 +168,7 @@ def overlay(ax: Axes, runs: Sequence[ForceRun], values: Callable[[ForceRun], Flo
         if (line := values(run)) is not None:
             ax.plot(run.run.t, line, **look)
     widen_if_flat(ax)
+    plain_ticks(ax)
     ax.set_ylabel(quantity)
 
 
@@ -176,7 +196,7 @@ def transient_panel(runs: Sequence[ForceRun]) -> list[Panel]:
     if not windows:
         return []
     window = min(start for start, _ in windows), max(end for _, end in windows)
-    return [Panel(1.9, partial(draw_transient, runs, window), legend=False)]
+    return [Panel(1.9, partial(draw_transient, runs, window))]
 
 
 def draw_transient(runs: Sequence[ForceRun], window: tuple[float, float], ax: Axes, _: float) -> None:
@@ -195,7 +215,7 @@ def face_panel(runs: Sequence[ForceRun]) -> list[Panel]:
     if not lines:
         return []
     beside = partial(locate, drawn) if needs_locating(drawn) else None
-    return [Panel(1.9, partial(draw_contact_plane, lines, legend=False), legend=False, beside=beside)]
+    return [Panel(1.9, partial(draw_contact_plane, lines, legend=False), beside=beside)]
 
 
 # ---- table ----------------------------------------------------------------------------------------------------------
@@ -207,14 +227,15 @@ def tables(runs: Sequence[ForceRun], width: float) -> list[Panel]:
     fitting = max(1, int((width - LABELS) / MIN_COLUMN))
     columns = list(looks(runs))
     parts = [columns[i : i + fitting] for i in range(0, len(columns), fitting)]
-    return [Panel(LINE * (len(rows) + 3), partial(draw_table, part, rows, width), legend=False) for part in parts]
+    height = LINE * (len(rows) + 3)
+    return [Panel(height, partial(draw_table, part, rows, width), is_table=True) for part in parts]
 
 
 def draw_table(columns: Sequence[Any], rows: Sequence[Row], width: float, ax: Axes, _: float) -> None:
     """width: inches, of the figure. Units of the axes: inches, and lines of the table."""
     each = min((width - LABELS - 0.1) / len(columns), MAX_COLUMN)
     ax.axis("off")
-    ax.set(xlim=(0, width), ylim=(len(rows) + 0.5, -2.5))
+    ax.set(xlim=(0, width - PAD), ylim=(len(rows) + 0.5, -2.5))
     ax.plot([0, LABELS + each * len(columns)], [0, 0], color=BLACK, lw=0.8)
     for i, row in enumerate(rows):
         ax.text(0, i + 0.6, row.label, va="center", fontsize=8)

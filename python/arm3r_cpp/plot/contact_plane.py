@@ -49,7 +49,7 @@ def view(runs: Sequence[ForceRun]) -> tuple[Floats, float]:
     """Middle (2,) and size of what is in sight, m: the whole plate, unless the paths are small on it."""
     middle, size = extent(runs)
     half = runs[0].half_sides
-    return (middle, size) if half is None or needs_locating(runs) else (np.zeros(2), 1.9 * max(half))
+    return (middle, max(size, MIN_EXTENT)) if half is None or needs_locating(runs) else (np.zeros(2), 1.9 * max(half))
 
 
 def needs_locating(runs: Sequence[ForceRun]) -> bool:
@@ -62,7 +62,7 @@ def extent(runs: Sequence[ForceRun]) -> tuple[Floats, float]:
     """Middle (2,) and size of what encloses all paths."""
     points = np.concatenate([in_sight(run) for run in runs])
     low, high = points.min(axis=0), points.max(axis=0)
-    return (low + high) / 2, max(float((high - low).max()), MIN_EXTENT)
+    return (low + high) / 2, float((high - low).max())
 
 
 def tip_on_plane(run: ForceRun) -> Floats:

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .._files import check_folder, replacing
 from ..errors import UsageError
-from .style import FORMATS, style
+from .style import FORMATS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 
 
 def check_format(out: Path) -> None:
@@ -36,6 +34,4 @@ def write(figures: Mapping[Path, Figure]) -> None:
         check_folder(folder)
     with ExitStack() as whole:
         for path, figure in figures.items():
-            part, kind = whole.enter_context(replacing(path)), path.suffix[1:]
-            with style():
-                figure.savefig(part, format=kind, metadata=UNDATED.get(kind))
+            figure.savefig(whole.enter_context(replacing(path)), format=path.suffix[1:])

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from .lecture_figures import draw_energies, figures, has_wall
-from .style import JOINTS, WIDTH, XYZ, draw, event_legend, finish, panels, style
+from ..errors import UsageError
+from .style import WIDTH, style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -14,68 +14,140 @@ if TYPE_CHECKING:
     from ..run import Run
 
 
-def overview(run: Run) -> Figure:
-    """Joint angles, tip position, torques, and the force on the wall (without a wall: the energies), over time.
+def overview(
+    run: Run, *, width: float = WIDTH, height: float | None = None, panels: Sequence[str] | None = None,
+    start: float | None = None, end: float | None = None, stamp: bool = False,
+) -> Figure:  # fmt: skip
+    """Joint angles, tip position, tracking errors, torques, observer, tank, and the force on the wall (without a wall:
+    the energies), over time.
 
-    run: a finished or partial run. Returns a matplotlib Figure that is not shown. SI units; contact is shaded, make and
-    break are marked at the times at which they were located.
+    Args:
+        run: a finished or partial run; panels whose columns it lacks are left out.
+        width, height: inches; None: as high as the panels need, at most a page of 9 inches.
+        panels: names of those to draw, in order, such as ["angles", "tank"]; a wrong one lists what there is.
+        start, end: of the part of the run that is drawn, s; None: its first or last row.
+        stamp: write scenario, convention and hash at the foot; in the metadata of a saved file they always are.
+
+    Returns a matplotlib Figure. A notebook shows it as the value of a cell, `arm3r.plot.show(figure)` in a window;
+    `plt.show()` does not know it. SI units; contact is shaded, and its beginnings and ends are marked at the times at
+    which they were located.
+
+    Raises:
+        UsageError: there is no such panel, too few rows lie from start to end, or the height is too small.
     """
+    from .force_run import ForceRun
+    from .layout import Size
+    from .run_figure import origin_of, stamp_height
+    from .run_panels import overview_figure
+    from .run_part import part_of
+
     with style():
-        figure, (angles, tip, torques, last) = panels(run, [1.3] * 4)
-        draw(angles, run, [f"q{i}" for i in JOINTS], [f"$q_{i}$" for i in JOINTS])
-        finish(angles, run, "joint angle, rad")
-        draw(tip, run, [f"tip_{c}" for c in XYZ], list(XYZ))
-        finish(tip, run, "tip position, m")
-        draw(torques, run, [f"tau{i}" for i in JOINTS], [rf"$\tau_{i}$" for i in JOINTS])
-        finish(torques, run, "torque, N m")
-        if has_wall(run):
-            draw(last, run, [f"f_on_wall_{c}" for c in XYZ], [f"on wall, {c}" for c in XYZ])
-            finish(last, run, "force, N")
-        else:
-            draw_energies(last, run)
-            finish(last, run, "energy, J")
-        event_legend(figure, run)
+        origins = [origin_of(run)]
+        size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
+        figure = overview_figure(ForceRun(part_of(run, start, end)), panels, size)
+        figure.set_origin(origins, stamp=stamp)
         return figure
 
 
-def lecture(run: Run) -> dict[str, Figure]:
+def lecture(
+    run: Run, *, panels: Sequence[str] | None = None, start: float | None = None, end: float | None = None,
+    stamp: bool = False,
+) -> dict[str, Figure]:  # fmt: skip
     """The lecture's figures by name: tip, velocities, torques, energies, strobe, and with a wall: wall, contact.
 
-    run: a finished or partial run. Returns matplotlib Figures that are not shown. SI units.
+    panels: names of the figures to draw; None: all. The other arguments and what is returned: as for `overview`.
+
+    Raises:
+        UsageError: there is no such figure, or too few rows lie from start to end.
     """
+    from .lecture_figures import figures
+    from .run_figure import origin_of, stamp_height
+    from .run_part import part_of
+
+    part = part_of(run, start, end)
+    there = figures(part)
+    for name in panels or []:
+        if name not in there:
+            raise UsageError(f"panels: {name}: there is no such figure; there are {', '.join(there)}", code="usage")
     with style():
-        return {name: figure(run) for name, figure in figures(run).items()}
+        origins = [origin_of(run)]
+        drawn = {name: there[name](stamp_height(origins, WIDTH) if stamp else 0.0) for name in panels or there}
+        for figure in drawn.values():
+            figure.set_origin(origins, stamp=stamp)
+        return {**drawn}
 
 
-def force(run: Run, *, width: float = WIDTH) -> Figure:
+def force(
+    run: Run, *, width: float = WIDTH, height: float | None = None, panels: Sequence[str] | None = None,
+    start: float | None = None, end: float | None = None, stamp: bool = False,
+) -> Figure:  # fmt: skip
     """Force against reference with peak and settling, tracking, torques, observer; the first contact, and the path on
     the wall's face.
 
-    run: a finished or partial run with a wall; panels whose columns it lacks are left out. width: inches; below 5 the
-    panels stand one under the other. Returns a matplotlib Figure that is not shown. SI units.
+    run: a finished or partial run with a wall. width: inches; below 5 the panels stand one under the other. The other
+    arguments and what is returned: as for `overview`.
 
     Raises:
-        UsageError: the run has no wall.
+        UsageError: the run has no wall; or as for `overview`.
     """
-    from .force_figure import force_figure
     from .force_run import ForceRun
+    from .layout import Size
+    from .run_figure import origin_of, stamp_height
+    from .run_panels import force_figure
+    from .run_part import part_of
 
     with style():
-        return force_figure(ForceRun(run), width=width)
+        origins = [origin_of(run)]
+        size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
+        figure = force_figure(ForceRun(part_of(run, start, end)), panels, size)
+        figure.set_origin(origins, stamp=stamp)
+        return figure
 
 
-def compare(runs: Sequence[Run] | Mapping[str, Run], *, width: float = WIDTH) -> Figure:
+def compare(
+    runs: Sequence[Run] | Mapping[str, Run], *, width: float = WIDTH, height: float | None = None,
+    panels: Sequence[str] | None = None, start: float | None = None, end: float | None = None, stamp: bool = False,
+) -> Figure:  # fmt: skip
     """Runs over each other: force, errors, torques, contact; the first contact, the path on the wall's face; a table.
 
     runs: two to six with the same wall, by the names they get; in a sequence they are called as their scenarios are.
-    width: inches. Returns a matplotlib Figure that is not shown. SI units.
+    The numbers of the table are those of the whole runs. The other arguments and what is returned: as for `overview`.
 
     Raises:
-        UsageError: a run has no wall, or another one; or they are too many.
+        UsageError: a run has no wall, or another one; or they are too many; or as for `overview`.
     """
     from .comparison import compare_figure
     from .force_run import ForceRun
+    from .layout import Size
+    from .run_figure import origin_of, stamp_height
+    from .run_part import part_of
 
     pairs = list(runs.items()) if isinstance(runs, Mapping) else [(None, run) for run in runs]
     with style():
-        return compare_figure([ForceRun(run, name=name) for name, run in pairs], width=width)
+        parts = [ForceRun(part_of(run, start, end), name=name) for name, run in pairs]
+        origins = [origin_of(run) for _, run in pairs]
+        size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
+        figure = compare_figure(parts, panels, size)
+        figure.set_origin(origins, stamp=stamp)
+        return figure
+
+
+def show(*figures: Figure) -> None:
+    """Open a window for each figure, and wait until all windows are closed; in a notebook, show the figures there.
+
+    It takes the place of `plt.show()`, which does not know the figures of this package. Open figures of pyplot are
+    shown, too. In an interactive session of pyplot (`plt.ion()`) it does not wait.
+
+    Raises:
+        UsageError: matplotlib has no windows here, such as on a machine without a screen.
+    """
+    from .run_figure import has_notebook, open_windows
+
+    if not figures:
+        raise UsageError("show: a figure is needed, such as show(overview(run))", code="usage")
+    if has_notebook():
+        from IPython import display
+
+        display.display(*figures)  # type: ignore[no-untyped-call]
+    else:
+        open_windows(figures)

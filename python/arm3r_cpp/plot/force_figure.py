@@ -1,4 +1,4 @@
-"""The figure of a run that presses on a wall: force, tracking, torques, observer, and the tip's path on the face."""
+"""Panels of a run under control: force, tracking, torques, observer, and the tip's path on the wall's face."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .contact_plane import draw_contact_plane, locate, needs_locating
+from .contact_plane import draw_contact_plane, extent, locate, needs_locating
 from .force_run import SETTLED, ForceRun
-from .layout import Panel, lay_out
+from .layout import Panel
 from .style import (
     BLACK,
     BLUE,
@@ -22,41 +22,20 @@ from .style import (
     SKY,
     TRIPLE,
     contact_spans,
+    finish,
     legend_above,
+    plain_ticks,
     shade_contact,
     widen_if_flat,
 )
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 TRANSIENT = 0.3  # of the run: a first contact that settles in less gets a panel of its own
 FEW_ROWS = 60  # in that panel: they are marked
 LIMITS_IN_SIGHT = 3.0  # times the largest torque: limits beyond are told, not drawn
-
-
-def force_figure(run: ForceRun, *, width: float) -> Figure:
-    """width: inches."""
-    there = {
-        Panel(1.6, partial(draw_force, run)): True,
-        Panel(0.8, partial(draw_path_error, run)): bool(run.path_error),
-        Panel(0.8, partial(draw_joint_error, run)): bool(run.joint_error),
-        Panel(1.2, partial(draw_torques, run)): True,
-        Panel(0.8, partial(draw_residuals, run)): "residual" in run.run,
-        Panel(0.8, partial(draw_stiffness, run)): "stiffness_estimate" in run.run,
-        Panel(0.8, partial(draw_tank, run)): "tank_energy" in run.run,
-    }
-    below = [*([Panel(1.9, partial(draw_transient, run))] if transient(run) else []), *face_panel(run)]
-    t = run.run.t
-    return lay_out([panel for panel, has in there.items() if has], below, width=width, start=t[0], end=t[-1])
-
-
-def finish(ax: Axes, run: ForceRun, quantity: str, room: float) -> None:
-    widen_if_flat(ax)
-    ax.set_ylabel(quantity)
-    shade_contact(ax, run.run)
-    legend_above(ax, room=room)
+LEAST_PATH = 1e-4  # m: a path on the face that is shorter looks like a point
 
 
 # ---- force ----------------------------------------------------------------------------------------------------------
@@ -69,6 +48,8 @@ def draw_force(run: ForceRun, ax: Axes, room: float) -> None:
     mark_settling(ax, run)
     mark_peak(ax, run)
     ax.set_ylabel("pressing force, N")
+    widen_if_flat(ax)
+    plain_ticks(ax)
     legend_above(ax, room=room)
 
 
@@ -79,7 +60,7 @@ def draw_forces(ax: Axes, run: ForceRun, **look: Any) -> None:
     ax.plot(*run.force_line, color=BLUE, zorder=2.5, label="true")
     if look and look["marker"]:
         ax.plot(t, run.force, color=BLUE, ls="", zorder=2.5, **look)
-    if measured is not None:
+    if measured is not None and np.abs(measured - run.force).max() > 1e-6 * np.abs(run.force).max():
         ax.plot(t, measured, color=SKY, lw=0.8, label="measured")
     if run.estimate is not None:
         ax.plot(t, run.estimate, color=PINK, ls="-.", lw=1.1, label="estimated")
@@ -100,6 +81,9 @@ def mark_settling(ax: Axes, run: ForceRun) -> None:
     settling = run.settling
     if settling is None or run.reference is None:
         return
+    if settling.duration == 0:
+        ax.plot([], [], ls="", label=f"always within ±{100 * SETTLED:g} %")
+        return
     label = f"±{100 * SETTLED:g} %, never settles"
     if settling.duration is not None:
         label = f"±{100 * SETTLED:g} %, settles in {settling.duration:.3g} s"
@@ -116,16 +100,19 @@ def transient(run: ForceRun) -> tuple[float, float] | None:
         return None
     start, end = spans[0]
     settling, peak = run.settling, run.peak
+    if settling and settling.duration == 0:
+        return None
     if settling and settling.duration:
         length = 1.5 * settling.duration
     elif peak and peak.t > start:
         length = min(5 * (peak.t - start), 1.5 * (end - start))
     else:
         return None
+    length = min(length, run.run.t[-1] - start)
     return (start - 0.15 * length, start + length) if length < TRANSIENT * (run.run.t[-1] - run.run.t[0]) else None
 
 
-def draw_transient(run: ForceRun, ax: Axes, _: float) -> None:
+def draw_transient(run: ForceRun, ax: Axes, room: float, *, legend: bool = False) -> None:
     window = transient(run)
     assert window is not None
     shown = (run.run.t >= window[0]) & (run.run.t <= window[1])
@@ -135,7 +122,9 @@ def draw_transient(run: ForceRun, ax: Axes, _: float) -> None:
         mark_peak(ax, run)
     shade_contact(ax, run.run)
     since_contact(ax, window, contact_spans(run.run)[0][0])
-    ax.set(ylabel="pressing force, N", ylim=heights([run], window))
+    ax.set(ylabel="force, N" if legend else "pressing force, N", ylim=heights([run], window))
+    if legend:
+        legend_above(ax, room=room)
 
 
 def since_contact(ax: Axes, window: tuple[float, float], start: float) -> None:
@@ -168,13 +157,16 @@ def heights(runs: Sequence[ForceRun], window: tuple[float, float]) -> tuple[floa
 def draw_path_error(run: ForceRun, ax: Axes, room: float) -> None:
     for (axis, error), look in zip(run.path_error.items(), TRIPLE, strict=False):
         ax.plot(run.run.t, 1e3 * error, label=f"along ${axis}$", **look)
-    finish(ax, run, "path error, mm", room)
+    largest = run.metric("tip_path_error_max")
+    if largest is not None:
+        ax.plot([], [], ls="", label=f"largest {1e3 * largest:.4g} mm")
+    finish(ax, run.run, "path error, mm", room)
 
 
 def draw_joint_error(run: ForceRun, ax: Axes, room: float) -> None:
     for (joint, error), look in zip(run.joint_error.items(), TRIPLE, strict=True):
         ax.plot(run.run.t, 1e3 * error, label=f"${joint}$", **look)
-    finish(ax, run, "joint error, mrad", room)
+    finish(ax, run.run, "joint error, mrad", room)
 
 
 def draw_torques(run: ForceRun, ax: Axes, room: float) -> None:
@@ -182,7 +174,7 @@ def draw_torques(run: ForceRun, ax: Axes, room: float) -> None:
         ax.plot(run.run.t, run.run[f"tau{i}"], label=rf"$\tau_{i}$", **look)
     draw_bounds(ax, run.torque_limit, "limit", largest=float(np.abs(run.run["tau"]).max()))
     strip(ax, run, "saturated", RED, "at a limit")
-    finish(ax, run, "torque, N m", room)
+    finish(ax, run.run, "torque, N m", room)
 
 
 def draw_residuals(run: ForceRun, ax: Axes, room: float) -> None:
@@ -191,7 +183,7 @@ def draw_residuals(run: ForceRun, ax: Axes, room: float) -> None:
     if run.threshold:
         draw_bounds(ax, run.threshold, "threshold", largest=float(np.abs(run.run["residual"]).max()))
     strip(ax, run, "collision", RED, "collision")
-    finish(ax, run, "residual, N m", room)
+    finish(ax, run.run, "residual, N m", room)
 
 
 def draw_bounds(ax: Axes, bounds: Sequence[float], what: str, *, largest: float) -> None:
@@ -219,13 +211,13 @@ def draw_stiffness(run: ForceRun, ax: Axes, room: float) -> None:
     )
     if run.scenario and "wall.contact.stiffness" in run.scenario:
         ax.axhline(run.scenario["wall.contact.stiffness"], color=BLACK, ls="--", lw=1.1, label="the wall's")
-    finish(ax, run, "stiffness, N/m", room)
+    finish(ax, run.run, "stiffness, N/m", room)
 
 
 def draw_tank(run: ForceRun, ax: Axes, room: float) -> None:
     ax.plot(run.run.t, run.run["tank_energy"], color=BLUE, label="in the tank")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
-    finish(ax, run, "energy, J", room)
+    finish(ax, run.run, "energy, J", room)
 
 
 def strip(ax: Axes, run: ForceRun, flag: str, colour: str, label: str) -> None:
@@ -245,3 +237,8 @@ def face_panel(run: ForceRun) -> list[Panel]:
     runs = [(run, {"color": BLUE, "ls": "-"}, "tip in contact")]
     beside: Callable[[Any], None] | None = partial(locate, [run]) if needs_locating([run]) else None
     return [Panel(1.9, partial(draw_contact_plane, runs), beside=beside)]
+
+
+def face_shows_something(run: ForceRun) -> bool:
+    """Whether the tip moves on the face, so that its path is more than a point."""
+    return extent([run])[1] >= LEAST_PATH

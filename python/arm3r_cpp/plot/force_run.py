@@ -1,4 +1,4 @@
-"""What figures show of a run that presses on a wall: force, peak, settling, contact, tracking, limits."""
+"""What figures show of a run: force, peak, settling, contact, tracking errors, limits."""
 
 from __future__ import annotations
 
@@ -39,21 +39,29 @@ class Settling(NamedTuple):
 
 
 class ForceRun:
-    """A run, seen as one that presses. Arrays have a row for each row of the run; None: the run does not have it."""
+    """A run and what figures compute of it. Arrays have a row for each row of the run; None: the run lacks it."""
 
     def __init__(self, run: Run, *, name: str | None = None) -> None:
+        self.run = run
+        self.name = name or run.summary["name"]
+
+    def check(self) -> None:
         """
         Raises:
             UsageError: a column is missing, and nothing else tells what it holds.
         """
-        self.run = run
-        self.name = name or run.summary["name"]
-        missing = [column for column in NEEDED if column not in run]
+        missing = [column for column in NEEDED if column not in self.run]
         if missing:
             raise UsageError(f"{self.name}: no column {missing[0]}; use a run as arm3r writes it", code="usage")
-        if "force" not in run and ("depth" not in run or self.scenario is None):
-            near = "the run has no wall" if "depth" not in run else "its summary holds no scenario to tell the normal"
+        if not self.has_force:
+            has_wall = "depth" in self.run
+            near = "its summary holds no scenario to tell the normal" if has_wall else "the run has no wall"
             raise UsageError(f"{self.name}: no column force, and {near}; run a scenario with a wall", code="usage")
+
+    @property
+    def has_force(self) -> bool:
+        """Whether the columns tell how strongly the tip presses."""
+        return "force" in self.run or ("depth" in self.run and "f_on_tip" in self.run and self.scenario is not None)
 
     @cached_property
     def scenario(self) -> Scenario | None:

@@ -10,19 +10,18 @@ from .style import AMBER, BLACK, BLUE, GREEN, RED
 from .wall_frame import half_sides, wall_frame
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from ..run import Run
+    from .run_figure import RunFigure
 
 FLASHES = 7
 PATH_IN_REACHES = 3.0  # the strobe stops when the tip has come this far: a swinging arm would paint over itself
 
 
-def strobe(run: Run) -> Figure:
-    import matplotlib.pyplot as plt
-
+def strobe(run: Run, _: float) -> RunFigure:
     from ..scenario import Scenario
+    from .run_figure import RunFigure
 
     scenario = Scenario(run.summary["scenario"])
     q, tip = run["q"], run["tip"]
@@ -31,7 +30,7 @@ def strobe(run: Run) -> Figure:
     flashes = flash_rows(tip, reach)
     elbow = scenario.arm.elbow_position(q[flashes])
 
-    figure = plt.figure(figsize=(6.3, 4.9))
+    figure = RunFigure(figsize=(6.3, 4.9))
     ax: Any = figure.add_axes((0, -0.02, 0.97, 0.97), projection="3d", computed_zorder=False)
     times = run.t[flashes]
     moment = f"{times[0]:.4g} to {times[-1]:.4g} s, darker is later" if len(flashes) > 1 else f"{times[0]:.4g} s"

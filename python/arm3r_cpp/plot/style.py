@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from ..run import Run
 
@@ -22,7 +21,9 @@ TRIPLE: tuple[dict[str, Any], ...] = (
 LOOKS = tuple(zip((BLUE, RED, GREEN, AMBER, SKY, PINK, BLACK), ("-", "--", "-.", ":", "-", "--", "-."), strict=True))
 XYZ, JOINTS = "xyz", "123"
 DASHES = {"make": ":", "break": (0, (4, 2))}
-LABELLED_EVENTS = 4
+EVENT_WORDS = {"make": "contact begins", "break": "contact ends"}
+MARKED_EVENTS = 4  # where there are more, the shade shows when there is contact
+UNTOLD = "_contact"  # a label that no legend shows
 FORMATS = ("png", "pdf", "svg")
 WIDTH = 6.3  # inches: that of a text; columns of a journal have some 3.4
 MARGIN = 0.6  # inches of a figure's width: labels beside its axes
@@ -45,6 +46,8 @@ RC: Any = {
     "lines.linewidth": 1.4,
     "agg.path.chunksize": 20000,
     "savefig.dpi": 200,
+    "pdf.fonttype": 42,
+    "ps.fonttype": 42,
     "svg.hashsalt": "arm3r",
 }
 
@@ -57,71 +60,72 @@ def style() -> Iterator[None]:
         yield
 
 
-def panels(run: Run, heights: Sequence[float]) -> tuple[Figure, list[Axes]]:
-    """Panels over one time axis, of the given heights in inches."""
-    import matplotlib.pyplot as plt
+def finish(ax: Axes, run: Run, quantity: str, room: float, *, legend: bool = True) -> None:
+    """Label with quantity and unit, shade contact, mark events, and put the legend above the axes.
 
-    figure, grid = plt.subplots(
-        len(heights), sharex=True, squeeze=False, figsize=(WIDTH, sum(heights) + 0.35 * len(heights) + 0.3),
-        height_ratios=heights, layout="constrained",
-    )  # fmt: skip
-    axes = list(grid[:, 0])
-    axes[-1].set_xlabel("t, s")
-    axes[-1].set_xlim(run.t[0], max(run.t[-1], run.t[0] + 1e-9))
-    return figure, axes
-
-
-def draw(ax: Axes, run: Run, names: Sequence[str], labels: Sequence[str], **style: Any) -> None:
-    for name, label, look in zip(names, labels, TRIPLE, strict=True):
-        ax.plot(run.t, run[name], label=label, **{**look, **style})
-
-
-def finish(ax: Axes, run: Run, quantity: str, *, legend: bool = True) -> None:
-    """Label with quantity and unit, shade contact, mark events, and put the legend above the axes."""
+    room: what the legend may be wide, inches.
+    """
     ax.set_ylabel(quantity)
     if ax.get_yscale() == "linear":
         widen_if_flat(ax)
-    handles, labels = ax.get_legend_handles_labels()
-    if handles and legend:
-        ax.legend(handles, labels, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.1, ncols=len(handles))
-    mark_contact(ax, run)
+        plain_ticks(ax)
+    shade_contact(ax, run)
+    mark_events(ax, run)
+    if legend and ax.get_legend_handles_labels()[0]:
+        legend_above(ax, room=room)
 
 
 def widen_if_flat(ax: Axes) -> None:
     """Keep rounding noise on a constant line from filling the panel."""
     low, high = ax.get_ylim()
     if high - low < 1e-6 * max(1, abs(low)):
-        middle = (low + high) / 2
-        ax.set_ylim(middle - 1, middle + 1)
+        ax.set_ylim((low + high) / 2 - 1, (low + high) / 2 + 1)
+
+
+def plain_ticks(ax: Axes) -> None:
+    """Write very small and very large numbers in full: a common power of ten would stand in the legend."""
+    from matplotlib.ticker import FuncFormatter
+
+    largest = max(map(abs, ax.get_ylim()))
+    if not 1e-3 < largest < 1e5:
+        ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", "−")))
 
 
 def contact_spans(run: Run) -> list[tuple[float, float]]:
-    """Intervals of contact, s, from the events; an open one ends with the run."""
+    """Intervals of contact, s, from the events; one that began before the first row begins with it, and an open one
+    ends with the run."""
     times = [*((e.type, e.t) for e in run.events), ("break", float(run.t[-1]))]
+    if times[0][0] == "break" and "contact" in run and run["contact"][0] > 0:
+        times.insert(0, ("make", float(run.t[0])))
     return [(start, end) for (kind, start), (_, end) in pairwise(times) if kind == "make"]
-
-
-def mark_contact(ax: Axes, run: Run) -> None:
-    for start, end in contact_spans(run):
-        ax.axvspan(start, end, color=AMBER, alpha=0.15, lw=0, zorder=0, label="contact")
-    for event in run.events:
-        label = f"{event.type} at {event.t:.4f} s"
-        ax.axvline(event.t, color=BLACK, lw=0.8, ls=DASHES[event.type], zorder=1, label=label)
-
-
-def event_legend(figure: Figure, run: Run) -> None:
-    """Contact and its first events, in a line of their own above everything."""
-    if run.events:
-        marks = [*figure.axes[0].patches[:1], *figure.axes[0].lines[-len(run.events) :][:LABELLED_EVENTS]]
-        figure.legend(handles=marks, loc="outside upper left", ncols=len(marks))
 
 
 def shade_contact(ax: Axes, run: Run, *, label: str | None = None) -> None:
     """As one artist, however often contact is made."""
     if spans := contact_spans(run):
         bars = [(start, end - start) for start, end in spans]
-        look: Any = {"color": AMBER, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label}
+        look: Any = {"color": AMBER, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label or UNTOLD}
         ax.broken_barh(bars, (0, 1), transform=ax.get_xaxis_transform(), **look)
+
+
+def mark_events(ax: Axes, run: Run, *, told: bool = False) -> None:
+    """A line where contact begins or ends, unless there are too many; `told`: the legend is to say when."""
+    if len(run.events) <= MARKED_EVENTS:
+        for event in run.events:
+            label = f"{EVENT_WORDS[event.type]} at {event.t:.4f} s" if told else UNTOLD
+            ax.axvline(event.t, color=BLACK, lw=0.8, ls=DASHES[event.type], zorder=1, label=label)
+
+
+def explain_contact(ax: Axes, run: Run, *, room: float) -> None:
+    """Let the legend of axes say when contact begins and ends; where that is too often, how often."""
+    spans = contact_spans(run)
+    if not spans:
+        return
+    if not 0 < len(run.events) <= MARKED_EVENTS:
+        often = f", {len(spans)} times" if run.events else ""
+        next(part for part in ax.collections if part.get_label() == UNTOLD).set_label(f"contact{often}")
+    mark_events(ax, run, told=True)
+    legend_above(ax, room=room)
 
 
 def legend_above(ax: Axes, *, room: float, **look: Any) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UsageError
+from ..scenario import Scenario
 from .style import BLACK, LOOKS, style
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from ..sweeps.axes import SweepAxis
     from ..sweeps.table import SweepTable
+    from .run_figure import Origin, RunFigure
 
 OUTCOME_MARKERS = "xv^sD*P"
 WIDE = 100  # listed values that span this factor, by ratios, are drawn on a logarithmic axis
@@ -36,43 +38,71 @@ class Drawn(NamedTuple):
         return self.values.dtype.kind == "f"
 
     @property
+    def words(self) -> str:
+        return words_of(self.name, self.unit)
+
+    @property
     def label(self) -> str:
-        return f"{self.name}, {self.unit}" if self.unit else self.name
+        return f"{self.words}, {self.unit}" if self.unit else self.words
 
 
-def sweep(table: SweepTable, *, metric: str | None = None, log: bool = False) -> Figure:
+def sweep(table: SweepTable, *, metric: str | None = None, log: bool = False, stamp: bool = False) -> Figure:
     """One metric of a sweep over its axes.
 
-    table: of a finished sweep. metric: a column; None: the first one. log: a logarithmic scale of the metric. Runs that
-    did not end ok are marked, and have no value. Returns a matplotlib Figure that is not shown. SI units.
+    table: of a finished sweep. metric: a column; None: the first one. log: a logarithmic scale of the metric. stamp:
+    write scenario, convention and the hash of the table at the foot; in the metadata of a saved file they always are.
+    Runs that did not end ok are marked, and have no value. Returns a matplotlib Figure; `arm3r.plot.show` opens it in a
+    window. SI units.
 
     Raises:
         UsageError: there is no such metric, or nothing of it can be drawn.
     """
-    import matplotlib.pyplot as plt
-
     metric = _metric(table, metric, log)
+    with style():
+        figure = _figure(table, metric, log)
+        figure.set_origin([_origin(table)], stamp=stamp)
+        return figure
+
+
+def _figure(table: SweepTable, metric: str, log: bool) -> RunFigure:
+    from .run_figure import RunFigure
+
     drawn = _drawn(table)
     words = [axis for axis in drawn if not axis.is_number]
     numbers = [axis for axis in drawn if axis.is_number]
-    with style():
-        if table.mode == "grid" and len(numbers) == 2 and not words:
-            figure, ax = plt.subplots(figsize=(5.4, 4.2), layout="constrained")
-            _heat_map(ax, table, metric, *numbers, log=log)
-            return figure
-        panels = numbers or words[:1]
-        figure, grid = plt.subplots(
-            1, len(panels), sharey=True, squeeze=False, figsize=(1.4 + 4.0 * len(panels) ** 0.8, 3.8),
-            layout="constrained",
-        )  # fmt: skip
-        for ax, axis in zip(grid[0], panels, strict=True):
-            joined = table.mode in ("grid", "list") and panels == numbers and len(numbers) == 1
-            _curves(ax, table, metric, axis, words if numbers else [], joined=joined)
-        grid[0, 0].set_ylabel(_label(table, metric))
-        if log:
-            grid[0, 0].set_yscale("log")
-        _legend(figure, grid[0, 0])
+    if table.mode == "grid" and len(numbers) == 2 and not words:
+        figure = RunFigure(figsize=(5.4, 4.2), layout="constrained")
+        _heat_map(figure.subplots(), table, metric, *numbers, log=log)
         return figure
+    panels = numbers or words[:1]
+    figure = RunFigure(figsize=(1.4 + 4.0 * len(panels) ** 0.8, 3.8), layout="constrained")
+    grid = figure.subplots(1, len(panels), sharey=True, squeeze=False)
+    for ax, axis in zip(grid[0], panels, strict=True):
+        joined = table.mode in ("grid", "list") and panels == numbers and len(numbers) == 1
+        _curves(ax, table, metric, axis, words if numbers else [], joined=joined)
+    grid[0, 0].set_ylabel(_label(table, metric))
+    if log:
+        grid[0, 0].set_yscale("log")
+    _legend(figure, grid[0, 0])
+    return figure
+
+
+def _origin(table: SweepTable) -> Origin:
+    from .run_figure import Origin
+
+    scenario = Scenario(table.scenario)
+    return Origin(scenario.name, scenario["arm.convention"], table.hash, table.version)
+
+
+def words_of(key: str, unit: str = "") -> str:
+    """A key or a column in words: "wall.contact.stiffness" is "wall contact stiffness", "wall.point[0]" in metres is
+    "wall point x", "initial.q[1]" is "initial q 2"."""
+    name, _, place = key.partition("[")
+    words = name.replace(".", " ").replace("_", " ")
+    if not place:
+        return words
+    number = int(place.rstrip("]"))
+    return f"{words} {'xyz'[number] if unit.partition('/')[0] == 'm' and number < 3 else number + 1}"
 
 
 def _metric(table: SweepTable, metric: str | None, log: bool) -> str:
@@ -95,7 +125,7 @@ def _values(table: SweepTable, metric: str) -> Any:
 
 
 def _label(table: SweepTable, name: str) -> str:
-    return f"{name}, {table.units[name]}" if table.units[name] else name
+    return f"{words_of(name)}, {table.units[name]}" if table.units[name] else words_of(name)
 
 
 def _drawn(table: SweepTable) -> list[Drawn]:
@@ -152,7 +182,7 @@ def _series(words: list[Drawn], runs: int) -> list[tuple[str | None, NDArray[np.
         return [(None, np.ones(runs, np.bool_))]
     return [
         (
-            ", ".join(f"{word.name} = {chosen}" for word, chosen in zip(words, combination, strict=True)),
+            ", ".join(f"{word.words} = {chosen}" for word, chosen in zip(words, combination, strict=True)),
             np.all([word.values == chosen for word, chosen in zip(words, combination, strict=True)], axis=0),
         )
         for combination in combinations

@@ -18,6 +18,7 @@ from typing import Any
 from .._files import regular, replacing, writing
 from ..errors import IncompatibleError, OutputError, UsageError
 
+NEEDED = {"table", "mode", "columns", "axes", "runs", "scenario", "version"}  # of the manifest, for readers
 MANIFEST, LEDGER, LOCK, SHARDS = "sweep.json", "ledger.jsonl", "lock", "shards"
 
 
@@ -203,7 +204,7 @@ def read_manifest(path: Path) -> dict[str, Any]:
     """
     try:
         manifest = json.loads(regular(path / MANIFEST).read_bytes())
-        if isinstance(manifest, dict) and manifest.keys() >= {"table", "mode", "columns", "axes", "runs"}:
+        if isinstance(manifest, dict) and manifest.keys() >= NEEDED:
             return manifest
     except OSError as error:
         raise UsageError(f"{path}: {MANIFEST} cannot be read: {error.strerror}", code="file") from error

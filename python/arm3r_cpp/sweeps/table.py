@@ -16,7 +16,7 @@ from .._files import regular
 from .._messages import no_column
 from ..errors import UsageError
 from .axes import SweepAxis
-from .folder import LEDGER, count_outcomes, read_manifest
+from .folder import LEDGER, count_outcomes, read_manifest, sha256
 from .table_io import decode
 
 
@@ -30,6 +30,8 @@ class SweepTable:
         axes: what varied, in order.
         mode: "grid", "list", "random" or "latin_hypercube".
         units: by column; "" for none.
+        scenario: the base scenario, as YAML.
+        version: of the program that computed the table.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -48,6 +50,8 @@ class SweepTable:
         self.mode: str = manifest["mode"]
         self.units: dict[str, str] = manifest["columns"]
         self.axes = [SweepAxis(**axis) for axis in manifest["axes"]]
+        self.scenario: str = manifest["scenario"]
+        self.version: str = manifest["version"]
 
     @cached_property
     def _columns(self) -> dict[str, NDArray[Any]]:
@@ -94,6 +98,11 @@ class SweepTable:
     def names(self) -> list[str]:
         """The columns' names, in order."""
         return list(self.units)
+
+    @property
+    def hash(self) -> str:
+        """Of the table's file, "sha256:hex"."""
+        return f"sha256:{sha256(self.path.read_bytes())}"
 
     @property
     def ok(self) -> NDArray[np.bool_]:
