@@ -80,16 +80,25 @@ class Comparison:
             changes: quantities with other values, in each row.
             states: other joint vectors, in each row.
         """
+        return self.due_of(self.kind.name, samples, states, changes)
+
+    def due_of(
+        self,
+        kind: str,
+        samples: Samples,
+        states: Mapping[str, Floats] | None = None,
+        changes: Mapping[str, Floats] | None = None,
+    ) -> Floats:
+        """What is right of any kind of formula."""
         count = len(samples.states["q"])
         results = []
         for number, arm in enumerate(samples.arms):
             rows = slice(number * count, (number + 1) * count)
-            here = {name: values[rows] for name, values in states.items()} if states else samples.states
+            here = samples.states | {name: values[rows] for name, values in (states or {}).items()}
             new = {name: float(values[rows][0]) for name, values in (changes or {}).items()}
+            quantities = {**arm, **new}
             results.append(
-                self.truth.values(
-                    self.kind.name, self.convention, here, {**arm, **new}, inertia=self.inertia, rows=self.rows
-                )
+                self.truth.values(kind, self.convention, here, quantities, inertia=self.inertia, rows=self.rows)
             )
         return np.concatenate(results)
 

@@ -13,7 +13,7 @@ from .formula import Formula, from_callable, from_file, kind_of
 from .judge import Progress, judge
 from .kinds import KINDS
 from .program.python_process import PythonProcess
-from .truth.chain import Chain
+from .truth.chain_files import Chain
 from .truth.three_r import ThreeR
 from .verdict import Finding, Verdict
 

@@ -67,10 +67,28 @@ def _verdict(case: Comparison, progress: Progress | None) -> Verdict:
     own_due, own_values = _own(case)
     verdict.residual = _largest(own_values - own_due)
     wrong = _only_structured(verdict, values, due, wrong)
+    if case.convention != case.truth.convention:
+        verdict.warnings.append(f"the convention {case.convention} is not that of the arm, {case.truth.convention}")
+    if case.kind.name == "coriolis" and not wrong:
+        _note_skewness(verdict, case)
     if wrong:
         verdict.residual = verdict.residual if verdict.residual > 0 else _largest(values - due)
         _explain(verdict, case, wrong, progress)
     return verdict
+
+
+def _note_skewness(verdict: Verdict, case: Comparison) -> None:
+    """Whether dM/dt - 2C is skew, where the formula returns a matrix."""
+    samples, step = case.second, 1e-6
+    matrix = case.formula.values(case.call, samples, case.known)
+    if matrix.shape[1:] != (case.truth.joints,) * 2:
+        return
+    at = [
+        case.due_of("mass", samples, {"q": samples.tiled("q") + sign * step * samples.tiled("qd")}) for sign in (1, -1)
+    ]
+    change = (at[0] - at[1]) / (2 * step) - 2 * matrix
+    if np.abs(change + np.swapaxes(change, 1, 2)).max() > 1e-6 * (1 + np.abs(matrix).max()):
+        verdict.warnings.append("dM/dt - 2C is not skew; the product C qd is right, and the matrix is not unique")
 
 
 def _largest(difference: Floats) -> float:
@@ -101,7 +119,7 @@ def _meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
     parameters = {
         name: quantity
         for name, quantity in formula.parameters(kind, truth.joints).items()
-        if quantity in truth.values_of_quantities
+        if quantity in truth.values_of_quantities and kind.name != "controller"
     }
     inertias = ("scaled", "fixed") if kind.name in ("mass", "coriolis", "inverse", "forward") else ("scaled",)
     base = Comparison(formula, truth, kind, parameters)

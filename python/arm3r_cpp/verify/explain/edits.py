@@ -101,7 +101,8 @@ class Editor:
             return  # the argument of a sine is edited with its call
         near = node.word.rstrip("0123456789")
         for name in dict.fromkeys([*self.names, *self.factors]):
-            yield self._at(node, name, 1 if name.rstrip("0123456789") == near else 5)
+            likeness = 1 if name.rstrip("0123456789") == near else 2 if name[0] == near[:1] else 5
+            yield self._at(node, name, likeness)
         if self.trig:
             prefix = self.trig[0].word[: -len(_last(self.trig[0].word))]
             if node.word in self.angles:

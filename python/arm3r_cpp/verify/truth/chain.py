@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -42,12 +41,8 @@ class Joint:
     armature: float = 0.0
 
 
-class Chain:
-    """A serial chain as the truth: kinematics, Jacobian, gravity torque, mass matrix, and both dynamics.
-
-    >>> chain = Chain.from_dh("ur5.csv")
-    >>> verdict = verify.jacobian(my_jacobian, chain)
-    """
+class SerialChain:
+    """A serial chain as the truth: kinematics, Jacobian, gravity torque, mass matrix, and both dynamics."""
 
     conventions: tuple[str, ...] = ("",)
     convention = ""
@@ -82,20 +77,6 @@ class Chain:
         self.groups = self._parallel_groups()
         self.values_of_quantities: dict[str, float] = {}
         self.named_numbers = dict(named_numbers or {})
-
-    @classmethod
-    def from_urdf(cls, path: str | os.PathLike[str], *, tip: str | None = None) -> Chain:
-        """The chain from the base link of a URDF to a link, by default the last one."""
-        from .urdf import read_urdf
-
-        return read_urdf(path, tip)
-
-    @classmethod
-    def from_dh(cls, path: str | os.PathLike[str]) -> Chain:
-        """The chain of a DH table, see docs/verify.md."""
-        from .dh import read_dh
-
-        return read_dh(path)
 
     def _parallel_groups(self) -> tuple[tuple[int, ...], ...]:
         """Neighbouring revolute joints with parallel axes."""

@@ -6,12 +6,15 @@ import csv
 import os
 import re
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from .chain import Chain, Joint
+from .chain import Joint, SerialChain
+
+AnyChain = TypeVar("AnyChain", bound=SerialChain)
 
 _NUMBER = re.compile(
     r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>\d+))?|(?P<number>[\d.]+(?:[eE][+-]?\d+)?)(?P<deg> ?deg)?)"
@@ -29,7 +32,7 @@ def _turn_z(angle: float) -> Floats:
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
 
 
-def read_dh(path: str | os.PathLike[str]) -> Chain:
+def read_dh(path: str | os.PathLike[str], make: type[AnyChain]) -> AnyChain:
     """The chain of a CSV file: "standard" or "modified", a header, then a row a joint.
 
     The header names type (R or P), a, alpha, d, theta, and where they are known mass, cx, cy, cz (centre of mass in the
@@ -54,7 +57,7 @@ def read_dh(path: str | os.PathLike[str]) -> Chain:
         raise UsageError(f"{file}:2: the header is type,a,alpha,d,theta and then any of {','.join(_OPTIONAL)}"
                          + (f"; {unknown[0]!r} is none of them" if unknown else ""))  # fmt: skip
     table = [_row(file, number, names, next(csv.reader([line]))) for number, line in rows[2:]]
-    return _chain(table, word, os.path.basename(file))
+    return _chain(table, word, os.path.basename(file), make)
 
 
 def _row(file: str, number: int, names: list[str], cells: list[str]) -> dict[str, object]:
@@ -74,7 +77,7 @@ def _row(file: str, number: int, names: list[str], cells: list[str]) -> dict[str
     return values
 
 
-def _chain(table: list[dict[str, object]], word: str, name: str) -> Chain:
+def _chain(table: list[dict[str, object]], word: str, name: str, make: type[AnyChain]) -> AnyChain:
     """Joint i turns about (or moves along) z of frame i-1 in a standard table, of frame i in a modified one."""
     tool = np.zeros(3), np.eye(3)
     if table and table[-1]["type"] == "tool":
@@ -99,7 +102,7 @@ def _chain(table: list[dict[str, object]], word: str, name: str) -> Chain:
         tool = before_origin + before_rotation @ tool[0], before_rotation @ tool[1]
     lengths = {f"{key}{place}": float(row[key]) for place, row in enumerate(table, start=1) for key in ("a", "d")}  # type: ignore[arg-type]
     named = {key: value for key, value in lengths.items() if value}
-    return Chain(joints, tool=tool[0], tool_rotation=tool[1], name=name, named_numbers=named)
+    return make(joints, tool=tool[0], tool_rotation=tool[1], name=name, named_numbers=named)
 
 
 def _joint(is_revolute: bool, axis: Floats, rotation: Floats, origin: Floats, number: dict[str, float],

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..._native import Floats
 from ...arm import Arm
+from ...errors import UsageError
 from ...params import param_index
 from ...scenario import Scenario
 
@@ -35,6 +36,7 @@ class ThreeR:
     def __init__(self, scenario: Scenario | Arm | None = None) -> None:
         """By default the lecture's arm."""
         self._params = scenario.params if scenario is not None else Scenario().params
+        self._scenario = scenario.copy() if isinstance(scenario, Scenario) else None
         self.is_default = scenario is None
         self.convention = CONVENTIONS[int(self._params[param_index("arm.convention")])]
         self._arms: dict[tuple[Any, ...], Arm] = {}
@@ -165,6 +167,8 @@ class ThreeR:
         rows: int = 3,
     ) -> Floats:
         """What is right at the states, (N, ...)."""
+        if kind == "controller":
+            return self._law_torque(convention, states["q"], states["qd"])
         arm = self.arm(convention, quantities, inertia)
         q, qd = states["q"], states["qd"]
         if kind == "jacobian":
@@ -180,6 +184,24 @@ class ThreeR:
         if kind == "inverse":
             return arm.inverse_dynamics(q, qd, states["qdd"])
         return arm.forward_dynamics(q, qd, states["tau"])
+
+    def _law_torque(self, convention: str, q: Floats, qd: Floats) -> Floats:
+        """The torque of the scenario's law at the start, from each state.
+
+        Raises:
+            UsageError: there is no law.
+        """
+        if self._scenario is None or self._scenario["controller.type"] == "none":
+            raise UsageError("a controller is judged by the law of a scenario: name one that has a controller")
+        signs = np.array([1.0, -1.0, -1.0]) if convention != self.convention else np.ones(3)
+        here = self._scenario.copy()
+        start = here["time.start"]
+        here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}
+        torques = []
+        for angles, rates in zip(q, qd, strict=True):
+            here["initial.q"], here["initial.qd"] = signs * angles, signs * rates
+            torques.append(signs * here.run()["tau"][0])
+        return np.array(torques)
 
     def rotation(self, convention: str, q: Floats) -> Floats:
         """From the tip's axes to the base: x along link 3, y across the arm's plane."""

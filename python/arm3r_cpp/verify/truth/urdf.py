@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 import xml.etree.ElementTree as ElementTree
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from .chain import Chain, Joint
+from .chain import Joint, SerialChain
+
+AnyChain = TypeVar("AnyChain", bound=SerialChain)
 
 _MOST_BYTES = 10_000_000
 
@@ -21,7 +23,7 @@ class _Link(NamedTuple):
     inertia: Floats
 
 
-def read_urdf(path: str | os.PathLike[str], tip: str | None = None) -> Chain:
+def read_urdf(path: str | os.PathLike[str], tip: str | None, make: type[AnyChain]) -> AnyChain:
     """The chain from the root link to a link; fixed joints join links into one.
 
     Raises:
@@ -44,7 +46,7 @@ def read_urdf(path: str | os.PathLike[str], tip: str | None = None) -> Chain:
     while name in by_child and len(path_of_joints) <= len(links):
         path_of_joints.insert(0, by_child[name])
         name = _name(file, by_child[name], "parent")
-    return _chain(file, path_of_joints, links)
+    return _chain(file, path_of_joints, links, make)
 
 
 def _parsed(file: str) -> ElementTree.Element:
@@ -123,7 +125,9 @@ def _joined(one: _Link, other: _Link, rotation: Floats, origin: Floats) -> _Link
     return _Link(mass, centre, inertia)
 
 
-def _chain(file: str, path: list[ElementTree.Element], links: dict[str, ElementTree.Element]) -> Chain:
+def _chain(
+    file: str, path: list[ElementTree.Element], links: dict[str, ElementTree.Element], make: type[AnyChain]
+) -> AnyChain:
     joints: list[Joint] = []
     bodies: list[_Link] = []
     rotation, origin = np.eye(3), np.zeros(3)  # of the current link in the frame of the last moving one
@@ -149,4 +153,4 @@ def _chain(file: str, path: list[ElementTree.Element], links: dict[str, ElementT
         rotation, origin = np.eye(3), np.zeros(3)
     for joint, body in zip(joints, bodies, strict=True):
         joint.mass, joint.centre, joint.inertia = body
-    return Chain(joints, tool=origin, tool_rotation=rotation, name=os.path.basename(file))
+    return make(joints, tool=origin, tool_rotation=rotation, name=os.path.basename(file))

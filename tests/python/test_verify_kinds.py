@@ -1,0 +1,166 @@
+"""Every kind of formula, and every form in which it may come."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from arm3r_cpp import verify
+
+ARM = arm3r.Scenario().arm
+DYNAMICS = """
+import numpy as np
+
+a2, a3 = 1.0, 1.0
+m2, m3, g = 0.785, 0.785, 9.80665
+lc2, lc3 = 0.5, 0.5
+I2, I3 = 0.06542320833333333, 0.06542320833333333
+axial = 1.3083333333333334e-05
+
+def inertias():
+    return m2*lc2**2 + m3*a2**2, m3*lc3**2, m3*a2*lc3
+
+def mass_matrix(q):
+    A2, A3, B = inertias()
+    c2, c23, c3 = np.cos(q[1]), np.cos(q[1] + q[2]), np.cos(q[2])
+    m11 = 3*axial + (A2 + I2 - axial)*c2**2 + (A3 + I3 - axial)*c23**2 + 2*B*c2*c23
+    m23 = I3 + A3 + B*c3
+    return np.array([[m11, 0, 0], [0, I2 + I3 + A2 + A3 + 2*B*c3, m23], [0, m23, I3 + A3]])
+
+def coriolis_matrix(q, qd):
+    A2, A3, B = inertias()
+    A2, A3 = A2 + I2 - axial, A3 + I3 - axial
+    c2, c23, s2, s23 = np.cos(q[1]), np.cos(q[1] + q[2]), np.sin(q[1]), np.sin(q[1] + q[2])
+    h2 = -(s2*(A2*c2 + B*c23) + s23*(A3*c23 + B*c2))
+    h3 = -s23*(A3*c23 + B*c2)
+    b = B*np.sin(q[2])
+    return np.array([[h2*qd[1] + h3*qd[2], h2*qd[0], h3*qd[0]],
+                     [-h2*qd[0], -b*qd[2], -b*(qd[1] + qd[2])],
+                     [-h3*qd[0], b*qd[1], 0]])
+
+def gravity(q):
+    c2, c23 = np.cos(q[1]), np.cos(q[1] + q[2])
+    t3 = -m3*g*lc3*c23
+    return np.array([0, -(m2*lc2 + m3*a2)*g*c2 + t3, t3])
+
+def inverse_dynamics(q, qd, qdd):
+    return mass_matrix(q) @ qdd + coriolis_matrix(q, qd) @ qd + gravity(q)
+
+def forward_dynamics(q, qd, tau):
+    return np.linalg.solve(mass_matrix(q), tau - coriolis_matrix(q, qd) @ qd - gravity(q))
+"""
+MISTAKES = {
+    "mass_matrix": ("+ 2*B*c2*c23", "+ B*c2*c23", [[1, 1]]),
+    "coriolis_matrix": ("-b*qd[2], -b*(qd[1] + qd[2])", "-b*qd[2], -b*(qd[1] - qd[2])", [[2]]),
+    "inverse_dynamics": (
+        "coriolis_matrix(q, qd) @ qd + gravity",
+        "coriolis_matrix(q, qd) @ qdd + gravity",
+        [[1], [2], [3]],
+    ),
+    "forward_dynamics": ("tau - coriolis_matrix", "tau + coriolis_matrix", [[1], [2], [3]]),
+}
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Any:
+    def write(name: str, text: str) -> Path:
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("function", MISTAKES)
+def test_dynamics_are_judged(function: str, written: Any) -> None:
+    path = written("dynamics.py", DYNAMICS)
+    right = verify.formula_verdict(f"{path}:{function}")
+    assert right.ok, str(right)
+    old, new, entries = MISTAKES[function]
+    assert old in DYNAMICS
+    wrong = verify.formula_verdict(f"{written('dynamics.py', DYNAMICS.replace(old, new))}:{function}")
+    assert [finding.entry for finding in wrong.findings] == entries
+    line = DYNAMICS[: DYNAMICS.index(old)].count("\n") + 1
+    assert {finding.line for finding in wrong.findings} == {line}, str(wrong)
+
+
+def test_a_coriolis_matrix_is_judged_by_its_product() -> None:
+    def another(q: Any, qd: Any) -> Any:
+        matrix = ARM.coriolis_matrix(q, qd)
+        matrix[0] += [qd[1], -qd[0], 0]  # a row that is normal to qd
+        return matrix
+
+    verdict = verify.coriolis(another)
+    assert verdict.ok and "dM/dt - 2C is not skew" in verdict.warnings[0]
+    assert not verify.coriolis(lambda q, qd: ARM.coriolis_matrix(q, qd)).warnings
+
+
+FORMS = {
+    "three numbers": lambda q1, q2, q3: ARM.jacobian([q1, q2, q3]),
+    "reversed": lambda q3, q2, q1: ARM.jacobian([q1, q2, q3]),
+    "a vector": lambda q: ARM.jacobian(q),
+    "another name": lambda theta: ARM.jacobian(theta),
+    "any name": lambda x: ARM.jacobian(x),
+    "any numbers": lambda *x: ARM.jacobian(x),
+    "nested lists": lambda q: ARM.jacobian(q).tolist(),
+    "six rows": lambda q: ARM.geometric_jacobian(q),
+    "parameters": lambda q, a2, a3: jacobian_of(q, a2, a3),
+}
+
+
+def jacobian_of(q: Any, a2: float, a3: float) -> Any:
+    scenario = arm3r.Scenario()
+    scenario["arm.link2.length"], scenario["arm.link3.length"] = a2, a3
+    return scenario.arm.jacobian(q)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_of_a_function_is_taken(form: str) -> None:
+    verdict = verify.jacobian(FORMS[form])
+    assert verdict.ok, str(verdict)
+
+
+def test_sympy_expressions_are_taken() -> None:
+    sympy = pytest.importorskip("sympy")
+    q1, q2, q3, a2, a3 = sympy.symbols("q1 q2 q3 a2 a3")
+    r = a2 * sympy.cos(q2) + a3 * sympy.cos(q2 + q3)
+    tip = sympy.Matrix([r * sympy.cos(q1), r * sympy.sin(q1), -a2 * sympy.sin(q2) - a3 * sympy.sin(q2 + q3)])
+    jacobian = tip.jacobian([q1, q2, q3])
+    assert verify.jacobian(jacobian).ok
+    assert verify.jacobian(sympy.lambdify((q1, q2, q3, a2, a3), jacobian)).ok
+    (finding,) = verify.kinematics(tip + sympy.Matrix([0, a3 * sympy.sin(q1), 0])).findings
+    assert finding.entry == [2] and "a3 S1" in finding.reads
+
+
+def test_degrees_are_taken_where_the_names_say_so() -> None:
+    verdict = verify.jacobian(lambda q1_deg, q2_deg, q3_deg: ARM.jacobian(np.radians([q1_deg, q2_deg, q3_deg])))
+    assert verdict.ok and "angles in degrees" in verdict.found
+
+
+LAW = """
+import numpy as np
+
+def law(q, qd):
+    g = 9.80665
+    c2, c23 = np.cos(q[1]), np.cos(q[1] + q[2])
+    t3 = -0.785*g*0.5*c23
+    return [0, -0.785*g*1.5*c2 + t3, t3]
+"""
+
+
+def test_a_controller_is_judged_by_the_scenarios_law(written: Any) -> None:
+    scenario = arm3r.Scenario("{format: 1, controller: {type: gravity_compensation}}")
+    assert verify.controller(written("law.py", LAW), scenario).ok
+    wrong = verify.controller(written("law.py", LAW.replace("+ t3, t3", "- t3, t3")), scenario)
+    assert [(one.entry, one.line) for one in wrong.findings] == [([2], 8)]
+    with pytest.raises(arm3r.UsageError, match="by the law of a scenario"):
+        verify.controller(written("law.py", LAW))
+
+
+def test_a_verdict_is_a_table_in_a_notebook(written: Any) -> None:
+    verdict = verify.gravity(lambda q: ARM.gravity_torque(q) + np.array([q[0], 0, 0]))
+    page = verdict._repr_html_()
+    assert page.count("<td") == 3 and page.count("#f8d0d0") == 1 and "<u>q1</u>" in page
