@@ -32,13 +32,14 @@ def parser() -> argparse.ArgumentParser:
         description="Judge formulas of the arm: exit code 0 if all are right, 11 if one is wrong; see docs/verify.md.",
     )
     add = parser.add_argument
-    add("formulas", nargs="+", metavar="FILE[:FUNCTION]", help="a Python file, or a MATLAB function file")
+    add("formulas", nargs="+", metavar="FILE[:FUNCTION]", help="a Python file, a MATLAB function file, or a log")
     add("--kind", choices=KINDS, help="what the formulas compute (default: found from names)")
     arm = parser.add_mutually_exclusive_group()
     arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
     arm.add_argument("--urdf", metavar="FILE", help="a serial chain of up to 7 joints")
     arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: docs/verify.md says how it is written")
     add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: does it see the mistakes?")
+    add("--noise", type=float, metavar="X", help="of a log, relative to an entry's scale (default: what a fit shows)")
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser
 
@@ -54,7 +55,9 @@ def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
     for formula in options.formulas:
         bar = Bar("repair", "edits")
         try:
-            verdict = formula_verdict(formula, options.kind, arm, seen_by=options.seen_by, progress=bar.draw)
+            verdict = formula_verdict(
+                formula, options.kind, arm, seen_by=options.seen_by, progress=bar.draw, noise=options.noise
+            )
         except Arm3rError as error:
             failure = failure or error
             continue

@@ -12,6 +12,8 @@ from ..scenario import Scenario
 from .formula import Formula, from_callable, from_file, kind_of
 from .judge import Progress, judge
 from .kinds import KINDS
+from .log import read_log
+from .log_judge import judge_log
 from .program.python_process import PythonProcess
 from .truth.chain_files import Chain
 from .truth.three_r import ThreeR
@@ -45,19 +47,29 @@ def truth_of(arm: Any) -> Any:
 
 
 def formula_verdict(
-    f: Any, kind: str | None = None, arm: Any = None, *, seen_by: Sequence[Any] = (), progress: Progress | None = None
+    f: Any,
+    kind: str | None = None,
+    arm: Any = None,
+    *,
+    seen_by: Sequence[Any] = (),
+    progress: Progress | None = None,
+    noise: float | None = None,
 ) -> Verdict:
     """Judge a formula: a function, sympy expressions, or the path of a file.
 
     Args:
         kind: one of `KINDS`; None: found from names.
         arm: a `Scenario`, an `Arm`, a `Chain`, or the path of a scenario; None: the lecture's arm.
+        noise: of a log's numbers, relative to an entry's scale; None: what a fit shows.
         seen_by: tests, of which the verdict says whether they would have seen each mistake.
 
     Raises:
         UsageError: the formula cannot be read, or its kind is not clear.
     """
     truth = truth_of(arm)
+    if isinstance(f, (str, os.PathLike)) and os.fspath(f).endswith(".csv"):
+        log = read_log(f)
+        return judge_log(log, KINDS[kind] if kind else log.kind(), truth, noise=noise)
     formula = (
         f
         if isinstance(f, Formula)

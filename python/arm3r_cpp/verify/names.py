@@ -51,6 +51,21 @@ _LETTERS = {
 _PARAMETER = re.compile(rf"({'|'.join(sorted(_LETTERS, key=len, reverse=True))})_?(\d)(?:_?(c|com|cm))?")
 _GRAVITY = re.compile(r"g0?|grav|gravity|G|g_?acc")
 
+SHORT = {
+    "length2": "a2",
+    "length3": "a3",
+    "mass1": "m1",
+    "mass2": "m2",
+    "mass3": "m3",
+    "gravity": "g",
+    "height": "d1",
+    "com2": "l2",
+    "com3": "l3",
+    "inertia2": "I2",
+    "inertia3": "I3",
+}
+"""What sentences call the arm's quantities where the user has no name for them."""
+
 
 def slot_of(name: str) -> tuple[str, int | None] | None:
     """("q", 0) for q1, ("qd", None) for a vector qd; None for what is no state."""

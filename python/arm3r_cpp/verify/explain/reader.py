@@ -7,24 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..._native import Floats
+from ..names import SHORT
 from ..program.nodes import ProgramError
 from ..samples import Samples
 from .spectrum import read
 from .terms import Parameters, Term, sum_words, terms_of
 
-_SHORT = {
-    "length2": "a2",
-    "length3": "a3",
-    "mass1": "m1",
-    "mass2": "m2",
-    "mass3": "m3",
-    "gravity": "g",
-    "height": "d1",
-    "com2": "l2",
-    "com3": "l3",
-    "inertia2": "I2",
-    "inertia3": "I3",
-}
 _VARIED = {
     "jacobian": ("length2", "length3"),
     "gravity": ("length2", "length3", "mass2", "mass3", "gravity"),
@@ -58,7 +46,7 @@ def _entry(case: Any, place: int, sampled: dict[bytes, Floats]) -> Reading:
     lifted = [name for name in case.known if name in varied or name in ("com2", "com3")]
     names = {quantity: name for name, quantity in case.parameters.items()}
     shown = {
-        quantity: names.get(quantity, _SHORT.get(quantity, quantity)) for quantity in case.truth.values_of_quantities
+        quantity: names.get(quantity, SHORT.get(quantity, quantity)) for quantity in case.truth.values_of_quantities
     }
     due_terms, monomials = _due(case, place, sorted({*varied, *lifted}), shown)
     arms = _arms(case, case.known, len(case.known) + 5 if case.known else 1)

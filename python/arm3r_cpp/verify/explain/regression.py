@@ -1,0 +1,110 @@
+"""Entries of a formula from noisy numbers: a least-squares fit of sines, cosines and monomials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+
+from ..._native import Floats
+from .spectrum import Wave, axis
+from .terms import Term, sum_words
+
+SIGNIFICANT = 6.0  # standard deviations: with a thousand coefficients, chance exceeds it once in a million times
+_FLOOR = 1e-12  # of the scale: numbers of a log are not more exact
+_SNAP = 4.0  # standard deviations within which a simple number is taken for a coefficient
+_MONOMIALS = {
+    "jacobian": (("length2",), ("length3",)),
+    "kinematics": (("length2",), ("length3",), ("height",)),
+    "gravity": tuple((f"mass{i}", "gravity", f"length{j}") for i in (2, 3) for j in (2, 3)),
+}
+
+
+@dataclass
+class Fit:
+    """Coefficients with their standard deviations; `noise` is that of a single number."""
+
+    columns: list[tuple[tuple[str, ...], tuple[Wave, ...]]]
+    matrix: Floats
+    inverse: Floats
+    values: Floats
+    deviations: Floats
+    noise: float
+
+    def differs(self, due: Floats) -> Floats:
+        """By how many standard deviations each coefficient differs from what is due."""
+        return np.abs(self.values - due) / self.deviations
+
+    def snapped(self) -> Floats:
+        """Simple numbers in the place of coefficients that are as near to them as the noise lets one tell."""
+        found = self.values.copy()
+        for place, (value, deviation) in enumerate(zip(self.values, self.deviations, strict=True)):
+            for largest in (1, 2, 4, 12):
+                simple = float(Fraction(float(value)).limit_denominator(largest))
+                if abs(simple - value) <= _SNAP * deviation and (simple or abs(value) < SIGNIFICANT * deviation):
+                    found[place] = simple
+                    break
+        return found
+
+    def words(self, coefficients: Floats, shown: Mapping[str, str]) -> str:
+        """The coefficients as a sum of terms."""
+        terms = []
+        for (names, waves), number in zip(self.columns, coefficients, strict=True):
+            if number:
+                terms.append(Term(float(number), tuple((shown[name], 1) for name in names), waves))
+        return sum_words(terms)
+
+
+def columns_of(
+    kind: str, groups: Sequence[Sequence[int]], revolute: Sequence[bool], varied: Sequence[str]
+) -> list[tuple[tuple[str, ...], tuple[Wave, ...]]]:
+    """The monomials of the quantities that a log varies, times the waves of first order (second for a mass matrix)."""
+    order, n = (2 if kind == "mass" else 1), len(revolute)
+    axes = []
+    for group in groups:
+        joints = tuple(group)
+        what = "angle" if revolute[joints[0]] else "power"
+        axes.append(axis(joints, what, (order,) * len(joints), n))
+    waves = [tuple(one for one in waves if one.joints) for waves in product(*(one.waves for one in axes))]
+    monomials = [names for names in _MONOMIALS.get(kind, ()) if set(names) <= set(varied)] or [()]
+    return list(product(monomials, waves))
+
+
+def design(
+    columns: Sequence[tuple[tuple[str, ...], tuple[Wave, ...]]], q: Floats, quantities: Mapping[str, Floats]
+) -> Floats:
+    """(rows, columns)"""
+    found = []
+    for names, waves in columns:
+        column = np.ones(len(q))
+        for name in names:
+            column = column * quantities[name]
+        for wave in waves:
+            column = column * wave.at(q)
+        found.append(column)
+    return np.stack(found, axis=1)
+
+
+def fits(
+    columns: list[tuple[tuple[str, ...], tuple[Wave, ...]]], matrix: Floats, entries: Mapping[tuple[int, ...], Floats]
+) -> dict[tuple[int, ...], Fit]:
+    """The fit of each entry; none where the rows are too few, or do not tell the columns apart."""
+    rows, count = matrix.shape
+    if rows < 1.5 * count:
+        return {}
+    product_inverse = np.linalg.pinv(matrix.T @ matrix, rcond=1e-13, hermitian=True)
+    inverse = product_inverse @ matrix.T
+    if np.abs(inverse @ matrix - np.eye(count)).max() > 1e-6:
+        return {}
+    spread = np.sqrt(np.diag(product_inverse))
+    found = {}
+    for place, values in entries.items():
+        coefficients = inverse @ values
+        coefficients += inverse @ (values - matrix @ coefficients)
+        scale = float(np.abs(values).max()) or 1.0
+        noise = float(np.sqrt(np.sum((values - matrix @ coefficients) ** 2) / (rows - count)))
+        found[place] = Fit(columns, matrix, inverse, coefficients, max(noise, _FLOOR * scale) * spread, noise)
+    return found
