@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import re
 from pathlib import Path
@@ -64,3 +65,13 @@ def test_texts_use_the_words_of_the_field(root: Path) -> None:
         if path.name != "CHANGELOG.md":
             found += [f"{path.name}: {m[0]}" for m in FIGURES_OF_SPEECH.finditer(path.read_text())]
     assert found == []
+
+
+def test_prose_is_wrapped(root: Path) -> None:
+    """`python cmake/wrap_markdown.py FILE...` wraps it."""
+    spec = importlib.util.spec_from_file_location("wrap_markdown", root / "cmake/wrap_markdown.py")
+    wrap_markdown = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(wrap_markdown)
+    pages = [*root.glob("*.md"), *root.glob("docs/*.md"), *root.glob("cpp/**/*.md")]
+    found = {page.name: wrap_markdown.too_long(page.read_text()) for page in pages if page.name != "CHANGELOG.md"}
+    assert {name: lines for name, lines in found.items() if lines} == {}
