@@ -42,6 +42,7 @@ format: $(VENV)/dev
 	$(BIN)/clang-format -i $(CODE)
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
+	$(BIN)/python cmake/wrap_markdown.py README.md CONTRIBUTING.md docs/*.md $$(find cpp -name README.md)
 
 lint: $(VENV)/dev
 	$(BIN)/clang-format --dry-run -Werror $(CODE)

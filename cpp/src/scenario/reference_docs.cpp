@@ -107,66 +107,73 @@ bool is_copy(const Key& key) { return key.unset == "as the plant"; }
 
 const char* const markdown_head = R"(# Scenario keys
 
-A scenario is one YAML document of at most 1 MiB. `format: 1` is required; every other key has a default, except those
-marked *required*, which are needed where they exist at all. `name` (default: the file's stem) names the run and its
-files.
+A scenario is one YAML document of at most 1 MiB. `format: 1` is required; every other key has a
+default, except those marked *required*, which are needed where they exist at all. `name` (default:
+the file's stem) names the run and its files.
 
-Numbers are decimal: `[+-]digits[.digits][e[+-]digits]`, also `.5`; no quotes, no leading zeros. They are SI and
-radians; where the unit says so, `VALUE deg` is VALUE*pi/180. Anchors, aliases, tags, merge keys, duplicate keys and
-second documents are errors.
+Numbers are decimal: `[+-]digits[.digits][e[+-]digits]`, also `.5`; no quotes, no leading zeros.
+They are SI and radians; where the unit says so, `VALUE deg` is VALUE*pi/180. Anchors, aliases,
+tags, merge keys, duplicate keys and second documents are errors.
 
-Other programs may read YAML 1.1, as PyYAML does: to them a number with an exponent is text unless it has a point and a
-signed exponent. All files of arm3r, and all that `arm3r check`, `arm3r template` and `to_yaml` print, have numbers such
-as `1.0e-9` and `1.0e+6` therefore, which every reader takes for numbers. `30 deg` and `inf` are text to other readers.
+Other programs may read YAML 1.1, as PyYAML does: to them a number with an exponent is text unless
+it has a point and a signed exponent. All files of arm3r, and all that `arm3r check`,
+`arm3r template` and `to_yaml` print, have numbers such as `1.0e-9` and `1.0e+6` therefore, which
+every reader takes for numbers. `30 deg` and `inf` are text to other readers.
 
-The line `# yaml-language-server: $schema=PATH` at the head of a file tells an editor where the JSON Schema lies:
-`arm3r schema` prints it, and `arm3r template` writes the line for the schema that is installed. The editor then offers
-the keys that the chosen `type`, `law`, `shape` or `method` has, shows their meaning and their defaults, and marks
-mistakes.
+The line `# yaml-language-server: $schema=PATH` at the head of a file tells an editor where the JSON
+Schema lies: `arm3r schema` prints it, and `arm3r template` writes the line for the schema that is
+installed. The editor then offers the keys that the chosen `type`, `law`, `shape` or `method` has,
+shows their meaning and their defaults, and marks mistakes.
 
-The source of a default: *lecture* says it, *inferred* follows from what the lecture says, *our choice* is neither.
+The source of a default: *lecture* says it, *inferred* follows from what the lecture says, *our
+choice* is neither.
 
 )";
 
 const char* const markdown_tail = R"(
 ## What goes with what
 
-A shape gives a link its mass, centre of mass and inertia. A slender link has no density, so `mass` must be given. The
-defaults of `arm.link1`'s `mass`, `com` and `inertia_axial` hold for shape explicit only; any other shape gives its own.
+A shape gives a link its mass, centre of mass and inertia. A slender link has no density, so `mass`
+must be given. The defaults of `arm.link1`'s `mass`, `com` and `inertia_axial` hold for shape
+explicit only; any other shape gives its own.
 
-`wall.contact.stiffness` has a default for laws spring and kelvin_voigt only: that of `wall.contact.preset` where one is
-named. Law diagonal needs `stiffness: [kn, k1, k2]`, and hunt_crossley a number in N/m^p. Law kelvin_voigt takes either
-`damping` or `restitution`, hunt_crossley either `dissipation` or `restitution` with `impact_speed`.
+`wall.contact.stiffness` has a default for laws spring and kelvin_voigt only: that of
+`wall.contact.preset` where one is named. Law diagonal needs `stiffness: [kn, k1, k2]`, and
+hunt_crossley a number in N/m^p. Law kelvin_voigt takes either `damping` or `restitution`,
+hunt_crossley either `dissipation` or `restitution` with `impact_speed`.
 
 The four lists of a wall's table are equally long.
 
-At the start the tip may stand in the wall, which counts as the event `make` at that instant, but not deeper than 0.1 m.
+At the start the tip may stand in the wall, which counts as the event `make` at that instant, but
+not deeper than 0.1 m.
 
 ## Rows
 
-The rows of a run stand at t_k = start + k*log_every while t_k < stop - 1e-9*log_every, then exactly at stop; so start
-and stop always are rows. Events add none. A row at an instant at which something jumps shows what holds after it.
+The rows of a run stand at t_k = start + k*log_every while t_k < stop - 1e-9*log_every, then exactly
+at stop; so start and stop always are rows. Events add none. A row at an instant at which something
+jumps shows what holds after it.
 
 ## A start other than 0
 
-`time.start` moves the beginning of a run and nothing else: rows, samples and the steps of rk4 count from it, `initial`
-holds there, and the estimator begins at the later of it and `estimator.start`. Every other instant is meant as it is
-written: `wall.point` is the place at t = 0, a phase is that at t = 0, and `start` keys and tables say t, which may be
-negative. Where the wall's ramp or table has begun before t = 0, `wall.point` is the place at which its s is 0.
-`log_every`, `solver.step` of rk4 and the period of sampling must be at least 1e-14 of |time.start|, so that t can
-count them.
+`time.start` moves the beginning of a run and nothing else: rows, samples and the steps of rk4 count
+from it, `initial` holds there, and the estimator begins at the later of it and `estimator.start`.
+Every other instant is meant as it is written: `wall.point` is the place at t = 0, a phase is that
+at t = 0, and `start` keys and tables say t, which may be negative. Where the wall's ramp or table
+has begun before t = 0, `wall.point` is the place at which its s is 0. `log_every`, `solver.step` of
+rk4 and the period of sampling must be at least 1e-14 of |time.start|, so that t can count them.
 
 ## --set PATH=VALUE
 
-VALUE is YAML and takes the place of what stands at PATH; sections that are missing are made, and `null` takes a key
-out. `[i]` sets one item of a list and leaves the others as they are; where a single number may stand as well, the
-whole list must be given unless one stands there. A new word for a `type`, `method`, `law` or `shape` drops the keys
-that belong to the old one only. All are applied in their order, then the scenario is validated once.
+VALUE is YAML and takes the place of what stands at PATH; sections that are missing are made, and
+`null` takes a key out. `[i]` sets one item of a list and leaves the others as they are; where a
+single number may stand as well, the whole list must be given unless one stands there. A new word
+for a `type`, `method`, `law` or `shape` drops the keys that belong to the old one only. All are
+applied in their order, then the scenario is validated once.
 
 ## The controller's copy of the arm
 
-`controller.model` takes the keys of `arm` except `convention` and `gravity`. A key given there is what the controller
-believes; the others are as the plant.
+`controller.model` takes the keys of `arm` except `convention` and `gravity`. A key given there is
+what the controller believes; the others are as the plant.
 
 ## checks
 
@@ -181,9 +188,9 @@ A list of conditions on the run; one that fails makes the executable exit with 1
 | `count: make` or `break` | the number of such events |
 | `summary: FIELD` | a number of the summary, e.g. `peak_force`, `steps.accepted` |
 
-The limit is `equals: X` with `abs: A` and `rel: R` (either tolerance suffices; none: exactly), or `below: X`,
-`above: X` or both. `name` is what the report calls the check. Of a run that ended before stop, only the rows (`at`) and
-events that there are can be judged; every other check fails.
+The limit is `equals: X` with `abs: A` and `rel: R` (either tolerance suffices; none: exactly), or
+`below: X`, `above: X` or both. `name` is what the report calls the check. Of a run that ended
+before stop, only the rows (`at`) and events that there are can be judged; every other check fails.
 )";
 
 // ---- template
