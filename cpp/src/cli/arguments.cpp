@@ -32,6 +32,7 @@ constexpr Program programs[] = {
     {"plot", "RUN", "draw figures of a run, of several runs, or of a sweep"},
     {"animate", "RUN", "draw a film of a run"},
     {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
+    {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},
 };
 
 struct Option {
