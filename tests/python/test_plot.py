@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -109,6 +110,17 @@ def test_the_strobe_names_axes_and_forces(bounce: arm3r.Run) -> None:
     text = texts(arm3r.plot.lecture(bounce, panels=["strobe"])["strobe"])
     for part in ("$q_1$", "$q_2$", "$q_3$", "force on the wall", "force on the tip"):
         assert part in text
+
+
+def test_every_peak_has_the_instant_of_the_summary(bounce: arm3r.Run) -> None:
+    """Not that of a row: the largest force lies between two of them."""
+    force, t = bounce.summary["peak_force"], bounce.summary["metrics"]["peak_force_time"]
+    assert np.abs(bounce.t - t).min() > 1e-4
+    drawn = [*arm3r.plot.lecture(bounce, panels=["strobe"]).values()]
+    drawn += [arm3r.plot.overview(bounce, panels=["first_contact"]), arm3r.plot.force(bounce, panels=["force"])]
+    for figure in drawn:
+        found = re.findall(r"peak (\S+) N,? (?:at|t =) (\S+)", texts(figure))
+        assert found == [(f"{force:.4g}", f"{t:.4f}")]
 
 
 def test_the_strobe_draws_an_infinite_wall_in_the_other_convention() -> None:

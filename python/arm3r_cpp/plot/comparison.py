@@ -140,7 +140,7 @@ def draw_forces(runs: Sequence[ForceRun], ax: Axes) -> None:
 
 
 def alike(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> bool:
-    """Whether two lines are one where both are told."""
+    """Whether two lines are one where both have values."""
     end = min(one[0][-1], other[0][-1])
     t = one[0][one[0] <= end]
     return bool(np.allclose(np.interp(t, *one), np.interp(t, *other), rtol=1e-6, atol=1e-6))

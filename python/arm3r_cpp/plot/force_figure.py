@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 TRANSIENT = 0.3  # of the run: a first contact that settles in less gets a panel of its own
 FEW_ROWS = 60  # in that panel: they are marked
-LIMITS_IN_SIGHT = 3.0  # times the largest torque: limits beyond are told, not drawn
+LIMITS_IN_SIGHT = 3.0  # times the largest torque: limits beyond stand in the legend and are not drawn
 LEAST_PATH = 1e-4  # m: a path on the face that is shorter looks like a point
 
 
@@ -187,7 +187,7 @@ def draw_residuals(run: ForceRun, ax: Axes, room: float) -> None:
 
 
 def draw_bounds(ax: Axes, bounds: Sequence[float], what: str, *, largest: float) -> None:
-    """Lines at plus and minus each joint's bound, in its colour; one for all in black. The legend tells those too far
+    """Lines at plus and minus each joint's bound, in its colour; one for all in black. The legend names those too far
     away to be drawn."""
     if all(math.isinf(bound) for bound in bounds):
         return
@@ -231,7 +231,7 @@ def strip(ax: Axes, run: ForceRun, flag: str, colour: str, label: str) -> None:
 
 
 def face_panel(run: ForceRun) -> list[Panel]:
-    """The tip's path; none where it cannot be told."""
+    """The tip's path; none where the plane is not known."""
     if run.on_contact_plane("tip") is None:
         return []
     runs = [(run, {"color": BLUE, "ls": "-"}, "tip in contact")]

@@ -119,9 +119,9 @@ class ForceRun:
         if level <= 0:
             return None
         seen = bool(force[row] >= SEEN * level)
-        told = self.metric("peak_force_time")
-        if told is not None:
-            return Peak(float(told), level, seen, exact=True)
+        instant = self.metric("peak_force_time")
+        if instant is not None:
+            return Peak(float(instant), level, seen, exact=True)
         return Peak(float(t[row]) if seen else self._peak_between_rows(level), level, seen, exact=False)
 
     def _peak_between_rows(self, level: float) -> float:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 TWO_PANELS = 5.0  # inches: narrower figures have one panel a row
 BESIDE = 0.28  # of a panel's width: what stands beside it
 GAP, LABELS = 0.14, 0.42  # inches of height: above a panel and its legend, and for the labels of a time axis
-PAD, RIGHT = 0.06, 0.13  # inches of width: between texts, and to the right of panels
+PAD, RIGHT = 0.06, 0.2  # inches of width: between texts, and to the right of panels: half of a label
 PAGE = 9.0  # inches: no figure gets higher by itself
 LEAST = 0.5  # of their heights: panels do not get lower
 TRIES = 4  # a legend or a label that is changed moves the others

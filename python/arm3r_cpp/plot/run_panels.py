@@ -89,15 +89,15 @@ def overview_figure(run: ForceRun, names: Sequence[str] | None, size: Size) -> R
     left_out = {"energies"} if panels["force_on_wall"] or panels["residuals"] else set()
     left_out |= {"depth"} if panels["path_error"] or panels["joint_error"] else set()
     wanted = [name for name in OVERVIEW if panels[name] and name not in left_out]
-    return figure_of(run, panels, names or wanted, size, tells_contact=True)
+    return figure_of(run, panels, names or wanted, size, names_contact=True)
 
 
 def figure_of(
-    run: ForceRun, panels: Named, names: Sequence[str], size: Size, *, tells_contact: bool = False
+    run: ForceRun, panels: Named, names: Sequence[str], size: Size, *, names_contact: bool = False
 ) -> RunFigure:
-    """tells_contact: whether the legend of the first panel says when there is contact."""
+    """names_contact: whether the legend of the first panel says when there is contact."""
     over_time, below, _ = chosen(panels, names, below=BELOW)
-    if over_time and tells_contact:
+    if over_time and names_contact:
         over_time[0] = over_time[0]._replace(draw=partial(explained, run.run, over_time[0]))
     t = run.run.t
     return lay_out(over_time, below, size=size, start=float(t[0]), end=float(t[-1]))
@@ -124,17 +124,17 @@ def tip_panels(run: Run, *, height: float) -> list[Panel]:
 
 
 def moving_tip_panels(run: Run) -> list[Panel]:
-    """One for each coordinate that changes; the first one tells the others."""
+    """One for each coordinate that changes; the legend of the first one names the others."""
     if "tip" not in run:
         return []
     still = [c for c in XYZ if np.ptp(run[f"tip_{c}"]) < STILL]
     shown = [c for c in XYZ if c not in still] or ["x"]
-    told = [f"{c} = {round(1e3 * run[f'tip_{c}'][0], 3) + 0.0:g} mm throughout" for c in still if c not in shown]
-    return [Panel(0.6, partial(draw_tip, run, c, told=told if c == shown[0] else [])) for c in shown]
+    constant = [f"{c} = {round(1e3 * run[f'tip_{c}'][0], 3) + 0.0:g} mm throughout" for c in still if c not in shown]
+    return [Panel(0.6, partial(draw_tip, run, c, constant=constant if c == shown[0] else [])) for c in shown]
 
 
-def draw_tip(run: Run, c: str, ax: Axes, room: float, *, told: Sequence[str] = ()) -> None:
-    """told: what the legend says of other coordinates."""
+def draw_tip(run: Run, c: str, ax: Axes, room: float, *, constant: Sequence[str] = ()) -> None:
+    """constant: what the legend says of the coordinates that do not change."""
     tip = 1e3 * run[f"tip_{c}"]
     ax.plot(run.t, tip, color=BLUE, label="tip")
     if f"tip_ref_{c}" in run:
@@ -142,9 +142,9 @@ def draw_tip(run: Run, c: str, ax: Axes, room: float, *, told: Sequence[str] = (
     if np.ptp(tip) < LEAST_MILLIMETRES:
         middle = (tip.min() + tip.max()) / 2
         ax.set_ylim(middle - LEAST_MILLIMETRES / 2, middle + LEAST_MILLIMETRES / 2)
-    for text in told:
+    for text in constant:
         ax.plot([], [], ls="", label=text)
-    finish(ax, run, f"tip {c}, mm", room, legend=bool(told) or (c == "x" and "tip_ref" in run))
+    finish(ax, run, f"tip {c}, mm", room, legend=bool(constant) or (c == "x" and "tip_ref" in run))
 
 
 def draw_depth(run: Run, ax: Axes, room: float) -> None:

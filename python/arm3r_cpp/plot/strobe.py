@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .force_run import ForceRun
 from .style import AMBER, BLACK, BLUE, GREEN, RED
 from .wall_frame import half_sides, wall_frame
 
@@ -91,15 +92,16 @@ def draw_joint_axes(ax: Any, axes: Any, origins: Any, reach: float) -> None:
 
 
 def draw_forces(ax: Any, run: Run, tip: Any, reach: float) -> None:
-    """Both forces at the row where they are largest."""
+    """Both forces, with the directions that they have in the row where they are largest."""
     on_wall = run["f_on_wall"]
     size = np.linalg.norm(on_wall, axis=-1)
     row = int(size.argmax())
     if size[row] == 0:
         return
     pull = 0.3 * reach * on_wall[row] / size[row]
-    when = f"{size[row]:.4g} N at {run.t[row]:.4g} s"
-    arrow(ax, tip[row], tip[row] + pull, RED, 2.2, label=f"force on the wall, {when}")
+    peak = ForceRun(run).peak
+    when = f", peak {peak.force:.4g} N at {peak.t:.4f} s" if peak else ""
+    arrow(ax, tip[row], tip[row] + pull, RED, 2.2, label=f"force on the wall{when}")
     arrow(ax, tip[row], tip[row] - pull, AMBER, 2.2, label="force on the tip, the opposite")
 
 

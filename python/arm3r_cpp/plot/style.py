@@ -23,7 +23,7 @@ XYZ, JOINTS = "xyz", "123"
 DASHES = {"make": ":", "break": (0, (4, 2))}
 EVENT_WORDS = {"make": "contact begins", "break": "contact ends"}
 MARKED_EVENTS = 4  # where there are more, the shade shows when there is contact
-UNTOLD = "_contact"  # a label that no legend shows
+HIDDEN = "_contact"  # a label that no legend shows
 FORMATS = ("png", "pdf", "svg")
 WIDTH = 6.3  # inches: that of a text; columns of a journal have some 3.4
 MARGIN = 0.6  # inches of a figure's width: labels beside its axes
@@ -104,15 +104,15 @@ def shade_contact(ax: Axes, run: Run, *, label: str | None = None) -> None:
     """As one artist, however often contact is made."""
     if spans := contact_spans(run):
         bars = [(start, end - start) for start, end in spans]
-        look: Any = {"color": AMBER, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label or UNTOLD}
+        look: Any = {"color": AMBER, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label or HIDDEN}
         ax.broken_barh(bars, (0, 1), transform=ax.get_xaxis_transform(), **look)
 
 
-def mark_events(ax: Axes, run: Run, *, told: bool = False) -> None:
-    """A line where contact begins or ends, unless there are too many; `told`: the legend is to say when."""
+def mark_events(ax: Axes, run: Run, *, labelled: bool = False) -> None:
+    """A line where contact begins or ends, unless there are too many; `labelled`: the legend is to say when."""
     if len(run.events) <= MARKED_EVENTS:
         for event in run.events:
-            label = f"{EVENT_WORDS[event.type]} at {event.t:.4f} s" if told else UNTOLD
+            label = f"{EVENT_WORDS[event.type]} at {event.t:.4f} s" if labelled else HIDDEN
             ax.axvline(event.t, color=BLACK, lw=0.8, ls=DASHES[event.type], zorder=1, label=label)
 
 
@@ -123,8 +123,8 @@ def explain_contact(ax: Axes, run: Run, *, room: float) -> None:
         return
     if not 0 < len(run.events) <= MARKED_EVENTS:
         often = f", {len(spans)} times" if run.events else ""
-        next(part for part in ax.collections if part.get_label() == UNTOLD).set_label(f"contact{often}")
-    mark_events(ax, run, told=True)
+        next(part for part in ax.collections if part.get_label() == HIDDEN).set_label(f"contact{often}")
+    mark_events(ax, run, labelled=True)
     legend_above(ax, room=room)
 
 
