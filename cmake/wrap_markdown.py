@@ -16,7 +16,7 @@ COLUMNS = 100
 WHOLE = re.compile(r"\$`.*?`\$|`[^`]+`|!?\[[^\]]*\]\([^)]*\)")  # a formula, code or a link
 FENCE = re.compile(r"^\s*```.*?^\s*```\s*?$", re.M | re.S)
 ITEM = re.compile(r"(\s*(?:[-*] |\d+\. )?)(.*)", re.S)
-NO_START = re.compile(r"[-+*#>|=]|\d+[.)]$")  # a line must not begin with this word: it would become an item or a heading
+NO_START = re.compile(r"[-+*]$|#+$|[>|=]|\d+[.)]$")  # a line that begins with it would not be prose
 
 
 def wrapped(text: str) -> str:

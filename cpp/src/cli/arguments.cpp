@@ -168,7 +168,8 @@ std::size_t read_option(const std::vector<std::string>& words, std::size_t at, A
 
 void check_fit(const Arguments& arguments, const Used& used) {
     const Call* call = find_call(arguments.call);
-    if (!call) usage_error(arguments.call.empty() ? "no command given; see arm3r --help" : unknown_call(arguments.call));
+    if (!call)
+        usage_error(arguments.call.empty() ? "no command given; see arm3r --help" : unknown_call(arguments.call));
     for (const Option* option : used.options)
         if (!takes(call->name, *option))
             usage_error("arm3r " + arguments.call + " has no option " + std::string(option->name));

@@ -20,8 +20,8 @@ std::string item_path(const Key& key, std::size_t item, std::size_t count) {
 
 std::string range_of(const Key& key) {
     const Bounds& b = key.bounds;
-    return std::string(b.open_low ? "(" : "[") + yaml_number(b.low) + ", " + yaml_number(b.high) + (b.open_high ? ")" : "]") +
-           (key.unit.empty() ? "" : " " + key.unit) + (key.allow_infinity ? " or inf" : "");
+    return std::string(b.open_low ? "(" : "[") + yaml_number(b.low) + ", " + yaml_number(b.high) +
+           (b.open_high ? ")" : "]") + (key.unit.empty() ? "" : " " + key.unit) + (key.allow_infinity ? " or inf" : "");
 }
 
 bool within(const Key& key, double value) {

@@ -102,8 +102,9 @@ void warn_of_contact_step(const Setup& setup, std::vector<std::string>& warnings
     const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
     const auto check = [&](const char* name, double product, double half, const char* limit) {
         if (product > half)
-            warnings.push_back(std::string(name) + " is " + shortest(product) + ", more than half of the stability limit of rk4 (" +
-                               limit + "): the contact will not be resolved; take a smaller solver.step");
+            warnings.push_back(std::string(name) + " is " + shortest(product) +
+                               ", more than half of the stability limit of rk4 (" + limit +
+                               "): the contact will not be resolved; take a smaller solver.step");
     };
     if (contact.law != ContactLaw::hunt_crossley)
         check("step*sqrt(K_E/m_n)", setup.solver.step * std::sqrt(contact.stiffness[0] / m_n), 1.414, "2.828");
