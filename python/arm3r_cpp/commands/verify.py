@@ -32,7 +32,12 @@ def parser() -> argparse.ArgumentParser:
         description="Judge formulas of the arm: exit code 0 if all are right, 11 if one is wrong; see docs/verify.md.",
     )
     add = parser.add_argument
-    add("formulas", nargs="+", metavar="FILE[:FUNCTION]", help="a Python file, a MATLAB function file, or a log")
+    add(
+        "formulas",
+        nargs="+",
+        metavar="FILE[:FUNCTION]",
+        help="a Python or MATLAB file, a log, a library.so:SYMBOL",
+    )
     add("--kind", choices=KINDS, help="what the formulas compute (default: found from names)")
     arm = parser.add_mutually_exclusive_group()
     arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
@@ -47,6 +52,9 @@ def parser() -> argparse.ArgumentParser:
 def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
     """Judge each formula; a file that cannot be read ends it."""
     from ..verify.functions import Chain, formula_verdict, truth_of
+    from ..verify.program.python_process import PythonProcess
+
+    PythonProcess.report = say_once
 
     arm: Any = truth_of(options.arm)
     if options.urdf or options.dh:
@@ -72,6 +80,14 @@ def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
         print_line(summary(verdicts))
     if failure:
         raise failure
+
+
+def say_once(unbarred: list[str]) -> None:
+    """Say what this system cannot keep a user's file from, once."""
+    from ..verify.program.python_process import PythonProcess
+
+    PythonProcess.report = None
+    print(f"arm3r-verify: this system cannot bar a formula from: {', '.join(unbarred)}", file=sys.stderr)
 
 
 def summary(verdicts: Sequence[Verdict]) -> str:

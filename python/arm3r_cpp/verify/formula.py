@@ -16,6 +16,7 @@ from .._native import Floats
 from ..errors import UsageError
 from .kinds import KINDS, Kind
 from .names import quantities_of, slots_of
+from .program.c_symbol import text_of
 from .program.matlab_program import MatlabProgram
 from .program.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
 from .program.python_nodes import PythonText
@@ -98,6 +99,8 @@ class Formula:
     def bind(self, kind: Kind, joints: int, parameters: dict[str, str], known: list[str]) -> Call:
         """How the function is called; `known` are the quantities that stand in the table behind the joint vectors."""
         first = 4 * joints
+        if self.language == "c":
+            return Call(tuple(columns(vector, joints) for vector in kind.inputs), {})
         if self.arguments == ["*"]:
             return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {})
         slots: list[Any] = []
@@ -170,11 +173,23 @@ def from_file(path: str | os.PathLike[str], *, sandbox: Any = None) -> Formula:
         UsageError: the file cannot be read, or has no such function.
     """
     file, function = split_name(os.fspath(path))
+    if file.endswith((".so", ".dylib", ".dll")):
+        return _from_library(file, function)
     try:
         text = Path(file).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
     return from_text(text, file, function, sandbox=sandbox)
+
+
+def _from_library(file: str, function: str | None) -> Formula:
+    """A C function; its arguments are the vectors of its kind, and then the output."""
+    if function is None:
+        raise UsageError(f"{file}: name the function of this library: {file}:FUNCTION")
+    if not os.path.isfile(file):
+        raise UsageError(f"{file}: this file cannot be read: there is none")
+    program = PythonProcess(text_of(os.path.abspath(file), function), function, file)
+    return Formula(file, function, program, [], language="c")
 
 
 def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None) -> Formula:

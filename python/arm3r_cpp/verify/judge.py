@@ -39,6 +39,8 @@ def judge(
         values = cases[0].values(cases[0].second)
         if not np.array_equal(values, cases[0].values(cases[0].second), equal_nan=True):
             raise ProgramError("gives different numbers when it is called again with the same ones")
+        if not np.isfinite(values).any():
+            raise ProgramError("returns NaN or infinity instead of numbers")
         verdicts = []
         for case in cases:
             verdicts.append((_verdict(case, progress), case))

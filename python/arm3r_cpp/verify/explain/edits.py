@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 
@@ -113,6 +114,8 @@ class Editor:
         try:
             value = float(node.word.lower().replace("d", "e"))
         except ValueError:
+            return
+        if not math.isfinite(value):
             return
         values = [0, 1, 2, 3, 4, 12, 0.5, -1, value + 1, value - 1, value / 2, 2 * value, -value, 9.80665]
         if parent.kind == "index" or (value == int(value) and parent.kind in ("call", "matrix")):

@@ -11,7 +11,7 @@ import sys
 _NEWUSER, _NEWNS, _NEWPID, _NEWNET, _NEWIPC = 0x10000000, 0x00020000, 0x20000000, 0x40000000, 0x08000000
 _MS_PRIVATE, _MS_REC = 1 << 18, 1 << 14
 _SYS_MOUNT_SETATTR, _AT_FDCWD, _AT_RECURSIVE, _ATTR_RDONLY = 442, -100, 0x8000, 1
-_PR_SET_PDEATHSIG, _PR_SET_NO_NEW_PRIVS = 1, 38
+_PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS = 1, 36, 38
 MEMORY = 2 << 30  # bytes of address space
 PROCESSOR_TIME = 100  # s
 
@@ -41,10 +41,11 @@ def limit_resources() -> None:
 
 
 def end_with_parent() -> None:
-    """The kernel ends this process when its parent ends."""
+    """The kernel ends this process when its parent ends, and gives it the orphans of its descendants."""
     libc = _libc()
     if libc:
         libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+        libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
         libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
 
 
@@ -71,6 +72,7 @@ def enter_namespaces() -> list[str]:
     if child:
         _end_as(child)
     end_with_parent()
+    libc.mount(b"proc", b"/proc", b"proc", 0, None)  # only the processes of this namespace, where it is allowed
     return open_to
 
 

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,9 @@ class PythonProcess:
     """A function of a Python file; its process starts with the first evaluation."""
 
     forbid_own_package = False
+    """Whether the user's file may not import this package, and copy its answer."""
+    report: Callable[[list[str]], None] | None = None
+    """Told what the system cannot bar, before the user's file runs."""
 
     def __init__(self, text: str, function: str, file: str) -> None:
         self.text, self.function, self.file = text, function, file
@@ -97,6 +101,8 @@ class PythonProcess:
         )
         head, _ = self._receive(STARTING_TIME)
         self.unbarred = [str(one) for one in head.get("unbarred", [])]
+        if self.unbarred and PythonProcess.report:
+            PythonProcess.report(self.unbarred)
 
     def _send(self, head: dict[str, Any], body: bytes) -> None:
         assert self._process and self._process.stdin
@@ -144,6 +150,13 @@ class PythonProcess:
 
 
 def _end_process(process: subprocess.Popen[bytes], answers: int) -> None:
+    for _ in range(20):  # a process may start others while they are ended
+        started = _descendants(process.pid)
+        for descendant in started:
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(descendant, signal.SIGKILL)
+        if not started:
+            break
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()
@@ -152,3 +165,16 @@ def _end_process(process: subprocess.Popen[bytes], answers: int) -> None:
     if process.stdin:
         with contextlib.suppress(OSError):
             process.stdin.close()
+
+
+def _descendants(ancestor: int) -> list[int]:
+    """The processes that a process started, directly or not; orphans among them became its children."""
+    parents = {}
+    for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
+        if name.isdigit():
+            with contextlib.suppress(OSError, ValueError, IndexError), open(f"/proc/{name}/stat") as file:
+                parents[int(name)] = int(file.read().rsplit(")", 1)[1].split()[1])
+    found = {ancestor}
+    while more := {child for child, parent in parents.items() if parent in found} - found:
+        found |= more
+    return sorted(found - {ancestor})

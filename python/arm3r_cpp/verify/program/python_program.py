@@ -151,7 +151,8 @@ class PythonProgram:
         replaced = self._edited(edit) if edit else None
         results, before = [], None
         try:
-            with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"):
+            with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("ignore")
                 for row in table:
                     values = {name: float(row[column]) for name, column in call.lifted.items()}
                     if values != before:
