@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from arm3r_cpp.scenario import Scenario
 from conftest import scenario_files
+from force_scenarios import D
 from random_scenarios import random_scenario, sample_seed, yaml_of
 
 SHIFTS = [0.7, 37.0]
@@ -129,8 +130,10 @@ def run_of(scenario: Scenario) -> arm3r.Run:
 
 
 def nudged(scenario: Scenario) -> Scenario:
+    """The run from another pose, the same one in both conventions: some scenarios begin where the tip just touches."""
     other = scenario.copy()
-    other["initial.q"] = [q + NUDGE for q in scenario["initial.q"]]
+    signs = D if scenario["arm.convention"] == "simscape" else 1
+    other["initial.q"] = np.add(scenario["initial.q"], NUDGE * signs)
     return other
 
 
