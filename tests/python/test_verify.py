@@ -121,6 +121,15 @@ def test_mistakes_of_the_whole_are_named(words: str) -> None:
     assert any(words in cause.lower() for cause in (verdict.findings[0].cause, *verdict.alternatives))
 
 
+def test_a_black_box_is_read_in_the_arms_names() -> None:
+    arm = arm3r.Scenario("{format: 1, arm: {link2: {length: 0.8}, link3: {length: 0.55}}}")
+    shift = np.array([0.0, 0.3, 0.0])
+    verdict = arm3r.verify.gravity(lambda q: arm.arm.gravity_torque(q) + shift * np.cos(q[1]), arm)
+    (finding,) = verdict.findings
+    assert finding.due == "-m3 g a2 C2 - 1/2 m2 g a2 C2 - 1/2 m3 g a3 C23"
+    assert finding.reads == "-m3 g a2 C2 + 3/10 C2 - 1/2 m2 g a2 C2 - 1/2 m3 g a3 C23"
+
+
 def test_the_convention_is_found() -> None:
     scenario = arm3r.Scenario()
     scenario["arm.convention"] = "slide"

@@ -44,18 +44,23 @@ def judge(
         verdicts = []
         for case in cases:
             verdicts.append((_verdict(case, progress), case))
-            if all(finding.old is not None for finding in verdicts[-1][0].findings):
+            if not _unexplained(verdicts[-1][0]):
                 break
-        verdict, case = min(verdicts, key=lambda one: sum(finding.old is None for finding in one[0].findings))
+        verdict, case = min(verdicts, key=lambda one: _unexplained(one[0]))
     except ProgramError as error:
         return _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
-    if verdict.findings and len(cases) > 1:
+    if len(verdicts) > 1:
         other = next(one.convention for one in cases if one is not case)
         verdict.alternatives.append(f"in the convention {other} as many entries would be wrong")
     _judge_constants(verdict, case)
     verdict.ok = not verdict.findings
     seen_by_tests(verdict, case, seen_by)
     return verdict
+
+
+def _unexplained(verdict: Verdict) -> int:
+    """The findings that neither an edit nor a mistake of the whole explains."""
+    return sum((one.old is None and " reads " in one.cause) or " explain it" in one.cause for one in verdict.findings)
 
 
 def _verdict(case: Comparison, progress: Progress | None) -> Verdict:
@@ -312,7 +317,8 @@ def _cause(
     case: Comparison, place: int, finding: Finding, causes: list[str], repair: Repair | None, first: Edit | None
 ) -> str:
     if causes:
-        return f"{causes[0][0].upper()}{causes[0][1:]}."
+        words = causes[0] if causes[0][1:2].isdigit() or causes[0][1:2] == " " else causes[0][0].upper() + causes[0][1:]
+        return words if words.endswith("?") else f"{words}."
     name = entry_name(case.kind, case.entry(place))
     if repair and finding.old is not None:
         stands = f"stands where `{finding.new}` is due" if finding.new else "is too much"

@@ -110,10 +110,15 @@ def _hints(monomials: Any, parameters: Parameters, fixed: dict[str, float]) -> A
     for waves, found in monomials.items():
         hints[waves] = []
         for number, powers in found:
+            whole = number
             for name, power in powers.items():
                 if name not in parameters.names:
-                    number *= fixed.get(name, 1.0) ** power
-            hints[waves].append((number, tuple(powers.get(name, 0) for name in parameters.names)))
+                    whole *= fixed.get(name, 1.0) ** power
+            left = tuple(powers.get(name, 0) for name in parameters.names)
+            hints[waves].append((whole, left))
+            named = tuple((name, power) for name, power in powers.items() if power)
+            if named:
+                parameters.known_terms[waves, whole, left] = Term(number, named, waves)
     return hints
 
 

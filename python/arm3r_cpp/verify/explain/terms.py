@@ -13,6 +13,7 @@ import numpy as np
 from ..._native import Floats
 from .spectrum import Spectrum, Wave
 
+_RATIOS = (1, -1, 0.5, -0.5, 2, -2, 1.5, -1.5, 0.25, -0.25, 1 / 3, -1 / 3)  # of a number to a product of named ones
 _ORDER = "mgaLlrcIJ"  # of the letters in a term: masses, gravity, lengths
 
 
@@ -60,6 +61,8 @@ class Parameters:
         logs = np.concatenate([np.log(self.values), np.ones((1, arms))]).T
         self.inverse = np.linalg.pinv(logs)
         self.arms = arms
+        self.known_terms: dict[tuple[tuple[Wave, ...], float, tuple[int, ...]], Term] = {}
+        """What terms with these numbers are called."""
         self.is_determined = arms >= len(self.names) + 2 or not self.names
 
     def monomial(self, powers: Sequence[int]) -> Floats:
@@ -126,6 +129,8 @@ class Parameters:
         return [alone] if alone else None
 
     def term(self, number: float, powers: Sequence[int], waves: tuple[Wave, ...]) -> Term:
+        if (waves, number, tuple(powers)) in self.known_terms:
+            return self.known_terms[waves, number, tuple(powers)]
         named = [(name, power) for name, power in zip(self.names, powers, strict=True) if power]
         if self.fixed and Fraction(number).limit_denominator(4) != number:
             found = self._named_number(number)
@@ -139,11 +144,7 @@ class Parameters:
         for size in (1, 2, 3):
             for names in combinations(self.fixed, size):
                 value = float(np.prod([self.fixed[name] for name in names]))
-                if (
-                    value
-                    and self.is_simple(number / value)
-                    and Fraction(number / value).limit_denominator(144).denominator <= 24
-                ):
+                if value and any(abs(number / value - ratio) < 1e-9 * abs(ratio) for ratio in _RATIOS):
                     return number / value, [(name, 1) for name in names]
         return None
 
