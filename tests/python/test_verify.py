@@ -190,6 +190,12 @@ def is_false(program: Program, text: str, verdict: Any, finding: Any) -> bool:
     return left is None or tuple(finding.entry) in left
 
 
+def test_two_edits_are_shown_only_if_they_hold_together(tmp_path: Path) -> None:
+    program = next(one for one in PROGRAMS if one.name == "jacobian by transforms, slide")
+    text = program.text.replace("s*sa, a*c]", "s*sa, -a*c]").replace("J[:, 0] =", "J[:, -1] =")
+    assert text.count("-1] =") == 1 and judged(program, text, tmp_path) in ("named", "unexplained")
+
+
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda program: program.name)
 def test_right_programs_are_right(program: Program, tmp_path: Path) -> None:
     assert runner.wrong_entries(program, program.text) == set()

@@ -183,6 +183,8 @@ def _explain(verdict: Verdict, case: Comparison, wrong: frozenset[int], progress
     repairs = _repairs(case, wrong, progress)
     reads = read_entries(case, wrong)
     chosen = cover(repairs, wrong)
+    if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
+        chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress)):
@@ -255,6 +257,21 @@ def _repairs(case: Comparison, wrong: frozenset[int], progress: Progress | None)
     statements = influential(formula.nodes, formula.text, evaluate, case.values(case.first), wrong)
     found = tried(editor.all(statements), evaluate, wrong_at(False), wrong_at(True), wrong, progress)
     return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
+
+
+def _hold_together(case: Comparison, chosen: list[Repair], wrong: frozenset[int]) -> bool:
+    """Whether several edits at once mend what each of them mends alone."""
+    formula: Formula | None = case.formula
+    for one in sorted(chosen, key=lambda one: one.edit.start, reverse=True):
+        formula = formula.edited(one.edit) if formula else None
+    if formula is None:
+        return False
+    other = replace(case, formula=formula)
+    left = wrong - frozenset(place for one in chosen for place in one.mended)
+    try:
+        return all(other.wrong(other.values(samples), samples) <= left for samples in (other.second, other.fresh))
+    except ProgramError:
+        return False
 
 
 def _after(case: Comparison, edit: Edit, left: frozenset[int], progress: Progress | None) -> list[Repair]:
