@@ -18,7 +18,7 @@ from page_runner import MARK, blocks_of
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
 # Changes of the sources ("diff", "cpp") are made by test_adding_a_controller.py.
-LANGUAGES = {"python", "sh", "console", "yaml", "c", "matlab", "octave", "diff", "cpp"}
+LANGUAGES = {"python", "sh", "console", "yaml", "csv", "c", "matlab", "octave", "diff", "cpp"}
 NEEDS_A_CLONE = re.compile(r"\b(make|cmake|g\+\+|gcc|git|apt|sudo|clang-format)\b|(benchmarks|tests|cpp)/")
 
 
