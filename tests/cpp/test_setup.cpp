@@ -274,7 +274,7 @@ BOOST_AUTO_TEST_CASE(the_solver_is_as_it_was_asked_for) {
     Params params = unequal_params().set("solver.rtol", 1e-5).set("solver.atol", 1e-6).set("solver.tol", 1e-7);
     params.set("solver.step", 0.25).set("solver.max_steps", 12);
     const std::pair<const char*, Solver::Method> methods[] = {
-        {"dopri5", Solver::dopri5}, {"rk4", Solver::rk4}, {"taylor", Solver::taylor}};
+        {"dopri5", SolverMethod::dopri5}, {"rk4", SolverMethod::rk4}, {"taylor", SolverMethod::taylor}};
     for (const auto& [word, method] : methods)
         BOOST_TEST(make_setup(params.choose("solver.method", word)).solver.method == method);
     BOOST_TEST(make_setup(params).solver.max_step == HUGE_VAL);

@@ -444,8 +444,9 @@ BOOST_AUTO_TEST_CASE(sections_that_are_absent_are_off) {
 BOOST_AUTO_TEST_CASE(a_digital_controller_gives_the_plant_a_torque) {
     const Params params = with_law("hybrid").set("sampling", 1).set("observer", 1).set("controller.gravity", 5);
     const Setup setup = make_setup(params);
-    BOOST_TEST((setup.plant.controller.type == ControllerType::constant));
-    BOOST_TEST(setup.plant.controller.torque == Vec3<double>(0, 0, 0));
+    BOOST_TEST((setup.plant.controller.type == ControllerType::none));
+    BOOST_TEST(setup.plant.holds_torque);
+    BOOST_TEST(setup.plant.held_torque == Vec3<double>(0, 0, 0));
     BOOST_TEST(setup.plant.controller.model.gravity[2] == -9.80665);
     BOOST_TEST(!setup.plant.observer.on);
     BOOST_TEST((setup.digital.controller.type == ControllerType::hybrid));

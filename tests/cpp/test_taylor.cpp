@@ -38,7 +38,7 @@ static Plant<double> random_plant(const Recipe& recipe, Random& random) {
     if (!recipe.azimuth || recipe.signals) params.set("arm.gravity", {0, 0, random.in(-10, 10)});
     if (recipe.signals) put_wall(params, recipe, random);
     const char* const types[] = {"none", "constant", "gravity_compensation"};
-    params.choose("controller.type", types[int(recipe.control)]).set("controller.torque", random.vector(-3, 3));
+    params.choose("controller.type", types[int(recipe.torque)]).set("controller.torque", random.vector(-3, 3));
     params.set("controller.model.link3.mass", random.in(0.3, 3));
     return make_setup(params).plant;
 }

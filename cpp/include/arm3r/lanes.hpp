@@ -35,16 +35,6 @@ void each_table_number(F f, Tables&... tables) {
 template <class F, class... Controllers>
 ARM3R_INLINE void each_law_number(F f, Controllers&... c) {
     const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
-    const auto gains = [&](auto&... g) ARM3R_INLINE_LAMBDA {
-        vector(g.joint_stiffness...), vector(g.joint_damping...), vector(g.position...), vector(g.velocity...);
-        vector(g.mass...), vector(g.stiffness...), vector(g.damping...);
-        f(g.force_mass...), f(g.force_damping...), f(g.force...), f(g.force_integral...);
-        f(g.integral_limit...), f(g.tracking_time...), f(g.contact_on...), f(g.contact_off...);
-        f(g.inner_bandwidth...), f(g.inner_damping_ratio...), f(g.reference_gain...), f(g.assumed_stiffness...);
-        f(g.stiffness_amplitude...), f(g.stiffness_frequency...);
-        f(g.tank_energy...), f(g.tank_low...), f(g.tank_high...), f(g.tank_capacity...);
-        vector(g.plane_point...), vector(g.plane_normal...);
-    };
     const auto reference = [&](auto&... s) ARM3R_INLINE_LAMBDA {
         vector(s.from...), vector(s.to...);
         f(s.start...), f(s.duration...), f(s.end...);
@@ -56,7 +46,8 @@ ARM3R_INLINE void each_law_number(F f, Controllers&... c) {
         if ((... && (s.path == Path::table)))
             for (std::size_t i = 0; i < 3; ++i) each_table_number(f, (*s.table)[i]...);
     };
-    gains(c.gains...);
+    each_gain([&](auto, auto&... x) ARM3R_INLINE_LAMBDA { f(x...); },
+              [&](auto, auto&... v) ARM3R_INLINE_LAMBDA { vector(v...); }, c.gains...);
     reference(c.reference...);
 }
 
@@ -104,7 +95,7 @@ ARM3R_INLINE void each_number(F f, Plants&... plants) {
     each_arm_number(f, plants.arm...);
     wall(plants.wall...);
     each_contact_number(f, plants.contact...);
-    vector(plants.controller.torque...);
+    vector(plants.held_torque...);
     each_arm_number(f, plants.controller.model...);
 }
 
@@ -145,6 +136,7 @@ void copy_choices(const Plant<A>& from, Plant<B>& to) {
     static_cast<ObserverChoices&>(to.observer) = from.observer;
     to.external_force.on = from.external_force.on;
     to.needs_azimuth = from.needs_azimuth;
+    to.holds_torque = from.holds_torque;
     to.has_wall = from.has_wall;
     to.acts_on_arm = from.acts_on_arm;
 }

@@ -45,11 +45,12 @@ struct Plant {
     Arm<P> arm;
     Wall<P> wall;
     Contact<P> contact;
-    Controller<P> controller;  // a digital one is, between its samples, a constant torque
-    Sensors<P> sensors;        // of a continuous one: bias and analog filter
-    Observer<P> observer;      // beside a continuous one
+    Controller<P> controller;  // a continuous one
+    Vec3<P> held_torque;   // N m, where holds_torque: of a constant law, or of a sampled controller until its next one
+    Sensors<P> sensors;    // of a continuous one: bias and analog filter
+    Observer<P> observer;  // beside a continuous one
     ExternalForce<P> external_force;
-    bool has_wall = false, acts_on_arm = false;
+    bool holds_torque = false, has_wall = false, acts_on_arm = false;
     bool needs_azimuth = false;  // something besides gravity and wall depends on q1
 };
 
@@ -76,6 +77,16 @@ bool can_lose_energy(const Plant<P>& plant) {
     const bool loses_in_joints = plant.arm.has_damping || plant.arm.has_dry_friction;
     const bool loses_at_wall = plant.contact.has_friction || plant.wall.has_outline;
     return loses_in_joints || dissipates_in_contact(plant) || (plant.acts_on_arm && loses_at_wall);
+}
+
+// The torque of a controller without gains, before and after the limit of the actuators.
+template <class P, class T>
+ARM3R_INLINE Vec3<T> feedforward_torque(const Plant<P>& plant, const Vec3<T>& q, const Pose<T>& p) {
+    return plant.holds_torque ? broadcast<T>(plant.held_torque) : feedforward_torque(plant.controller, q, p);
+}
+template <class P, class T>
+ARM3R_INLINE Vec3<T> torque_without_memory(const Plant<P>& plant, const Vec3<T>& q, const Pose<T>& p) {
+    return limited(plant.arm, feedforward_torque(plant, q, p), plant.controller.saturation);
 }
 
 // The tip as the wall sees it (4.3), (4.4), (4.7).
@@ -182,7 +193,7 @@ public:
                                 State<T, N>& dy) const {
         const Controller<P>& controller = plant_.controller;
         if constexpr (N < full_size) {
-            return limited(plant_.arm, feedforward_torque(controller, q, p), controller.saturation);
+            return torque_without_memory(plant_, q, p);
         } else {
             Command<T> command;
             if (has_law(controller.type)) {
@@ -191,7 +202,7 @@ public:
                 for (std::size_t i = 0; i < law_memory; ++i) memory[i] = y[law_at + i];
                 law_function(controller, sensed, memory, command);
             } else {
-                command.tau = feedforward_torque(controller, q, p);
+                command.tau = feedforward_torque(plant_, q, p);
                 command.rates.fill(T(0.0));
                 command.dtau_dintegral = {T(0.0), T(0.0), T(0.0)};
             }
@@ -220,6 +231,22 @@ public:
         const T face = plant_.has_wall ? T(dot(n, wall.position) + plant_.wall.face_offset) : T(0.0);
         return {t, q,    qd,      p,          measured, plant_.controller.ideal_cancellation ? f_on_tip : measured,
                 n, face, contact, force_phase};
+    }
+
+    // The state with the memory of a continuous controller at the start: filter and observer have settled. `truth` has
+    // the true values; `contact` and `force_phase` are set.
+    ARM3R_INLINE State<T, full_size> with_initial_memory(State<T, full_size> y, const WallState<T>& wall,
+                                                         const Measurement<T>& truth) const {
+        const Controller<P>& controller = plant_.controller;
+        for (int i = 0; i < 3; ++i) y[filter_at + i] = truth.f_on_tip[i];
+        if (has_law(controller.type)) {
+            const Measurement<T> sensed = measure(truth.t, wall, truth.pose, truth.q, truth.qd, truth.f_on_tip, y);
+            const std::array<T, law_memory> memory = memory_at_start(controller, sensed);
+            for (std::size_t i = 0; i < law_memory; ++i) y[law_at + i] = memory[i];
+        }
+        const Vec3<T> p = momentum(controller.model, truth.pose, truth.qd);
+        for (int i = 0; i < 3; ++i) y[observer_at + i] = p[i];
+        return y;
     }
 
     // The momentum observer's estimate of the external torque.

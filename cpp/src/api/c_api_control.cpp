@@ -135,7 +135,7 @@ void refuse_lane_method(const Setup& setup) {
                 {{.code = "scenario.other_choice",
                   .path = "solver.method",
                   .message = "a simulation stands at its samples only by a method that chooses its steps",
-                  .got = setup.solver.method == Solver::rk4 ? "rk4" : "taylor",
+                  .got = setup.solver.method == SolverMethod::rk4 ? "rk4" : "taylor",
                   .allowed = "dopri5, rodas4 or auto"}});
 }
 

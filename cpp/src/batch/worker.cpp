@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t runs_at_a_time = 256, max_deferred = 1024;
 
 auto lane_group_of(const Setup& first) {
-    if (first.solver.method == Solver::taylor) return run_lanes_taylor;
+    if (first.solver.method == SolverMethod::taylor) return run_lanes_taylor;
     return has_memory(first.plant) ? run_lanes_rk4_controlled : run_lanes_rk4;
 }
 

@@ -25,6 +25,24 @@ struct PlantOutput {
     Vec3<T> f_filtered;          // N, after the analog filter, if there is one
 };
 
+// At time t, with `f_wall`, N, the force of the wall on the tip, and `wall` if the plant has one.
+template <class T, std::size_t N>
+ARM3R_INLINE PlantOutput<T> plant_output(const Plant<T>& plant, const WallState<T>& wall, const T& t,
+                                         const State<T, N>& y, const Pose<T>& p, const Vec3<T>& f_wall) {
+    const T o(0.0);
+    Vec3<T> f = f_wall, n = zero_vector<T>();
+    T face = o, contact = o;
+    if (plant.has_wall) {
+        n = normal(plant.wall, wall);
+        face = dot(n, wall.position) + plant.wall.face_offset;
+        contact = select(dot(n, f) > o, T(1.0), o);
+    }
+    if (plant.external_force.on) f = plus(f, external_force_at(plant.external_force, t));
+    PlantOutput<T> now{{t, {y[0], y[1], y[2]}, {y[3], y[4], y[5]}, p, f, f, n, face, contact, o}, {}};
+    if constexpr (N == full_size) now.f_filtered = {y[filter_at], y[filter_at + 1], y[filter_at + 2]};
+    return now;
+}
+
 // The state of a sampled controller after its last sample, and of the estimator after its own.
 template <class T>
 struct ControllerState {
@@ -166,9 +184,7 @@ private:
         const T least = select(state_.contact > o, controller.gains.contact_off, controller.gains.contact_on);
         const T touching = select(f > least, l, o);
         state_.contact = select(due, touching, state_.contact);
-        T phase = l;
-        if (controller.switching == Switching::in_contact) phase = state_.contact;
-        if (controller.switching == Switching::latched) phase = max(state_.force_phase, state_.contact);
+        const T phase = force_phase_after(controller.switching, state_.contact, state_.force_phase);
         state_.force_phase = select(due, phase, state_.force_phase);
         sensed.contact = state_.contact;
         sensed.force_phase = state_.force_phase;

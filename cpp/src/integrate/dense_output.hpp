@@ -9,7 +9,13 @@
 
 namespace arm3r {
 
-inline constexpr double min_rate = 1e-140;  // rad/s: below it products would be subnormal, and slow
+inline constexpr double min_rate = 1e-140;  // rad/s
+
+// A smaller rate is set to 0: its products would be subnormal, and slow.
+template <class T>
+ARM3R_INLINE T without_tiny_rate(const T& rate) {
+    return select(abs(rate) < T(min_rate), T(0.0), rate);
+}
 
 // The state with room for a controller's memory, whether there is one or not.
 using FullState = State<double, full_size>;

@@ -63,12 +63,14 @@ private:
         plant.has_wall = plant.acts_on_arm = recipe.signals;
         plant.wall.motion = Motion::fixed;
         plant.contact.law = ContactLaw::spring;
-        plant.controller.type = recipe.control;
+        plant.holds_torque = recipe.torque == TorqueSource::held;
+        if (recipe.torque == TorqueSource::gravity_compensation)
+            plant.controller.type = ControllerType::gravity_compensation;
         plant.controller.algorithm = Algorithm::closed_form;
         plant.arm.gravity_is_vertical = plant.controller.model.gravity_is_vertical = !recipe.azimuth;
         plant.arm.has_damping = recipe.damping;
         plant.arm.has_dry_friction = recipe.friction;
-        plant.arm.has_torque_limit = recipe.control == ControllerType::constant;
+        plant.arm.has_torque_limit = plant.holds_torque;
         return plant;
     }
 };

@@ -41,7 +41,7 @@ template <std::size_t N>
 Stepper<N>::Stepper(const Setup& setup) : setup_(setup), rhs_(setup.plant), rhs_of_duals_(setup.plant) {
     rhs_.law_function = compiled_law<double, double>();
     rhs_of_duals_.law_function = compiled_law<double, D>();
-    state_.is_stiff = setup.solver.method == Solver::rodas4;
+    state_.is_stiff = setup.solver.method == SolverMethod::rodas4;
     state_.by_stiff.memory = N - state_size;
 }
 
@@ -125,7 +125,7 @@ void Stepper<N>::accept(double t, const Y& y, double h, bool continues) {
     state_.stiff_steps += state_.is_stiff;
     state_.max_work_of_wall = std::max(state_.max_work_of_wall, std::abs(y[work_of_wall]));
     const bool was_stiff = state_.is_stiff;
-    if (setup_.solver.method == Solver::automatic) select_method(t, h);
+    if (setup_.solver.method == SolverMethod::automatic) select_method(t, h);
     if (continues && !was_stiff && !state_.is_stiff) {
         state_.f0 = state_.by_explicit.f1;
         rhs_.begin_step(y);
@@ -154,7 +154,7 @@ void Stepper<N>::select_method(double t, double h) {
 
 template <std::size_t N>
 std::string Stepper<N>::choices() const {
-    if (setup_.solver.method != Solver::automatic) return "";
+    if (setup_.solver.method != SolverMethod::automatic) return "";
     if (state_.choice_count == 0) return "dopri5 throughout: h*lambda did not stay above 1.2";
     std::string text;
     for (std::size_t i = 0; i < std::min(state_.choice_count, max_listed_choices); ++i) {

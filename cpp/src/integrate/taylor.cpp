@@ -75,7 +75,9 @@ Recipe needs(const Plant<double>& plant, bool pressed) {
     const Arm<double>& arm = plant.arm;
     const Controller<double>& controller = plant.controller;
     const bool compensates = controller.type == ControllerType::gravity_compensation;
-    return {.control = controller.type,
+    return {.torque = plant.holds_torque ? TorqueSource::held
+                      : compensates      ? TorqueSource::gravity_compensation
+                                         : TorqueSource::none,
             .damping = arm.has_damping,
             .azimuth = !arm.gravity_is_vertical || (compensates && !controller.model.gravity_is_vertical),
             .signals = plant.has_wall,
@@ -84,9 +86,9 @@ Recipe needs(const Plant<double>& plant, bool pressed) {
 }
 
 bool covers(const Recipe& recipe, const Recipe& needed) {
-    const bool controls = recipe.control == needed.control ||
-                          (needed.control == ControllerType::none && recipe.control == ControllerType::constant);
-    return controls && recipe.damping >= needed.damping && recipe.azimuth >= needed.azimuth &&
+    const bool has_torque =
+        recipe.torque == needed.torque || (needed.torque == TorqueSource::none && recipe.torque == TorqueSource::held);
+    return has_torque && recipe.damping >= needed.damping && recipe.azimuth >= needed.azimuth &&
            recipe.signals >= needed.signals && recipe.force >= needed.force && recipe.friction >= needed.friction;
 }
 

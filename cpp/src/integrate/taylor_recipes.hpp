@@ -11,10 +11,13 @@ namespace arm3r {
 // of each torque.
 enum : std::size_t { signals_size = 3, works_at = state_size + signals_size, quantities = works_at + 3 };
 
-// The features of a motion. `control`: a constant torque may also be none, with a torque of zero.
+// Where the torque of a motion comes from. A held torque may also be zero.
+enum class TorqueSource { none, held, gravity_compensation };
+
+// The features of a motion.
 struct Recipe {
-    ControllerType control = ControllerType::none;
-    bool damping = false;   // and the quadratures of control and damping
+    TorqueSource torque = TorqueSource::none;
+    bool damping = false;   // and the quadratures of torque and damping
     bool azimuth = false;   // q1 matters: oblique gravity, or a wall
     bool signals = false;   // where the tip is on the plate
     bool force = false;     // the contact law acts
@@ -23,18 +26,18 @@ struct Recipe {
 
 // The cheapest first.
 inline constexpr std::array recipes = [] {
-    constexpr ControllerType torque = ControllerType::constant, gravity = ControllerType::gravity_compensation;
+    constexpr TorqueSource held = TorqueSource::held, gravity = TorqueSource::gravity_compensation;
     return std::array{
         Recipe{},
-        Recipe{torque, true},
+        Recipe{held, true},
         Recipe{gravity, true},
-        Recipe{torque, true, true},
+        Recipe{held, true, true},
         Recipe{gravity, true, true},
-        Recipe{torque, true, true, true},
+        Recipe{held, true, true, true},
         Recipe{gravity, true, true, true},
-        Recipe{torque, true, true, true, true},
+        Recipe{held, true, true, true, true},
         Recipe{gravity, true, true, true, true},
-        Recipe{torque, true, true, true, true, true},
+        Recipe{held, true, true, true, true, true},
         Recipe{gravity, true, true, true, true, true},
     };
 }();

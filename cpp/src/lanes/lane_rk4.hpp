@@ -55,8 +55,8 @@ public:
         if (this->plant_.has_wall) detect_contact(moved, changed);
         this->update_energy_balance();
         if (this->has_performance_)
-            this->holds_torque() && !this->tracked_.motion() ? add_performance(trapezoid, moved)
-                                                             : add_performance(simpson, moved);
+            this->plant_.holds_torque && !this->tracked_.motion() ? add_performance(trapezoid, moved)
+                                                                  : add_performance(simpson, moved);
         this->check_lanes();
     }
 
@@ -99,12 +99,12 @@ private:
     // Stores the torque and the law of the step before a sample or an estimate changes them.
     ARM3R_INLINE void store_end() {
         was_due_ = this->is_controlled_ && any(this->is_due());
-        torque_before_ = this->plant_.controller.torque;
+        torque_before_ = this->plant_.held_torque;
         assumed_before_ = this->plant_.controller.gains.assumed_stiffness;
         latest_before_ = this->rhs_.latest;
     }
     void swap_before() {
-        std::swap(this->plant_.controller.torque, torque_before_);
+        std::swap(this->plant_.held_torque, torque_before_);
         std::swap(this->plant_.controller.gains.assumed_stiffness, assumed_before_);
         std::swap(this->rhs_.latest, latest_before_);
     }
@@ -265,7 +265,7 @@ private:
             in = tip_indentation(this->plant_, wall, p, qd);
         }
         Vec3<T> tau;
-        if constexpr (N == state_size) tau = this->torque_without_memory(q, p);
+        if constexpr (N == state_size) tau = torque_without_memory(this->plant_, q, p);
         else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
         this->sample_performance(t, p, wall, in, tau, qd, this->segment_.samples[1]);
     }

@@ -17,7 +17,7 @@ BatchKey batch_key_of(const Setup& setup) {
     const Plant<double>& plant = setup.plant;
     const Arm<double>&arm = plant.arm, &model = plant.controller.model;
     return {setup.solver.method,
-            setup.solver.method == Solver::taylor ? order_of(setup.solver.tol) : 0,
+            setup.solver.method == SolverMethod::taylor ? order_of(setup.solver.tol) : 0,
             plant.has_wall,
             plant.acts_on_arm,
             plant.wall.has_outline,

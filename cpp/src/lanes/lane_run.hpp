@@ -11,7 +11,9 @@
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "base/noinline.hpp"
 #include "contact/contact_change.hpp"
+#include "control/continuous_inputs.hpp"
 #include "control/sampled_controller.hpp"
+#include "record/contact_tally.hpp"
 #include "record/energy_balance.hpp"
 #include "run/performance.hpp"
 
@@ -20,7 +22,7 @@ namespace arm3r {
 // The choices that all runs of a lane group share, so that terms that no lane needs are not computed and every lane has
 // the same rounding.
 struct BatchKey {
-    Solver::Method method;
+    SolverMethod method;
     int order;  // of taylor
     bool has_wall, acts_on_arm, has_outline, may_be_ill_conditioned;
     Motion motion;
@@ -73,10 +75,11 @@ public:
     void set_user_law(const UserLaw& law) { sampled_.user = law; }
     std::string error_message() const { return sampled_.error_message(); }
     const ControllerState<T>& controller_state() const { return sampled_.controller_state(); }
-    double contact(int lane) const { return Lanes<T>::get(rhs_.contact, lane); }
-    double force_phase(int lane) const { return Lanes<T>::get(rhs_.force_phase, lane); }
+    ContinuousInputs inputs(int lane) const {
+        return {Lanes<T>::get(rhs_.contact, lane), Lanes<T>::get(rhs_.force_phase, lane)};
+    }
     Vec3<double> torque(int lane) const {
-        const Vec3<T>& tau = plant_.controller.torque;
+        const Vec3<T>& tau = plant_.held_torque;
         return {Lanes<T>::get(tau[0], lane), Lanes<T>::get(tau[1], lane), Lanes<T>::get(tau[2], lane)};
     }
 
@@ -96,7 +99,9 @@ public:
         return is_elastic_ ? Lanes<T>::get(true_contact_.stiffness[0], lane) * Lanes<T>::get(max_depth_, lane)
                            : Lanes<T>::get(peak_, lane);
     }
-    EnergyTotals totals(int lane) const;
+    EnergyTotals totals(int lane) const {
+        return balance_.totals(lane, force_times_reach(setups_[lane].plant, peak_force(lane)));
+    }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
         return {count(accepted_), count(rejected_), count(evaluations_)};
@@ -107,7 +112,7 @@ public:
     double h(int lane) const { return Lanes<T>::get(h_, lane); }
     FullState y(int lane) const { return state_of(y_, lane); }
     ContactMode mode(int lane) const { return mode_[lane]; }
-    double energy_at_start(int lane) const { return Lanes<T>::get(energy_at_start_, lane); }
+    double energy_at_start(int lane) const { return balance_.energy_at_start(lane); }
     arm3r_outcome outcome(int lane) const { return outcome_[lane]; }
 
 protected:
@@ -139,13 +144,9 @@ protected:
         potential_ = potential_energy(plant_.arm, p_);
         if (is_controlled_ && any(is_due())) update_controller();
         if (needs_derivative_) derive();
-        else if (has_performance_) tau_ = torque_without_memory({y_[0], y_[1], y_[2]}, p_);
+        else if (has_performance_) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
     }
     void observe_outlined();
-
-    ARM3R_INLINE Vec3<T> torque_without_memory(const Vec3<T>& q, const Pose<T>& p) const {
-        return limited(plant_.arm, arm3r::feedforward_torque(plant_.controller, q, p), plant_.controller.saturation);
-    }
 
     // With a controller's memory the code is long, and is compiled once.
     ARM3R_INLINE void derive() {
@@ -161,22 +162,8 @@ protected:
     ARM3R_INLINE Mask is_due() const { return started_ && sampled_.next() <= t_ + slack_; }
     void update_controller();
 
-    // The measurements for the sampled controllers.
     ARM3R_INLINE PlantOutput<T> plant_output() const {
-        const T o(0.0);
-        Vec3<T> f = zero_vector<T>(), n = zero_vector<T>();
-        T face = o, contact = o;
-        if (plant_.has_wall) {
-            f = force_on_tip();
-            n = normal(plant_.wall, wall_);
-            face = dot(n, wall_.position) + plant_.wall.face_offset;
-            contact = select(dot(n, f) > o, T(1.0), o);
-        }
-        if (plant_.external_force.on) f = plus(f, external_force_at(plant_.external_force, t_));
-        const Vec3<T> q(y_[0], y_[1], y_[2]), qd(y_[3], y_[4], y_[5]);
-        PlantOutput<T> now{{t_, q, qd, p_, f, f, n, face, contact, o}, {}};
-        if constexpr (N == full_size) now.f_filtered = {y_[filter_at], y_[filter_at + 1], y_[filter_at + 2]};
-        return now;
+        return arm3r::plant_output(plant_, wall_, t_, y_, p_, plant_.has_wall ? force_on_tip() : zero_vector<T>());
     }
 
     // The contact force at this instant, also where the contact mode has not changed yet.
@@ -204,7 +191,7 @@ protected:
                                          PerformanceSample<T>& sample) const {
         const Controller<T>& controller = sampled_.is_on() ? sampled_.controller() : plant_.controller;
         sample_motion(tracked_, plant_, true_contact_, controller, t, p, wall, in, segment_.touching, phase_, sample);
-        sample_torque(plant_.arm, holds_torque() ? tau_before_ : tau, qd, sample);
+        sample_torque(plant_.arm, plant_.holds_torque ? tau_before_ : tau, qd, sample);
     }
 
     // The segment ends at the present instant.
@@ -213,13 +200,13 @@ protected:
         segment_.duration = duration;
         sample_performance(slightly_before(t_), p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[n - 1]);
         for (int i = 0; i < 3; ++i)
-            segment_.work[i] = holds_torque() ? T(tau_before_[i] * (y_[i] - q_before_[i]))
-                                              : T(duration * mean_of(rule, segment_,
-                                                                     [i](const PerformanceSample<T>& s)
-                                                                         ARM3R_INLINE_LAMBDA { return s.power[i]; }));
+            segment_.work[i] =
+                plant_.holds_torque
+                    ? T(tau_before_[i] * (y_[i] - q_before_[i]))
+                    : T(duration * mean_of(rule, segment_, [i](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA {
+                            return s.power[i];
+                        }));
     }
-
-    bool holds_torque() const { return plant_.controller.type == ControllerType::constant; }
 
     // The same in doubles for one lane, as a function of theta; the torque of a sampled controller is that of the step.
     template <class Visit>
@@ -229,9 +216,10 @@ protected:
         if (asks_estimator(plant_.controller))
             setup.plant.controller.gains.assumed_stiffness = get(plant_.controller.gains.assumed_stiffness);
         const Vec3<double> held{get(tau_before_[0]), get(tau_before_[1]), get(tau_before_[2])};
-        const double phase = sampled_.is_on() ? get(phase_) : force_phase(lane);
-        visit(StepView{setup, dense, mode_[lane] == ContactMode::contact, contact(lane), phase,
-                       holds_torque() ? &held : nullptr, slightly_before(t(lane))});
+        const ContinuousInputs inputs = this->inputs(lane);
+        const double phase = sampled_.is_on() ? get(phase_) : inputs.force_phase;
+        visit(StepView{setup, dense, mode_[lane] == ContactMode::contact, inputs.contact, phase,
+                       plant_.holds_torque ? &held : nullptr, slightly_before(t(lane))});
     }
 
     // Adds the part of the step from theta = a to b, in the lane's present contact mode.
@@ -272,12 +260,12 @@ protected:
 
     // ---- after a step
 
-    // Moves to `t1`, `y1` where `moved`. Velocities below 1e-140 rad/s are set to 0 (subnormal numbers are slow).
+    // Moves to `t1`, `y1` where `moved`.
     ARM3R_INLINE void accept(const Mask& moved, const T& t1, const Y& y1) {
         if (all(moved)) y_ = y1;
         else
             for (std::size_t i = 0; i < N; ++i) y_[i] = select(moved, y1[i], y_[i]);
-        for (std::size_t i = 3; i < motion_size; ++i) y_[i] = select(abs(y_[i]) < T(min_rate), T(0.0), y_[i]);
+        for (std::size_t i = 3; i < motion_size; ++i) y_[i] = without_tiny_rate(y_[i]);
         t_ = select(moved, t1, t_);
         accepted_ = accepted_ + select(moved, T(1.0), T(0.0));
     }
@@ -288,30 +276,14 @@ protected:
         return sum * 0.0 == T(0.0);
     }
 
-    ARM3R_INLINE void update_energy_balance() {
-        const T contact = stored();
-        const T residual = ((kinetic_ + potential_ + contact) - energy_at_start_) -
-                           (y_[work_of_actuators] + y_[work_of_wall] - y_[dissipated]);
-        const T size = select(residual == residual, abs(residual), T(std::numeric_limits<double>::infinity()));
-        residual_ = max(residual_, size);
-        throughput_ =
-            max(max(max(throughput_, abs(y_[work_of_actuators])), max(abs(y_[work_of_wall]), abs(y_[dissipated]))),
-                max(kinetic_, abs(potential_ - potential_at_start_)));
-        stored_max_ = max(stored_max_, T(abs(kinetic_) + abs(potential_) + abs(contact)));
-    }
+    ARM3R_INLINE void update_energy_balance() { balance_.update(Energies<T>{kinetic_, potential_, stored()}, y_); }
 
     ARM3R_INLINE void check_lanes() {
         Mask bad = max(max(abs(y_[0]), abs(y_[1])), abs(y_[2])) > T(sincos_limit);
-        if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned();
+        if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned(plant_.arm, p_);
         bad = bad || (accepted_ + rejected_ >= max_steps_ && t_ < stop_);
         bad = bad && active_;
         if (any(bad)) fail_lanes(bad);
-    }
-
-    ARM3R_INLINE Mask is_well_conditioned() const {
-        const Mat3<T> M = mass_matrix(plant_.arm, p_);
-        constexpr double epsilon = std::numeric_limits<double>::epsilon();
-        return M(0, 0) > T(0.0) && T(M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2)) > T(8 * epsilon * M(1, 1) * M(2, 2));
     }
 
     // ---- contact
@@ -383,7 +355,7 @@ protected:
     std::array<ContactMode, lanes> mode_{};
     bool any_embedded_ = false, any_touching_ = false;
 
-    T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, throughput_{0.0}, stored_max_{0.0};
+    EnergyBalance<T> balance_;
     bool is_elastic_;                     // then the force is the stiffness times the depth:
     T max_depth_{0.0}, depth_time_{0.0};  // m, m s
     T peak_{0.0}, impulse_{0.0};          // N, N s: otherwise
@@ -396,7 +368,7 @@ private:
     void start_memory();
     PerformanceSums<double> sums_of(int lane) const;
     void set_sums(int lane, const PerformanceSums<double>& sums);
-    void update_controller_contact(int lane);
+    void update_inputs(int lane);
     void set_mode(int lane, ContactMode mode);
     double force_of(int lane) const;  // N, normal
     void update_peak(int lane, double value, double t, T& peak);
@@ -406,10 +378,7 @@ private:
     std::array<bool, lanes> running_{}, is_new_{};
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;
-    struct Contacts {
-        double count, events, first_contact, first_release, time, since, lost_at_edges;
-    };
-    std::array<Contacts, lanes> contacts_;
+    std::array<ContactTally, lanes> contacts_;
 };
 
 }  // namespace arm3r

@@ -7,7 +7,7 @@
 #include "control/compiled_laws.hpp"
 #include "integrate/taylor.hpp"
 #include "lanes/lane_run.hpp"
-#include "run/run_recorder.hpp"
+#include "record/metrics.hpp"
 
 namespace arm3r {
 
@@ -47,8 +47,7 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
         set(y_[3 + i], setup.qd[i]);
     }
     for (std::size_t i = motion_size; i < N; ++i) set(y_[i], 0.0);
-    for (T* zero : {&residual_, &throughput_, &stored_max_, &max_depth_, &depth_time_, &peak_, &impulse_, &accepted_,
-                    &rejected_, &evaluations_})
+    for (T* zero : {&max_depth_, &depth_time_, &peak_, &impulse_, &accepted_, &rejected_, &evaluations_})
         set(*zero, 0.0);
     if (has_law(plant_.controller.type)) each_law_number(set, plant_.controller, setup.plant.controller);
     if (has_memory(plant_)) {
@@ -62,8 +61,7 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
     set(t_, setup.start), set(stop_, setup.stop), set(peak_time_, setup.start);
     set(max_steps_, setup.solver.max_steps);
     each_contact_number(set, true_contact_, setup.plant.contact);
-    contacts_[lane] = {
-        0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0, setup.start, 0};
+    contacts_[lane] = {};
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
     set_running(lane, false);  // for a run that was in the lane before
@@ -81,16 +79,12 @@ void LaneRun<T, N>::start_lane(int lane) {
         set_mode(lane, within ? ContactMode::contact : ContactMode::embedded);
     }
     if (mode_[lane] == ContactMode::contact) {
-        contacts_[lane].count = contacts_[lane].events = 1;
-        contacts_[lane].first_contact = setups_[lane].start;
+        contacts_[lane].begin(setups_[lane].start);
         Lanes<T>::set(max_depth_, lane, depth);
         Lanes<T>::set(peak_, lane, force_of(lane));
     }
-    const double kinetic = Lanes<T>::get(kinetic_, lane), potential = Lanes<T>::get(potential_, lane);
-    const double contact = Lanes<T>::get(stored(), lane);
-    Lanes<T>::set(energy_at_start_, lane, kinetic + potential + contact);
-    Lanes<T>::set(potential_at_start_, lane, potential);
-    Lanes<T>::set(stored_max_, lane, std::abs(kinetic) + std::abs(potential) + std::abs(contact));
+    const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+    balance_.start(lane, {get(kinetic_), get(potential_), get(stored())});
     Lanes<T>::set(evaluations_, lane, needs_derivative_ ? 1.0 : 0.0);
 }
 
@@ -110,7 +104,7 @@ template <class T, std::size_t N>
 void LaneRun<T, N>::update_controller() {
     Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA {
         PlantOutput<T> now = plant_output();
-        sampled_.update(is_due(), slack_, plant_.arm, now, plant_.controller.torque);
+        sampled_.update(is_due(), slack_, plant_.arm, now, plant_.held_torque);
         if (!asks_estimator(plant_.controller)) return;
         T& assumed = plant_.controller.gains.assumed_stiffness;
         assumed =
@@ -135,37 +129,24 @@ void LaneRun<T, N>::set_sums(int lane, const PerformanceSums<double>& sums) {
 template <class T, std::size_t N>
 void LaneRun<T, N>::start_memory() {
     if constexpr (N == full_size) {
-        const PlantOutput<T> now = plant_output();
-        const Measurement<T>& truth = now.measurement;
-        const Vec3<T> p = momentum(plant_.controller.model, p_, truth.qd);
-        const auto start = [&](std::size_t i, const T& value) {
-            for (int lane = 0; lane < lanes; ++lane)
-                if (is_new_[lane]) Lanes<T>::set(y_[i], lane, Lanes<T>::get(value, lane));
-        };
-        for (int i = 0; i < 3; ++i) start(filter_at + i, truth.f_on_tip[i]);
         for (int lane = 0; lane < lanes; ++lane)
-            if (is_new_[lane]) update_controller_contact(lane);
-        if (has_law(plant_.controller.type)) {
-            const Measurement<T> sensed = rhs_.measure(t_, wall_, p_, truth.q, truth.qd, truth.f_on_tip, y_);
-            const std::array<T, law_memory> memory = memory_at_start(plant_.controller, sensed);
-            for (std::size_t i = 0; i < law_memory; ++i) start(law_at + i, memory[i]);
-        }
-        for (int i = 0; i < 3; ++i) start(observer_at + i, p[i]);
+            if (is_new_[lane]) update_inputs(lane);
+        const Y start = rhs_.with_initial_memory(y_, wall_, plant_output().measurement);
+        for (std::size_t i = law_at; i < full_size; ++i)
+            for (int lane = 0; lane < lanes; ++lane)
+                if (is_new_[lane]) Lanes<T>::set(y_[i], lane, Lanes<T>::get(start[i], lane));
     }
 }
 
-// A continuous controller knows the true contact; its integral is reset when contact ends (7.4).
 template <class T, std::size_t N>
-void LaneRun<T, N>::update_controller_contact(int lane) {
+void LaneRun<T, N>::update_inputs(int lane) {
     if constexpr (N == full_size) {
-        const Controller<double>& controller = setups_[lane].plant.controller;
-        const double contact = mode_[lane] == ContactMode::contact ? 1 : 0, before = force_phase(lane);
-        const double phase = controller.switching == Switching::always       ? 1
-                             : controller.switching == Switching::in_contact ? contact
-                                                                             : std::max(before, contact);
-        Lanes<T>::set(rhs_.contact, lane, contact);
-        Lanes<T>::set(rhs_.force_phase, lane, phase);
-        if (contact == 0 && integrates_force(controller.type)) Lanes<T>::set(y_[law_at], lane, 0.0);
+        ContinuousInputs inputs = this->inputs(lane);
+        double integral = Lanes<T>::get(y_[law_at], lane);
+        inputs.update(plant_.controller, is_touching(mode_[lane]), integral);
+        Lanes<T>::set(rhs_.contact, lane, inputs.contact);
+        Lanes<T>::set(rhs_.force_phase, lane, inputs.force_phase);
+        Lanes<T>::set(y_[law_at], lane, integral);
     }
 }
 
@@ -243,20 +224,10 @@ void LaneRun<T, N>::change_mode(int lane, const ContactChange& change) {
     const auto add = [lane](T& x, double more) { Lanes<T>::set(x, lane, Lanes<T>::get(x, lane) + more); };
     add(y_[work_of_wall], change.gained);
     add(y_[dissipated], change.lost);
-    Contacts& contacts = contacts_[lane];
-    contacts.lost_at_edges += change.lost_at_edge();
-    if (change.to == ContactMode::contact) {
-        if (contacts.count == 0) contacts.first_contact = change.t;
-        contacts.count += 1;
-        contacts.since = change.t;
-    } else if (change.from == ContactMode::contact) {
-        if (std::isnan(contacts.first_release)) contacts.first_release = change.t;
-        contacts.time += change.t - contacts.since;
-    }
-    if (change.to == ContactMode::contact || change.from == ContactMode::contact) contacts.events += 1;
-    if (contacts.events > max_events) stop_lane(lane, ARM3R_RUN_EVENT_STORM);
+    contacts_[lane].add(change);
+    if (contacts_[lane].is_event_storm()) stop_lane(lane, ARM3R_RUN_EVENT_STORM);
     set_mode(lane, change.to);
-    if (N == full_size) update_controller_contact(lane);
+    update_inputs(lane);
 }
 
 template <class T, std::size_t N>
@@ -277,46 +248,26 @@ template <class T, std::size_t N>
 Metrics LaneRun<T, N>::metrics(int lane) const {
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
     const Setup& setup = setups_[lane];
-    const FullState y = state_of(y_, lane);
-    const auto joints_out = [&](const Vec3<double>& v) {
-        return without_negative_zero(setup.simscape ? change_convention(v) : v);
-    };
-    const Contacts& contacts = contacts_[lane];
-    const bool touches = mode_[lane] == ContactMode::contact;
-    const double stiffness = get(true_contact_.stiffness[0]);
+    const bool touches = is_touching(mode_[lane]);
 
     Metrics m;
     m.outcome = outcome_[lane];
-    m.t_end = get(t_);
+    set_end_values(setup, get(t_), state_of(y_, lane), touches, contacts_[lane], m);
     m.peak_force = peak_force(lane);
-    if (contacts.count > 0) m.peak_force_time = get(peak_time_);
-    m.impulse = is_elastic_ ? stiffness * get(depth_time_) : get(impulse_);
-    m.contact_time = contacts.time + (touches ? m.t_end - contacts.since : 0);
+    if (m.contacts > 0) m.peak_force_time = get(peak_time_);
+    m.impulse = is_elastic_ ? get(true_contact_.stiffness[0]) * get(depth_time_) : get(impulse_);
     m.final_force = touches ? force_of(lane) : 0;
-    m.ledger_residual = get(residual_);
-    m.q = joints_out(angles(y));
-    m.qd = joints_out(rates(y));
-    m.tip = without_negative_zero(tip_position(setup.plant.arm, pose(angles(y))));
-    note_energies(y, setup.plant, contacts.lost_at_edges, m);
-    m.contacts = contacts.count;
-    m.first_contact = contacts.first_contact;
-    m.first_release = contacts.first_release;
     m.steps = steps(lane);
     if (has_performance_) write_performance(sums_of(lane), setup, m);
     if (is_controlled_ && get(sampled_.controller_state().identifiable) > 0) {
         m.stiffness_estimate = get(sampled_.controller_state().stiffness);
         m.wall_speed_estimate = get(sampled_.controller_state().wall_speed);
     }
-    const bool balances = m.ledger_residual <= balance_limit(setup.solver, totals(lane));
+    const EnergyTotals totals = this->totals(lane);
+    m.ledger_residual = totals.residual;
+    const bool balances = totals.residual <= balance_limit(setup.solver, totals);
     if (m.outcome == ARM3R_RUN_OK && is_strict(setup.solver) && !balances) m.outcome = ARM3R_RUN_ENERGY;
     return m;
-}
-
-template <class T, std::size_t N>
-EnergyTotals LaneRun<T, N>::totals(int lane) const {
-    const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-    return {get(throughput_), get(stored_max_), get(residual_),
-            force_times_reach(setups_[lane].plant, peak_force(lane))};
 }
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
@@ -335,7 +286,6 @@ EnergyTotals LaneRun<T, N>::totals(int lane) const {
     template void LaneRun<__VA_ARGS__>::fail_lanes(const Mask&);                                               \
     template PerformanceSums<double> LaneRun<__VA_ARGS__>::sums_of(int) const;                                 \
     template void LaneRun<__VA_ARGS__>::set_sums(int, const PerformanceSums<double>&);                         \
-    template Metrics LaneRun<__VA_ARGS__>::metrics(int) const;                                                 \
-    template EnergyTotals LaneRun<__VA_ARGS__>::totals(int) const;
+    template Metrics LaneRun<__VA_ARGS__>::metrics(int) const;
 
 }  // namespace arm3r

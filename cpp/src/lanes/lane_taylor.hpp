@@ -220,7 +220,7 @@ private:
         Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
             for (std::size_t j = 1; j + 1 < n; ++j) sample_at(T(rule.node[j] * h), this->segment_.samples[j]);
             this->end_segment(rule, h);
-            if (!this->holds_torque())
+            if (!this->plant_.holds_torque)
                 for (int i = 0; i < 3; ++i) this->segment_.work[i] = value(series_, work1 + i, h);
             unresolved = add_segment(this->tracked_, rule, moved, this->segment_, this->sums_);
         });

@@ -1,7 +1,6 @@
 // Runs by the methods of lane_run.hpp, with a single lane.
 
 #include "lanes/single_lane_run.hpp"
-#include "base/number_text.hpp"
 #include "lanes/lane_rk4.hpp"
 #include "lanes/lane_taylor.hpp"
 #include "record/end_messages.hpp"
@@ -35,7 +34,8 @@ public:
         lane_run_.load_lane(0, setup_);
         lane_run_.start_lanes();
         update_row_context();
-        start_rows(lane_run_.y(0), initial_derivative(lane_run_.y(0)), lane_run_.mode(0), lane_run_.energy_at_start(0));
+        start_contact(lane_run_.mode(0));
+        start_rows(lane_run_.y(0), initial_derivative(lane_run_.y(0)), lane_run_.energy_at_start(0));
         while (is_running() && !lane_run_.has_ended(0))
             if (poll()) step();
         update_dense_output();
@@ -63,10 +63,9 @@ private:
     // The values that hold from the end of the step on: a new torque, a new phase.
     void update_row_context() {
         store_controller_state(lane_run_.controller_state());
-        contact_ = lane_run_.contact(0);
-        force_phase_ = lane_run_.force_phase(0);
+        inputs_ = lane_run_.inputs(0);
         if (!setup_.digital.sampling.on) return;
-        setup_.plant.controller.torque = lane_run_.torque(0);
+        setup_.plant.held_torque = lane_run_.torque(0);
         record_torque();
     }
 
@@ -91,20 +90,10 @@ private:
             case ARM3R_RUN_BUDGET: return step_budget_message(t);
             case ARM3R_RUN_EVENT_STORM: return event_storm_message(t);
             case ARM3R_RUN_CONTROLLER: return lane_run_.error_message();
-            case ARM3R_RUN_ILL_CONDITIONED:
-                return "the mass matrix is no longer positive definite to rounding" + at_time(t);
-            case ARM3R_RUN_STEP_COLLAPSE:
-                return "the step fell to " + shortest(lane_run_.h(0)) + " s" + at_time(t) +
-                       ": the motion changes faster than the clock resolves";
-            default: return divergence(t);
+            case ARM3R_RUN_ILL_CONDITIONED: return ill_conditioned_message(t);
+            case ARM3R_RUN_STEP_COLLAPSE: return step_collapse_message(lane_run_.h(0), t);
+            default: return divergence_message(run_.q, t);
         }
-    }
-
-    std::string divergence(double t) const {
-        for (int i = 0; i < 3; ++i)
-            if (!(std::abs(run_.q[i]) <= sincos_limit))
-                return "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad" + at_time(t);
-        return "the motion is no longer finite after t = " + shortest(t) + " s";
     }
 
     Integrator lane_run_;
@@ -115,7 +104,7 @@ private:
 }  // namespace
 
 Run run_in_lane(const Setup& setup, const RunOptions& options) {
-    if (setup.solver.method == Solver::taylor) return SingleLaneRun<LaneTaylor<double>>(setup, options).run();
+    if (setup.solver.method == SolverMethod::taylor) return SingleLaneRun<LaneTaylor<double>>(setup, options).run();
     if (has_memory(setup.plant)) return SingleLaneRun<LaneRk4<double, full_size>>(setup, options).run();
     return SingleLaneRun<LaneRk4<double>>(setup, options).run();
 }

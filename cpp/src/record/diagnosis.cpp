@@ -31,8 +31,8 @@ double max_determinant(const Arm<double>& arm) {
 
 const char* accuracy_advice(const Solver& solver) {
     switch (solver.method) {
-        case Solver::rk4: return "take a smaller solver.step";
-        case Solver::taylor: return "tighten solver.tol, or limit solver.max_step";
+        case SolverMethod::rk4: return "take a smaller solver.step";
+        case SolverMethod::taylor: return "tighten solver.tol, or limit solver.max_step";
         default: return "tighten solver.rtol, or limit solver.max_step";
     }
 }

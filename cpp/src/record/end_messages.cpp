@@ -1,16 +1,36 @@
 #include "record/end_messages.hpp"
 
+#include <cmath>
+
+#include "arm3r/numbers/elementary.hpp"
 #include "base/number_text.hpp"
 
 namespace arm3r {
 
+std::string at_time(double t) { return " at t = " + shortest(t) + " s"; }
+
 std::string step_budget_message(double t) {
-    return "solver.max_steps is used up at t = " + shortest(t) +
-           " s; stiff friction or contact, or a tolerance too tight?";
+    return "solver.max_steps is used up" + at_time(t) + "; stiff friction or contact, or a tolerance too tight?";
 }
 
 std::string event_storm_message(double t) {
     return "more than 4096 contact events, the last at t = " + shortest(t) + " s";
+}
+
+std::string step_collapse_message(double h, double t) {
+    return "the step fell to " + shortest(h) + " s" + at_time(t) +
+           ": the motion changes faster than the clock resolves";
+}
+
+std::string ill_conditioned_message(double t) {
+    return "the mass matrix is no longer positive definite to rounding" + at_time(t);
+}
+
+std::string divergence_message(const std::array<double, 3>& q, double t) {
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!(std::abs(q[i]) <= sincos_limit))
+            return "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad" + at_time(t);
+    return "the motion is no longer finite after t = " + shortest(t) + " s";
 }
 
 }  // namespace arm3r

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "base/lane_access.hpp"
 #include "record/row.hpp"
 #include "record/run_data.hpp"
 #include "setup/setup.hpp"
@@ -30,21 +31,43 @@ bool is_strict(const Solver& solver);
 // The message if the balance is not closed, or nothing.
 std::optional<std::string> balance_error(const Solver& solver, const EnergyTotals& totals);
 
+// Of every lane.
+template <class T>
 class EnergyBalance {
 public:
-    EnergyBalance() = default;
-    EnergyBalance(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
+    void start(int lane, const Energies<double>& energies) {
+        const auto set = [lane](T& x, double value) { Lanes<T>::set(x, lane, value); };
+        set(energy_at_start_, energies.sum());
+        set(potential_at_start_, energies.potential);
+        set(residual_, 0), set(throughput_, 0);
+        set(stored_, stored(energies));
+    }
 
-    double energy_at_start() const { return start_.sum(); }  // J
+    // Updates the residual and the maxima after each step.
+    template <std::size_t N>
+    ARM3R_INLINE void update(const Energies<T>& now, const State<T, N>& y) {
+        const T residual = energy_residual(y, now.sum(), energy_at_start_);
+        residual_ = max(residual_, select(residual == residual, abs(residual), T(infinite)));
+        const T works = max(abs(y[work_of_actuators]), max(abs(y[work_of_wall]), abs(y[dissipated])));
+        throughput_ = max(max(throughput_, works), max(now.kinetic, abs(now.potential - potential_at_start_)));
+        stored_ = max(stored_, stored(now));
+    }
 
-    // Updates the residual and the totals after each step.
-    void update(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
-
-    const EnergyTotals& totals() const { return totals_; }
+    double energy_at_start(int lane) const { return Lanes<T>::get(energy_at_start_, lane); }  // J
+    EnergyTotals totals(int lane, double force_times_reach) const {
+        return {Lanes<T>::get(throughput_, lane), Lanes<T>::get(stored_, lane), Lanes<T>::get(residual_, lane),
+                force_times_reach};
+    }
 
 private:
-    Energies start_{};
-    EnergyTotals totals_;
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+    template <class E>
+    ARM3R_INLINE static E stored(const Energies<E>& energies) {
+        return abs(energies.kinetic) + abs(energies.potential) + abs(energies.contact);
+    }
+
+    T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, throughput_{0.0}, stored_{0.0};
 };
 
 // A residual that is NaN counts as infinite.

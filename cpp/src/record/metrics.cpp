@@ -75,4 +75,20 @@ const std::vector<SummaryNumber>& summary_table() {
     return table;
 }
 
+void set_end_values(const Setup& setup, double t, const FullState& y, bool is_touching, const ContactTally& contacts,
+                    Metrics& metrics) {
+    metrics.t_end = t;
+    metrics.q = joints_out(setup, angles(y));
+    metrics.qd = joints_out(setup, rates(y));
+    metrics.tip = without_negative_zero(tip_position(setup.plant.arm, pose(angles(y))));
+    metrics.work_of_actuators = y[work_of_actuators];
+    metrics.work_of_wall = y[work_of_wall];
+    metrics.dissipated = y[dissipated];
+    metrics.dissipated_parts = dissipated_parts(setup.plant, y, contacts.lost_at_edges);
+    metrics.contacts = contacts.contacts;
+    metrics.first_contact = contacts.first_contact;
+    metrics.first_release = contacts.first_separation;
+    metrics.contact_time = contacts.contact_time(t, is_touching);
+}
+
 }  // namespace arm3r

@@ -4,7 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "record/run_data.hpp"
+#include "record/contact_tally.hpp"
+#include "record/row.hpp"
 
 namespace arm3r {
 
@@ -12,6 +13,10 @@ struct SummaryNumber {
     std::string_view name, unit, meaning;
     double (*of)(const Metrics&);  // NaN: the run has no such number
 };
+
+// Writes the numbers of a run that its end tells: the state `y` at t, and the contacts.
+void set_end_values(const Setup& setup, double t, const FullState& y, bool is_touching, const ContactTally& contacts,
+                    Metrics& metrics);
 
 // In the order of a batch's table.
 const std::vector<SummaryNumber>& summary_table();

@@ -2,7 +2,7 @@
 
 namespace arm3r {
 
-Energies energies(const Plant<double>& plant, double t, const FullState& y, ContactMode mode) {
+Energies<double> energies(const Plant<double>& plant, double t, const FullState& y, ContactMode mode) {
     const Pose<double> p = pose(angles(y));
     double stored = 0;
     if (plant.acts_on_arm && is_touching(mode)) {

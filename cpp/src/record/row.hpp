@@ -7,26 +7,33 @@
 #include "arm3r/numbers/polynomial.hpp"
 #include "arm3r/plant.hpp"
 #include "contact/contact_mode.hpp"
+#include "control/continuous_inputs.hpp"
 #include "control/sampled_controller.hpp"
 #include "integrate/dense_output.hpp"
+#include "setup/setup.hpp"
 
 namespace arm3r {
 
-// The vector without negative zeros, as users see it.
+// The vector without negative zeros, as users see it; of joints, in the arm's convention.
 inline std::array<double, 3> without_negative_zero(const Vec3<double>& v) {
     return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0};
 }
 
+inline std::array<double, 3> joints_out(const Setup& setup, const Vec3<double>& v) {
+    return without_negative_zero(setup.simscape ? change_convention(v) : v);
+}
+
+template <class T>
 struct Energies {
-    double kinetic, potential, contact;  // J
-    double sum() const { return kinetic + potential + contact; }
+    T kinetic, potential, contact;  // J
+    ARM3R_INLINE T sum() const { return kinetic + potential + contact; }
 };
 
-Energies energies(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
+Energies<double> energies(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
 
 // The residual of the energy balance (4.9).
-template <class T>
-ARM3R_INLINE T energy_residual(const State<T, full_size>& y, const T& energy, double energy_at_start) {
+template <class T, std::size_t N, class E>
+ARM3R_INLINE T energy_residual(const State<T, N>& y, const T& energy, const E& energy_at_start) {
     return (energy - energy_at_start) - (y[work_of_actuators] + y[work_of_wall] - y[dissipated]);
 }
 
@@ -56,7 +63,7 @@ struct RowContext {
     const Controller<double>& controller;
     bool is_sampled;                                  // the law is a digital controller's
     const ControllerState<double>& controller_state;  // of the sampled controller
-    double contact, force_phase;                      // of a continuous one
+    ContinuousInputs inputs;                          // of a continuous one
     double lost_at_edges;                             // J, so far
 };
 

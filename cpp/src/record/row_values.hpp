@@ -81,8 +81,8 @@ ARM3R_INLINE Vec3<T> torque_with_memory(const RowContext& context, RightHandSide
                                         const WallState<T>& wall, const Pose<T>& p, const State<T, full_size>& y,
                                         const Vec3<T>& f_on_tip) {
     rhs.law_function = compiled_law<double, T>();
-    rhs.contact = T(context.contact);
-    rhs.force_phase = T(context.force_phase);
+    rhs.contact = T(context.inputs.contact);
+    rhs.force_phase = T(context.inputs.force_phase);
     State<T, full_size> rates;
     return rhs.torque(t, wall, p, Vec3<T>(y[0], y[1], y[2]), Vec3<T>(y[3], y[4], y[5]), f_on_tip, y, rates);
 }
@@ -253,8 +253,7 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
     find_contact(context, now, row.link_behind_wall);
     RightHandSide<double, T> rhs(plant);
     now.tau = has_memory(plant) ? torque_with_memory(context, rhs, now.t, now.wall, now.pose, y, now.at_tip)
-                                : limited(plant.arm, feedforward_torque(plant.controller, now.q, now.pose),
-                                          plant.controller.saturation);
+                                : torque_without_memory(plant, now.q, now.pose);
 
     RowWriter<T> write(row, context.simscape);
     write_motion(context, row_time, now, theta, write);

@@ -5,13 +5,13 @@
 #include <limits>
 #include <numbers>
 
-#include "base/number_text.hpp"
 #include "contact/contact_search.hpp"
 #include "control/sampled_controller.hpp"
 #include "integrate/step_limits.hpp"
 #include "integrate/stepper.hpp"
 #include "record/end_messages.hpp"
 #include "record/energy_balance.hpp"
+#include "record/metrics.hpp"
 #include "run/adaptive_run.hpp"
 #include "run/interactive_run.hpp"
 #include "run/performance.hpp"
@@ -52,7 +52,6 @@ struct Progress {
         double theta = 0;  // the present instant within the last step
         bool just_rejected = false;
         bool trial_was_finite = true;  // of the last rejected step
-        double touching_since = 0, events = 0;
         Peak peak{};
         bool is_waiting = true, has_started = false;  // the run waits at a sample; the first sample has been taken
         LastStep last_step{};
@@ -63,7 +62,7 @@ struct Progress {
     SampledController<double> sampled_;
     PerformanceSums<double> sums_;
     RunState state_;
-    EnergyBalance balance_;
+    EnergyBalance<double> balance_;
 };
 
 // N: state_size, or full_size where a continuous controller remembers something.
@@ -74,11 +73,12 @@ class AdaptiveRun : public InteractiveRun, RunRecorder, Progress {
 public:
     AdaptiveRun(const Setup& setup, const RunOptions& options)
         : RunRecorder(setup, options), Progress(setup_), stepper_(setup_), search_(setup_.plant, samples_per_step) {
-        mode_ = search_.mode_at_start(setup_.start, state_.y);
-        balance_ = EnergyBalance(setup_.plant, setup_.start, state_.y, mode_);
+        start_contact(search_.mode_at_start(setup_.start, state_.y));
+        balance_.start(0, energies(setup_.plant, setup_.start, state_.y, mode_));
+        state_.peak = {force_now(), setup_.start};
         sampled_.load_lane(0, setup_.digital, setup_.estimation);
         sampled_.user = options.user_law;
-        start();
+        start_memory();
     }
 
     AdaptiveRun(const AdaptiveRun& other)
@@ -119,9 +119,7 @@ public:
     Run conclude() override {
         if (!is_over()) end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(run_.t_end));
         set_end_metrics();
-        EnergyTotals totals = balance_.totals();
-        totals.force_times_reach = force_times_reach(setup_.plant, run_.peak_force);
-        return finish(state_.y, state_.theta, totals);
+        return finish(state_.y, state_.theta, balance_.totals(0, force_times_reach(setup_.plant, run_.peak_force)));
     }
 
 private:
@@ -152,41 +150,16 @@ private:
     void change_mode(const ContactChange& change) {
         state_.y[work_of_wall] += change.gained;
         state_.y[dissipated] += change.lost;
-        if (change.makes()) count_event(Event::make, change.t);
-        if (change.breaks()) count_event(Event::brk, change.t);
         record_contact_change(change, state_.y);
-        if (has_memory(setup_.plant)) update_controller_contact();
+        if (contacts_.is_event_storm()) end(ARM3R_RUN_EVENT_STORM, event_storm_message(change.t));
+        update_inputs();
     }
 
-    // A continuous controller knows the true contact; its integral is reset when contact ends (7.4).
-    void update_controller_contact() {
-        const Controller<double>& controller = setup_.plant.controller;
-        contact_ = is_touching(mode_) ? 1 : 0;
-        if (controller.switching == Switching::always) force_phase_ = 1;
-        else if (controller.switching == Switching::in_contact) force_phase_ = contact_;
-        else force_phase_ = std::max(force_phase_, contact_);
-        if (contact_ == 0 && integrates_force(controller.type)) state_.y[law_at] = 0;
-    }
-
-    void count_event(Event::Type type, double t) {
-        if (type == Event::make) {
-            run_.contacts += 1;
-            if (run_.contacts == 1) run_.first_contact = t;
-            state_.touching_since = t;
-        } else {
-            if (std::isnan(run_.first_release)) run_.first_release = t;
-            run_.contact_time += t - state_.touching_since;
-        }
-        if (++state_.events > max_events) end(ARM3R_RUN_EVENT_STORM, event_storm_message(t));
+    void update_inputs() {
+        if (has_memory(setup_.plant)) inputs_.update(setup_.plant.controller, is_touching(mode_), state_.y[law_at]);
     }
 
     // ---- start
-
-    void start() {
-        if (is_touching(mode_)) count_event(Event::make, setup_.start);
-        state_.peak = {force_now(), setup_.start};
-        start_memory();
-    }
 
     void initialise() {
         state_.has_started = true;
@@ -195,24 +168,14 @@ private:
         state_.h = first_step();
         FullState f{};
         std::copy_n(stepper_.f0().begin(), N, f.begin());
-        start_rows(state_.y, f, mode_, balance_.energy_at_start());
+        start_rows(state_.y, f, balance_.energy_at_start(0));
     }
 
     void start_memory() {
         if constexpr (N == full_size) {
-            update_controller_contact();
-            const Plant<double>& plant = setup_.plant;
-            const Measurement<double> truth = plant_output().measurement;
-            for (int i = 0; i < 3; ++i) state_.y[filter_at + i] = truth.f_on_tip[i];
-            stepper_.set(force_mode(), contact_, force_phase_, infinite);
-            const Measurement<double> sensed = stepper_.right_hand_side().measure(
-                truth.t, wall_now(), truth.pose, truth.q, truth.qd, truth.f_on_tip, moving());
-            if (has_law(plant.controller.type)) {
-                const auto memory = memory_at_start(plant.controller, sensed);
-                std::copy(memory.begin(), memory.end(), state_.y.begin() + law_at);
-            }
-            const Vec3<double> p = momentum(plant.controller.model, truth.pose, truth.qd);
-            for (int i = 0; i < 3; ++i) state_.y[observer_at + i] = p[i];
+            update_inputs();
+            set_inputs(infinite);
+            state_.y = stepper_.right_hand_side().with_initial_memory(state_.y, wall_now(), plant_output().measurement);
         }
     }
 
@@ -220,31 +183,20 @@ private:
     PlantOutput<double> plant_output() const {
         const Plant<double>& plant = setup_.plant;
         const Pose<double> p = pose(angles(state_.y));
-        Vec3<double> f(0, 0, 0), n(0, 0, 0);
-        double face = 0, contact = 0;
-        if (plant.has_wall) {
-            const WallState<double> wall = wall_now();
-            if (mode_ == ContactMode::contact) {
-                const Indentation<double> in = tip_indentation(plant, wall, p, rates(state_.y));
-                f = only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Clamping::clamped))
-                        .on_tip;
-            }
-            n = normal(plant.wall, wall);
-            face = dot(n, wall.position) + plant.wall.face_offset;
-            contact = dot(n, f) > 0 ? 1 : 0;
+        const WallState<double> wall = plant.has_wall ? wall_now() : no_wall<double>();
+        Vec3<double> f(0, 0, 0);
+        if (mode_ == ContactMode::contact) {
+            const Indentation<double> in = tip_indentation(plant, wall, p, rates(state_.y));
+            f = only_where(in.depth > 0, contact_force(plant.wall, wall, plant.contact, in, Clamping::clamped)).on_tip;
         }
-        if (plant.external_force.on) f = plus(f, external_force_at(plant.external_force, run_.t_end));
-        PlantOutput<double> now{{run_.t_end, angles(state_.y), rates(state_.y), p, f, f, n, face, contact, 0}, {}};
-        if constexpr (N == full_size)
-            now.f_filtered = {state_.y[filter_at], state_.y[filter_at + 1], state_.y[filter_at + 2]};
-        return now;
+        return arm3r::plant_output(plant, wall, run_.t_end, moving(), p, f);
     }
 
     // Updates a sampled controller if it is due. Returns whether its torque may have changed.
     bool update_controller() {
         if (sampled_.next() > run_.t_end + setup_.clock_rounding() || !is_running()) return false;
         PlantOutput<double> now = plant_output();
-        sampled_.update(true, setup_.clock_rounding(), setup_.plant.arm, now, setup_.plant.controller.torque);
+        sampled_.update(true, setup_.clock_rounding(), setup_.plant.arm, now, setup_.plant.held_torque);
         record_torque();
         store_controller_state(sampled_.controller_state());
         if (sampled_.has_failed()) end(ARM3R_RUN_CONTROLLER, sampled_.error_message());
@@ -263,9 +215,11 @@ private:
                                                  : ContactForceMode::none;
     }
 
+    void set_inputs(double latest) { stepper_.set(force_mode(), inputs_.contact, inputs_.force_phase, latest); }
+
     // The derivative at the present instant, where the next step starts.
     void derive() {
-        stepper_.set(force_mode(), contact_, force_phase_, infinite);
+        set_inputs(infinite);
         stepper_.set_start(run_.t_end, moving());
     }
 
@@ -342,7 +296,7 @@ private:
             collapse(h);
             return false;
         }
-        stepper_.set(force_mode(), contact_, force_phase_, last ? step_end.latest : infinite);
+        set_inputs(last ? step_end.latest : infinite);
         const Y y = moving();
         const double error = stepper_.attempt(run_.t_end, y, h);
         if (!(error < 1)) {
@@ -383,9 +337,9 @@ private:
 
     void finish_step() {
         const bool new_torque = update_controller();
-        stepper_.set(force_mode(), contact_, force_phase_, infinite);
+        set_inputs(infinite);
         stepper_.accept(run_.t_end, moving(), state_.last_step.h, state_.last_step.continues && !new_torque);
-        balance_.update(setup_.plant, run_.t_end, state_.y, mode_);
+        balance_.update(energies(setup_.plant, run_.t_end, state_.y, mode_), state_.y);
         const double factor = stepper_.factor(state_.last_step.error);
         state_.h = std::max(state_.last_step.h, state_.last_step.was_last ? state_.h : 0.0) *
                    (state_.just_rejected ? std::min(factor, 1.0) : factor);
@@ -401,35 +355,26 @@ private:
     }
 
     void collapse(double h) {
-        if (state_.trial_was_finite)
-            end(ARM3R_RUN_STEP_COLLAPSE, "the step fell to " + shortest(h) + " s at t = " + shortest(run_.t_end) +
-                                             " s: the motion changes faster than the clock resolves");
-        else end(ARM3R_RUN_DIVERGED, "the motion is no longer finite after t = " + shortest(run_.t_end) + " s");
+        if (state_.trial_was_finite) end(ARM3R_RUN_STEP_COLLAPSE, step_collapse_message(h, run_.t_end));
+        else end(ARM3R_RUN_DIVERGED, divergence_message({}, run_.t_end));
     }
 
-    // Velocities below 1e-140 rad/s are set to 0 (subnormal numbers are slow). Returns whether one was.
+    // Returns whether a joint came to rest.
     bool accept(double t1) {
         bool came_to_rest = false;
         for (std::size_t i = 3; i < motion_size; ++i) {
-            if (state_.y[i] == 0 || std::abs(state_.y[i]) >= min_rate) continue;
-            state_.y[i] = 0;
-            came_to_rest = true;
+            const double rate = without_tiny_rate(state_.y[i]);
+            came_to_rest = came_to_rest || rate != state_.y[i];
+            state_.y[i] = rate;
         }
         run_.t_end = t1;
         run_.steps.accepted += 1;
-        for (int i = 0; i < 3; ++i)
-            if (std::abs(state_.y[i]) > sincos_limit)
-                end(ARM3R_RUN_DIVERGED,
-                    "joint " + std::to_string(i + 1) + " turned beyond 1e5 rad at t = " + shortest(run_.t_end) + " s");
-        if (!is_well_conditioned())
-            end(ARM3R_RUN_ILL_CONDITIONED,
-                "the mass matrix is no longer positive definite to rounding at t = " + shortest(run_.t_end) + " s");
+        const Vec3<double> q = angles(state_.y);
+        if (std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])}) > sincos_limit)
+            end(ARM3R_RUN_DIVERGED, divergence_message(joints_out(setup_, q), t1));
+        if (!is_well_conditioned(setup_.plant.arm, pose(q)))
+            end(ARM3R_RUN_ILL_CONDITIONED, ill_conditioned_message(t1));
         return came_to_rest;
-    }
-
-    bool is_well_conditioned() const {
-        const Mat3<double> M = mass_matrix(setup_.plant.arm, pose(angles(state_.y)));
-        return M(0, 0) > 0 && M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2) > 8 * epsilon * M(1, 1) * M(2, 2);
     }
 
     // ---- performance
@@ -440,9 +385,9 @@ private:
         const StepView view{setup_,
                             dense_,
                             mode_ == ContactMode::contact,
-                            contact_,
-                            is_sampled ? sampled_.controller_state().force_phase : force_phase_,
-                            is_sampled ? &setup_.plant.controller.torque : nullptr,
+                            inputs_.contact,
+                            is_sampled ? sampled_.controller_state().force_phase : inputs_.force_phase,
+                            is_sampled ? &setup_.plant.held_torque : nullptr,
                             slightly_before(t1)};
         if (is_sampled && !TrackedQuantities(setup_).motion())
             add_whole_segment(trapezoid, is_touching(mode_), view, 0, b, sums_);
@@ -451,13 +396,9 @@ private:
 
     void set_end_metrics() {
         run_.steps.evaluations = stepper_.evaluations();
-        run_.q = joints_out(angles(state_.y));
-        run_.qd = joints_out(rates(state_.y));
-        run_.tip = without_negative_zero(tip_position(setup_.plant.arm, pose(angles(state_.y))));
-        note_energies(state_.y, setup_.plant, lost_at_edges_, run_);
-        if (is_touching(mode_)) run_.contact_time += run_.t_end - state_.touching_since;
+        set_end_values(setup_, run_.t_end, state_.y, is_touching(mode_), contacts_, run_);
         run_.peak_force = state_.peak.force;
-        if (run_.contacts > 0) run_.peak_force_time = state_.peak.t;
+        if (contacts_.contacts > 0) run_.peak_force_time = state_.peak.t;
         run_.final_force = force_now();
         if (has_performance_) write_performance(sums_, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());

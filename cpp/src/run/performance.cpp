@@ -14,8 +14,7 @@ Vec3<double> torque_at(const StepView& view, double t, const FullState& y, const
     if (view.held) return *view.held;
     const Plant<double>& plant = view.setup.plant;
     const Vec3<double> q = angles(y);
-    if (!has_memory(plant))
-        return limited(plant.arm, feedforward_torque(plant.controller, q, p), plant.controller.saturation);
+    if (!has_memory(plant)) return torque_without_memory(plant, q, p);
     RightHandSide<double, double> rhs(plant);
     rhs.law_function = compiled_law<double, double>();
     rhs.contact = view.contact;

@@ -4,7 +4,8 @@
 
 #include "base/callback.hpp"
 #include "base/number_text.hpp"
-#include "schema/schema.hpp"
+#include "record/end_messages.hpp"
+#include "schema/choice_words.hpp"
 #include "validate/size_limits.hpp"
 #include "validate/warnings.hpp"
 
@@ -24,16 +25,20 @@ RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
     run_.has_user_law = setup_.controller().type == ControllerType::user;
     if (!options.rows) return;
     row_log().reserve();
-    run_.method = known_key("solver.method").choices[setup_.solver.method];  // in the order of the words
+    run_.method = word_of(setup_.solver.method);
     run_.torque_limit = without_negative_zero(setup_.plant.arm.torque_limit);
     run_.events.reserve(static_cast<std::size_t>(max_events));
     run_.warnings = scenario_warnings(setup);
 }
 
-void RunRecorder::start_rows(const FullState& y, const FullState& f, ContactMode mode, double energy_at_start) {
+void RunRecorder::start_contact(ContactMode mode) {
     mode_ = mode;
+    if (is_touching(mode)) contacts_.begin(setup_.start);
+}
+
+void RunRecorder::start_rows(const FullState& y, const FullState& f, double energy_at_start) {
     energy_at_start_ = energy_at_start;
-    if (is_touching(mode)) record(Event::make, setup_.start, y);
+    if (is_touching(mode_)) record(Event::make, setup_.start, y);
     constexpr double a_moment = 1e-3;  // s
     FullState ahead;
     for (std::size_t i = 0; i < full_size; ++i) ahead[i] = y[i] + a_moment * f[i];
@@ -46,7 +51,7 @@ void RunRecorder::record_contact_change(const ContactChange& change, const FullS
     log_until(change.t);
     dense_.c[0][work_of_wall] += change.gained;  // for the rows of this step that are still to come
     dense_.c[0][dissipated] += change.lost;
-    lost_at_edges_ += change.lost_at_edge();
+    contacts_.add(change);
     if (change.makes()) record(Event::make, change.t, y);
     if (change.breaks()) record(Event::brk, change.t, y);
     mode_ = change.to;
@@ -54,15 +59,9 @@ void RunRecorder::record_contact_change(const ContactChange& change, const FullS
 
 void RunRecorder::record(Event::Type type, double t, const FullState& y) {
     if (options_.rows && double(run_.events.size()) < max_events)
-        run_.events.push_back({type, t, joints_out(angles(y)), joints_out(rates(y)),
+        run_.events.push_back({type, t, joints_out(setup_, angles(y)), joints_out(setup_, rates(y)),
                                without_negative_zero(tip_position(setup_.plant.arm, pose(angles(y))))});
 }
-
-std::array<double, 3> RunRecorder::joints_out(const Vec3<double>& v) const {
-    return without_negative_zero(setup_.simscape ? change_convention(v) : v);
-}
-
-std::string RunRecorder::at_time(double t) const { return " at t = " + shortest(t) + " s"; }
 
 void RunRecorder::end(arm3r_outcome outcome, std::string message) {
     if (run_.outcome != ARM3R_RUN_OK) return;

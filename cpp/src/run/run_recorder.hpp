@@ -3,13 +3,11 @@
 
 #include <chrono>
 
-#include "contact/contact_change.hpp"
+#include "record/contact_tally.hpp"
 #include "record/diagnosis.hpp"
 #include "record/row_log.hpp"
 
 namespace arm3r {
-
-inline constexpr double max_events = 4096;
 
 // The time since it was made; a copy starts at zero.
 class Stopwatch {
@@ -23,13 +21,6 @@ private:
     const Clock::time_point started_ = Clock::now();
 };
 
-inline void note_energies(const FullState& y, const Plant<double>& plant, double lost_at_edges, Metrics& metrics) {
-    metrics.work_of_actuators = y[work_of_actuators];
-    metrics.work_of_wall = y[work_of_wall];
-    metrics.dissipated = y[dissipated];
-    metrics.dissipated_parts = dissipated_parts(plant, y, lost_at_edges);
-}
-
 // A copy continues by itself: no member refers to another one.
 class RunRecorder {
 public:
@@ -39,8 +30,10 @@ public:
     RunRecorder& operator=(const RunRecorder&) = delete;
 
 protected:
-    // Writes the first row and sets the present mode. Before the first step the dense output is a straight line.
-    void start_rows(const FullState& y, const FullState& f, ContactMode mode, double energy_at_start);
+    // Sets the contact mode at the start.
+    void start_contact(ContactMode mode);
+    // Writes the first row. Before the first step the dense output is a straight line.
+    void start_rows(const FullState& y, const FullState& f, double energy_at_start);
 
     // Whether there is a row before t that is not written yet.
     bool is_row_due(double t) { return options_.rows && row_log().is_due(t); }
@@ -59,9 +52,9 @@ protected:
     }
 
     // The torque of a sampled controller that acts from now on.
-    void record_torque() { oscillation_.include(run_.t_end, setup_.plant.controller.torque); }
+    void record_torque() { oscillation_.include(run_.t_end, setup_.plant.held_torque); }
 
-    // Records a change of contact at theta in the last step: the rows before it, the event, and its energy.
+    // Records a change of contact in the last step: the rows before it, the event, and its energy.
     void record_contact_change(const ContactChange& change, const FullState& y);
 
     void end(arm3r_outcome outcome, std::string message);
@@ -73,9 +66,6 @@ protected:
     // Writes the last row, checks the energy balance, and adds messages and warnings.
     Run finish(const FullState& y, double theta, const EnergyTotals& totals);
 
-    std::array<double, 3> joints_out(const Vec3<double>& v) const;
-    std::string at_time(double t) const;  // " at t = 1.5 s"
-
     Stopwatch stopwatch_;
     Setup setup_;  // a sampled controller changes the torque of its plant
     const RunOptions options_;
@@ -83,23 +73,15 @@ protected:
     ContactMode mode_ = ContactMode::free;
     DenseOutput dense_;                         // the solution within the last step
     ControllerState<double> controller_state_;  // of a sampled controller
-    double contact_ = 0, force_phase_ = 0;      // of a continuous one
-    double lost_at_edges_ = 0;                  // J, by springs that lose the tip across an edge of the plate
+    ContinuousInputs inputs_;                   // of a continuous one
+    ContactTally contacts_;
 
 private:
     RowLog row_log() { return {setup_, run_}; }
     RowContext row_context() const {
-        return {setup_.plant,
-                setup_.simscape,
-                energy_at_start_,
-                mode_,
-                dense_,
-                setup_.controller(),
-                setup_.digital.sampling.on,
-                controller_state_,
-                contact_,
-                force_phase_,
-                lost_at_edges_};
+        return {setup_.plant, setup_.simscape,        energy_at_start_,           mode_,
+                dense_,       setup_.controller(),    setup_.digital.sampling.on, controller_state_,
+                inputs_,      contacts_.lost_at_edges};
     }
     void explain(const FullState& y);
     void record(Event::Type type, double t, const FullState& y);

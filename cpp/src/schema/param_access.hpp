@@ -1,27 +1,12 @@
 #pragma once
 // The flat parameters by names that are known at compile time: each name is looked up once in a process.
 
-#include <algorithm>
-
+#include "arm3r/numbers/name.hpp"
 #include "arm3r/numbers/vectors.hpp"
+#include "schema/choice_words.hpp"
 #include "schema/schema.hpp"
 
 namespace arm3r {
-
-template <std::size_t N>
-struct Name {
-    char text[N];
-
-    consteval Name(const char (&literal)[N]) { std::copy_n(literal, N, text); }
-    constexpr operator std::string_view() const { return {text, N - 1}; }
-};
-
-template <std::size_t N, std::size_t M>
-consteval Name<N + M - 1> operator+(const Name<N>& a, const char (&b)[M]) {
-    char joined[N + M - 1];
-    std::copy_n(b, M, std::copy_n(a.text, N - 1, joined));
-    return joined;
-}
 
 template <Name path>
 double at(std::span<const double> params, std::size_t item = 0) {
@@ -32,6 +17,12 @@ double at(std::span<const double> params, std::size_t item = 0) {
 template <Name path>
 Vec3<double> vector_at(std::span<const double> params) {
     return {at<path>(params, 0), at<path>(params, 1), at<path>(params, 2)};
+}
+
+// What the choice at `path` means.
+template <Name path, class Enum>
+Enum choice_at(std::span<const double> params) {
+    return choice_words<Enum>[std::size_t(at<path>(params))].value;
 }
 
 // Whether the choice at `path` is `word`.

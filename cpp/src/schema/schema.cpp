@@ -7,8 +7,8 @@
 #include <map>
 #include <numbers>
 
-#include "arm3r/control/law_table.hpp"
 #include "arm3r/model/scalar_motion.hpp"
+#include "schema/choice_words.hpp"
 #include "schema/stiffness_presets.hpp"
 #include "schema/suggest.hpp"
 
@@ -203,7 +203,7 @@ void append_paths(std::vector<Key>& keys) {
 
 void append_rotation(std::vector<Key>& keys) {
     const std::string type = "wall.rotation.type";
-    keys.push_back(choice(type, {"none", "constant", "sinusoid"}, Source::ours,
+    keys.push_back(choice(type, words_of<Rotation>(), Source::ours,
                           "How the plate turns about the origin of its frame; at t = 0 it stands as `normal` says."));
     keys.push_back(where(type, {"constant", "sinusoid"},
                          needed(number("wall.rotation.axis", {unset, unset, unset}, Source::ours, any_position, "",
@@ -228,7 +228,7 @@ void append_rotation(std::vector<Key>& keys) {
 void append_contact(std::vector<Key>& keys) {
     const std::string law = "wall.contact.law";
     keys.push_back(
-        choice(law, {"spring", "diagonal", "kelvin_voigt", "hunt_crossley"}, Source::lecture,
+        choice(law, words_of<ContactLaw>(), Source::lecture,
                "The normal force at depth d: spring: k d; diagonal: a spring, and two more that tie the tip "
                "sideways to the plate's centre; kelvin_voigt: k d + c d'; hunt_crossley: k d^p (1 + beta d')."));
     std::vector<std::string> words = {"none"};
@@ -279,7 +279,7 @@ void append_wall(std::vector<Key>& keys) {
                   "infinite"));
     keys.push_back(number("wall.face_offset", {0}, Source::lecture, any_position, "m",
                           "How far the contact face lies in front of the frame."));
-    keys.push_back(choice("wall.motion.type", {"constant", "fixed", "sinusoid", "ramp", "table"}, Source::lecture,
+    keys.push_back(choice("wall.motion.type", words_of<Motion>(), Source::lecture,
                           "How the wall moves: its point is wall.point + s(t) direction, but for constant."));
     keys.push_back(where(
         "wall.motion.type", {"constant"},
@@ -316,7 +316,6 @@ Words laws_that(Holds holds) {
     return words;
 }
 
-const Words laws = laws_that([](const LawProperties&) { return true; });
 const Words with_a_torque = laws_that([](const LawProperties& law) { return law.type != ControllerType::none; });
 const Words with_a_model = laws_that([](const LawProperties& law) { return law.has_model; });
 const Words with_a_path = laws_that([](const LawProperties& law) { return law.follows_path; });
@@ -424,12 +423,11 @@ void append_impedances(std::vector<Key>& keys) {
 
 void append_force_loop(std::vector<Key>& keys) {
     keys.push_back(for_laws(
-        {"hybrid"},
-        choice("controller.variant", {"dynamic", "jacobian_transpose", "projected", "raibert_craig"}, Source::ours,
-               "How motion and force are joined; raibert_craig is unstable in part of the workspace.")));
+        {"hybrid"}, choice("controller.variant", words_of<Variant>(), Source::ours,
+                           "How motion and force are joined; raibert_craig is unstable in part of the workspace.")));
     keys.push_back(
         for_laws({"operational_space"},
-                 choice("controller.force_term", {"cancelled", "feedforward"}, Source::ours,
+                 choice("controller.force_term", words_of<ForceTerm>(), Source::ours,
                         "What becomes of the contact force: cancelled as measured, or the reference fed forward.")));
     keys.push_back(
         for_laws(integrating_force, one_gain("force_mass", 1, {1e-6, 1e9}, "kg", "Apparent mass along the normal.")));
@@ -446,7 +444,7 @@ void append_force_loop(std::vector<Key>& keys) {
     keys.push_back(for_laws(
         integrating_force,
         choice(
-            "controller.anti_windup", {"none", "conditional", "back_calculation"}, Source::ours,
+            "controller.anti_windup", words_of<AntiWindup>(), Source::ours,
             "How the integral of the force error behaves while a torque is at its limit: it continues, waits, or runs back.")));
     keys.push_back(
         where("controller.anti_windup", {"back_calculation"},
@@ -455,7 +453,7 @@ void append_force_loop(std::vector<Key>& keys) {
     keys.push_back(for_laws(
         controlling_force,
         choice(
-            "controller.switching", {"in_contact", "latched", "always"}, Source::ours,
+            "controller.switching", words_of<Switching>(), Source::ours,
             "When force is controlled: while there is contact, from the first contact on, or from the start; else the tip keeps to the reference in all directions.")));
     keys.push_back(where("controller.switching", {"in_contact", "latched"},
                          one_gain("contact_on", 1, not_negative, "N",
@@ -468,7 +466,7 @@ void append_force_loop(std::vector<Key>& keys) {
 void append_special_laws(std::vector<Key>& keys) {
     keys.push_back(
         for_laws({"admittance"},
-                 choice("controller.inner", {"exact", "position", "joint_pd"}, Source::ours,
+                 choice("controller.inner", words_of<Inner>(), Source::ours,
                         "Inner loop: exact tracking with feedforward, position tracking without, or joint PD.")));
     keys.push_back(
         where("controller.inner", {"position"},
@@ -477,7 +475,7 @@ void append_special_laws(std::vector<Key>& keys) {
         where("controller.inner", {"position"},
               one_gain("inner_damping_ratio", 1, not_negative, "", "Damping ratio z of the inner position loop.")));
     keys.push_back(for_laws({"adaptive_reference"},
-                            choice("controller.adaptation", {"integral", "indirect"}, Source::ours,
+                            choice("controller.adaptation", words_of<Adaptation>(), Source::ours,
                                    "The reference integrates the force error, or is computed from a wall stiffness.")));
     keys.push_back(where("controller.adaptation", {"integral"},
                          one_gain("reference_gain", 0.02, not_negative, "m/(N s)",
@@ -511,7 +509,7 @@ void append_special_laws(std::vector<Key>& keys) {
 }
 
 void append_controller(std::vector<Key>& keys) {
-    keys.push_back(choice("controller.type", laws, Source::ours, "The control law."));
+    keys.push_back(choice("controller.type", words_of<ControllerType>(), Source::ours, "The control law."));
     keys.push_back(
         for_laws({"constant"}, needed(number("controller.torque", {unset, unset, unset}, Source::ours, {-1e12, 1e12},
                                              "N m", "The constant torque, in the arm's convention."))));
@@ -524,7 +522,7 @@ void append_controller(std::vector<Key>& keys) {
                 "The gravity that is compensated, whatever the plant feels: a number along -z, or a vector in base axes."))));
     keys.push_back(
         for_laws({"gravity_compensation"},
-                 choice("controller.algorithm", {"closed_form", "recursion"}, Source::lecture,
+                 choice("controller.algorithm", words_of<Algorithm>(), Source::lecture,
                         "How the torque is computed: by the lecture's formula or by the Newton-Euler recursion.")));
     append_joint_gains(keys);
     append_motion_gains(keys);
@@ -542,7 +540,7 @@ void append_controller(std::vector<Key>& keys) {
                       "The force that is cancelled is the true one; only the force error suffers from the sensor.")));
     keys.push_back(for_laws(
         with_a_torque,
-        choice("controller.saturation", {"clamp", "scale"}, Source::ours,
+        choice("controller.saturation", words_of<Saturation>(), Source::ours,
                "At arm.torque_limit: each joint for itself, or all by one factor, which keeps the direction.")));
     append_model(keys);
 }
@@ -552,8 +550,8 @@ std::vector<Key> reference_keys() {
     const auto in = [](std::vector<std::string> types, Key key) {
         return where("reference.type", std::move(types), std::move(key));
     };
-    keys.push_back(choice("reference.type", {"hold", "point", "line", "minimum_jerk", "circle", "sinusoid", "table"},
-                          Source::ours, "The desired motion of the arm: hold keeps it where it starts."));
+    keys.push_back(choice("reference.type", words_of<Path>(), Source::ours,
+                          "The desired motion of the arm: hold keeps it where it starts."));
     keys.push_back(
         in({"point", "line", "minimum_jerk"},
            derived("not given",
@@ -607,7 +605,7 @@ std::vector<Key> force_reference_keys() {
     const auto in = [](std::vector<std::string> types, Key key) {
         return where("reference.force.type", std::move(types), std::move(key));
     };
-    keys.push_back(choice("reference.force.type", {"constant", "step", "ramp", "sinusoid"}, Source::ours,
+    keys.push_back(choice("reference.force.type", words_of<ForceProfile>(), Source::ours,
                           "The desired pressing force as a function of time, along the wall's normal."));
     keys.push_back(for_laws(
         of_force, but({{"admittance", {0}}},
@@ -643,7 +641,7 @@ std::vector<Key> sampling_keys() {
     keys.push_back(of_kind(Kind::integer, number("sensors.encoder.counts", {0}, Source::ours, {0, 1e9}, "",
                                                  "Counts per turn to which each joint's encoder rounds; 0: exact.")));
     keys.push_back(choice(
-        "sensors.velocity.estimate", {"exact", "difference", "filtered"}, Source::ours,
+        "sensors.velocity.estimate", words_of<VelocityEstimate>(), Source::ours,
         "How joint rates are measured: exactly, as the difference of two samples, or as that difference after a low-pass."));
     keys.push_back(where("sensors.velocity.estimate", {"filtered"},
                          number("sensors.velocity.cutoff", {50}, Source::ours, {1e-6, 1e6}, "Hz",
@@ -680,7 +678,7 @@ void append_observer(std::vector<Key>& keys) {
         number("observer.hold", {0.02}, Source::ours, {0, 1e6}, "s",
                "How long all residuals must stay below half of observer.threshold until the collision is over."));
     keys.push_back(choice(
-        "observer.reaction", {"ignore", "stop", "float", "reflex", "retreat"}, Source::ours,
+        "observer.reaction", words_of<Reaction>(), Source::ours,
         "Reaction from a collision on: none, hold the pose, only compensate gravity, push with the residual, or retreat."));
     keys.push_back(where("observer.reaction", {"reflex"},
                          number("observer.reflex_gain", {1}, Source::ours, not_negative, "",
@@ -727,7 +725,7 @@ void append_push(std::vector<Key>& keys) {
 
 void append_solver(std::vector<Key>& keys) {
     keys.push_back(choice(
-        "solver.method", {"dopri5", "rk4", "taylor", "rodas4", "auto"}, Source::ours,
+        "solver.method", words_of<SolverMethod>(), Source::ours,
         "dopri5: Dormand-Prince 5(4), adaptive; rk4: classical Runge-Kutta, fixed step; taylor: power series, adaptive; rodas4: Rosenbrock 4(3) for stiff contact, adaptive; auto: dopri5, and rodas4 where the motion is stiff."));
     keys.push_back(where("solver.method", {"dopri5", "rodas4", "auto"},
                          number("solver.rtol", {1e-9}, Source::ours, {2.220446049250313e-14, 0.1}, "",

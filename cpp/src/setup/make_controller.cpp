@@ -25,40 +25,10 @@ void set_choices(std::span<const double> params, Controller<double>& controller)
     controller.controls_passivity = flag_at<"controller.passivity_control">(params);
 }
 
-void set_motion_gains(std::span<const double> params, Gains<double>& gains) {
-    gains.joint_stiffness = vector_at<"controller.joint_stiffness">(params);
-    gains.joint_damping = vector_at<"controller.joint_damping">(params);
-    gains.position = each_axis<"controller.position_gain">(params);
-    gains.velocity = each_axis<"controller.velocity_gain">(params);
-    gains.mass = each_axis<"controller.mass">(params);
-    gains.stiffness = each_axis<"controller.stiffness">(params);
-    gains.damping = each_axis<"controller.damping">(params);
-}
-
-void set_force_gains(std::span<const double> params, Gains<double>& gains) {
-    gains.force_mass = at<"controller.force_mass">(params);
-    gains.force_damping = at<"controller.force_damping">(params);
-    gains.force = at<"controller.force_gain">(params);
-    gains.force_integral = at<"controller.force_integral_gain">(params);
-    gains.integral_limit = at<"controller.integral_limit">(params);
-    gains.tracking_time = at<"controller.tracking_time">(params);
-    gains.contact_on = at<"controller.contact_on">(params);
-    gains.contact_off = at<"controller.contact_off">(params);
-}
-
-void set_special_gains(std::span<const double> params, Gains<double>& gains) {
-    gains.inner_bandwidth = at<"controller.inner_bandwidth">(params);
-    gains.inner_damping_ratio = at<"controller.inner_damping_ratio">(params);
-    gains.reference_gain = at<"controller.reference_gain">(params);
-    gains.assumed_stiffness = at<"controller.assumed_stiffness">(params);
-    gains.stiffness_amplitude = at<"controller.stiffness_amplitude">(params);
-    gains.stiffness_frequency = at<"controller.stiffness_frequency">(params);
-    gains.tank_energy = at<"controller.tank_energy">(params);
-    gains.tank_low = at<"controller.tank_low">(params);
-    gains.tank_high = at<"controller.tank_high">(params);
-    gains.tank_capacity = at<"controller.tank_capacity">(params);
-    gains.plane_point = vector_at<"controller.plane_point">(params);
-    const Vec3<double> normal = vector_at<"controller.plane_normal">(params);
+void set_gains(std::span<const double> params, Gains<double>& gains) {
+    each_gain([&]<Name path>(KeyOf<path>, double& gain) { gain = at<path>(params); },
+              [&]<Name path>(KeyOf<path>, Vec3<double>& gain) { gain = each_axis<path>(params); }, gains);
+    const Vec3<double> normal = gains.plane_normal;
     const double length = std::sqrt(dot(normal, normal));
     gains.plane_normal = {normal[0] / length, normal[1] / length, normal[2] / length};
 }
@@ -86,11 +56,8 @@ void set_controller(std::span<const double> params, Controller<double>& controll
     controller.torque = {0, 0, 0};
     if (controller.type == ControllerType::constant)
         controller.torque = to_slide(params, vector_at<"controller.torque">(params));
-    set_force_gains(params, controller.gains);  // a sampled controller of any type detects contact
-    if (!has_law(controller.type)) return;
-    set_choices(params, controller);
-    set_motion_gains(params, controller.gains);
-    set_special_gains(params, controller.gains);
+    set_gains(params, controller.gains);  // of every type: a sampled controller without a law detects contact too
+    if (has_law(controller.type)) set_choices(params, controller);
 }
 
 }  // namespace arm3r

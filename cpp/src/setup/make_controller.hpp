@@ -16,12 +16,6 @@ inline Vec3<double> to_slide(std::span<const double> params, const Vec3<double>&
     return is_simscape(params) ? change_convention(joint_vector) : joint_vector;
 }
 
-// The enumerator of a choice; the enumerators are in the order of the schema's words.
-template <Name path, class Enum>
-Enum choice_at(std::span<const double> params) {
-    return static_cast<Enum>(static_cast<int>(at<path>(params)));
-}
-
 // One number is used for all three axes or joints.
 template <Name path>
 Vec3<double> each_axis(std::span<const double> params) {

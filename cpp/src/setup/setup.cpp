@@ -88,20 +88,6 @@ void set_model(std::span<const double> params, const Arm<double>& plant_arm, Arm
     finish(model);
 }
 
-Motion motion_of(std::span<const double> params) {
-    if (is<"wall.motion.type", "constant">(params)) return Motion::constant;
-    if (is<"wall.motion.type", "sinusoid">(params)) return Motion::sinusoid;
-    if (is<"wall.motion.type", "ramp">(params)) return Motion::ramp;
-    if (is<"wall.motion.type", "table">(params)) return Motion::table;
-    return Motion::fixed;
-}
-
-Rotation rotation_of(std::span<const double> params) {
-    if (is<"wall.rotation.type", "constant">(params)) return Rotation::constant;
-    if (is<"wall.rotation.type", "sinusoid">(params)) return Rotation::sinusoid;
-    return Rotation::none;
-}
-
 Vec3<double> normalised(const Vec3<double>& v) {
     const double length = std::sqrt(dot(v, v));
     return {v[0] / length, v[1] / length, v[2] / length};
@@ -126,7 +112,7 @@ QuinticTable<double> table_of(std::span<const double> params) {
 }
 
 void set_motion(Wall<double>& wall, std::span<const double> params) {
-    wall.motion = motion_of(params);
+    wall.motion = choice_at<"wall.motion.type", Motion>(params);
     wall.velocity = {0, 0, 0};
     if (wall.motion == Motion::constant) wall.velocity = vector_along<"wall.motion.velocity">(params, wall.n);
     const Vec3<double> direction = vector_at<"wall.motion.direction">(params);
@@ -139,7 +125,7 @@ void set_motion(Wall<double>& wall, std::span<const double> params) {
 }
 
 void set_rotation(Wall<double>& wall, std::span<const double> params) {
-    wall.rotation = rotation_of(params);
+    wall.rotation = choice_at<"wall.rotation.type", Rotation>(params);
     wall.axis = {0, 0, 0};
     if (wall.rotation != Rotation::none) wall.axis = normalised(vector_at<"wall.rotation.axis">(params));
     if (wall.rotation == Rotation::constant) wall.turn_rate = at<"wall.rotation.rate">(params);
@@ -164,13 +150,6 @@ Wall<double> make_wall(std::span<const double> params) {
     return wall;
 }
 
-ContactLaw law_of(std::span<const double> params) {
-    if (is<"wall.contact.law", "diagonal">(params)) return ContactLaw::diagonal;
-    if (is<"wall.contact.law", "kelvin_voigt">(params)) return ContactLaw::kelvin_voigt;
-    if (is<"wall.contact.law", "hunt_crossley">(params)) return ContactLaw::hunt_crossley;
-    return ContactLaw::spring;
-}
-
 // The effective mass of the tip towards the wall at the start, kg.
 double mass_at_start(const Setup& setup) {
     const Wall<double>& wall = setup.plant.wall;
@@ -192,7 +171,7 @@ double dissipation_of(std::span<const double> params) {
 Contact<double> make_contact(std::span<const double> params, double mass) {
     const Vec3<double> k = vector_at<"wall.contact.stiffness">(params);
     Contact<double> contact{};
-    contact.law = law_of(params);
+    contact.law = choice_at<"wall.contact.law", ContactLaw>(params);
     contact.stiffness = contact.law == ContactLaw::diagonal ? k : Vec3<double>(k[0], 0, 0);
     if (contact.law == ContactLaw::kelvin_voigt) contact.damping = damping_of(params, k[0], mass);
     if (contact.law == ContactLaw::hunt_crossley) {
@@ -205,16 +184,8 @@ Contact<double> make_contact(std::span<const double> params, double mass) {
     return contact;
 }
 
-Solver::Method method_of(std::span<const double> params) {
-    if (is<"solver.method", "rk4">(params)) return Solver::rk4;
-    if (is<"solver.method", "taylor">(params)) return Solver::taylor;
-    if (is<"solver.method", "rodas4">(params)) return Solver::rodas4;
-    if (is<"solver.method", "auto">(params)) return Solver::automatic;
-    return Solver::dopri5;
-}
-
 Solver make_solver(std::span<const double> params) {
-    return {.method = method_of(params),
+    return {.method = choice_at<"solver.method", SolverMethod>(params),
             .rtol = at<"solver.rtol">(params),
             .atol = at<"solver.atol">(params),
             .tol = at<"solver.tol">(params),
@@ -263,8 +234,8 @@ Arm<double> make_arm(std::span<const double> params) {
     return arm;
 }
 
-// Sets sensors, observer and sampling. With sampling, `digital.controller` becomes the controller of the scenario, and
-// the plant's own controller becomes a constant torque, which the sampled controller sets at its samples.
+// Sets sensors, observer and sampling. With sampling, `digital.controller` becomes the controller of the scenario; the
+// plant has none, and holds the torque that the sampled one sets.
 static void wire_sampling(std::span<const double> params, Setup& setup) {
     Plant<double>& plant = setup.plant;
     DigitalController<double>& digital = setup.digital;
@@ -274,12 +245,14 @@ static void wire_sampling(std::span<const double> params, Setup& setup) {
     if (at<"sampling">(params) != 0 || plant.controller.type == ControllerType::user) {
         digital.sampling = make_sampling(params);
         digital.controller = plant.controller;
-        static_cast<ControllerChoices&>(plant.controller) = {.type = ControllerType::constant};
-        plant.controller.torque = {0, 0, 0};
+        static_cast<ControllerChoices&>(plant.controller) = {};
         plant.controller.model = plant.arm;
+        plant.held_torque = {0, 0, 0};
     } else {
         plant.observer = digital.observer;
+        plant.held_torque = plant.controller.torque;
     }
+    plant.holds_torque = digital.sampling.on || plant.controller.type == ControllerType::constant;
     plant.needs_azimuth = has_law(setup.controller().type) || setup.digital.sampling.on || setup.observes() ||
                           setup.estimation.on || plant.external_force.on;
 }

@@ -7,23 +7,26 @@
 
 #include "arm3r/plant.hpp"
 #include "base/problem_list.hpp"
+#include "schema/solver_method.hpp"
 
 namespace arm3r {
 
 struct Solver {
-    enum Method { dopri5, rk4, taylor, rodas4, automatic } method;
+    SolverMethod method;
     double rtol, atol;      // of the adaptive methods except taylor
     double tol;             // of taylor
     double max_step, step;  // s; max_step may be inf
     double max_steps;
 
-    bool runs_in_lanes() const { return method == rk4 || method == taylor; }  // also in lanes (lane_run.hpp)
+    bool runs_in_lanes() const {
+        return method == SolverMethod::rk4 || method == SolverMethod::taylor;
+    }  // also in lanes (lane_run.hpp)
 };
 
 struct Setup {
     bool simscape;  // the convention of q, qd and torques of input and output
     Plant<double> plant;
-    DigitalController<double> digital;  // if it is on, the plant's own controller is the torque that this one holds
+    DigitalController<double> digital;  // if it is on, the plant has no controller and holds the torque of this one
     Estimation<double> estimation;
     Vec3<double> q, qd;  // at the start
     Solver solver;

@@ -90,7 +90,7 @@ double Setup::clock_rounding() const {
 }
 
 void set_jumps_on_clock(Setup& setup) {
-    const bool has_grid = setup.solver.method == Solver::rk4, has_samples = setup.digital.sampling.on;
+    const bool has_grid = setup.solver.method == SolverMethod::rk4, has_samples = setup.digital.sampling.on;
     const double period = has_grid ? setup.solver.step : has_samples ? setup.digital.sampling.period : infinite;
     const auto snap = [&](double& jump) {
         const double count = nearest_integer((jump - setup.start) / period);

@@ -93,7 +93,8 @@ void check_spacing(const char* path, double period, double start, ProblemList& p
 
 void check_clock(const Setup& setup, ProblemList& problem_list) {
     check_spacing("time.log_every", setup.log_every, setup.start, problem_list);
-    if (setup.solver.method == Solver::rk4) check_spacing("solver.step", setup.solver.step, setup.start, problem_list);
+    if (setup.solver.method == SolverMethod::rk4)
+        check_spacing("solver.step", setup.solver.step, setup.start, problem_list);
     if (setup.digital.sampling.on)
         check_spacing("sampling.rate", setup.digital.sampling.period, setup.start, problem_list);
 }
@@ -133,7 +134,7 @@ void check_law(std::span<const double> params, ProblemList& problem_list) {
 
 // A Taylor series cannot pass the corner at which a changing torque reaches its limit.
 void check_corners(const Setup& setup, ProblemList& problem_list) {
-    if (setup.solver.method == Solver::taylor && setup.plant.arm.has_torque_limit && !setup.digital.sampling.on &&
+    if (setup.solver.method == SolverMethod::taylor && setup.plant.arm.has_torque_limit && !setup.digital.sampling.on &&
         setup.controller().type == ControllerType::gravity_compensation)
         problem_list.add([] {
             return Problem{.code = "scenario.corner",
@@ -150,7 +151,7 @@ void check_corners(const Setup& setup, ProblemList& problem_list) {
 // The recurrences are those of the closed form.
 void check_algorithm(const Setup& setup, ProblemList& problem_list) {
     const Controller<double>& controller = setup.controller();
-    if (setup.solver.method == Solver::taylor && controller.type == ControllerType::gravity_compensation &&
+    if (setup.solver.method == SolverMethod::taylor && controller.type == ControllerType::gravity_compensation &&
         controller.algorithm == Algorithm::recursion && !setup.digital.sampling.on)
         problem_list.add([] {
             return Problem{.code = "scenario.no_series",
@@ -185,7 +186,7 @@ std::optional<NoSeries> without_series(const Plant<double>& plant) {
 }
 
 void check_series(const Setup& setup, ProblemList& problem_list) {
-    if (setup.solver.method != Solver::taylor || !setup.plant.has_wall) return;
+    if (setup.solver.method != SolverMethod::taylor || !setup.plant.has_wall) return;
     if (const std::optional<NoSeries> reason = without_series(setup.plant))
         problem_list.add([&] {
             return Problem{.code = "scenario.no_series",

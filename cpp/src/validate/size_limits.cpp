@@ -32,7 +32,7 @@ double fixed_steps_allowed(const Solver& solver) { return std::min(max_fixed_ste
 }  // namespace
 
 bool has_too_many_steps(const Setup& setup) {
-    const bool is_fixed = setup.solver.method == Solver::rk4;
+    const bool is_fixed = setup.solver.method == SolverMethod::rk4;
     return ticks_of(setup) > max_ticks ||
            (is_fixed && duration(setup) / setup.solver.step > fixed_steps_allowed(setup.solver));
 }

@@ -114,7 +114,7 @@ void warn_of_contact_step(const Setup& setup, std::vector<std::string>& warnings
 
 // A fixed step keeps its order only if a jump lies on its grid (5.8).
 void warn_of_jump(const Setup& setup, std::vector<std::string>& warnings) {
-    if (setup.solver.method != Solver::rk4) return;
+    if (setup.solver.method != SolverMethod::rk4) return;
     const double step = setup.solver.step;
     for (double t = next_jump(setup, setup.start); t < setup.stop; t = next_jump(setup, t)) {
         if (t == setup.start + nearest_integer((t - setup.start) / step) * step) continue;
@@ -132,7 +132,7 @@ void warn_of_wall(const Setup& setup, std::vector<std::string>& warnings) {
     if (past > 0)
         warnings.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
                            " m at the most; the arm's base is then behind it");
-    if (setup.plant.acts_on_arm && setup.solver.method == Solver::rk4) warn_of_contact_step(setup, warnings);
+    if (setup.plant.acts_on_arm && setup.solver.method == SolverMethod::rk4) warn_of_contact_step(setup, warnings);
 }
 
 }  // namespace

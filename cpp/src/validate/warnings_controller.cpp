@@ -22,10 +22,6 @@ std::string rounded(double x) {
     return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, 6).ptr};
 }
 
-std::string word_of(ControllerType type) {
-    return known_key("controller.type").choices[static_cast<std::size_t>(type)];
-}
-
 // The gain along a unit vector, from gains of the three base axes.
 double along(const Vec3<double>& n, const Vec3<double>& gains) {
     return n[0] * n[0] * gains[0] + n[1] * n[1] * gains[1] + n[2] * n[2] * gains[2];
@@ -56,7 +52,7 @@ void warn_of_cubic(double m, double b, double c, double d, double gain, const st
 void warn_of_force_loop(const Controller<double>& controller, const Loop& loop, Warnings& warnings) {
     const Gains<double>& g = controller.gains;
     const double k = loop.k_e, kI = g.force_integral;
-    const std::string name = "controller.type " + word_of(controller.type);
+    const std::string name = "controller.type " + std::string(word_of(controller.type));
     if (controller.type == ControllerType::parallel)
         warn_of_cubic(g.force_mass, along(loop.n, g.damping), along(loop.n, g.stiffness) + k * g.force, k * kI, kI,
                       name, warnings);
@@ -120,7 +116,7 @@ void warn_of_contact(const Setup& setup, Warnings& warnings) {
     if (!plant.has_wall) return;
     if (uses_force(setup.controller()) && !plant.acts_on_arm)
         warnings.push_back(
-            "controller.type " + word_of(setup.controller().type) +
+            "controller.type " + std::string(word_of(setup.controller().type)) +
             (tracks_force(setup.controller().type) ? " presses on the wall" : " uses the contact force") +
             " and wall.acts_on_arm is false: the arm does not feel the force that "
             "its controller measures; write acts_on_arm: true");
@@ -349,7 +345,7 @@ void warn_of_counting(const Setup& setup, const std::string& law, Warnings& warn
 void warn_of_reserve(const Setup& setup, Warnings& warnings) {
     const Controller<double>& controller = setup.controller();
     if (!has_reserve(controller)) return;
-    const std::string law = "controller.type " + word_of(controller.type);
+    const std::string law = "controller.type " + std::string(word_of(controller.type));
     double pressed = std::numeric_limits<double>::infinity();
     for (const Spring& spring : springs_of(controller, pose(setup.q))) {
         if (setup.digital.sampling.on) warn_of_held_spring(setup, spring, warnings);

@@ -8,6 +8,7 @@
 #include "arm3r/control/reference.hpp"
 #include "arm3r/model/dynamics.hpp"
 #include "arm3r/model/recursion.hpp"
+#include "arm3r/numbers/name.hpp"
 
 namespace arm3r {
 
@@ -37,6 +38,42 @@ struct Gains {
     Vec3<P> plane_point, plane_normal;                  // m; unit
 };
 
+template <Name path>
+struct KeyOf {};
+
+// Every gain with its key in a scenario: calls number(key, x...) or vector(key, v...) with the gain of each of `gains`,
+// which may have different number types.
+template <class F, class V, class... G>
+ARM3R_INLINE void each_gain(F number, V vector, G&... gains) {
+    vector(KeyOf<"controller.joint_stiffness">{}, gains.joint_stiffness...);
+    vector(KeyOf<"controller.joint_damping">{}, gains.joint_damping...);
+    vector(KeyOf<"controller.position_gain">{}, gains.position...);
+    vector(KeyOf<"controller.velocity_gain">{}, gains.velocity...);
+    vector(KeyOf<"controller.mass">{}, gains.mass...);
+    vector(KeyOf<"controller.stiffness">{}, gains.stiffness...);
+    vector(KeyOf<"controller.damping">{}, gains.damping...);
+    number(KeyOf<"controller.force_mass">{}, gains.force_mass...);
+    number(KeyOf<"controller.force_damping">{}, gains.force_damping...);
+    number(KeyOf<"controller.force_gain">{}, gains.force...);
+    number(KeyOf<"controller.force_integral_gain">{}, gains.force_integral...);
+    number(KeyOf<"controller.integral_limit">{}, gains.integral_limit...);
+    number(KeyOf<"controller.tracking_time">{}, gains.tracking_time...);
+    number(KeyOf<"controller.contact_on">{}, gains.contact_on...);
+    number(KeyOf<"controller.contact_off">{}, gains.contact_off...);
+    number(KeyOf<"controller.inner_bandwidth">{}, gains.inner_bandwidth...);
+    number(KeyOf<"controller.inner_damping_ratio">{}, gains.inner_damping_ratio...);
+    number(KeyOf<"controller.reference_gain">{}, gains.reference_gain...);
+    number(KeyOf<"controller.assumed_stiffness">{}, gains.assumed_stiffness...);
+    number(KeyOf<"controller.stiffness_amplitude">{}, gains.stiffness_amplitude...);
+    number(KeyOf<"controller.stiffness_frequency">{}, gains.stiffness_frequency...);
+    number(KeyOf<"controller.tank_energy">{}, gains.tank_energy...);
+    number(KeyOf<"controller.tank_low">{}, gains.tank_low...);
+    number(KeyOf<"controller.tank_high">{}, gains.tank_high...);
+    number(KeyOf<"controller.tank_capacity">{}, gains.tank_capacity...);
+    vector(KeyOf<"controller.plane_point">{}, gains.plane_point...);
+    vector(KeyOf<"controller.plane_normal">{}, gains.plane_normal...);
+}
+
 // The choices, which are the same in all lanes.
 struct ControllerChoices {
     ControllerType type = ControllerType::none;
@@ -57,6 +94,13 @@ struct ControllerChoices {
 // Whether the law uses the wall stiffness of the estimator as soon as the estimate is valid.
 inline bool asks_estimator(const ControllerChoices& law) {
     return law.type == ControllerType::adaptive_reference && law.adaptation == Adaptation::indirect;
+}
+
+// Whether the law controls the force from now on, 1 or 0: always, in contact, or since the first contact (7.4).
+template <class T>
+ARM3R_INLINE T force_phase_after(Switching switching, const T& contact, const T& before) {
+    if (switching == Switching::in_contact) return contact;
+    return switching == Switching::latched ? T(max(before, contact)) : T(1.0);
 }
 
 template <class P>

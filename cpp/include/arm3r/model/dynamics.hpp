@@ -204,4 +204,12 @@ ARM3R_INLINE Mat3<T> operational_space_inertia(const Arm<P>& arm, const Pose<T>&
     return L;
 }
 
+// Whether the mass matrix is positive definite beyond its rounding error.
+template <class P, class T>
+ARM3R_INLINE auto is_well_conditioned(const Arm<P>& arm, const Pose<T>& p) {
+    const Mat3<T> M = mass_matrix(arm, p);
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    return M(0, 0) > T(0.0) && T(M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2)) > T(8 * epsilon * M(1, 1) * M(2, 2));
+}
+
 }  // namespace arm3r
