@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "arm3r/numbers/widths.hpp"
 #include "ours.hpp"
 #include "peers.hpp"
 

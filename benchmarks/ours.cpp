@@ -4,6 +4,7 @@
 
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "batch/simulation.hpp"
 #include "record/run_data.hpp"
 #include "schema/schema.hpp"

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "arm3r/numbers/widths.hpp"
+
 #include "batch/batch.hpp"
 #include "fixtures.hpp"
 #include "record/metrics.hpp"

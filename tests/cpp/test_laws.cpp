@@ -5,6 +5,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "arm3r/lanes.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "control/compiled_laws.hpp"
 #include "fixtures.hpp"
 

@@ -4,6 +4,7 @@
 #include <complex>
 
 #include "arm3r/lanes.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {

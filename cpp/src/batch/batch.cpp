@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "arm3r/numbers/widths.hpp"
 #include "base/callback.hpp"
 #include "base/error.hpp"
 #include "batch/worker.hpp"

@@ -8,7 +8,7 @@ template <class T>
 using PlainLaneRk4 = LaneRk4<T>;
 
 void run_lanes_rk4(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
-    LaneGroups<PlainLaneRk4>::run(lanes, worker, first, run);
+    run_lane_groups<PlainLaneRk4>(lanes, worker, first, run);
 }
 
 }  // namespace arm3r

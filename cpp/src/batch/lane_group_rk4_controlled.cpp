@@ -8,7 +8,7 @@ template <class T>
 using ControlledLaneRk4 = LaneRk4<T, full_size>;
 
 void run_lanes_rk4_controlled(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
-    LaneGroups<ControlledLaneRk4>::run(lanes, worker, first, run);
+    run_lane_groups<ControlledLaneRk4>(lanes, worker, first, run);
 }
 
 }  // namespace arm3r

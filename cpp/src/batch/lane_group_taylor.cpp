@@ -5,7 +5,7 @@
 namespace arm3r {
 
 void run_lanes_taylor(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
-    LaneGroups<LaneTaylor>::run(lanes, worker, first, run);
+    run_lane_groups<LaneTaylor>(lanes, worker, first, run);
 }
 
 }  // namespace arm3r

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "arm3r/numbers/widths.hpp"
 #include "batch/lane_group.hpp"
 
 namespace arm3r {
@@ -58,42 +59,10 @@ private:
 
 // Packs as wide as the registers; wider packs are slow.
 template <template <class> class Integrator>
-struct LaneGroups {
-    static void one(BatchWorker& worker, const Setup& first, std::size_t run) {
-        run_at_width<double>(worker, first, run);
-    }
-#if !ARM3R_ONE_LANE
-    static void two(BatchWorker& worker, const Setup& first, std::size_t run) {
-        run_at_width<Pack<2>>(worker, first, run);
-    }
-#endif
-#if ARM3R_WIDE_PACKS
-    ARM3R_FOR_FOUR static void four(BatchWorker& worker, const Setup& first, std::size_t run) {
-        run_at_width<Pack<4>>(worker, first, run);
-    }
-    ARM3R_FOR_EIGHT static void eight(BatchWorker& worker, const Setup& first, std::size_t run) {
-        run_at_width<Pack<8>>(worker, first, run);
-    }
-#endif
-
-    template <class T>
-    ARM3R_INLINE static void run_at_width(BatchWorker& worker, const Setup& first, std::size_t run) {
+void run_lane_groups(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
+    run_at_width(LaneTypes{}, lanes, [&]<class T>() ARM3R_INLINE_LAMBDA {
         std::make_unique<LaneGroup<Integrator<T>>>(worker, first, run)->run();
-    }
-
-    static void run(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
-        switch (lanes) {
-            case 1: return one(worker, first, run);
-#if !ARM3R_ONE_LANE
-            case 2: return two(worker, first, run);
-#endif
-#if ARM3R_WIDE_PACKS
-            case 4: return four(worker, first, run);
-            case 8: return eight(worker, first, run);
-#endif
-            default: return one(worker, first, run);
-        }
-    }
-};
+    });
+}
 
 }  // namespace arm3r

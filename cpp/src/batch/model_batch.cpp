@@ -7,6 +7,7 @@
 #include "arm3r/model/dynamics.hpp"
 #include "arm3r/model/recursion.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
+#include "arm3r/numbers/widths.hpp"
 
 namespace arm3r {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "control/compiled_laws.hpp"
 
 namespace arm3r {
@@ -21,16 +22,11 @@ void of_rows(const Controller<double>& controller, const Measurement<T>& sensed,
 
 }  // namespace
 
-template <>
-LawFunction<double, Pack<2>> compiled_law() {
-    return of_rows;
-}
-
-#if ARM3R_WIDE_PACKS
-template <>
-LawFunction<double, Pack<4>> compiled_law() {
-    return of_rows;
-}
-#endif
+#define ARM3R_COMPILED_LAW(T)               \
+    template <>                             \
+    LawFunction<double, T> compiled_law() { \
+        return of_rows;                     \
+    }
+ARM3R_PACKS(ARM3R_COMPILED_LAW)
 
 }  // namespace arm3r

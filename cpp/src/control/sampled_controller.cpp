@@ -275,13 +275,6 @@ void SampledController<T>::estimate(const Mask& due) {
                                                               const Measurement<__VA_ARGS__>&, Command<__VA_ARGS__>&); \
     template void SampledController<__VA_ARGS__>::estimate(const Mask&);
 
-ARM3R_SAMPLED_CONTROLLER(double)
-#if !ARM3R_ONE_LANE
-ARM3R_SAMPLED_CONTROLLER(Pack<2>)
-#endif
-#if ARM3R_WIDE_PACKS
-ARM3R_SAMPLED_CONTROLLER(Pack<4>)
-ARM3R_SAMPLED_CONTROLLER(Pack<8>)
-#endif
+ARM3R_LANE_TYPES(ARM3R_SAMPLED_CONTROLLER)
 
 }  // namespace arm3r

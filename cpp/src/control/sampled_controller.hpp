@@ -10,10 +10,10 @@
 
 #include "arm3r/control/energy_reserve.hpp"
 #include "arm3r/lanes.hpp"
+#include "arm3r/numbers/lane_access.hpp"
 #include "arm3r/numbers/random.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "arm3r/sensing/estimator.hpp"
-#include "base/lane_access.hpp"
-#include "base/noinline.hpp"
 #include "control/user_law.hpp"
 
 namespace arm3r {

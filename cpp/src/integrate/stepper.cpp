@@ -1,10 +1,10 @@
 #include "integrate/stepper.hpp"
+#include "arm3r/numbers/widths.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "base/noinline.hpp"
 #include "base/number_text.hpp"
 
 namespace arm3r {

@@ -1,10 +1,12 @@
 #include "integrate/taylor.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <utility>
 
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
+#include "arm3r/numbers/widths.hpp"
 
 namespace arm3r {
 namespace {
@@ -38,35 +40,32 @@ ARM3R_INLINE void expand_here(const Plant<T>& plant, const T& t, const State<T, 
 }
 
 template <std::size_t recipe>
-ARM3R_WIDEST_SCALARS void expand_by(const Plant<double>& plant, const double& t, const State<double, state_size>& y,
-                                    int order, double (*c)[quantities]) {
+struct ExpandBy {
+    template <class T>
+    ARM3R_INLINE void operator()(const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
+                                 T (*c)[quantities]) const {
+        expand_here<recipe>(plant, t, y, order, c);
+    }
+};
+
+template <std::size_t recipe>
+ARM3R_WIDEST_SCALARS void expand_scalars(const Plant<double>& plant, const double& t,
+                                         const State<double, state_size>& y, int order, double (*c)[quantities]) {
     expand_here<recipe>(plant, t, y, order, c);
 }
 
-template <std::size_t recipe>
-void expand_by(const Plant<Pack<2>>& plant, const Pack<2>& t, const State<Pack<2>, state_size>& y, int order,
-               Pack<2> (*c)[quantities]) {
-    expand_here<recipe>(plant, t, y, order, c);
+template <std::size_t recipe, class T>
+constexpr Expand<T> expand_by() {
+    if constexpr (std::same_as<T, double>) return expand_scalars<recipe>;
+    else
+        return Outlined<T>::template call<ExpandBy<recipe>, const Plant<T>&, const T&, const State<T, state_size>&, int,
+                                          T(*)[quantities]>;
 }
-
-#if ARM3R_WIDE_PACKS
-template <std::size_t recipe>
-ARM3R_FOR_FOUR void expand_by(const Plant<Pack<4>>& plant, const Pack<4>& t, const State<Pack<4>, state_size>& y,
-                              int order, Pack<4> (*c)[quantities]) {
-    expand_here<recipe>(plant, t, y, order, c);
-}
-
-template <std::size_t recipe>
-ARM3R_FOR_EIGHT void expand_by(const Plant<Pack<8>>& plant, const Pack<8>& t, const State<Pack<8>, state_size>& y,
-                               int order, Pack<8> (*c)[quantities]) {
-    expand_here<recipe>(plant, t, y, order, c);
-}
-#endif
 
 template <class T>
 Expand<T> expand_of(Kernel kernel) {
     static constexpr auto table = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::array<Expand<T>, sizeof...(i)>{static_cast<Expand<T>>(expand_by<i>)...};
+        return std::array<Expand<T>, sizeof...(i)>{expand_by<i, T>()...};
     }(std::make_index_sequence<recipes.size()>());
     return table[static_cast<std::size_t>(kernel)];
 }
@@ -106,18 +105,9 @@ void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, sta
     expand_of<T>(kernel)(plant, t, y, order, expansion.c);
 }
 
-template void expand(Kernel, const Plant<double>&, const double&, const State<double, state_size>&, int,
-                     Expansion<double>&);
-#if !ARM3R_ONE_LANE
-template void expand(Kernel, const Plant<Pack<2>>&, const Pack<2>&, const State<Pack<2>, state_size>&, int,
-                     Expansion<Pack<2>>&);
-#endif
-#if ARM3R_WIDE_PACKS
-template void expand(Kernel, const Plant<Pack<4>>&, const Pack<4>&, const State<Pack<4>, state_size>&, int,
-                     Expansion<Pack<4>>&);
-template void expand(Kernel, const Plant<Pack<8>>&, const Pack<8>&, const State<Pack<8>, state_size>&, int,
-                     Expansion<Pack<8>>&);
-#endif
+#define ARM3R_EXPAND(T) \
+    template void expand(Kernel, const Plant<T>&, const T&, const State<T, state_size>&, int, Expansion<T>&);
+ARM3R_LANE_TYPES(ARM3R_EXPAND)
 
 int order_of(double tol) {
     constexpr double each_order = 0x1.152aaa3bf81ccp-3;  // exp(-2)

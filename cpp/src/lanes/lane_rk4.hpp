@@ -35,7 +35,7 @@ public:
             y0_ = this->y_;
             f0_ = this->f_;
         }
-        if (this->has_performance_) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_segment(); });
+        if (this->has_performance_) this->begin_segment();
         before_ = this->in_;
         const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
@@ -236,11 +236,9 @@ private:
     template <std::size_t n>
     ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved) {
         Mask unresolved = false;
-        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
-            if (n == simpson.node.size()) sample_midpoint();
-            this->end_segment(rule, this->h_);
-            unresolved = add_segment(this->tracked_, rule, Mask(moved && !eventful_), this->segment_, this->sums_);
-        });
+        if (n == simpson.node.size()) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
+        this->end_segment(rule, this->h_);
+        this->add_segment(rule, moved && !eventful_, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 

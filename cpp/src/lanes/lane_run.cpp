@@ -38,13 +38,7 @@ BatchKey batch_key_of(const Setup& setup) {
              model.gravity_is_vertical, model.has_damping, model.has_dry_friction, model.has_torque_limit}};
 }
 
-ARM3R_LANE_RUN(double)
-#if !ARM3R_ONE_LANE
-ARM3R_LANE_RUN(Pack<2>)
-#endif
-#if ARM3R_WIDE_PACKS
-ARM3R_LANE_RUN(Pack<4>)
-ARM3R_LANE_RUN(Pack<8>)
-#endif
+#define ARM3R_WITHOUT_MEMORY(T) ARM3R_LANE_RUN(T, state_size)
+ARM3R_LANE_TYPES(ARM3R_WITHOUT_MEMORY)
 
 }  // namespace arm3r

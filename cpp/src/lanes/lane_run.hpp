@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "arm3r/numbers/eigen_traits.hpp"
-#include "base/noinline.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "contact/contact_change.hpp"
 #include "control/continuous_inputs.hpp"
 #include "control/sampled_controller.hpp"
@@ -177,36 +177,16 @@ protected:
     // ---- performance
 
     // Starts a segment; contact, phase and a held torque are constant within it.
-    ARM3R_INLINE void begin_segment() {
-        segment_.start = t_;
-        segment_.touching = touching_;
-        phase_ = sampled_.is_on() ? sampled_.controller_state().force_phase : rhs_.force_phase;
-        for (int i = 0; i < 3; ++i) q_before_[i] = y_[i], tau_before_[i] = tau_[i];
-        sample_performance(t_, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[0]);
-    }
-
+    void begin_segment();
     // A sample of the present segment.
-    ARM3R_INLINE void sample_performance(const T& t, const Pose<T>& p, const WallState<T>& wall,
-                                         const Indentation<T>& in, const Vec3<T>& tau, const Vec3<T>& qd,
-                                         PerformanceSample<T>& sample) const {
-        const Controller<T>& controller = sampled_.is_on() ? sampled_.controller() : plant_.controller;
-        sample_motion(tracked_, plant_, true_contact_, controller, t, p, wall, in, segment_.touching, phase_, sample);
-        sample_torque(plant_.arm, plant_.holds_torque ? tau_before_ : tau, qd, sample);
-    }
-
+    void sample_performance(const T& t, const Pose<T>& p, const WallState<T>& wall, const Indentation<T>& in,
+                            const Vec3<T>& tau, const Vec3<T>& qd, PerformanceSample<T>& sample) const;
     // The segment ends at the present instant.
     template <std::size_t n>
-    ARM3R_INLINE void end_segment(const Rule<n>& rule, const T& duration) {
-        segment_.duration = duration;
-        sample_performance(slightly_before(t_), p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[n - 1]);
-        for (int i = 0; i < 3; ++i)
-            segment_.work[i] =
-                plant_.holds_torque
-                    ? T(tau_before_[i] * (y_[i] - q_before_[i]))
-                    : T(duration * mean_of(rule, segment_, [i](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA {
-                            return s.power[i];
-                        }));
-    }
+    void end_segment(const Rule<n>& rule, const T& duration);
+    // Adds it to the sums where `moved`; sets the lanes in which it must be refined.
+    template <std::size_t n>
+    void add_segment(const Rule<n>& rule, const Mask& moved, Mask& unresolved);
 
     // The same in doubles for one lane, as a function of theta; the torque of a sampled controller is that of the step.
     template <class Visit>

@@ -32,7 +32,7 @@ public:
     template <class Changed>
     ARM3R_INLINE void step(Changed changed) {
         t0_ = this->t_;
-        if (this->has_performance_) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { this->begin_segment(); });
+        if (this->has_performance_) this->begin_segment();
         const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
@@ -217,13 +217,14 @@ private:
     template <std::size_t n>
     ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved, const T& h) {
         Mask unresolved = false;
-        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
-            for (std::size_t j = 1; j + 1 < n; ++j) sample_at(T(rule.node[j] * h), this->segment_.samples[j]);
-            this->end_segment(rule, h);
-            if (!this->plant_.holds_torque)
+        for (std::size_t j = 1; j + 1 < n; ++j)
+            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), this->segment_.samples[j]); });
+        this->end_segment(rule, h);
+        if (!this->plant_.holds_torque)
+            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
                 for (int i = 0; i < 3; ++i) this->segment_.work[i] = value(series_, work1 + i, h);
-            unresolved = add_segment(this->tracked_, rule, moved, this->segment_, this->sums_);
-        });
+            });
+        this->add_segment(rule, moved, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 

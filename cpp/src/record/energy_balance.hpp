@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "base/lane_access.hpp"
+#include "arm3r/numbers/lane_access.hpp"
 #include "record/row.hpp"
 #include "record/run_data.hpp"
 #include "setup/setup.hpp"

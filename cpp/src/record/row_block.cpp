@@ -1,12 +1,13 @@
+#include "arm3r/numbers/widths.hpp"
 #include "record/row_values.hpp"
 
 namespace arm3r {
 namespace {
 
 // As many rows in a pack as the registers hold, one pack after the other.
-template <int N>
+template <class Group>
 ARM3R_INLINE void fill_block(const RowContext& context, const double* t, RowBlock& rows) {
-    using Group = Pack<N>;
+    constexpr int N = Lanes<Group>::count;
     rows.first_link_behind_wall = rows_per_block;
     for (int first = rows_per_block - N; first >= 0; first -= N) {
         const Group at = Group::load(t + first);
@@ -21,21 +22,11 @@ ARM3R_INLINE void fill_block(const RowContext& context, const double* t, RowBloc
     }
 }
 
-void by_two(const RowContext& context, const double* t, RowBlock& rows) { fill_block<2>(context, t, rows); }
-#if ARM3R_WIDE_PACKS
-ARM3R_FOR_FOUR void by_four(const RowContext& context, const double* t, RowBlock& rows) {
-    fill_block<4>(context, t, rows);
-}
-#endif
-
 }  // namespace
 
 void make_row_block(const RowContext& context, const double* t, RowBlock& rows) {
-#if ARM3R_WIDE_PACKS
-    static const bool has_four = max_lanes() >= 4;  // by eight takes twice as long: more numbers than registers
-    if (has_four) return by_four(context, t, rows);
-#endif
-    by_two(context, t, rows);
+    static const int lanes = ARM3R_WIDE_PACKS && max_lanes() >= 4 ? 4 : 2;
+    run_at_width(RowTypes{}, lanes, [&]<class T>() ARM3R_INLINE_LAMBDA { fill_block<T>(context, t, rows); });
 }
 
 }  // namespace arm3r

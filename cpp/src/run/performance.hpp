@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "base/lane_access.hpp"
+#include "arm3r/numbers/lane_access.hpp"
 #include "record/row.hpp"
 #include "record/run_data.hpp"
 #include "setup/setup.hpp"

@@ -8,37 +8,8 @@
 #define ARM3R_INLINE [[gnu::always_inline]] inline
 #define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
 #endif
-// A function of packs that is compiled for several instruction sets; the widest one of the CPU is chosen at run time,
-// and all give the same bits. All functions that it calls are inlined. Functions with ARM3R_FOR_FOUR and
-// ARM3R_FOR_EIGHT may be called only if the processor has registers for packs of 4 or 8 (max_lanes); without such
-// variants (ARM3R_WIDE_PACKS 0) packs have 2 lanes.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && !defined(ARM3R_NARROW)
-#define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#define ARM3R_WIDEST_SCALARS __attribute__((target_clones("default", "arch=x86-64-v3")))
-#define ARM3R_FOR_FOUR __attribute__((target("arch=x86-64-v3")))
-#define ARM3R_FOR_EIGHT __attribute__((target("arch=x86-64-v4")))
-#define ARM3R_WIDE_PACKS 1
-#else
-#define ARM3R_WIDEST
-#define ARM3R_WIDEST_SCALARS
-#define ARM3R_WIDE_PACKS 0
-#endif
-#ifndef ARM3R_ONE_LANE
-#define ARM3R_ONE_LANE 0  // 1: a batch has no packs, to compile faster while developing
-#endif
 
 namespace arm3r {
-
-// The number of lanes in the widest registers of this processor.
-inline int max_lanes() {
-#if ARM3R_ONE_LANE
-    return 1;
-#elif ARM3R_WIDE_PACKS
-    if (__builtin_cpu_supports("x86-64-v4")) return 8;
-    if (__builtin_cpu_supports("x86-64-v3")) return 4;
-#endif
-    return 2;
-}
 
 template <class T>
 struct SinCos {
