@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import sys
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
+
+from ._native import nearest_word
 
 
 def place(file: object, line: int = 0, column: int = 0) -> str:
@@ -30,8 +31,8 @@ def describe(problem: Mapping[str, Any]) -> str:
 
 def did_you_mean(word: str, words: Iterable[str]) -> str:
     """A question with the word that is most like the given one; "" where none is like it."""
-    near = difflib.get_close_matches(word, list(words), n=1)
-    return f"did you mean {near[0]}?" if near else ""
+    near = nearest_word(word, words)
+    return f"did you mean {near}?" if near else ""
 
 
 def no_column(name: object, names: Iterable[str]) -> KeyError:

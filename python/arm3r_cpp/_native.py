@@ -320,6 +320,15 @@ def outcome(run: Any) -> str:
     return outcome_name(out[0])
 
 
+def nearest_word(word: str, words: Iterable[str]) -> str:
+    """The one of `words` that `word` is most likely a slip for; "" where none is near."""
+    names = list(words)
+    texts = [ffi.new("char[]", name.encode()) for name in names]
+    place = ffi.new("int64_t *")
+    call(lib.arm3r_nearest_word, word.encode(errors="replace"), texts, len(texts), place)
+    return names[place[0]] if place[0] >= 0 else ""
+
+
 def outcome_name(number: int) -> str:
     """ "ok", "stopped", ...; "" of an unknown one."""
     return string(lib.arm3r_outcome_name(number))

@@ -106,7 +106,7 @@ inline Params unequal_params() {
 
 inline std::span<const double> column(const Run& run, std::string_view name) {
     for (std::size_t i = 0; i < run.columns.size(); ++i)
-        if (column_table()[run.columns[i]].name == name) return run.column(i);
+        if (column_table[run.columns[i]].name == name) return run.column(i);
     throw std::invalid_argument("no column " + std::string(name));
 }
 

@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(columns_of_the_wall_are_there_only_with_a_wall) {
     BOOST_CHECK_THROW(column(falling().run(), "wall_x"), std::invalid_argument);
     BOOST_TEST(last(falling().run(), "contact") == 0);
     const auto of_any_run = [](const Column& c) { return c.need == Need::nothing || c.need == Need::wall; };
-    BOOST_TEST(juggled().run().columns.size() == std::size_t(std::ranges::count_if(column_table(), of_any_run)));
+    BOOST_TEST(juggled().run().columns.size() == std::size_t(std::ranges::count_if(column_table, of_any_run)));
 }
 
 BOOST_AUTO_TEST_CASE(the_other_convention_negates_joints_2_and_3_and_nothing_else) {
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(the_other_convention_negates_joints_2_and_3_and_nothing_els
                        .set("initial.qd", {0.5, 0.4, -0.3});
     const Run slide = juggled().run(), simscape = other.run();
     for (const std::size_t i : slide.columns) {
-        const std::string name(column_table()[i].name);
+        const std::string name(column_table[i].name);
         const bool of_joint = (name.starts_with("q") || name.starts_with("tau")) && !name.ends_with("1");
         for (std::size_t row = 0; row < slide.rows; ++row)
             BOOST_TEST(column(simscape, name)[row] == (of_joint ? -1 : 1) * column(slide, name)[row]);
@@ -352,7 +352,7 @@ BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_without_subnormal_numbers) {
         for (std::size_t i = 0; i < run.columns.size(); ++i)
             for (const double value : run.column(i))
                 BOOST_TEST(std::fpclassify(value) != FP_SUBNORMAL,
-                           method << ": " << value << " in " << column_table()[run.columns[i]].name);
+                           method << ": " << value << " in " << column_table[run.columns[i]].name);
         for (const char* name : {"qd1", "qd2", "qd3"}) BOOST_TEST(last(run, name) == 0);
     }
 }

@@ -91,6 +91,9 @@ class Caller:
             return len(self.text(function, name.removesuffix("_size")))
         if kind == "const char *":
             return self.keep(ffi.new("char[]", self.text(function, name)))
+        if name == "words":
+            word = self.keep(ffi.new("char[]", b"length"))
+            return self.keep(ffi.new("const char *[]", [word] * self.count))
         if name == "params":
             return self.params("user" if function.name.endswith("_control") else "none")
         if kind == "const double *":
@@ -125,7 +128,7 @@ class Caller:
                 "arm3r_run_save": bytes(self.output),
                 "arm3r_output_probe": bytes(self.output),
             }.get(function.name, b"time.stop")
-        return {"text": SCENARIO, "file": b"abi.yaml", "name": b"initial.q[0]", "value": b"0.1"}[name]
+        return {"text": SCENARIO, "word": b"lenght", "file": b"abi.yaml", "name": b"initial.q[0]", "value": b"0.1"}[name]
 
     def params(self, controller: str) -> Any:
         values = self.keep(ffi.new("double[]", self.count))

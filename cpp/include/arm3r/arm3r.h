@@ -84,6 +84,10 @@ typedef enum arm3r_outcome {
 
 ARM3R_API const char *arm3r_outcome_name(int32_t outcome); /* "ok", "stopped", ...; "" for an unknown value */
 
+/* Writes the place in `words` of the one that `word` is most likely a slip for, by the rule of all messages; -1: none is
+ * near. */
+ARM3R_API int32_t arm3r_nearest_word(const char *word, const char *const *words, size_t count, int64_t *place);
+
 /* ---- numbers: parameters ------------------------------------------------------------------------------------------
  * A scenario is a flat array of arm3r_param_count() doubles. A key of the scenario file with one number has the key's
  * path as its name, "wall.contact.stiffness"; one with several has "initial.q[0]", "initial.q[1]", ... A choice is stored as

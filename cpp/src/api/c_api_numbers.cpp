@@ -460,7 +460,7 @@ int32_t arm3r_run_column(const arm3r_run* run, size_t index, const char** name, 
         need(unit, "unit");
         need(data, "data");
         check_index(index, run->run.columns.size(), "column");
-        const arm3r::Column& column = column_table()[run->run.columns[index]];
+        const arm3r::Column& column = column_table[run->run.columns[index]];
         *name = column.name.data();
         *unit = column.unit.data();
         *data = run->run.column(index).data();

@@ -16,6 +16,7 @@
 #include "scenario/json_schema.hpp"
 #include "scenario/reference_docs.hpp"
 #include "schema/schema.hpp"
+#include "schema/suggest.hpp"
 #include "setup/setup.hpp"
 #include "validate/size_limits.hpp"
 #include "validate/warnings.hpp"
@@ -84,6 +85,18 @@ void arm3r_scenario::changed() {
 }
 
 // ---- scenarios
+
+int32_t arm3r_nearest_word(const char* word, const char* const* words, size_t count, int64_t* place) {
+    return guard([&] {
+        need(word, "word");
+        need(words, "words");
+        need(place, "place");
+        for (std::size_t i = 0; i < count; ++i) need(words[i], "words");
+        const std::vector<std::string> all(words, words + count);
+        const auto found = std::ranges::find(all, nearest(word, all));
+        *place = found == all.end() ? -1 : found - all.begin();
+    });
+}
 
 int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* file, size_t file_size,
                               arm3r_scenario** scenario) {

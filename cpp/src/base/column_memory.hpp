@@ -20,7 +20,7 @@ RowMemory allocate_rows(std::size_t doubles);
 
 // Columns lie one after the other in one block: column i is data[i*capacity .. i*capacity + rows).
 struct RowTable {
-    std::vector<std::size_t> columns;  // indices into column_table() (columns.hpp), in order
+    std::vector<std::size_t> columns;  // indices into column_table (columns.hpp), in order
     std::size_t rows = 0, capacity = 0;
     RowMemory data;
 

@@ -10,6 +10,7 @@
 #include "control/continuous_inputs.hpp"
 #include "control/sampled_controller.hpp"
 #include "integrate/dense_output.hpp"
+#include "schema/columns.hpp"
 #include "setup/setup.hpp"
 
 namespace arm3r {
@@ -45,9 +46,7 @@ ARM3R_INLINE std::array<T, 4> dissipated_parts(const Plant<P>& plant, const Stat
     return {joints, contact, friction, edges};
 }
 
-// The columns of columns.cpp in their order, wall columns included; joint vectors in the arm's convention.
-constexpr std::size_t column_count = 72, residual_column = 45, parts_column = 68;
-
+// All columns (schema/columns.hpp); joint vectors in the arm's convention.
 struct Row {
     std::array<double, column_count> value;
     bool link_behind_wall;  // the elbow, or a link that is not in contact itself, lies behind the plate

@@ -38,7 +38,7 @@ void RowLog::log(const RowContext& context, double t, const FullState& y, double
     }
     if (nothing != 0) return end_at_bad_row(row, t);
     run_.rows += 1;
-    include_residual(run_.energy_residual_max, row.value[residual_column]);
+    include_residual(run_.energy_residual_max, row.value[ColumnIndex("energy_residual")]);
     if (row.link_behind_wall) record_link_behind_wall(t);
     if (follows_point(context.controller)) check_workspace(context, t, y);
 }
@@ -57,7 +57,7 @@ void RowLog::log_block(const RowContext& context) {
     }
     if (nothing != 0) return log_one_by_one(context, t);
     run_.rows += rows_per_block;
-    for (const double residual : rows.value[residual_column]) include_residual(run_.energy_residual_max, residual);
+    for (const double residual : rows.value[ColumnIndex("energy_residual")]) include_residual(run_.energy_residual_max, residual);
     if (rows.first_link_behind_wall < rows_per_block) record_link_behind_wall(t[rows.first_link_behind_wall]);
     if (!follows_point(context.controller)) return;
     for (const double at : t) check_workspace(context, at, context.dense((at - context.dense.t0) / context.dense.h));
@@ -75,7 +75,7 @@ void RowLog::end_at_bad_row(const Row& row, double t) {
     const auto is_bad = [&](std::size_t column) { return !std::isfinite(row.value[column]); };
     const std::size_t bad = *std::find_if(run_.columns.begin(), run_.columns.end(), is_bad);
     run_.outcome = ARM3R_RUN_DIVERGED;
-    run_.message = std::string(column_table()[bad].name) + " is not a finite number at t = " + shortest(t) + " s";
+    run_.message = std::string(column_table[bad].name) + " is not a finite number at t = " + shortest(t) + " s";
 }
 
 void RowLog::record_link_behind_wall(double t) {

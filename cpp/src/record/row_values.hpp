@@ -98,7 +98,7 @@ ARM3R_INLINE Measurement<T> measurement_of(const RowContext& context, const Righ
     return sensed;
 }
 
-// ---- the columns, in their order
+// ---- the columns
 
 template <class T>
 struct RowValues {
@@ -106,23 +106,26 @@ struct RowValues {
     T link_behind_wall;
 };
 
-// Writes one column after the other. Joint vectors are in the slide convention.
+// Writes values into the columns of their names; vectors into three, of which the first is named. Joint vectors are in
+// the slide convention.
 template <class T>
 class RowWriter {
 public:
     ARM3R_INLINE RowWriter(RowValues<T>& row, bool simscape) : value_(row.value), simscape_(simscape) {}
 
-    ARM3R_INLINE void number(const T& x) { value_[column_++] = x + 0.0; }  // + 0.0: no negative zero
-    ARM3R_INLINE void vector(const Vec3<T>& v) {
-        for (int i = 0; i < 3; ++i) number(v[i]);
+    ARM3R_INLINE void number(ColumnIndex column, const T& x) { put(column, x); }
+    ARM3R_INLINE void vector(ColumnIndex first, const Vec3<T>& v) {
+        for (std::size_t i = 0; i < 3; ++i) put(first + i, v[i]);
     }
-    ARM3R_INLINE void joints(const Vec3<T>& v) { vector(simscape_ ? change_convention(v) : v); }
-    ARM3R_INLINE void go_to(std::size_t column) { column_ = column; }
+    ARM3R_INLINE void joints(ColumnIndex first, const Vec3<T>& v) {
+        vector(first, simscape_ ? change_convention(v) : v);
+    }
 
 private:
+    ARM3R_INLINE void put(std::size_t column, const T& x) { value_[column] = x + 0.0; }  // + 0.0: no negative zero
+
     std::array<T, column_count>& value_;
     const bool simscape_;
-    std::size_t column_ = 0;
 };
 
 // Arm, wall and the force between them at the instant of a row.
@@ -162,26 +165,26 @@ ARM3R_INLINE void write_motion(const RowContext& context, const T& row_time, con
                                RowWriter<T>& write) {
     const Arm<double>& arm = context.plant.arm;
     const TipSensor<T> sensor = tip_sensor(arm, now.q, now.qd);
-    write.number(row_time);
-    write.joints(now.q);
-    write.joints(now.qd);
-    write.joints(forward_dynamics(arm, now.pose, now.qd, now.tau, now.felt));
-    write.joints(now.tau);
-    write.joints(gravity_torque(arm, now.pose));
-    write.vector(sensor.position);
-    write.vector(sensor.velocity);
-    write.vector(times(jacobian(arm, now.pose), now.qd));
-    write.vector(differentiated_tip(arm, context.dense, theta));
+    write.number("t", row_time);
+    write.joints("q1", now.q);
+    write.joints("qd1", now.qd);
+    write.joints("qdd1", forward_dynamics(arm, now.pose, now.qd, now.tau, now.felt));
+    write.joints("tau1", now.tau);
+    write.joints("tau_g1", gravity_torque(arm, now.pose));
+    write.vector("tip_x", sensor.position);
+    write.vector("tip_vx", sensor.velocity);
+    write.vector("tip_jvx", times(jacobian(arm, now.pose), now.qd));
+    write.vector("tip_dvx", differentiated_tip(arm, context.dense, theta));
 }
 
 template <class T>
 ARM3R_INLINE void write_contact(const RowState<T>& now, RowWriter<T>& write) {
     const Vec3<T>& f = now.force.on_tip;
-    write.vector(now.wall.position);
-    write.number(now.in.depth);
-    write.number(now.touches);
-    write.vector(f);
-    write.vector({-f[0], -f[1], -f[2]});
+    write.vector("wall_x", now.wall.position);
+    write.number("depth", now.in.depth);
+    write.number("contact", now.touches);
+    write.vector("f_on_tip_x", f);
+    write.vector("f_on_wall_x", {-f[0], -f[1], -f[2]});
 }
 
 template <class T>
@@ -190,25 +193,27 @@ ARM3R_INLINE void write_energy(const RowContext& context, const RowState<T>& now
     const Plant<double>& plant = context.plant;
     const T kinetic = kinetic_energy(plant.arm, now.pose, now.qd), potential = potential_energy(plant.arm, now.pose);
     const T stored = plant.acts_on_arm ? now.force.stored : T(0.0);
-    write.number(kinetic);
-    write.number(potential);
-    write.number(stored);
-    for (const std::size_t i : {work_of_actuators, work_of_wall, dissipated}) write.number(y[i]);
-    write.number(energy_residual(y, T(kinetic + potential + stored), context.energy_at_start));
+    write.number("energy_kinetic", kinetic);
+    write.number("energy_potential", potential);
+    write.number("energy_contact", stored);
+    write.number("work_actuators", y[work_of_actuators]);
+    write.number("work_wall", y[work_of_wall]);
+    write.number("energy_dissipated", y[dissipated]);
+    write.number("energy_residual", energy_residual(y, T(kinetic + potential + stored), context.energy_at_start));
 }
 
 template <class T>
 ARM3R_INLINE void write_law(const RowContext& context, const Measurement<T>& sensed, const ContactForce<T>& force,
                             RowWriter<T>& write) {
     const Controller<double>& law = context.controller;
-    write.number(force.normal);
-    write.number(dot(sensed.n, sensed.f_on_tip));
-    write.number(tracks_force(law.type) ? desired_force_at(law.reference, sensed.t) : T(0.0));
-    write.number(sensed.force_phase);
+    write.number("force", force.normal);
+    write.number("force_measured", dot(sensed.n, sensed.f_on_tip));
+    write.number("force_ref", tracks_force(law.type) ? desired_force_at(law.reference, sensed.t) : T(0.0));
+    write.number("force_phase", sensed.force_phase);
     const Vec3<T> desired =
         tracks_path(law.type) ? desired_motion_at(law.reference, sensed.t).position : zero_vector<T>();
-    write.vector(law.reference.in_joints ? zero_vector<T>() : desired);
-    write.joints(law.reference.in_joints ? desired : zero_vector<T>());
+    write.vector("tip_ref_x", law.reference.in_joints ? zero_vector<T>() : desired);
+    write.joints("q_ref1", law.reference.in_joints ? desired : zero_vector<T>());
 }
 
 template <class T>
@@ -217,27 +222,28 @@ ARM3R_INLINE void write_observer(const RowContext& context, const RightHandSide<
     const bool continuous = !context.is_sampled && context.plant.observer.on;
     const Vec3<T> r =
         continuous ? rhs.residual_at(now.pose, now.qd, y) : broadcast<T>(context.controller_state.residual);
-    write.joints(r);
+    write.joints("residual1", r);
     const Arm<double>& model = context.controller.model;
     // A sampled observer reads encoders.
     const Pose<T> seen = context.is_sampled ? pose(broadcast<T>(context.controller_state.q)) : now.pose;
     const auto regular = distance_to_singular(model, seen) > T(1e-3);
     const Vec3<T> f = force_from(model, seen, r);
-    write.vector({select(regular, f[0], T(0.0)), select(regular, f[1], T(0.0)), select(regular, f[2], T(0.0))});
-    write.number(T(context.controller_state.collision));
+    write.vector("f_estimate_x",
+                 {select(regular, f[0], T(0.0)), select(regular, f[1], T(0.0)), select(regular, f[2], T(0.0))});
+    write.number("collision", T(context.controller_state.collision));
 }
 
 template <class T>
 ARM3R_INLINE void write_memory(const RowContext& context, const RowState<T>& now, const State<T, full_size>& y,
                                RowWriter<T>& write) {
-    write.number(T(context.controller_state.stiffness));
-    write.number(T(context.controller_state.wall_speed));
-    write.number(T(context.controller_state.identifiable));
-    write.number(context.is_sampled ? T(context.controller_state.memory[0]) : y[law_at]);
+    write.number("stiffness_estimate", T(context.controller_state.stiffness));
+    write.number("wall_speed_estimate", T(context.controller_state.wall_speed));
+    write.number("identifiable", T(context.controller_state.identifiable));
+    write.number("tank_energy", context.is_sampled ? T(context.controller_state.memory[0]) : y[law_at]);
     T saturated(0.0);
     for (int i = 0; i < 3; ++i)
         saturated = select(abs(now.tau[i]) >= T(context.plant.arm.torque_limit[i]), T(1.0), saturated);
-    write.number(saturated);
+    write.number("saturated", saturated);
 }
 
 template <class T>
@@ -266,8 +272,11 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
         write_observer(context, rhs, now, y, write);
         write_memory(context, now, y, write);
     }
-    write.go_to(parts_column);
-    for (const T& part : dissipated_parts(plant, y, context.lost_at_edges)) write.number(part);
+    const auto [joints, in_contact, friction, edges] = dissipated_parts(plant, y, context.lost_at_edges);
+    write.number("energy_dissipated_joints", joints);
+    write.number("energy_dissipated_contact", in_contact);
+    write.number("energy_dissipated_friction", friction);
+    write.number("energy_dissipated_edges", edges);
 }
 
 }  // namespace arm3r

@@ -36,7 +36,7 @@ bool is_in(const Words& words, std::string_view word) {
 
 Words names_of(std::span<const std::size_t> columns) {
     Words names;
-    for (const std::size_t column : columns) names.emplace_back(column_table()[column].name);
+    for (const std::size_t column : columns) names.emplace_back(column_table[column].name);
     return names;
 }
 
@@ -161,11 +161,10 @@ private:
     std::string column(const std::string& key) {
         const Words here = names_of(columns_);
         const Node* node = node_.find(key);
-        const auto& all = column_table();
-        const auto elsewhere = std::find_if(all.begin(), all.end(), [&](const Column& c) {
+        const auto elsewhere = std::ranges::find_if(column_table, [&](const Column& c) {
             return node->type == Node::scalar && c.name == node->text && !is_in(here, node->text);
         });
-        if (elsewhere == all.end()) return word(key, here, "column");
+        if (elsewhere == column_table.end()) return word(key, here, "column");
         problem(node->mark, key, "column",
                 "this run has no such column; it is there " + std::string(need_text(elsewhere->need)), node->text,
                 listed(in_short(here)), std::string(need_hint(elsewhere->need)) + ", or take the check out");
@@ -255,7 +254,7 @@ struct Measured {
 
 std::span<const double> column_of(const Run& run, const std::string& name) {
     for (std::size_t i = 0; i < run.columns.size(); ++i)
-        if (column_table()[run.columns[i]].name == name) return run.column(i);
+        if (column_table[run.columns[i]].name == name) return run.column(i);
     throw Error(ARM3R_E_INTERNAL, "a check names the column " + name + ", which the run lacks");
 }
 

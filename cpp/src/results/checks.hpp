@@ -45,7 +45,7 @@ std::vector<CheckForm> check_forms();
 std::vector<std::string> words_of_check(std::string_view key);
 
 // Reads a list of checks; its errors are added to `problems`. `params` determine the rows of the run, `columns` are its
-// columns (indices into column_table()).
+// columns (indices into column_table).
 std::vector<Check> read_checks(const Node& list, std::span<const double> params, std::span<const std::size_t> columns,
                                const std::string& file, std::vector<Problem>& problems);
 

@@ -15,7 +15,7 @@ constexpr std::uint64_t fnv_start = 0xCBF29CE484222325, fnv_prime = 0x100000001B
 
 std::string header(const Run& run) {
     std::string line;
-    for (const std::size_t column : run.columns) (line += line.empty() ? "" : ",") += column_table()[column].name;
+    for (const std::size_t column : run.columns) (line += line.empty() ? "" : ",") += column_table[column].name;
     return line += '\n';
 }
 

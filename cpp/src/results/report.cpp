@@ -104,7 +104,7 @@ std::string vector_text(const std::array<double, 3>& v) {
 
 std::span<const double> column(const Run& run, std::string_view name) {
     for (std::size_t i = 0; i < run.columns.size(); ++i)
-        if (column_table()[run.columns[i]].name == name) return run.column(i);
+        if (column_table[run.columns[i]].name == name) return run.column(i);
     return {};
 }
 
@@ -122,7 +122,7 @@ std::string span_text(const Run& run) {
 
 bool has_wall(const Run& run) {
     return std::any_of(run.columns.begin(), run.columns.end(),
-                       [](std::size_t i) { return column_table()[i].need == Need::wall; });
+                       [](std::size_t i) { return column_table[i].need == Need::wall; });
 }
 
 std::string event_lines(const Run& run) {
@@ -220,7 +220,7 @@ double summary_number(const Run& run, std::string_view name) {
 
 std::string summary_json(const Results& results) {
     const Run& run = results.run;
-    std::vector<std::string> columns = each(run.columns, [](std::size_t i) { return json_column(column_table()[i]); });
+    std::vector<std::string> columns = each(run.columns, [](std::size_t i) { return json_column(column_table[i]); });
     std::string out = "{\n  \"name\": " + json_string(results.name);
     const auto field = [&](const char* name, const std::string& value) {
         out += ",\n  \"" + std::string(name) + "\": " + value;

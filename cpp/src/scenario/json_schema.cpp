@@ -287,7 +287,7 @@ private:
     // Each check has one subject, which says what other keys it has.
     std::string checks() {
         Words columns, variants;
-        for (const Column& column : column_table()) columns.emplace_back(column.name);
+        for (const Column& column : column_table) columns.emplace_back(column.name);
         definitions_["column of a run"] = object({member("enum", json_words(columns))});
         for (const CheckForm& form : check_forms()) {
             Words properties;

@@ -226,7 +226,7 @@ std::string schema_markdown() {
 
 std::string columns_text() {
     std::string out;
-    for (const Column& column : column_table()) {
+    for (const Column& column : column_table) {
         std::string line(column.name);
         line.resize(std::max<std::size_t>(line.size() + 1, 18), ' ');
         line += column.unit.empty() ? "-" : column.unit;
@@ -241,7 +241,7 @@ std::string columns_markdown() {
     std::string out =
         "# Columns of a run\n\nCSV: one header line of bare names, comma, LF. SI units, radians; no NaN.\n\n" +
         table_head({"Column", "Unit", "Meaning"});
-    for (const Column& column : column_table())
+    for (const Column& column : column_table)
         out += row({"`" + std::string(column.name) + "`", std::string(column.unit),
                     std::string(column.doc) +
                         (column.need == Need::nothing ? "" : "; *" + std::string(need_text(column.need)) + "*")});

@@ -384,7 +384,7 @@ private:
     // The columns of the run; all columns if they cannot be known because something else is wrong.
     std::vector<std::size_t> columns() const {
         if (keeps_rules_ && unknown_choices_.empty()) return columns_of(result_.setup);
-        std::vector<std::size_t> all(column_table().size());
+        std::vector<std::size_t> all(column_table.size());
         std::iota(all.begin(), all.end(), 0);
         return all;
     }

@@ -76,8 +76,8 @@ std::vector<std::size_t> columns_of(const Setup& setup) {
         }
     };
     std::vector<std::size_t> columns;
-    for (std::size_t i = 0; i < column_table().size(); ++i)
-        if (is_there(column_table()[i].need)) columns.push_back(i);
+    for (std::size_t i = 0; i < column_table.size(); ++i)
+        if (is_there(column_table[i].need)) columns.push_back(i);
     return columns;
 }
 
