@@ -5,6 +5,7 @@
 
 #include "arm3r/control/control_laws.hpp"
 #include "arm3r/model/contact.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "arm3r/ode/integrators.hpp"
 #include "arm3r/sensing/observer.hpp"
 #include "arm3r/sensing/sampling.hpp"
@@ -129,7 +130,7 @@ public:
         const T seen = min(t, latest);
         WallState<T> wall;  // left uninitialised if unused
         if (senses_wall(plant_) || (plant_.acts_on_arm && force_mode != ContactForceMode::none))
-            wall = wall_at(plant_.wall, seen);
+            wall = wall_state_at(seen);
         derivative(seen, wall, pose_near(y), y, dy);
     }
 
@@ -138,10 +139,7 @@ public:
     ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const State<T, N>& y,
                                  State<T, N>& dy) const {
         Indentation<T> in;
-        if (needs_contact())
-            in = is_plain_spring(plant_.wall, plant_.contact)
-                     ? indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p))
-                     : tip_indentation(plant_, wall, p, Vec3<T>(y[3], y[4], y[5]));
+        if (needs_contact()) in = indentation_of(wall, p, Vec3<T>(y[3], y[4], y[5]));
         Vec3<T> tau;
         derivative(t, wall, p, in, y, dy, tau);
     }
@@ -158,7 +156,7 @@ public:
             plant_.external_force.on ? external_force_at(plant_.external_force, t) : zero_vector<T>();
         tau = torque(t, wall, p, q, qd,
                      plant_.external_force.on ? plus(contact_load.on_tip, external_force) : contact_load.on_tip, y, dy);
-        const Vec3<T> tau_f = friction_torque(arm, qd);
+        const Vec3<T> tau_f = friction(qd);
         Vec3<T> drive = minus(compensates_weight() ? zero_vector<T>() : tau, tau_f);
         T outer_power(0.0), contact_loss(0.0), friction_loss(0.0);
         if (plant_.acts_on_arm && contact_load.anything) {
@@ -298,7 +296,7 @@ private:
             if (!any(contact_load.where)) return;
             contact_load.where = contact_load.where && within(in);
         }
-        const ContactForce<T> force = contact_force(plant_.wall, wall, plant_.contact, in, clamping());
+        const ContactForce<T> force = contact_force_at(wall, in);
         contact_load.anything = true;
         contact_load.on_tip = force.on_tip;
         contact_load.wall_power = dot(force.on_tip, velocity_at(plant_.wall, wall, tip_position(plant_.arm, p)));
@@ -310,6 +308,43 @@ private:
         contact_load.wall_power = select(contact_load.where, contact_load.wall_power, o);
         contact_load.loss = select(contact_load.where, contact_load.loss, o);
         contact_load.friction_loss = select(contact_load.where, contact_load.friction_loss, o);
+    }
+
+    // What most plants do not have is a function call, so that its long code does not stand in each stage of a step. Its
+    // arguments are copied, so that those of the rest stay in registers.
+    template <class Result, class F, class... A>
+    ARM3R_INLINE static Result called(F f, A... arguments) {
+        Result result;
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { result = f(arguments...); });
+        return result;
+    }
+
+    ARM3R_INLINE WallState<T> wall_state_at(const T& t) const {
+        if (is_plain_motion(plant_.wall)) return plain_wall_at(plant_.wall, t);
+        return called<WallState<T>>([this](const T& at) ARM3R_INLINE_LAMBDA { return wall_at(plant_.wall, at); }, t);
+    }
+
+    ARM3R_INLINE Vec3<T> friction(const Vec3<T>& qd) const {
+        if (!plant_.arm.has_dry_friction) return viscous_torque(plant_.arm, qd);
+        return called<Vec3<T>>(
+            [this](const Vec3<T>& rate) ARM3R_INLINE_LAMBDA { return friction_torque(plant_.arm, rate); }, qd);
+    }
+
+    ARM3R_INLINE Indentation<T> indentation_of(const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd) const {
+        if (is_plain_spring(plant_.wall, plant_.contact))
+            return indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p));
+        return called<Indentation<T>>([this](const WallState<T>& state, const Pose<T>& at, const Vec3<T>& rate)
+                                          ARM3R_INLINE_LAMBDA { return tip_indentation(plant_, state, at, rate); },
+                                      wall, p, qd);
+    }
+
+    ARM3R_INLINE ContactForce<T> contact_force_at(const WallState<T>& wall, const Indentation<T>& in) const {
+        if (is_plain_spring(plant_.wall, plant_.contact))
+            return plain_spring_force(plant_.wall, plant_.contact, in.depth);
+        return called<ContactForce<T>>(
+            [this](const WallState<T>& state, const Indentation<T>& inside)
+                ARM3R_INLINE_LAMBDA { return contact_force(plant_.wall, state, plant_.contact, inside, clamping()); },
+            wall, in);
     }
 
     ARM3R_INLINE static T on_grid(const T& angle) {

@@ -139,7 +139,7 @@ private:
                 this->update_peak_where(uneventful, depth.fourth, this->t_, this->max_depth_);
                 this->depth_time_ = this->depth_time_ + select(uneventful, T(h * depth.mean()), o);
             } else {
-                measure_damped(uneventful);
+                Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { measure_damped(uneventful); });
             }
         }
         eventful_ = eventful && moved;
@@ -237,8 +237,7 @@ private:
     ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved) {
         Mask unresolved = false;
         if (n == simpson.node.size()) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
-        this->end_segment(rule, this->h_);
-        this->add_segment(rule, moved && !eventful_, unresolved);
+        this->end_segment(rule, this->h_, nullptr, moved && !eventful_, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 

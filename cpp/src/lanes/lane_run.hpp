@@ -176,17 +176,20 @@ protected:
 
     // ---- performance
 
+    // A sample of the present segment.
+    ARM3R_INLINE void sample_performance(const T& t, const Pose<T>& p, const WallState<T>& wall,
+                                         const Indentation<T>& in, const Vec3<T>& tau, const Vec3<T>& qd,
+                                         PerformanceSample<T>& sample) const {
+        const Controller<T>& controller = sampled_.is_on() ? sampled_.controller() : plant_.controller;
+        sample_motion(tracked_, plant_, true_contact_, controller, t, p, wall, in, segment_.touching, phase_, sample);
+        sample_torque(plant_.arm, plant_.holds_torque ? tau_before_ : tau, qd, sample);
+    }
     // Starts a segment; contact, phase and a held torque are constant within it.
     void begin_segment();
-    // A sample of the present segment.
-    void sample_performance(const T& t, const Pose<T>& p, const WallState<T>& wall, const Indentation<T>& in,
-                            const Vec3<T>& tau, const Vec3<T>& qd, PerformanceSample<T>& sample) const;
-    // The segment ends at the present instant.
+    // The segment ends at the present instant: adds it to the sums where `moved`, and sets the lanes in which it must be
+    // refined. work: J, of each torque that is not held; null: by the rule.
     template <std::size_t n>
-    void end_segment(const Rule<n>& rule, const T& duration);
-    // Adds it to the sums where `moved`; sets the lanes in which it must be refined.
-    template <std::size_t n>
-    void add_segment(const Rule<n>& rule, const Mask& moved, Mask& unresolved);
+    void end_segment(const Rule<n>& rule, const T& duration, const Vec3<T>* work, const Mask& moved, Mask& unresolved);
 
     // The same in doubles for one lane, as a function of theta; the torque of a sampled controller is that of the step.
     template <class Visit>

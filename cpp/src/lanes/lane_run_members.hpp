@@ -122,43 +122,27 @@ void LaneRun<T, N>::begin_segment() {
         segment_.touching = touching_;
         phase_ = sampled_.is_on() ? sampled_.controller_state().force_phase : rhs_.force_phase;
         for (int i = 0; i < 3; ++i) q_before_[i] = y_[i], tau_before_[i] = tau_[i];
-    });
-    sample_performance(t_, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[0]);
-}
-
-template <class T, std::size_t N>
-void LaneRun<T, N>::sample_performance(const T& t, const Pose<T>& p, const WallState<T>& wall, const Indentation<T>& in,
-                                       const Vec3<T>& tau, const Vec3<T>& qd, PerformanceSample<T>& sample) const {
-    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
-        const Controller<T>& controller = sampled_.is_on() ? sampled_.controller() : plant_.controller;
-        sample_motion(tracked_, plant_, true_contact_, controller, t, p, wall, in, segment_.touching, phase_, sample);
-        sample_torque(plant_.arm, plant_.holds_torque ? tau_before_ : tau, qd, sample);
+        sample_performance(t_, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[0]);
     });
 }
 
 template <class T, std::size_t N>
 template <std::size_t n>
-void LaneRun<T, N>::end_segment(const Rule<n>& rule, const T& duration) {
-    segment_.duration = duration;
-    T t;
-    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { t = slightly_before(t_); });
-    sample_performance(t, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[n - 1]);
+void LaneRun<T, N>::end_segment(const Rule<n>& rule, const T& duration, const Vec3<T>* work, const Mask& moved,
+                                Mask& unresolved) {
     Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
-        for (int i = 0; i < 3; ++i)
-            segment_.work[i] =
-                plant_.holds_torque
-                    ? T(tau_before_[i] * (y_[i] - q_before_[i]))
-                    : T(duration * mean_of(rule, segment_, [i](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA {
-                            return s.power[i];
-                        }));
+        segment_.duration = duration;
+        sample_performance(slightly_before(t_), p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[n - 1]);
+        for (int i = 0; i < 3; ++i) {
+            if (plant_.holds_torque) segment_.work[i] = tau_before_[i] * (y_[i] - q_before_[i]);
+            else if (work) segment_.work[i] = (*work)[i];
+            else
+                segment_.work[i] =
+                    duration * mean_of(rule, segment_,
+                                       [i](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.power[i]; });
+        }
+        unresolved = add_segment(tracked_, rule, moved, segment_, sums_);
     });
-}
-
-template <class T, std::size_t N>
-template <std::size_t n>
-void LaneRun<T, N>::add_segment(const Rule<n>& rule, const Mask& moved, Mask& unresolved) {
-    Outlined<T>::run(
-        [&]() ARM3R_INLINE_LAMBDA { unresolved = arm3r::add_segment(tracked_, rule, moved, segment_, sums_); });
 }
 
 template <class T, std::size_t N>
@@ -319,31 +303,25 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
 }
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
-#define ARM3R_LANE_RUN(T, N)                                                                               \
-    template LaneRun<T, N>::LaneRun(const Setup&);                                                         \
-    template void LaneRun<T, N>::load_lane(int, const Setup&);                                             \
-    template void LaneRun<T, N>::start_lane(int);                                                          \
-    template void LaneRun<T, N>::observe_outlined();                                                       \
-    template void LaneRun<T, N>::reevaluate();                                                             \
-    template void LaneRun<T, N>::update_controller();                                                      \
-    template void LaneRun<T, N>::start_memory();                                                           \
-    template void LaneRun<T, N>::clear_lane(int);                                                          \
-    template void LaneRun<T, N>::add_contact(int, const Polynomial<double>&, double, double, double);      \
-    template void LaneRun<T, N>::add_damped_contact(int, const std::array<double, 5>&, double, double);    \
-    template void LaneRun<T, N>::change_mode(int, const ContactChange&);                                   \
-    template void LaneRun<T, N>::fail_lanes(const Mask&);                                                  \
-    template PerformanceSums<double> LaneRun<T, N>::sums_of(int) const;                                    \
-    template void LaneRun<T, N>::begin_segment();                                                          \
-    template void LaneRun<T, N>::sample_performance(const T&, const Pose<T>&, const WallState<T>&,         \
-                                                    const Indentation<T>&, const Vec3<T>&, const Vec3<T>&, \
-                                                    PerformanceSample<T>&) const;                          \
-    template void LaneRun<T, N>::end_segment(const Rule<2>&, const T&);                                    \
-    template void LaneRun<T, N>::add_segment(const Rule<2>&, const Mask&, Mask&);                          \
-    template void LaneRun<T, N>::end_segment(const Rule<3>&, const T&);                                    \
-    template void LaneRun<T, N>::add_segment(const Rule<3>&, const Mask&, Mask&);                          \
-    template void LaneRun<T, N>::end_segment(const Rule<7>&, const T&);                                    \
-    template void LaneRun<T, N>::add_segment(const Rule<7>&, const Mask&, Mask&);                          \
-    template void LaneRun<T, N>::set_sums(int, const PerformanceSums<double>&);                            \
+#define ARM3R_LANE_RUN(T, N)                                                                                \
+    template LaneRun<T, N>::LaneRun(const Setup&);                                                          \
+    template void LaneRun<T, N>::load_lane(int, const Setup&);                                              \
+    template void LaneRun<T, N>::start_lane(int);                                                           \
+    template void LaneRun<T, N>::observe_outlined();                                                        \
+    template void LaneRun<T, N>::reevaluate();                                                              \
+    template void LaneRun<T, N>::update_controller();                                                       \
+    template void LaneRun<T, N>::start_memory();                                                            \
+    template void LaneRun<T, N>::clear_lane(int);                                                           \
+    template void LaneRun<T, N>::add_contact(int, const Polynomial<double>&, double, double, double);       \
+    template void LaneRun<T, N>::add_damped_contact(int, const std::array<double, 5>&, double, double);     \
+    template void LaneRun<T, N>::change_mode(int, const ContactChange&);                                    \
+    template void LaneRun<T, N>::fail_lanes(const Mask&);                                                   \
+    template PerformanceSums<double> LaneRun<T, N>::sums_of(int) const;                                     \
+    template void LaneRun<T, N>::begin_segment();                                                           \
+    template void LaneRun<T, N>::end_segment(const Rule<2>&, const T&, const Vec3<T>*, const Mask&, Mask&); \
+    template void LaneRun<T, N>::end_segment(const Rule<3>&, const T&, const Vec3<T>*, const Mask&, Mask&); \
+    template void LaneRun<T, N>::end_segment(const Rule<7>&, const T&, const Vec3<T>*, const Mask&, Mask&); \
+    template void LaneRun<T, N>::set_sums(int, const PerformanceSums<double>&);                             \
     template Metrics LaneRun<T, N>::metrics(int) const;
 
 }  // namespace arm3r

@@ -219,12 +219,11 @@ private:
         Mask unresolved = false;
         for (std::size_t j = 1; j + 1 < n; ++j)
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), this->segment_.samples[j]); });
-        this->end_segment(rule, h);
-        if (!this->plant_.holds_torque)
-            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
-                for (int i = 0; i < 3; ++i) this->segment_.work[i] = value(series_, work1 + i, h);
-            });
-        this->add_segment(rule, moved, unresolved);
+        Vec3<T> work;
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+            for (int i = 0; i < 3; ++i) work[i] = value(series_, work1 + i, h);
+        });
+        this->end_segment(rule, h, &work, moved, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 

@@ -83,12 +83,18 @@ bool is_plain_spring(const Wall<P>& wall, const Contact<P>& contact) {
     return contact.law == ContactLaw::spring && !contact.has_friction && wall.rotation == Rotation::none;
 }
 
+template <class P, class T>
+ARM3R_INLINE ContactForce<T> plain_spring_force(const Wall<P>& wall, const Contact<P>& contact, const T& depth) {
+    const T spring = contact.stiffness[0] * depth;
+    return along_normal(wall.n, spring, T(0.5 * spring * depth), T(0.0));
+}
+
 // The force of the contact law at an indentation (4.5) to (4.7).
 template <class P, class T>
 ARM3R_INLINE ContactForce<T> contact_force(const Wall<P>& wall, const WallState<T>& state, const Contact<P>& contact,
                                            const Indentation<T>& in, Clamping clamping) {
+    if (is_plain_spring(wall, contact)) return plain_spring_force(wall, contact, in.depth);
     const NormalForce<T> along = normal_force_law(contact, in);
-    if (is_plain_spring(wall, contact)) return along_normal(wall.n, along.total, along.stored, T(0.0));
     const Axes<T> axis = axes(wall, state);
     T normal = along.total, dissipated(0.0);
     if (is_damped(contact.law)) {

@@ -70,10 +70,14 @@ ARM3R_INLINE Vec3<T> gravity_torque(const Arm<P>& arm, const Pose<T>& p) {
 
 // tau_f: viscous and regularised dry friction (3.6); always dissipative.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& arm, const Vec3<T>& qd) {
+ARM3R_INLINE Vec3<T> viscous_torque(const Arm<P>& arm, const Vec3<T>& qd) {
     const T o(0.0);
-    Vec3<T> tau_f(o, o, o);
-    if (arm.has_damping) tau_f = {arm.damping[0] * qd[0], arm.damping[1] * qd[1], arm.damping[2] * qd[2]};
+    if (!arm.has_damping) return {o, o, o};
+    return {arm.damping[0] * qd[0], arm.damping[1] * qd[1], arm.damping[2] * qd[2]};
+}
+template <class P, class T>
+ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& arm, const Vec3<T>& qd) {
+    const Vec3<T> tau_f = viscous_torque(arm, qd);
     if (!arm.has_dry_friction) return tau_f;
     const auto dry = [&](int i)
                          ARM3R_INLINE_LAMBDA { return arm.friction[i] * tanh(T(qd[i] / arm.friction_velocity)); };

@@ -63,7 +63,22 @@ ARM3R_INLINE Vec3<T> rotated(const Vec3<P>& axis, const SinCos<T>& angle, const 
 }
 
 template <class P, class T>
-ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
+ARM3R_INLINE void move_along(const Vec3<P>& direction, const ScalarMotion<T>& along, WallState<T>& state) {
+    for (int i = 0; i < 3; ++i) {
+        state.position[i] = state.position[i] + along.s * direction[i];
+        state.velocity[i] = along.v * direction[i];
+        state.acceleration[i] = along.a * direction[i];
+    }
+}
+
+// Whether the plate does not turn, and stands still, moves at one velocity, or oscillates.
+template <class P>
+bool is_plain_motion(const Wall<P>& wall) {
+    return wall.motion != Motion::ramp && wall.motion != Motion::table && wall.rotation == Rotation::none;
+}
+
+template <class P, class T>
+ARM3R_INLINE WallState<T> plain_wall_at(const Wall<P>& wall, const T& t) {
     WallState<T> state = no_wall<T>();
     state.position = broadcast<T>(wall.point);
     if (wall.motion == Motion::constant) {
@@ -71,16 +86,17 @@ ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
             state.position[i] = wall.point[i] + wall.velocity[i] * t;
             state.velocity[i] = T(wall.velocity[i]);
         }
-    } else if (wall.motion != Motion::fixed) {
-        const ScalarMotion<T> along = wall.motion == Motion::sinusoid ? scalar_motion(wall.sinusoid, t)
-                                      : wall.motion == Motion::ramp   ? scalar_motion(wall.ramp, t)
-                                                                      : scalar_motion(*wall.table, t);
-        for (int i = 0; i < 3; ++i) {
-            state.position[i] = wall.point[i] + along.s * wall.direction[i];
-            state.velocity[i] = along.v * wall.direction[i];
-            state.acceleration[i] = along.a * wall.direction[i];
-        }
+    } else if (wall.motion == Motion::sinusoid) {
+        move_along(wall.direction, scalar_motion(wall.sinusoid, t), state);
     }
+    return state;
+}
+
+template <class P, class T>
+ARM3R_INLINE WallState<T> wall_at(const Wall<P>& wall, const T& t) {  // (4.2)
+    WallState<T> state = plain_wall_at(wall, t);
+    if (wall.motion == Motion::ramp) move_along(wall.direction, scalar_motion(wall.ramp, t), state);
+    if (wall.motion == Motion::table) move_along(wall.direction, scalar_motion(*wall.table, t), state);
     if (wall.rotation != Rotation::none) {
         const ScalarMotion<T> angle = turn(wall, t);
         state.turned = sincos(angle.s);
