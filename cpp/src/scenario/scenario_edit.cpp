@@ -78,6 +78,12 @@ Node& child(Node& node, const std::string& path, const std::string& name, const 
     return node.children.back();
 }
 
+// Whether a scenario may have something at this path: numbers, or a part such as `checks`.
+bool is_there(const std::string& path) {
+    const std::vector<std::string> parts = names_below("");
+    return is_known(path) || std::ranges::find(parts, path) != parts.end();
+}
+
 Node& child(Node& node, const std::string& path, std::size_t index) {
     if (path.ends_with(']') && is_known(path))
         refuse(item(path, index), "path.list", "`" + path + "` is a number, not a list", "");
@@ -90,11 +96,10 @@ Node& child(Node& node, const std::string& path, std::size_t index) {
                "give the whole list: " + path + " = [...]");
     const Key* key = find_key(path);
     if (index == node.children.size() && (!key || index < key->size)) node.children.emplace_back();
-    if (index >= node.children.size() && !is_known(path) && node.children.empty())
+    if (index < node.children.size()) return node.children[index];
+    if (node.children.empty() && !is_there(path))
         refuse(item(path, index), "path.unknown", "there is no such list", did_you_mean(path, all_paths()));
-    if (index >= node.children.size())
-        refuse(item(path, index), "path.index", "`" + path + "` has " + counted(node.children.size(), "item"), "");
-    return node.children[index];
+    refuse(item(path, index), "path.index", "`" + path + "` has " + counted(node.children.size(), "item"), "");
 }
 
 Node& reach(Node& root, const std::vector<Step>& steps, const SourceLocation& place) {
@@ -122,10 +127,9 @@ void remove(Node& root, const std::vector<Step>& steps) {
 
 void remove_known(Node& root, std::string_view path, const std::vector<Step>& steps) {
     std::vector<std::string> paths = names_below("");
-    const bool top = std::find(paths.begin(), paths.end(), path) != paths.end();
     const std::vector<std::string> all = all_paths();
     paths.insert(paths.end(), all.begin(), all.end());
-    if (!find(root, steps) && !top && !is_known(path))
+    if (!find(root, steps) && !is_there(std::string(path)))
         refuse(path, "path.unknown", "there is no such key to take out", did_you_mean(path, paths));
     remove(root, steps);
 }
