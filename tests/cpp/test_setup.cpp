@@ -273,10 +273,10 @@ BOOST_AUTO_TEST_CASE(a_part_of_the_body_says_how_stiff_the_wall_is_unless_it_is_
 BOOST_AUTO_TEST_CASE(the_solver_is_as_it_was_asked_for) {
     Params params = unequal_params().set("solver.rtol", 1e-5).set("solver.atol", 1e-6).set("solver.tol", 1e-7);
     params.set("solver.step", 0.25).set("solver.max_steps", 12);
-    const std::pair<const char*, Solver::Method> methods[] = {
+    const std::pair<const char*, SolverMethod> methods[] = {
         {"dopri5", SolverMethod::dopri5}, {"rk4", SolverMethod::rk4}, {"taylor", SolverMethod::taylor}};
     for (const auto& [word, method] : methods)
-        BOOST_TEST(make_setup(params.choose("solver.method", word)).solver.method == method);
+        BOOST_TEST((make_setup(params.choose("solver.method", word)).solver.method == method));
     BOOST_TEST(make_setup(params).solver.max_step == HUGE_VAL);
     const Solver solver = make_setup(params.set("solver.max_step", 0.5)).solver;
     BOOST_TEST(solver.rtol == 1e-5);
