@@ -86,7 +86,7 @@ ARM3R_API const char *arm3r_outcome_name(int32_t outcome); /* "ok", "stopped", .
 
 /* Writes the place in `words` of the one that `word` is most likely a slip for, by the rule of all messages; -1: none is
  * near. */
-ARM3R_API int32_t arm3r_nearest_word(const char *word, const char *const *words, size_t count, int64_t *place);
+ARM3R_API int32_t arm3r_nearest_word(const char *word, const char *const *words, size_t n_words, int64_t *place);
 
 /* ---- numbers: parameters ------------------------------------------------------------------------------------------
  * A scenario is a flat array of arm3r_param_count() doubles. A key of the scenario file with one number has the key's

@@ -86,13 +86,13 @@ void arm3r_scenario::changed() {
 
 // ---- scenarios
 
-int32_t arm3r_nearest_word(const char* word, const char* const* words, size_t count, int64_t* place) {
+int32_t arm3r_nearest_word(const char* word, const char* const* words, size_t n_words, int64_t* place) {
     return guard([&] {
         need(word, "word");
         need(words, "words");
         need(place, "place");
-        for (std::size_t i = 0; i < count; ++i) need(words[i], "words");
-        const std::vector<std::string> all(words, words + count);
+        for (std::size_t i = 0; i < n_words; ++i) need(words[i], "words");
+        const std::vector<std::string> all(words, words + n_words);
         const auto found = std::ranges::find(all, nearest(word, all));
         *place = found == all.end() ? -1 : found - all.begin();
     });
