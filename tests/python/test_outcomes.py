@@ -80,17 +80,20 @@ def test_an_indirect_reference_needs_a_spring_that_presses() -> None:
     assert across.outcome == "ok" and _is_finite(across)
 
 
-def _ends(part: dict[str, Any], path: str = "") -> Iterator[tuple[str, float]]:
+def _ends(part: dict[str, Any], sections: dict[str, Any], path: str = "") -> Iterator[tuple[str, float]]:
     """Every number of the schema at the ends of its range."""
+    if "$ref" in part:
+        part = sections[part["$ref"].removeprefix("#/definitions/")]
     for choice in part.get("anyOf", [part]):
         if choice.get("type") == "number":
             yield from ((path, choice[end]) for end in ("minimum", "maximum") if end in choice)
         for key, inner in choice.get("properties", {}).items():
-            yield from _ends(inner, f"{path}.{key}" if path else key)
+            yield from _ends(inner, sections, f"{path}.{key}" if path else key)
 
 
 def _extremes(root: Path) -> list[tuple[str, float]]:
-    ends = _ends(json.loads((root / "docs/scenario.schema.json").read_text()))
+    schema = json.loads((root / "docs/scenario.schema.json").read_text())
+    ends = _ends(schema, schema["definitions"])
     return [(path, end) for path, end in ends if not path.startswith(("time", "checks", "format"))]
 
 
