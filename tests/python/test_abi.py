@@ -128,7 +128,9 @@ class Caller:
                 "arm3r_run_save": bytes(self.output),
                 "arm3r_output_probe": bytes(self.output),
             }.get(function.name, b"time.stop")
-        return {"text": SCENARIO, "word": b"lenght", "file": b"abi.yaml", "name": b"initial.q[0]", "value": b"0.1"}[name]
+        return {"text": SCENARIO, "word": b"lenght", "file": b"abi.yaml", "name": b"initial.q[0]", "value": b"0.1"}[
+            name
+        ]
 
     def params(self, controller: str) -> Any:
         values = self.keep(ffi.new("double[]", self.count))

@@ -5,10 +5,14 @@ from __future__ import annotations
 import arm3r_cpp as arm3r
 from conftest import Cli
 
-ARM = "format: 1\narm: {gravity: [0.4, 0.2, -9.8], link3: {length: 0.8}, damping: [0.1, 0.2, 0.3], torque_limit: [9, 12, 8]}\n"
+ARM = (
+    "format: 1\narm: {gravity: [0.4, 0.2, -9.8], link3: {length: 0.8}, damping: [0.1, 0.2, 0.3],\n"
+    "  torque_limit: [9, 12, 8]}\n"
+)
 START = "initial: {q: [0.3, 0.4, 0.5], qd: [0.7, 1.0, -0.9]}\ntime: {stop: 0.4}\nchecks: []\n"
 WALL = (
-    "wall: {point: [1.37, 0.4, -0.9], normal: [-1, 0.2, 0.1], motion: {type: sinusoid, amplitude: 0.05, frequency: 2}, acts_on_arm: true,\n"
+    "wall: {point: [1.37, 0.4, -0.9], normal: [-1, 0.2, 0.1], acts_on_arm: true,\n"
+    "  motion: {type: sinusoid, amplitude: 0.05, frequency: 2},\n"
     "  contact: {law: kelvin_voigt, stiffness: 900, damping: 4, friction: {coefficient: 0.3}}}\n"
 )
 RUNS = [

@@ -57,7 +57,8 @@ void RowLog::log_block(const RowContext& context) {
     }
     if (nothing != 0) return log_one_by_one(context, t);
     run_.rows += rows_per_block;
-    for (const double residual : rows.value[ColumnIndex("energy_residual")]) include_residual(run_.energy_residual_max, residual);
+    for (const double residual : rows.value[ColumnIndex("energy_residual")])
+        include_residual(run_.energy_residual_max, residual);
     if (rows.first_link_behind_wall < rows_per_block) record_link_behind_wall(t[rows.first_link_behind_wall]);
     if (!follows_point(context.controller)) return;
     for (const double at : t) check_workspace(context, at, context.dense((at - context.dense.t0) / context.dense.h));
