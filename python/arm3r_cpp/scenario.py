@@ -212,7 +212,8 @@ class Scenario:
         return [line.partition(": warning: ")[2] for line in lines]
 
     def _warn_of_scenario(self) -> None:
-        self._warn(self._warnings())
+        if self._warned is not None:  # a quiet one need not look for them
+            self._warn(self._warnings())
 
     def _warn(self, sentences: Iterable[str]) -> None:
         """Issue the warnings that this state of the scenario has not yet led to."""

@@ -86,3 +86,15 @@ def lecture(moving_wall: Path) -> arm3r.Scenario:
 def lecture_run(moving_wall: Path) -> arm3r.Run:
     """The lecture's moving wall, run once."""
     return arm3r.Scenario.load(moving_wall).run()
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[[str, str], Path]:
+    """written(name, text): a file with this text, in a folder of the test."""
+
+    def write(name: str, text: str) -> Path:
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write

@@ -26,16 +26,6 @@ LECTURE_GRAVITY = MATLAB_GRAVITY.replace("SIGN(", "-(")
 
 
 @pytest.fixture
-def written(tmp_path: Path) -> Any:
-    def write(name: str, text: str) -> Path:
-        path = tmp_path / name
-        path.write_text(text)
-        return path
-
-    return write
-
-
-@pytest.fixture
 def command(scripts: Path) -> Any:
     def call(*arguments: object) -> subprocess.CompletedProcess[str]:
         return subprocess.run(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
@@ -62,16 +61,6 @@ MISTAKES = {
     ),
     "forward_dynamics": ("tau - coriolis_matrix", "tau + coriolis_matrix", [[1], [2], [3]]),
 }
-
-
-@pytest.fixture
-def written(tmp_path: Path) -> Any:
-    def write(name: str, text: str) -> Path:
-        path = tmp_path / name
-        path.write_text(text)
-        return path
-
-    return write
 
 
 @pytest.mark.parametrize("function", MISTAKES)

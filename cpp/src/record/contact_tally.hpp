@@ -2,7 +2,6 @@
 // The contacts of one run so far, for every method; docs/model.md (4.8).
 
 #include <cmath>
-#include <limits>
 
 #include "contact/contact_change.hpp"
 #include "record/run_data.hpp"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..errors import UsageError
@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..run import Run
+    from .force_run import ForceRun
+    from .layout import Size
+    from .run_figure import RunFigure
 
 
 def overview(
@@ -35,18 +38,12 @@ def overview(
     Raises:
         UsageError: there is no such panel, too few rows lie from start to end, or the height is too small.
     """
-    from .force_run import ForceRun
-    from .layout import Size
-    from .run_figure import origin_of, stamp_height
     from .run_panels import overview_figure
-    from .run_part import part_of
 
-    with style():
-        origins = [origin_of(run)]
-        size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
-        figure = overview_figure(ForceRun(part_of(run, start, end)), panels, size)
-        figure.set_origin(origins, stamp=stamp)
-        return figure
+    def draw(parts: list[ForceRun], size: Size) -> RunFigure:
+        return overview_figure(parts[0], panels, size)
+
+    return _figure(draw, [(None, run)], width, height, start, end, stamp)
 
 
 def lecture(
@@ -90,18 +87,12 @@ def force(
     Raises:
         UsageError: the run has no wall; or as for `overview`.
     """
-    from .force_run import ForceRun
-    from .layout import Size
-    from .run_figure import origin_of, stamp_height
     from .run_panels import force_figure
-    from .run_part import part_of
 
-    with style():
-        origins = [origin_of(run)]
-        size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
-        figure = force_figure(ForceRun(part_of(run, start, end)), panels, size)
-        figure.set_origin(origins, stamp=stamp)
-        return figure
+    def draw(parts: list[ForceRun], size: Size) -> RunFigure:
+        return force_figure(parts[0], panels, size)
+
+    return _figure(draw, [(None, run)], width, height, start, end, stamp)
 
 
 def compare(
@@ -117,17 +108,28 @@ def compare(
         UsageError: a run has no wall, or another one; or they are too many; or as for `overview`.
     """
     from .comparison import compare_figure
+
+    def draw(parts: list[ForceRun], size: Size) -> RunFigure:
+        return compare_figure(parts, panels, size)
+
+    pairs = list(runs.items()) if isinstance(runs, Mapping) else [(None, run) for run in runs]
+    return _figure(draw, pairs, width, height, start, end, stamp)
+
+
+def _figure(
+    draw: Callable[[list[ForceRun], Size], RunFigure], runs: Sequence[tuple[str | None, Run]], width: float,
+    height: float | None, start: float | None, end: float | None, stamp: bool,
+) -> Figure:  # fmt: skip
+    """What `draw` makes of the parts of the runs from start to end, with their origin in the file's metadata."""
     from .force_run import ForceRun
     from .layout import Size
     from .run_figure import origin_of, stamp_height
     from .run_part import part_of
 
-    pairs = list(runs.items()) if isinstance(runs, Mapping) else [(None, run) for run in runs]
     with style():
-        parts = [ForceRun(part_of(run, start, end), name=name) for name, run in pairs]
-        origins = [origin_of(run) for _, run in pairs]
-        size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
-        figure = compare_figure(parts, panels, size)
+        parts = [ForceRun(part_of(run, start, end), name=name) for name, run in runs]
+        origins = [origin_of(run) for _, run in runs]
+        figure = draw(parts, Size(width, height, stamp_height(origins, width) if stamp else 0.0))
         figure.set_origin(origins, stamp=stamp)
         return figure
 
