@@ -13,11 +13,9 @@ ARM3R_INLINE Mat3<T> mass_matrix(const Arm<P>& arm, const Pose<T>& p) {
     const T M11 = l.A1 + p.C2 * (l.A2 * p.C2 + l.B * p.C23) + p.C23 * (l.A3 * p.C23 + l.B * p.C2);
     const T M22 = l.B2 + l.B3 + 2.0 * l.B * C3;
     const T M23 = l.B3 + l.B * C3;
-    Mat3<T> M;
-    M << M11, T(0.0), T(0.0),  //
-        T(0.0), M22, M23,      //
-        T(0.0), M23, T(l.B3 + l.J3);
-    return M;
+    return from_rows<T>({M11, T(0.0), T(0.0)},  //
+                        {T(0.0), M22, M23},     //
+                        {T(0.0), M23, T(l.B3 + l.J3)});
 }
 
 // C: the Christoffel choice, so that Mdot = C + C^T (3.4).
@@ -27,11 +25,9 @@ ARM3R_INLINE Mat3<T> coriolis_matrix(const Arm<P>& arm, const Pose<T>& p, const 
     const T h3 = -p.S23 * (l.A3 * p.C23 + l.B * p.C2);
     const T h2 = h3 - p.S2 * (l.A2 * p.C2 + l.B * p.C23);
     const T b = l.B * sin_q3(p);
-    Mat3<T> C;
-    C << h2 * qd[1] + h3 * qd[2], h2 * qd[0], h3 * qd[0],  //
-        -h2 * qd[0], -b * qd[2], -b * (qd[1] + qd[2]),     //
-        -h3 * qd[0], b * qd[1], T(0.0);
-    return C;
+    return from_rows<T>({h2 * qd[1] + h3 * qd[2], h2 * qd[0], h3 * qd[0]},  //
+                        {-h2 * qd[0], -b * qd[2], -b * (qd[1] + qd[2])},    //
+                        {-h3 * qd[0], b * qd[1], T(0.0)});
 }
 
 template <class P, class T>

@@ -57,13 +57,10 @@ ARM3R_INLINE Vec3<T> elbow_position(const Arm<P>& arm, const Pose<T>& p) {  // (
 
 template <class P, class T>
 ARM3R_INLINE Mat3<T> centres_of_mass(const Arm<P>& arm, const Pose<T>& p) {  // (2.3), a row a link
-    Mat3<T> rows;
-    rows.row(0) << T(0.0), T(0.0), T(arm.link1.com);
-    rows.row(1) = in_arm_plane(arm, p, T(arm.link2.com * p.C2), T(arm.link2.com * p.S2)).transpose();
-    rows.row(2) = in_arm_plane(arm, p, T(arm.link2.length * p.C2 + arm.link3.com * p.C23),
-                               T(arm.link2.length * p.S2 + arm.link3.com * p.S23))
-                      .transpose();
-    return rows;
+    return from_rows<T>({T(0.0), T(0.0), T(arm.link1.com)},
+                        in_arm_plane(arm, p, T(arm.link2.com * p.C2), T(arm.link2.com * p.S2)),
+                        in_arm_plane(arm, p, T(arm.link2.length * p.C2 + arm.link3.com * p.C23),
+                                     T(arm.link2.length * p.S2 + arm.link3.com * p.S23)));
 }
 
 // J: m, tip velocity per joint rate (2.4).
@@ -73,11 +70,9 @@ ARM3R_INLINE Mat3<T> jacobian(const Arm<P>& arm, const Pose<T>& p) {
     const T h = height(arm, p);
     const T r3 = arm.link3.length * p.C23;
     const T h3 = arm.link3.length * p.S23;
-    Mat3<T> J;
-    J << -p.S1 * r, -p.C1 * h, -p.C1 * h3,  //
-        p.C1 * r, -p.S1 * h, -p.S1 * h3,    //
-        T(0.0), r, r3;
-    return J;
+    return from_rows<T>({-p.S1 * r, -p.C1 * h, -p.C1 * h3},  //
+                        {p.C1 * r, -p.S1 * h, -p.S1 * h3},   //
+                        {T(0.0), r, r3});
 }
 
 // J^-1, singular where S3 = 0 or r = 0 (2.8).
@@ -90,21 +85,17 @@ ARM3R_INLINE Mat3<T> inverse_jacobian(const Arm<P>& arm, const Pose<T>& p) {
     const T m = arm.link3.length * p.C23 * inverse_plane;
     const T n = arm.link3.length * p.S23 * inverse_plane;
     const T rp = r * inverse_plane;
-    Mat3<T> K;
-    K << -p.S1 * inverse_r, p.C1 * inverse_r, T(0.0),  //
-        p.C1 * m, p.S1 * m, n,                         //
-        -p.C1 * rp, -p.S1 * rp, T(-h * inverse_plane);
-    return K;
+    return from_rows<T>({-p.S1 * inverse_r, p.C1 * inverse_r, T(0.0)},  //
+                        {p.C1 * m, p.S1 * m, n},                        //
+                        {-p.C1 * rp, -p.S1 * rp, T(-h * inverse_plane)});
 }
 
 // J_w: angular velocity of link 3 per joint rate (2.5).
 template <class T>
 ARM3R_INLINE Mat3<T> angular_jacobian(const Pose<T>& p) {
-    Mat3<T> J;
-    J << T(0.0), p.S1, p.S1,   //
-        T(0.0), -p.C1, -p.C1,  //
-        T(1.0), T(0.0), T(0.0);
-    return J;
+    return from_rows<T>({T(0.0), p.S1, p.S1},    //
+                        {T(0.0), -p.C1, -p.C1},  //
+                        {T(1.0), T(0.0), T(0.0)});
 }
 
 // J-dot: m/s (2.6).
@@ -117,11 +108,9 @@ ARM3R_INLINE Mat3<T> jacobian_dot(const Arm<P>& arm, const Pose<T>& p, const Vec
     const T nd = arm.link3.length * p.C23 * w3;
     const T rd = -(arm.link2.length * p.S2 * w2 + n * w3);
     const T hd = arm.link2.length * p.C2 * w2 + nd;
-    Mat3<T> Jd;
-    Jd << -p.C1 * w1 * r - p.S1 * rd, p.S1 * w1 * h - p.C1 * hd, p.S1 * w1 * n - p.C1 * nd,  //
-        -p.S1 * w1 * r + p.C1 * rd, -p.C1 * w1 * h - p.S1 * hd, -p.C1 * w1 * n - p.S1 * nd,  //
-        T(0.0), rd, -n * w3;
-    return Jd;
+    return from_rows<T>({-p.C1 * w1 * r - p.S1 * rd, p.S1 * w1 * h - p.C1 * hd, p.S1 * w1 * n - p.C1 * nd},    //
+                        {-p.S1 * w1 * r + p.C1 * rd, -p.C1 * w1 * h - p.S1 * hd, -p.C1 * w1 * n - p.S1 * nd},  //
+                        {T(0.0), rd, -n * w3});
 }
 
 // J qd without the matrix.

@@ -25,29 +25,23 @@ ARM3R_INLINE std::array<Body<T>, 3> chain(const Arm<P>& arm, const Vec3<T>& q) {
     std::array<Body<T>, 3> bodies;
 
     const SinCos<T> one = sincos(q[0]);
-    bodies[0].R << one.cos, -one.sin, o,  //
-        one.sin, one.cos, o,              //
-        o, o, l;
-    bodies[0].origin << o, o, o;
-    bodies[0].com << o, o, T(arm.link1.com);
+    bodies[0].R = from_rows<T>({one.cos, -one.sin, o}, {one.sin, one.cos, o}, {o, o, l});
+    bodies[0].origin = {o, o, o};
+    bodies[0].com = {o, o, T(arm.link1.com)};
     bodies[0].mass = T(arm.link1.mass);
-    bodies[0].inertia << o, o, T(arm.link1.inertia_axial);
+    bodies[0].inertia = {o, o, T(arm.link1.inertia_axial)};
 
-    const SinCos<T> two = sincos(q[1]);   // a quarter turn about x lays z along joint 2, then q2 about that z
-    bodies[1].R << two.cos, -two.sin, o,  //
-        o, o, -l,                         //
-        two.sin, two.cos, o;
-    bodies[1].origin << o, o, T(arm.base_height);
-    bodies[1].com << T(arm.link2.com), o, o;
+    const SinCos<T> two = sincos(q[1]);  // a quarter turn about x lays z along joint 2, then q2 about that z
+    bodies[1].R = from_rows<T>({two.cos, -two.sin, o}, {o, o, -l}, {two.sin, two.cos, o});
+    bodies[1].origin = {o, o, T(arm.base_height)};
+    bodies[1].com = {T(arm.link2.com), o, o};
     bodies[1].mass = T(arm.link2.mass);
     bodies[1].inertia = broadcast<T>(arm.link2.inertia);
 
     const SinCos<T> three = sincos(q[2]);
-    bodies[2].R << three.cos, -three.sin, o,  //
-        three.sin, three.cos, o,              //
-        o, o, l;
-    bodies[2].origin << T(arm.link2.length), o, o;
-    bodies[2].com << T(arm.link3.com), o, o;
+    bodies[2].R = from_rows<T>({three.cos, -three.sin, o}, {three.sin, three.cos, o}, {o, o, l});
+    bodies[2].origin = {T(arm.link2.length), o, o};
+    bodies[2].com = {T(arm.link3.com), o, o};
     bodies[2].mass = T(arm.link3.mass);
     bodies[2].inertia = broadcast<T>(arm.link3.inertia);
     return bodies;

@@ -11,6 +11,12 @@ namespace arm3r {
 template <class Element, int N>
 struct Register {
     typedef Element type __attribute__((vector_size(sizeof(Element) * N)));
+    // Written out, because a loop over the lanes takes g++ 12 three times as long.
+    ARM3R_INLINE static void set_all(type& v, Element x) {
+        if constexpr (N == 2) v = type{x, x};
+        else if constexpr (N == 4) v = type{x, x, x, x};
+        else v = type{x, x, x, x, x, x, x, x};
+    }
 };
 
 // One truth value per lane: all bits set, or none. g++ 12 breaks off with an internal error where one of 8 lanes goes into
@@ -20,20 +26,31 @@ struct PackMask {
     using Vector = typename Register<std::int64_t, N>::type;
     Vector v;
 
-    ARM3R_INLINE explicit PackMask(const Vector& lanes) : v(lanes) {}
-    ARM3R_INLINE PackMask(bool all_lanes) {
-        for (int lane = 0; lane < N; ++lane) v[lane] = -std::int64_t{all_lanes};
-    }
+    PackMask() = default;
     ARM3R_INLINE PackMask(const PackMask& other) : v(other.v) {}
     ARM3R_INLINE PackMask& operator=(const PackMask& other) {
         v = other.v;
         return *this;
     }
+    ARM3R_INLINE explicit PackMask(const Vector& lanes) : v(lanes) {}
+    ARM3R_INLINE PackMask(bool all_lanes) { Register<std::int64_t, N>::set_all(v, -std::int64_t{all_lanes}); }
     ARM3R_INLINE bool operator[](int lane) const { return v[lane] != 0; }
 
-    ARM3R_INLINE friend PackMask operator&&(const PackMask& a, const PackMask& b) { return PackMask(a.v & b.v); }
-    ARM3R_INLINE friend PackMask operator||(const PackMask& a, const PackMask& b) { return PackMask(a.v | b.v); }
-    ARM3R_INLINE friend PackMask operator!(const PackMask& a) { return PackMask(~a.v); }
+    ARM3R_INLINE friend PackMask operator&&(const PackMask& a, const PackMask& b) {
+        PackMask both;
+        both.v = a.v & b.v;
+        return both;
+    }
+    ARM3R_INLINE friend PackMask operator||(const PackMask& a, const PackMask& b) {
+        PackMask either;
+        either.v = a.v | b.v;
+        return either;
+    }
+    ARM3R_INLINE friend PackMask operator!(const PackMask& a) {
+        PackMask opposite;
+        opposite.v = ~a.v;
+        return opposite;
+    }
 
     ARM3R_INLINE friend bool any(const PackMask& a) {
         if constexpr (N == 2) {
@@ -53,7 +70,8 @@ struct PackMask {
 };
 
 // The copy constructor is written out so that a Pack travels by address wherever a call is not inlined: then callers
-// and callees built for different instruction sets agree.
+// and callees built for different instruction sets agree. Each operator fills its result in place: a constructor would
+// be one more call to inline for every operation of every formula, and g++ would take twice as long.
 template <int N>
 struct Pack {
     using Vector = typename Register<double, N>::type;
@@ -62,16 +80,13 @@ struct Pack {
     Vector v;
 
     Pack() = default;
-    ARM3R_INLINE explicit Pack(const Vector& lanes) : v(lanes) {}
-    // g++ 12 makes one instruction of this, sixteen of `all_lanes - Vector{}`.
-    ARM3R_INLINE Pack(double all_lanes) {
-        for (int lane = 0; lane < N; ++lane) v[lane] = all_lanes;
-    }
     ARM3R_INLINE Pack(const Pack& other) : v(other.v) {}
     ARM3R_INLINE Pack& operator=(const Pack& other) {
         v = other.v;
         return *this;
     }
+    ARM3R_INLINE explicit Pack(const Vector& lanes) : v(lanes) {}
+    ARM3R_INLINE Pack(double all_lanes) { Register<double, N>::set_all(v, all_lanes); }
 
     ARM3R_INLINE static Pack load(const double* from) {
         Pack result;
@@ -82,15 +97,47 @@ struct Pack {
     ARM3R_INLINE double operator[](int lane) const { return v[lane]; }
     ARM3R_INLINE void set(int lane, double x) { v[lane] = x; }
 
-    ARM3R_INLINE friend Pack operator+(const Pack& a, const Pack& b) { return Pack(a.v + b.v); }
-    ARM3R_INLINE friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.v - b.v); }
-    ARM3R_INLINE friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.v * b.v); }
-    ARM3R_INLINE friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
-    ARM3R_INLINE friend Pack operator-(const Pack& a) { return Pack(-a.v); }
-    ARM3R_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }
-    ARM3R_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
-    ARM3R_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
-    ARM3R_INLINE Pack& operator/=(const Pack& b) { return *this = *this / b; }
+    ARM3R_INLINE friend Pack operator+(const Pack& a, const Pack& b) {
+        Pack sum;
+        sum.v = a.v + b.v;
+        return sum;
+    }
+    ARM3R_INLINE friend Pack operator-(const Pack& a, const Pack& b) {
+        Pack difference;
+        difference.v = a.v - b.v;
+        return difference;
+    }
+    ARM3R_INLINE friend Pack operator*(const Pack& a, const Pack& b) {
+        Pack product;
+        product.v = a.v * b.v;
+        return product;
+    }
+    ARM3R_INLINE friend Pack operator/(const Pack& a, const Pack& b) {
+        Pack quotient;
+        quotient.v = a.v / b.v;
+        return quotient;
+    }
+    ARM3R_INLINE friend Pack operator-(const Pack& a) {
+        Pack negative;
+        negative.v = -a.v;
+        return negative;
+    }
+    ARM3R_INLINE Pack& operator+=(const Pack& b) {
+        v += b.v;
+        return *this;
+    }
+    ARM3R_INLINE Pack& operator-=(const Pack& b) {
+        v -= b.v;
+        return *this;
+    }
+    ARM3R_INLINE Pack& operator*=(const Pack& b) {
+        v *= b.v;
+        return *this;
+    }
+    ARM3R_INLINE Pack& operator/=(const Pack& b) {
+        v /= b.v;
+        return *this;
+    }
 
     ARM3R_INLINE friend Mask operator<(const Pack& a, const Pack& b) { return where(a.v < b.v); }
     ARM3R_INLINE friend Mask operator>(const Pack& a, const Pack& b) { return where(a.v > b.v); }
@@ -99,9 +146,21 @@ struct Pack {
     ARM3R_INLINE friend Mask operator==(const Pack& a, const Pack& b) { return where(a.v == b.v); }
     ARM3R_INLINE friend Mask operator!=(const Pack& a, const Pack& b) { return where(a.v != b.v); }
 
-    ARM3R_INLINE friend Pack select(const Mask& mask, const Pack& a, const Pack& b) { return Pack(mask.v ? a.v : b.v); }
-    ARM3R_INLINE friend Pack min(const Pack& a, const Pack& b) { return Pack(b.v < a.v ? b.v : a.v); }
-    ARM3R_INLINE friend Pack max(const Pack& a, const Pack& b) { return Pack(a.v < b.v ? b.v : a.v); }
+    ARM3R_INLINE friend Pack select(const Mask& mask, const Pack& a, const Pack& b) {
+        Pack chosen;
+        chosen.v = mask.v ? a.v : b.v;
+        return chosen;
+    }
+    ARM3R_INLINE friend Pack min(const Pack& a, const Pack& b) {
+        Pack least;
+        least.v = b.v < a.v ? b.v : a.v;
+        return least;
+    }
+    ARM3R_INLINE friend Pack max(const Pack& a, const Pack& b) {
+        Pack greatest;
+        greatest.v = a.v < b.v ? b.v : a.v;
+        return greatest;
+    }
 
     template <class F>
     ARM3R_INLINE friend Pack with_bits(const Pack& x, F f) {

@@ -54,6 +54,17 @@ ARM3R_INLINE Vec3<T> transposed_times(const Mat3<T>& R, const Vec3<T>& v) {
     return out;
 }
 
+template <class T>
+ARM3R_INLINE Mat3<T> from_rows(const Vec3<T>& first, const Vec3<T>& second, const Vec3<T>& third) {
+    Mat3<T> m;
+    for (int j = 0; j < 3; ++j) {
+        m(0, j) = first[j];
+        m(1, j) = second[j];
+        m(2, j) = third[j];
+    }
+    return m;
+}
+
 // A vector of parameters in the number type of the state.
 template <class T, class P>
 ARM3R_INLINE Vec3<T> broadcast(const Vec3<P>& v) {
