@@ -31,9 +31,9 @@ BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
         DenseOutput dense;
         dense.assign(hermite(3.0, 0.2, y0, f0, y1, f1));
         const ControllerState<double> controller_state{};
-        const RowContext context{setup.plant, trial % 4 < 2,        0.5,   static_cast<ContactMode>(trial % 4),
-                                 dense,       setup.controller(),   false, controller_state,
-                                 1,           double(trial % 7 < 4)};
+        const RowContext context{setup.plant, trial % 4 < 2,         0.5,   static_cast<ContactMode>(trial % 4),
+                                 dense,       setup.controller(),    false, controller_state,
+                                 1,           double(trial % 7 < 4), 0.0};
         double t[rows_per_block];
         for (int i = 0; i < rows_per_block; ++i) t[i] = 3.0 + 0.025 * i;
         RowBlock rows;

@@ -11,11 +11,13 @@ namespace arm3r {
 template <class Element, int N>
 struct Register {
     typedef Element type __attribute__((vector_size(sizeof(Element) * N)));
-    // Written out, because a loop over the lanes takes g++ 12 three times as long.
+    // Written out for the widths of registers, because g++ 12 takes three times as long for a loop over the lanes.
     ARM3R_INLINE static void set_all(type& v, Element x) {
         if constexpr (N == 2) v = type{x, x};
         else if constexpr (N == 4) v = type{x, x, x, x};
-        else v = type{x, x, x, x, x, x, x, x};
+        else if constexpr (N == 8) v = type{x, x, x, x, x, x, x, x};
+        else
+            for (int lane = 0; lane < N; ++lane) v[lane] = x;
     }
 };
 
