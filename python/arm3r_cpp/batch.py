@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._messages import no_column
-from ._native import BatchProgress, Floats, lib
+from ._native import BatchProgress, Floats, Progress, lib
 from .control.batch_law import BatchLaw, MakeLaw
 from .control.law import Law, NativeLaw
 from .errors import BudgetError, ScenarioError, UsageError
@@ -23,6 +24,8 @@ from .scenario import Scenario
 if TYPE_CHECKING:
     import pandas
     import xarray
+
+    from .blocks.block import Block
 
 Index = int | tuple[int, ...]
 
@@ -181,7 +184,11 @@ class Batch:
 
         index: of one run, as for a column.
         """
-        return self.scenario(index).run(controller=self._law.of_run(index) if self._law else None)
+        return self._run(index)
+
+    def _run(self, index: Index, progress: Progress | None = None) -> Run:
+        law = self._law.of_run(index) if self._law else None
+        return self.scenario(index).run(controller=law, progress=progress)
 
 
 def run_batch(
@@ -191,7 +198,7 @@ def run_batch(
     grid: bool = False,
     threads: int | None = None,
     progress: BatchProgress | None = None,
-    controller: Law | NativeLaw | None = None,
+    controller: Law | NativeLaw | Block | str | os.PathLike[str] | None = None,
     make_controller: MakeLaw | None = None,
     rate: float | None = None,
 ) -> Batch:
@@ -216,7 +223,10 @@ def run_batch(
     runs = math.prod(shape)
     varied = [index for axis in axes for index in axis.indices]
     names = list(_native.summary_columns())
-    law = BatchLaw(controller, make_controller, shape, scenario._file) if has_law else None
+    law: Any = controller
+    if make_controller is None and (block := _block_of(controller)):
+        law, make_controller = None, _law_of_row(block, base, axes, shape)
+    law = BatchLaw(law, make_controller, shape, scenario._file) if has_law else None
     _check_room(runs, len(varied) + len(names))
     numbers = _numbers(axes, shape)
     done = 0
@@ -244,6 +254,22 @@ def run_batch(
             done += len(group)
     columns = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
     return Batch(base, axes, columns, shape, law)
+
+
+def _block_of(controller: Any) -> Block | None:
+    """The function in a file that is given as a law; None: it is a law already, or nothing that can be one."""
+    if controller is None or callable(controller) or isinstance(controller, NativeLaw):
+        return None
+    from .blocks.block import Block  # it stands above this module
+
+    block = Block.read(controller) if isinstance(controller, (str, os.PathLike)) else controller
+    return block if isinstance(block, Block) else None
+
+
+def _law_of_row(block: Block, base: Scenario, axes: Sequence[Axis], shape: tuple[int, ...]) -> MakeLaw:
+    """Makes the law of a run for the arm of that run. A file that cannot be executed raises at once."""
+    block.law(base)
+    return lambda index: block.law(_scenario(base, axes, index if isinstance(index, tuple) else (index,), shape))
 
 
 # ---- axes -----------------------------------------------------------------------------------------------------------

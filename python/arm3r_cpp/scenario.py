@@ -24,6 +24,7 @@ from .run import Run
 
 if TYPE_CHECKING:
     from .batch import Batch
+    from .blocks.beside import Beside
     from .control.batch_law import MakeLaw
 
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
@@ -259,7 +260,7 @@ class Scenario:
     def run(
         self,
         *,
-        controller: Law | NativeLaw | None = None,
+        controller: Law | NativeLaw | str | os.PathLike[str] | None = None,
         rate: float | None = None,
         progress: Progress | None = None,
         time_limit: float | None = None,
@@ -273,7 +274,9 @@ class Scenario:
 
         Args:
             controller: a law of your own instead of the scenario's, controller(t, state) -> three torques, N m. It is
-                called once at each sample, in increasing time, and its torque held until the next.
+                called once at each sample, in increasing time, and its torque held until the next. Or a function in a
+                file, "my_law.m" or "my_law.py:f"; docs/control.md says what its arguments get. `run_beside` runs the
+                scenario's own controller, too.
             rate: of its samples, Hz; None: the scenario's sampling.rate, by default 1000.
             progress: called as progress(t, stop, steps) at most every 20 ms; a true result stops the run, and what it
                 raises comes out unchanged.
@@ -283,10 +286,15 @@ class Scenario:
             ScenarioError: the scenario is not valid.
             ControllerError: the controller raised, which is then its `__cause__`, or returned no torque; `error.tick`,
                 `error.t`, `error.received` and `error.run` say more.
+            UsageError: the controller's file cannot be read, or an argument of its function is not known.
             NumericalError, BudgetError: the run did not reach its end; `error.run` holds it as far as it came.
             Arm3rError: `progress` stopped the run; `error.run` likewise.
         """
         check_time_limit(time_limit)
+        if isinstance(controller, (str, os.PathLike)):
+            from .blocks.block import Block  # it stands above this module
+
+            controller = Block.read(controller).law(self)
         if controller is None and rate is not None:
             raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
         mine = self if controller is None else self._for_law(rate)
@@ -301,6 +309,29 @@ class Scenario:
                 f"{self._file}: {run.outcome}: {run.summary['message']}", code=f"run.{run.outcome}", run=run
             )
         return run
+
+    def run_beside(
+        self,
+        controller: Law | str | os.PathLike[str],
+        *,
+        rate: float | None = None,
+        progress: Progress | None = None,
+        time_limit: float | None = None,
+    ) -> Beside:
+        """Run a controller of your own, and beside it the true one: the scenario's own, at the same samples.
+
+        >>> beside = scenario.run_beside("my_gravity.m")
+        >>> print(beside)
+        >>> beside.figure()
+
+        A function of the joint angles alone is a gravity torque. Where the scenario does not compensate gravity, the
+        true one beside it is `gravity_compensation`.
+
+        Args, Raises: as `run`. What ends your run early is in `beside.failure` and is not raised.
+        """
+        from .blocks.beside import run_beside  # it stands above this module
+
+        return run_beside(self, controller, rate=rate, progress=progress, time_limit=time_limit)
 
     def _for_law(self, rate: float | None) -> Scenario:
         """A copy whose controller is a law of the user's own. What it warns of, this scenario has warned of."""
@@ -321,7 +352,7 @@ class Scenario:
         grid: bool = False,
         threads: int | None = None,
         progress: BatchProgress | Literal[False] | None = None,
-        controller: Law | NativeLaw | None = None,
+        controller: Law | NativeLaw | str | os.PathLike[str] | None = None,
         make_controller: MakeLaw | None = None,
         rate: float | None = None,
     ) -> Batch:
@@ -341,7 +372,8 @@ class Scenario:
                 `stopped`, and what it raises comes out unchanged. None: a bar on stderr, if that is a terminal and the
                 runs take longer than a second; False: nothing.
             controller: a law of your own for all runs, as `run` takes it. A Python function is called for one run after
-                the other in this thread; so is a NativeLaw, unless it is declared re-entrant.
+                the other in this thread; so is a NativeLaw, unless it is declared re-entrant. A function in a file is
+                made anew for each run, and gets the numbers of that run's arm.
             make_controller: called as make_controller(index) at the start of each run, for a law with a memory or with
                 gains of its own; it returns the law of this run. index: as for a column, so a tuple where the batch has
                 several dimensions.

@@ -25,6 +25,7 @@ ROOMS = [
     "notebook",
     "animation",
     "verify",
+    "blocks",
     "commands",
     "_api",
     "__init__",
@@ -32,6 +33,7 @@ ROOMS = [
 
 # Public names that a room below hands on: these imports point up, and they are done when the name is used.
 LATER = {("scenario", "batch"), ("plot", "animation")}
+LATER |= {(room, "blocks") for room in ("scenario", "batch", "sweeps")}  # controllers in files
 LATER |= {(room, "notebook") for room in ("run", "scenario", "batch")}  # their pages and tables
 
 MAX_MODULES = 16  # in a folder

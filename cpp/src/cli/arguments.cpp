@@ -50,6 +50,9 @@ constexpr Option options[] = {
     {"--no-checks", "", "", "run", "leave out the scenario's checks, which hold for its own values only"},
     {"--json", "", "", "run", "print the summary as JSON: one object, or an array for several files"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
+    {"--controller", "", "FILE[:FUNCTION]", "run",
+     "run a MATLAB or Python function of yours as the controller, beside the true one, in the scenario's convention; "
+     "FILE is executed as you would execute it, unconfined"},
     {"--format", "", "md", "schema columns", "print a Markdown page instead"},
     {"--help", "-h", "", "", "print this"},
     {"--version", "", "", "", "print the version"},
@@ -126,6 +129,10 @@ void apply(const Option& option, const std::string& value, Arguments& arguments)
         arguments.format = value;
     } else if (option.name == "--time-limit") {
         arguments.time_limit = read_seconds(value);
+    } else if (option.name == "--controller") {
+        if (value.empty()) usage_error("--controller needs a file name");
+        if (!arguments.controller.empty()) usage_error("--controller stands there twice");
+        arguments.controller = value;
     } else {
         arguments.json |= option.name == "--json";
         arguments.no_checks |= option.name == "--no-checks";
@@ -137,6 +144,7 @@ void apply(const Option& option, const std::string& value, Arguments& arguments)
 
 struct Used {
     std::vector<const Option*> options;
+    std::vector<std::string> words;  // the options in their long form, with their values
 };
 
 // "--output=X" and "-oX" as "--output" and "X". A word like "-output" is left whole, and so refused.
@@ -155,14 +163,18 @@ std::size_t read_option(const std::vector<std::string>& words, std::size_t at, A
     const auto [name, value] = parted(word);
     const Option& option = find_option(name);
     used.options.push_back(&option);
+    const auto take = [&](const std::string& given) {
+        apply(option, given, arguments);
+        used.words.push_back(std::string(option.name) + (option.value.empty() ? "" : "=" + given));
+    };
     if (option.value.empty()) {
         if (value) usage_error(std::string(option.name) + " takes no value");
-        apply(option, "", arguments);
+        take("");
         return 1;
     }
-    if (value) return apply(option, *value, arguments), 1;
+    if (value) return take(*value), 1;
     if (at + 1 == words.size()) usage_error(word + " needs a value: " + std::string(option.value));
-    apply(option, words[at + 1], arguments);
+    take(words[at + 1]);
     return 2;
 }
 
@@ -229,6 +241,9 @@ Arguments read_arguments(const std::vector<std::string>& words) {
             ++at;
         }
     }
+    arguments.words = used.words;
+    arguments.words.emplace_back("--");
+    arguments.words.insert(arguments.words.end(), arguments.files.begin(), arguments.files.end());
     if (arguments.help || arguments.version) return arguments;
     if (!arguments.cmake_dir || !arguments.call.empty()) check_fit(arguments, used);
     return arguments;

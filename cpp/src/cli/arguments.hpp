@@ -31,8 +31,9 @@ struct Arguments {
     std::string call;  // "" for `arm3r --help` and `arm3r --version`
     std::vector<std::string> files;
     std::vector<std::pair<std::string, std::string>> edits;  // PATH, VALUE
-    std::string output, format;
-    double time_limit = 0;  // s; 0: none
+    std::string output, format, controller;
+    double time_limit = 0;           // s; 0: none
+    std::vector<std::string> words;  // options in their long form, `--`, files: the same once more, for another program
     bool json = false, no_checks = false, help = false, version = false, cmake_dir = false;
 };
 

@@ -288,26 +288,41 @@ std::vector<std::string> own_directories(const std::string& outlined) {
     return directories;
 }
 
-[[noreturn]] void become(const std::string& name, char** words) {
-    std::vector<std::string> directories = own_directories(words[0]);
+// Goes on as the program arm3r-NAME, with the words behind words[0]. Returns where there is none.
+void become(const std::string& name, const std::string& called, char** words) {
+    std::vector<std::string> directories = own_directories(called);
     for (const std::string& directory : search_path()) directories.push_back(directory);
     for (const std::string& directory : directories) {
         const std::string program = directory + "/arm3r-" + name;
         if (name.find('/') != name.npos || access(program.c_str(), X_OK) != 0 || is_directory(program)) continue;
-        words[1] = const_cast<char*>(program.c_str());
-        execv(program.c_str(), words + 1);
+        words[0] = const_cast<char*>(program.c_str());
+        execv(program.c_str(), words);
     }
-    throw Exit{exit_usage, "arm3r: error[usage]: " + unknown_call(name)};
+}
+
+[[noreturn]] void run_controller(const Arguments& arguments, const char* called) {
+    std::vector<char*> words = {nullptr};
+    for (const std::string& word : arguments.words) words.push_back(const_cast<char*>(word.c_str()));
+    words.push_back(nullptr);
+    become("run", called, words.data());
+    throw Exit{exit_usage,
+               "arm3r: error[usage]: --controller is run by the Python package, and there is no program arm3r-run "
+               "beside this one or on PATH; install it: pip install arm3r_cpp"};
 }
 
 int main(int count, char** words) {
-    if (count > 1 && words[1][0] != '-' && !is_call(words[1])) become(words[1], words);
+    if (count > 1 && words[1][0] != '-' && !is_call(words[1])) {
+        const std::string name = words[1];
+        become(name, words[0], words + 1);
+        throw Exit{exit_usage, "arm3r: error[usage]: " + unknown_call(name)};
+    }
     if (count <= 1) return print(help("")), exit_ok;
     const Arguments arguments = read_arguments({words + 1, words + count});
     if (arguments.help) return print(help(arguments.call)), exit_ok;
     if (arguments.version)
         return print("arm3r " + std::string(arm3r_version()) + "\n" + arm3r_build_info() + "\n"), exit_ok;
     if (arguments.cmake_dir) return print(cmake_directory() + "\n"), exit_ok;
+    if (!arguments.controller.empty()) run_controller(arguments, words[0]);
     return call(arguments);
 }
 

@@ -30,6 +30,10 @@ def verify() -> int:
     return _call("verify")
 
 
+def run() -> int:
+    return _call("run")
+
+
 def _call(module: str) -> int:
     warnings.showwarning = _say  # type: ignore[assignment]
     main = import_module(f".{module}", __package__).main

@@ -20,6 +20,7 @@ from ..errors import (
 )
 
 FAILED_RUNS = 7
+FAILED_CHECK = 10
 WRONG_FORMULA = 11
 _CODES: dict[type[Arm3rError], int] = {
     UsageError: 2,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
 from collections.abc import Sequence
 from functools import partial
@@ -14,7 +15,7 @@ from ..errors import UsageError
 from ..plot.figure_files import check_format, write
 from ..plot.style import FORMATS, WIDTH
 from .exit_codes import attempt, print_line
-from .run_source import add_part, add_set, read
+from .run_source import add_part, add_set, read, scenario_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,12 +38,30 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def draw(options: argparse.Namespace) -> None:
+    if options.controller:
+        return draw_beside(options)
     runs = {path: read(path, options.set) for path in paths_of(options)}
     target = target_of(options)
     save({path: run for path, (run, _) in runs.items()}, options, target)
     for _, failure in runs.values():
         if failure:
             raise failure
+
+
+def draw_beside(options: argparse.Namespace) -> None:
+    """Your function as the controller, and the true one."""
+    if options.panels:
+        raise UsageError("--panels: with --controller the panels are those of two controllers; leave it away")
+    paths_of(options)
+    scenario, (stem, suffix) = scenario_of(options.run, options.set), target_of(options)
+    with contextlib.redirect_stdout(sys.stderr):  # what the user's function prints
+        beside = scenario.run_beside(options.controller)
+    path = Path(f"{stem}.{suffix}")
+    part = {"start": options.start, "end": options.end, "stamp": options.stamp}
+    write({path: beside.figure(width=options.width or WIDTH, height=options.height, **part)})
+    print_line(path)
+    if beside.failure:
+        raise beside.failure
 
 
 def parser() -> argparse.ArgumentParser:
@@ -79,6 +98,8 @@ def parser() -> argparse.ArgumentParser:
         metavar="PATH",
         help="folder, made if it is missing, or without --lecture also a file in a folder that exists (default: here)",
     )
+    controller = "run your function as the controller of the scenario RUN, beside the true one, and draw both; FILE is "
+    pick("--controller", metavar="FILE[:FUNCTION]", help=f"{controller}executed as you would execute it, unconfined")
     add_set(parser)
     add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
     add_part(parser)

@@ -11,6 +11,7 @@ from ..errors import Arm3rError, UsageError
 
 if TYPE_CHECKING:
     from ..run import Run
+    from ..scenario import Scenario
 
 SCENARIOS = (".yaml", ".yml")
 
@@ -31,18 +32,30 @@ def add_part(parser: argparse.ArgumentParser) -> None:
 def read(path: Path, edits: Sequence[str] = ()) -> tuple[Run, Arm3rError | None]:
     """The run, of a scenario with these edits; and why it is only a partial one, if it is."""
     from ..run import Run
-    from ..scenario import Scenario
 
     if path.suffix not in SCENARIOS:
         if edits:
             raise UsageError(f"--set {edits[0]}: {path} is a finished run; give a scenario's .yaml", code="usage")
         return Run.load(path), None
-    scenario = Scenario.load(path)
-    for edit in edits:
-        scenario._set_from_option(edit)
     try:
-        return scenario.run(), None
+        return scenario_of(path, edits).run(), None
     except Arm3rError as error:
         if error.run is None:
             raise
         return error.run, error
+
+
+def scenario_of(path: Path, edits: Sequence[str]) -> Scenario:
+    """The scenario of a file, with these edits.
+
+    Raises:
+        UsageError: the file is none, or cannot be read.
+    """
+    from ..scenario import Scenario
+
+    if path.suffix not in SCENARIOS:
+        raise UsageError(f"{path}: a scenario's .yaml is needed", code="usage")
+    scenario = Scenario.load(path)
+    for edit in edits:
+        scenario._set_from_option(edit)
+    return scenario

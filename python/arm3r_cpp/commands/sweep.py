@@ -13,6 +13,8 @@ from .._progress_bar import Bar
 from ..errors import Arm3rError
 from .exit_codes import FAILED_RUNS, end_by_signal, exit_code, print_line
 
+OWN_CONTROLLER = ("controller={type: user}", "reference=null")
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-sweep`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
@@ -23,9 +25,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         from ..sweeps.definition import Sweep
         from ..sweeps.runner import sweep
 
-        plan = Sweep.load(options.sweep, overrides=options.set)
+        overrides = [*(OWN_CONTROLLER if options.controller else []), *options.set]
+        plan = Sweep.load(options.sweep, overrides=overrides)
         table = sweep(plan, out=options.out, jobs=options.jobs, resume=options.resume, parquet=options.parquet,
-                      progress=bar.draw)  # fmt: skip
+                      progress=bar.draw, controller=options.controller)  # fmt: skip
         bar.clear()
         failed = {outcome: count for outcome, count in table.outcomes.items() if outcome != "ok"}
         words = ", ".join(f"{count} {outcome}" for outcome, count in failed.items())
@@ -52,6 +55,9 @@ def parser() -> argparse.ArgumentParser:
     add("--jobs", type=int, metavar="N", help="shards computed at a time (default: one for each CPU allowed)")
     add("--resume", action="store_true", help="go on where an interrupted sweep in DIR stopped")
     add("--set", action="append", default=[], metavar="PATH=VALUE", help="put a value into the scenario")
+    controller = "a MATLAB or Python function of yours as the controller of every run; "
+    unconfined = "FILE is executed as you would execute it, unconfined"
+    add("--controller", metavar="FILE[:FUNCTION]", help=controller + unconfined)
     add("--parquet", action="store_true", help="table.parquet instead of table.csv; needs pyarrow")
     add("--schema", action=_PrintSchema, nargs=0, help="print the JSON Schema of sweep files, for editors")
     add("--version", action="version", version=f"arm3r-sweep {version}")

@@ -127,6 +127,9 @@ def name_of(function: Any) -> str:
 
 
 def why_it_failed(adapter: LawAdapter, controller: Law, raised: BaseException | None) -> str:
+    """A law may have a sentence of its own: law.why_it_failed(raised, received)."""
+    if own := getattr(controller, "why_it_failed", None):
+        return own(cause_of(raised), adapter.received)
     if cause_of(raised) is not None:
         return f"{name_of(controller)} raised {type(raised).__name__}: {raised}"
     return f"{name_of(controller)} returned {adapter.received!r}; {TORQUE}"

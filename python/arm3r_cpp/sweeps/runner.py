@@ -11,16 +11,20 @@ from contextlib import contextmanager
 from dataclasses import asdict, replace
 from operator import index
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import _native
 from .._files import replacing
-from ..errors import Arm3rError
+from ..errors import Arm3rError, UsageError
+from ..scenario import Scenario
 from .definition import Sweep
 from .folder import SweepFolder, sha256
 from .shard import ShardJob, ShardResult, columns_of, run_shard
 from .table import SweepTable
 from .table_io import merge, pyarrow
+
+if TYPE_CHECKING:
+    from ..blocks.block import Block
 
 Submit = Callable[[ShardJob], "Future[ShardResult]"]
 UnderWay = dict[int, int]
@@ -50,6 +54,7 @@ def sweep(
     resume: bool = False,
     parquet: bool = False,
     progress: Callable[[int, int], Any] | None = None,
+    controller: str | os.PathLike[str] | None = None,
 ) -> SweepTable:
     """Run a sweep into a folder; a table with one row a run. Same bytes for any executor and any number of jobs.
 
@@ -62,6 +67,8 @@ def sweep(
         parquet: table.parquet instead of table.csv; needs the extra `parquet`.
         progress: called as progress(runs_done, runs) from the calling thread; a true result ends the sweep, as Ctrl-C
             does, and it can be resumed. Runs of shards on their way count too; on another executor only whole shards.
+        controller: a function in a file, as `Scenario.run` takes it, instead of the scenario's controller; workers get
+            its text. The scenario needs controller.type `user`.
 
     Returns:
         The table. A run that failed is a row of it, and raises nothing.
@@ -74,7 +81,7 @@ def sweep(
     """
     jobs = None if jobs is None else index(jobs)
     plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
-    job = _first_job(plan, "parquet" if parquet else "csv")
+    job = _first_job(plan, "parquet" if parquet else "csv", controller)
     with SweepFolder.open(Path(out), _manifest(plan, job), resume=resume) as folder:
         under_way: UnderWay = {}
         with _submitting(executor, jobs, under_way) as (submit, at_a_time):
@@ -84,7 +91,7 @@ def sweep(
     return SweepTable(out)
 
 
-def _first_job(plan: Sweep, table: str) -> ShardJob:
+def _first_job(plan: Sweep, table: str, controller: str | os.PathLike[str] | None) -> ShardJob:
     scenario = plan.scenario.copy()
     scenario["checks"] = []
     return ShardJob(
@@ -97,7 +104,24 @@ def _first_job(plan: Sweep, table: str) -> ShardJob:
         table=table,
         version=_native.version,
         abi=_native.lib.arm3r_abi_version(),
+        controller=None if controller is None else _block(controller, scenario, plan.file),
     )
+
+
+def _block(controller: str | os.PathLike[str], scenario: Scenario, file: str) -> Block:
+    """
+    Raises:
+        UsageError: it cannot be read, or the scenario has a controller of its own, whose keys the axes may name.
+        ControllerError: the file raised when it was executed.
+    """
+    from ..blocks.block import Block  # it stands above this room
+
+    if (kind := scenario["controller.type"]) != "user":
+        what = f"{file}: controller.type is {kind}; with a controller of your own it is user"
+        raise UsageError(f"{what}: --set controller={{type: user}} --set reference=null", code="usage")
+    block = Block.read(controller)
+    block.law(scenario)
+    return block
 
 
 def _manifest(plan: Sweep, job: ShardJob) -> dict[str, Any]:
@@ -107,7 +131,12 @@ def _manifest(plan: Sweep, job: ShardJob) -> dict[str, Any]:
         "abi": job.abi,
         "table": job.table,
         "pyarrow": pyarrow().__version__ if job.table == "parquet" else None,
-        "hashes": {"sweep": sha256(plan.text.encode()), "scenario": sha256(job.scenario.encode())},
+        "hashes": {
+            "sweep": sha256(plan.text.encode()),
+            "scenario": sha256(job.scenario.encode()),
+            **({"controller": sha256(job.controller.text.encode())} if job.controller else {}),
+        },
+        **({"controller": job.controller.function} if job.controller else {}),
         "runs": plan.runs,
         "shard": plan.shard,
         "mode": plan.mode,

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,9 @@ from ..errors import Arm3rError, BudgetError, IncompatibleError
 from ..run import Run
 from ..scenario import Scenario
 from .table_io import encode
+
+if TYPE_CHECKING:
+    from ..blocks.block import Block
 
 STATISTICS: dict[str, Callable[[Floats], float]] = {
     "max": np.max,
@@ -45,7 +48,7 @@ class Statistic(NamedTuple):
 
 @dataclass(frozen=True)
 class ShardJob:
-    """What a worker receives: text and numbers only."""
+    """What a worker receives: text and numbers only; `controller`: a function in a file, which is a text, too."""
 
     first: int
     scenario: str
@@ -56,6 +59,7 @@ class ShardJob:
     table: str
     version: str
     abi: int
+    controller: Block | None = None
 
 
 class ShardResult(NamedTuple):
@@ -86,7 +90,8 @@ def run_shard(job: ShardJob, progress: Callable[[int, int], Any] | None = None) 
 def _computed(job: ShardJob, progress: Callable[[int, int], Any] | None) -> ShardResult:
     counts_later = progress and (lambda runs_done, runs: progress(0, runs))  # statistics run each of them once more
     scenario = Scenario(job.scenario, file=job.file)._quiet()
-    batch = run_batch(scenario, job.values, threads=1, progress=counts_later if job.statistics else progress)
+    report = counts_later if job.statistics else progress
+    batch = run_batch(scenario, job.values, threads=1, progress=report, controller=job.controller)
     outcomes = batch.outcomes
     columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
     columns |= {name: batch[name] for name in job.metrics}
@@ -136,6 +141,6 @@ def _statistics(
 def _run(batch: Batch, index: int, progress: Callable[[int, int], Any] | None) -> Run | None:
     """The run, or as much of it as there is."""
     try:
-        return batch.scenario(index).run(progress=lambda t, stop, steps: progress and progress(index, len(batch)))
+        return batch._run(index, progress=lambda t, stop, steps: progress and progress(index, len(batch)))
     except Arm3rError as error:
         return error.run

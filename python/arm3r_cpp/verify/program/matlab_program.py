@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ...errors import UsageError
 from .matlab_reader import Function, Statement, read, read_expression
@@ -120,6 +120,18 @@ class MatlabProgram:
         if any(one.shape[1:] != (1, 1) for one in outputs):
             raise ProgramError("returns several outputs that are no scalars")
         return np.stack([one[:, 0, 0] for one in outputs], axis=1)
+
+    def call(self, *arguments: ArrayLike) -> list[Floats]:
+        """The outputs at one state, each a matrix. A vector is given as a column.
+
+        Raises:
+            ProgramError: the function failed.
+        """
+        self._calls = 0
+        columns = [np.asarray(one, np.float64) for one in arguments]
+        inputs = [(one if one.ndim == 2 else one.reshape(-1, 1))[np.newaxis] for one in columns]
+        with np.errstate(all="ignore"):
+            return [one[0] for one in self._run(self.functions[self.function], inputs)]
 
     def _edited(self, edit: Edit) -> tuple[Statement, Node]:
         for statement in self.statements():

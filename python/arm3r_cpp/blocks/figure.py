@@ -1,0 +1,113 @@
+"""The figure of two controllers: both runs over each other, and below each quantity the difference."""
+
+from __future__ import annotations
+
+import os
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..plot.layout import Panel, Size, lay_out
+from ..plot.run_figure import origin_of, stamp_height
+from ..plot.run_part import part_of
+from ..plot.style import BLACK, BLUE, JOINTS, RED, TRIPLE, WIDTH, finish, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..run import Run
+    from .beside import Beside
+
+SMALL = 1.0
+"""rad, m: differences below are drawn in thousandths."""
+
+
+def figure(
+    beside: Beside, *, width: float = WIDTH, height: float | None = None, start: float | None = None,
+    end: float | None = None, stamp: bool = False,
+) -> Figure:  # fmt: skip
+    """Joint angles, torques and contact force of both, each with the difference below it, and how far the tips are
+    apart.
+
+    The arguments are those of `arm3r_cpp.plot.overview`.
+    """
+    with style():
+        runs = [part_of(run, start, end) for run in (beside.yours, beside.true) if run]
+        origins = [origin_of(run) for run in (beside.yours, beside.true) if run]
+        t = max((run.t for run in runs), key=len)
+        size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
+        drawn = lay_out(panels(runs, labels(beside)), [], size=size, start=float(t[0]), end=float(t[-1]))
+        drawn.set_origin(origins, stamp=stamp)
+        return drawn
+
+
+def labels(beside: Beside) -> list[str]:
+    """Of the two runs."""
+    file, _, function = beside.name.rpartition(": ")
+    name = f"{os.path.basename(file)}: {function}" if file else function
+    return [f"solid: {name}", f"dashed: {beside.true_name}, the true one"]
+
+
+def panels(runs: list[Run], words: list[str]) -> list[Panel]:
+    """Each quantity of both, and the differences where there are two runs."""
+    forces = all("depth" in run for run in runs) and any(np.any(run["f_on_wall"]) for run in runs)
+    found = [Panel(1.2, partial(draw_joints, runs, "q", "joint angle, rad", words[: len(runs)]))]
+    found += differences(runs, "q", "rad")
+    found.append(Panel(1.2, partial(draw_joints, runs, "tau", "torque, N m", [])))
+    found += differences(runs, "tau", "N m")
+    if forces:
+        found.append(Panel(0.9, partial(draw_force, runs)))
+    if len(runs) == 2:
+        found.append(Panel(0.7, partial(draw_distance, runs)))
+    return found
+
+
+def differences(runs: list[Run], name: str, unit: str) -> list[Panel]:
+    return [Panel(0.8, partial(draw_differences, runs, name, unit))] if len(runs) == 2 else []
+
+
+def draw_joints(runs: list[Run], name: str, quantity: str, words: list[str], ax: Axes, room: float) -> None:
+    """A colour a joint; yours solid, the true one dashed."""
+    symbol = {"q": "q", "tau": r"\tau"}[name]
+    for run, dashes, lw in zip(runs, ("-", (0, (4, 3))), (1.6, 1.2), strict=False):
+        for i, look in zip(JOINTS, TRIPLE, strict=True):
+            label = rf"${symbol}_{i}$" if run is runs[0] else None
+            ax.plot(run.t, run[f"{name}{i}"], color=look["color"], ls=dashes, lw=lw, label=label)
+    for text in words:
+        ax.plot([], [], ls="", label=text)
+    finish(ax, runs[0], quantity, room)
+
+
+def draw_differences(runs: list[Run], name: str, unit: str, ax: Axes, room: float) -> None:
+    """Yours less the true one's, a colour a joint."""
+    rows = min(map(len, runs))
+    apart = {i: runs[0][f"{name}{i}"][:rows] - runs[1][f"{name}{i}"][:rows] for i in JOINTS}
+    factor, unit = scaled(unit, max(float(np.abs(values).max()) for values in apart.values()))
+    for (_, values), look in zip(apart.items(), TRIPLE, strict=True):
+        ax.plot(runs[0].t[:rows], factor * values, color=look["color"], lw=1.2)
+    finish(ax, runs[0], f"difference, {unit}", room, legend=False)
+
+
+def draw_force(runs: list[Run], ax: Axes, room: float) -> None:
+    for run, dashes in zip(runs, ("-", (0, (4, 3))), strict=False):
+        ax.plot(run.t, np.linalg.norm(run["f_on_wall"], axis=1), color=BLUE if run is runs[0] else RED, ls=dashes)
+    if len(runs) == 2:
+        rows = min(map(len, runs))
+        apart = np.linalg.norm(runs[0]["f_on_wall"][:rows] - runs[1]["f_on_wall"][:rows], axis=1)
+        ax.plot(runs[0].t[:rows], apart, color=BLACK, lw=0.9, label="black: size of the difference")
+    finish(ax, runs[0], "contact force, N", room)
+
+
+def draw_distance(runs: list[Run], ax: Axes, room: float) -> None:
+    rows = min(map(len, runs))
+    apart = np.linalg.norm(runs[0]["tip"][:rows] - runs[1]["tip"][:rows], axis=1)
+    factor, unit = scaled("m", float(apart.max()))
+    ax.plot(runs[0].t[:rows], factor * apart, color=BLACK, lw=1.2)
+    finish(ax, runs[0], f"tips apart, {unit}", room, legend=False)
+
+
+def scaled(unit: str, largest: float) -> tuple[float, str]:
+    """The factor and the unit in which small angles and lengths are drawn."""
+    return (1e3, f"m{unit}") if largest < SMALL and unit in ("rad", "m") else (1.0, unit)
