@@ -127,5 +127,9 @@ def true_scenario(scenario: Scenario, is_gravity: bool, rate: float | None) -> S
         true.update({"controller": {"type": GRAVITY}, "reference": None})
     if true["controller.type"] in NO_LAW:
         return None
-    true["sampling.rate"] = scenario._for_law(rate)["sampling.rate"]
+    if true["controller.type"] != "constant":  # whose torque is the same at all times
+        if rate is not None:
+            true["sampling.rate"] = rate
+        elif true["sampling"] is None:
+            true["sampling"] = {}
     return true

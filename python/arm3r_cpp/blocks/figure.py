@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -91,12 +91,16 @@ def draw_differences(runs: list[Run], name: str, unit: str, ax: Axes, room: floa
 
 
 def draw_force(runs: list[Run], ax: Axes, room: float) -> None:
-    for run, dashes in zip(runs, ("-", (0, (4, 3))), strict=False):
-        ax.plot(run.t, np.linalg.norm(run["f_on_wall"], axis=1), color=BLUE if run is runs[0] else RED, ls=dashes)
+    looks: list[dict[str, Any]] = [
+        {"color": BLUE, "ls": "-", "lw": 1.8, "label": "yours"},
+        {"color": RED, "ls": (0, (4, 3)), "lw": 1.4, "label": "the true one"},
+    ]
+    for run, look in zip(runs, looks, strict=False):
+        ax.plot(run.t, np.linalg.norm(run["f_on_wall"], axis=1), **look)
     if len(runs) == 2:
         rows = min(map(len, runs))
         apart = np.linalg.norm(runs[0]["f_on_wall"][:rows] - runs[1]["f_on_wall"][:rows], axis=1)
-        ax.plot(runs[0].t[:rows], apart, color=BLACK, lw=0.9, label="black: size of the difference")
+        ax.plot(runs[0].t[:rows], apart, color=BLACK, lw=0.9, label="size of the difference")
     finish(ax, runs[0], "contact force, N", room)
 
 

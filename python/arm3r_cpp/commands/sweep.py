@@ -13,8 +13,6 @@ from .._progress_bar import Bar
 from ..errors import Arm3rError
 from .exit_codes import FAILED_RUNS, end_by_signal, exit_code, print_line
 
-OWN_CONTROLLER = ("controller={type: user}", "reference=null")
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-sweep`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
@@ -25,8 +23,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         from ..sweeps.definition import Sweep
         from ..sweeps.runner import sweep
 
-        overrides = [*(OWN_CONTROLLER if options.controller else []), *options.set]
-        plan = Sweep.load(options.sweep, overrides=overrides)
+        plan = Sweep.load(options.sweep, overrides=options.set)
         table = sweep(plan, out=options.out, jobs=options.jobs, resume=options.resume, parquet=options.parquet,
                       progress=bar.draw, controller=options.controller)  # fmt: skip
         bar.clear()

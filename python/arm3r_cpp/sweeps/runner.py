@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from .. import _native
 from .._files import replacing
+from ..batch import AXIS_ERRORS, axis_of
 from ..errors import Arm3rError, UsageError
-from ..scenario import Scenario
 from .definition import Sweep
 from .folder import SweepFolder, sha256
 from .shard import ShardJob, ShardResult, columns_of, run_shard
@@ -25,6 +25,7 @@ from .table_io import merge, pyarrow
 
 if TYPE_CHECKING:
     from ..blocks.block import Block
+    from ..scenario import Scenario
 
 Submit = Callable[[ShardJob], "Future[ShardResult]"]
 UnderWay = dict[int, int]
@@ -68,7 +69,7 @@ def sweep(
         progress: called as progress(runs_done, runs) from the calling thread; a true result ends the sweep, as Ctrl-C
             does, and it can be resumed. Runs of shards on their way count too; on another executor only whole shards.
         controller: a function in a file, as `Scenario.run` takes it, instead of the scenario's controller; workers get
-            its text. The scenario needs controller.type `user`.
+            its text. No axis can be a key of the controller or its reference then.
 
     Returns:
         The table. A run that failed is a row of it, and raises nothing.
@@ -104,24 +105,44 @@ def _first_job(plan: Sweep, table: str, controller: str | os.PathLike[str] | Non
         table=table,
         version=_native.version,
         abi=_native.lib.arm3r_abi_version(),
-        controller=None if controller is None else _block(controller, scenario, plan.file),
+        controller=None if controller is None else _block(controller, plan),
     )
 
 
-def _block(controller: str | os.PathLike[str], scenario: Scenario, file: str) -> Block:
+def _block(controller: str | os.PathLike[str], plan: Sweep) -> Block:
     """
     Raises:
-        UsageError: it cannot be read, or the scenario has a controller of its own, whose keys the axes may name.
-        ControllerError: the file raised when it was executed.
+        UsageError: the function cannot be read, or an axis or a statistic needs the scenario's own controller.
+        ControllerError: it failed at the start of a run.
     """
     from ..blocks.block import Block  # it stands above this room
 
-    if (kind := scenario["controller.type"]) != "user":
-        what = f"{file}: controller.type is {kind}; with a controller of your own it is user"
-        raise UsageError(f"{what}: --set controller={{type: user}} --set reference=null", code="usage")
     block = Block.read(controller)
-    block.law(scenario)
+    short = plan.scenario._for_law(None)._quiet()
+    short["checks"] = []
+    _check_axes(short, plan)
+    short["time.stop"] = short["time.start"]
+    columns = short.run(controller=block.law(short)).columns
+    for statistic in plan.statistics:
+        if statistic.column not in columns:
+            what = f"{plan.file}: statistics: with a controller of your own there is no column {statistic.column}"
+            raise UsageError(what, code="usage")
     return block
+
+
+def _check_axes(scenario: Scenario, plan: Sweep) -> None:
+    """UsageError: a scenario with a law of the user's own has not the key of an axis."""
+    for key, values in plan.values(0, 1).items():
+        one = scenario.copy()
+        try:
+            one[key] = axis_of(scenario, key, values).at((0,), (1,))
+            one.validate()
+        except Arm3rError as error:
+            if any(problem["code"] in AXIS_ERRORS for problem in error.problems):
+                what = (
+                    f"{plan.file}: axes: {key} belongs to the scenario's controller; with one of your own take it out"
+                )
+                raise UsageError(what, code="usage") from error
 
 
 def _manifest(plan: Sweep, job: ShardJob) -> dict[str, Any]:
