@@ -267,7 +267,7 @@ def test_a_sweep_has_the_bits_of_single_runs(scenario: arm3r.Scenario, file: Any
     plan_with_gain = {**plan, "axes": [{"key": "controller.joint_stiffness[0]", "values": [1, 2]}]}
     scenario["controller"] = {"type": "joint_pd"}
     file("pd.yaml", scenario.to_yaml())
-    with pytest.raises(arm3r.UsageError, match="with a controller of your own"):
+    with pytest.raises(arm3r.UsageError, match="belongs to the scenario's controller"):
         arm3r.sweep(arm3r.Sweep({**plan_with_gain, "scenario": "pd.yaml"}, file=str(tmp_path / "sweep.yaml")),
                     out=tmp_path / "gain", controller=path)  # fmt: skip
     other = file("b.m", GRAVITY.replace("SIGN", "-0.8"))
@@ -320,6 +320,7 @@ UNREADABLE = {
     "c.py": ("def law(q:\n", "c.py:1: this is not Python"),
     "d.py": ("x = 1\n", "d.py: there is no function"),
     "e.m": ("function tau = f(q)\n  if q(1) > 0\n", "e.m:2:"),
+    "g.m": ("function tau = f(state)\n  tau = state;\nend\n", "g.m:1: the argument state is not known"),
     "f.txt": ("", "f.txt: a controller is a function in a file named .m or .py"),
 }
 

@@ -48,6 +48,7 @@ def test_the_help_lists_every_command(command: Any) -> None:
     scripts = re.findall(r"^arm3r-(\w+) = ", (ROOT / "pyproject.toml").read_text(), re.M)
     assert {"plot", "animate", "sweep", "examples"} <= set(scripts)
     listed = re.findall(r"^  (\w+) ", text, re.M)
+    scripts.remove("run")  # which the executable calls where it needs Python
     assert set(scripts) | {"run", "check", "schema", "columns", "template"} <= set(listed)
     for name in listed:
         if name != "NAME":

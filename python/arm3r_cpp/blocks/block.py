@@ -46,6 +46,7 @@ class Block:
         if isinstance(program, MatlabProgram):
             self.line = program.functions[function].line
             self._with_default: set[str] = set()
+            check_numbers([name for name in self.arguments if name == "state"], f"{file}:{self.line}")
         else:
             given = PythonText(text, file).functions[function]
             self.line = given.lineno

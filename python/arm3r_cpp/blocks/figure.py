@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..run import Run
-    from .beside import Beside
+    from .comparison import Comparison
 
 SMALL = 1.0
 """rad, m: differences below are drawn in thousandths."""
 
 
 def figure(
-    beside: Beside, *, width: float = WIDTH, height: float | None = None, start: float | None = None,
+    beside: Comparison, *, width: float = WIDTH, height: float | None = None, start: float | None = None,
     end: float | None = None, stamp: bool = False,
 ) -> Figure:  # fmt: skip
     """Joint angles, torques and contact force of both, each with the difference below it, and how far the tips are
@@ -43,7 +43,7 @@ def figure(
         return drawn
 
 
-def labels(beside: Beside) -> list[str]:
+def labels(beside: Comparison) -> list[str]:
     """Of the two runs."""
     file, _, function = beside.name.rpartition(": ")
     name = f"{os.path.basename(file)}: {function}" if file else function

@@ -8,14 +8,14 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ..run import Run
-    from .beside import Beside
+    from .comparison import Comparison
 
 UNITS = {"q": ("rad", "joint angles"), "tip": ("m", "tip"), "tau": ("N m", "torque"), "force": ("N", "contact force")}
 OTHER_CONVENTION = 1e-6
 """Of the torque: a sum below that says that two torques are opposite."""
 
 
-def report(beside: Beside) -> str:
+def report(beside: Comparison) -> str:
     """The lines behind the summary of the user's run."""
     lines = [f"  controller      {beside.name}"]
     if beside.true is None:
@@ -33,7 +33,7 @@ def report(beside: Beside) -> str:
     return "\n".join(lines)
 
 
-def table(beside: Beside) -> str:
+def table(beside: Comparison) -> str:
     """A line a quantity: yours and the true one's at the end, and the largest difference."""
     assert beside.true
     last = beside.rows - 1
@@ -66,7 +66,7 @@ def convention_of(run: Run) -> str:
     return str(Scenario(run.summary["scenario"])["arm.convention"])
 
 
-def as_json(beside: Beside) -> dict[str, Any]:
+def as_json(beside: Comparison) -> dict[str, Any]:
     """What the JSON summary of the user's run has under `controller_beside`."""
     return {
         "controller": beside.name,
