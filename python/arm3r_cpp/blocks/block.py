@@ -17,7 +17,7 @@ from ..verify.program.matlab_program import MatlabProgram
 from ..verify.program.python_nodes import PythonText
 from ..verify.truth.three_r import ThreeR
 from .inputs import Input, check_numbers, input_of, is_angle, numbers_of_arm
-from .law import BlockLaw, failure
+from .law import BlockLaw, Place, failure
 
 if TYPE_CHECKING:
     from ..scenario import Scenario
@@ -72,6 +72,10 @@ class Block:
     def __str__(self) -> str:
         return f"{self.file}: {self.function}({', '.join(self.arguments)})"
 
+    @property
+    def _place(self) -> Place:
+        return Place(self.file, self.line, self.function)
+
     @cached_property
     def _of_arm(self) -> list[str]:
         """The arguments that are numbers of the arm; those with a default keep it."""
@@ -94,7 +98,7 @@ class Block:
         given |= {name: found for name in self.arguments if (found := input_of(name))}
         inputs = {name: given[name] for name in self.arguments if name in given}
         formula = from_text(self.text, self.file, self.function)
-        return BlockLaw(self, self._caller(formula, inputs), formula.order)
+        return BlockLaw(self._place, self._caller(formula, inputs), formula.order)
 
     def _caller(self, formula: Formula, inputs: Mapping[str, Input]) -> Callable[[Any], Any]:
         if isinstance(formula.program, MatlabProgram):
@@ -115,7 +119,7 @@ class Block:
             with _importing_from(os.path.dirname(os.path.abspath(self.file))):
                 exec(compile(self.text, self.file, "exec", dont_inherit=True), namespace)
         except Exception as error:
-            raise ControllerError(failure(self, error), code="run.controller") from error
+            raise ControllerError(failure(self._place, error), code="run.controller") from error
         return namespace[self.function]
 
 

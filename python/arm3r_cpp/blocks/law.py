@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,23 +12,28 @@ from ..control.law import TORQUE
 from ..control.law_state import LawState
 from ..verify.program.nodes import ProgramError
 
-if TYPE_CHECKING:
-    from .block import Block
-
 OTHER_SHAPES = ((3, 1), (1, 3))
+
+
+class Place(NamedTuple):
+    """Where a function stands."""
+
+    file: str
+    line: int
+    function: str
 
 
 class BlockLaw:
     """A law as `Scenario.run` takes it."""
 
-    def __init__(self, block: Block, call: Callable[[LawState], Any], order: Sequence[int] | None) -> None:
+    def __init__(self, place: Place, call: Callable[[LawState], Any], order: Sequence[int] | None) -> None:
         """
         Args:
             call: computes what the function returns.
             order: where t1, t2, t3 stand in what it returns; None: in this order.
         """
-        self._block, self._call, self._order = block, call, order
-        self.__qualname__ = f"{block.file}: {block.function}"
+        self._place, self._call, self._order = place, call, order
+        self.__qualname__ = f"{place.file}: {place.function}"
 
     def __call__(self, t: float, state: LawState) -> Any:
         returned = self._call(state)
@@ -40,8 +45,9 @@ class BlockLaw:
     def why_it_failed(self, raised: BaseException | None, received: Any) -> str:
         """The sentence for a sample at which it raised, or returned no torque."""
         if raised:
-            return failure(self._block, raised)
-        return f"{self._block.file}:{self._block.line}: {self._block.function} returned {shown(received)}; {TORQUE}"
+            return failure(self._place, raised)
+        file, line, function = self._place
+        return f"{file}:{line}: {function} returned {shown(received)}; {TORQUE}"
 
 
 def _number(part: Any) -> Any:
@@ -49,14 +55,14 @@ def _number(part: Any) -> Any:
     return float(np.ravel(part)[0]) if np.size(part) == 1 else part
 
 
-def failure(block: Block, raised: BaseException) -> str:
-    """What a block raised, with the line of its file."""
+def failure(place: Place, raised: BaseException) -> str:
+    """What a function raised, with the line of its file."""
     if isinstance(raised, ProgramError):
-        return f"{block.file}:{raised.line or block.line}: {block.function}: {raised}"
-    frames = [frame for frame in traceback.extract_tb(raised.__traceback__) if frame.filename == block.file]
-    line = (frames[-1].lineno if frames else None) or block.line
+        return f"{place.file}:{raised.line or place.line}: {place.function}: {raised}"
+    frames = [frame for frame in traceback.extract_tb(raised.__traceback__) if frame.filename == place.file]
+    line = (frames[-1].lineno if frames else None) or place.line
     message = str(raised).split("\n")[0]
-    return f"{block.file}:{line}: {block.function} raised {type(raised).__name__}{message and f': {message}'}"
+    return f"{place.file}:{line}: {place.function} raised {type(raised).__name__}{message and f': {message}'}"
 
 
 def shown(received: Any) -> str:
