@@ -12,6 +12,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from arm3r_cpp import examples
 from arm3r_cpp.blocks.block import Block
 from arm3r_cpp.blocks.inputs import NUMBERS
 
@@ -198,6 +199,18 @@ def test_largest_differences_are_those_of_the_columns(scenario: arm3r.Scenario, 
         assert beside.yours.t[np.argmax(apart)] == beside.differences[name].t
 
 
+def test_every_scenario_of_the_installation_takes_a_function(file: Any) -> None:
+    """For two rows: wherever there is a controller, it runs at the samples of the function, too."""
+    path = file("a.py", "def law(q, qd, tau_g):\n    return tau_g - qd\n")
+    for name in (name for name in examples.names() if not name.startswith("sweeps/")):
+        scenario = arm3r.Scenario.example(name)
+        start = scenario["time.start"]
+        scenario.update({"checks": [], "time": {"start": start, "stop": start + 0.02, "log_every": 0.01}})
+        beside = scenario.run_beside(path)
+        assert beside.failure is None and (beside.true is None) == (scenario["controller.type"] == "none"), name
+        assert beside.true is None or (beside.rows == 3 and beside.true.outcome == "ok"), name
+
+
 def test_a_callable_runs_beside_too(scenario: arm3r.Scenario) -> None:
     scenario["controller"] = {"type": "gravity_compensation"}
     beside = scenario.run_beside(lambda t, state: state.tau_g)
@@ -292,6 +305,7 @@ FAULTS = {
     "text.py": ("def law(q):\n    return 'left'\n", 0, ":1: law returned 'left'; three finite numbers"),
     "deep.py": ("def inner(q):\n    return q[5]\ndef law(q):\n    return inner(q)\n", 0, ":2: law raised IndexError: "),
     "exits.py": ("def law(q):\n    raise ValueError('two\\nlines')\n", 0, ":2: law raised ValueError: two"),
+    "leaves.py": ("def law(q):\n    raise SystemExit(0)\n", 0, ":1: law raised RuntimeError: it called exit()"),
     "singular.m": ("function tau = f(q, t)\n  a = zeros(3,3);\n  tau = inv(a)*q;\nend\n", 0, ":3: f: Singular matrix"),
     "index.m": ("function tau = f(q)\n  tau = [q(7); 0; 0];\nend\n", 0, ":2: f: index 7 is out of range"),
     "matrix.m": ("function J = f(q)\n  J = eye(3);\nend\n", 0, ":1: f returned an array of 3 x 3 numbers; three"),
@@ -395,11 +409,13 @@ def test_the_command_obeys_all_options_of_run(command: Any, tmp_path: Path) -> N
     (["s.yaml", "--controller", "hangs.py", "--time-limit", "0.5"], 5, "is used up in the controller hangs.py: law"),
     (["s.yaml", "--controller", "raises.py"], 8, "raises.py:2: law raised ZeroDivisionError"),
     (["s.yaml", "--controller", "import.py"], 8, "import.py:1: law raised ModuleNotFoundError: No module named 'nope_"),
+    (["s.yaml", "--controller", "leaves.py"], 8, "leaves.py:1: law raised SystemExit: 0"),
     (["absent.yaml", "--controller", "right.m"], 2, "absent.yaml"),
 ])  # fmt: skip
 def test_exit_codes(command: Any, file: Any, words: list[str], code: int, message: str) -> None:
     file("hangs.py", "def law(q):\n    while True:\n        pass\n")
     file("raises.py", "def law(t):\n    return [0, 0, 1/(t - 0.1)]\n")
+    file("leaves.py", "raise SystemExit(0)\ndef law(q):\n    return q\n")
     file("import.py", "import nope_not_there\ndef law(q):\n    return q\n")
     done = command("run", *words, timeout=60)
     assert done.returncode == code and message in done.stderr and "Traceback" not in done.stderr, done.stderr

@@ -118,7 +118,7 @@ class Block:
         try:
             with _importing_from(os.path.dirname(os.path.abspath(self.file))):
                 exec(compile(self.text, self.file, "exec", dont_inherit=True), namespace)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise ControllerError(failure(self._place, error), code="run.controller") from error
         return namespace[self.function]
 

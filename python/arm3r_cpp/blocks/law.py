@@ -13,6 +13,7 @@ from ..control.law_state import LawState
 from ..verify.program.nodes import ProgramError
 
 OTHER_SHAPES = ((3, 1), (1, 3))
+EXIT = "it called exit()"
 
 
 class Place(NamedTuple):
@@ -36,7 +37,10 @@ class BlockLaw:
         self.__qualname__ = f"{place.file}: {place.function}"
 
     def __call__(self, t: float, state: LawState) -> Any:
-        returned = self._call(state)
+        try:
+            returned = self._call(state)
+        except SystemExit as error:
+            raise RuntimeError(EXIT) from error
         if isinstance(returned, (list, tuple)):
             ordered = returned if self._order is None or len(returned) != 3 else [returned[i] for i in self._order]
             return [float(one) if np.ndim(one) == 0 else _number(one) for one in ordered]
