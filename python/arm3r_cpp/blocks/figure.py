@@ -31,7 +31,7 @@ def figure(
     """Joint angles, torques and contact force of both, each with the difference below it, and how far the tips are
     apart.
 
-    The arguments are those of `arm3r_cpp.plot.overview`.
+    Contact is shaded as your run has it. The arguments are those of `arm3r_cpp.plot.overview`.
     """
     with style():
         runs = [part_of(run, start, end) for run in (beside.yours, beside.true) if run]
