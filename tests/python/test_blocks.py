@@ -99,19 +99,22 @@ def seen_by(law: Any) -> dict[str, Any]:
 
 
 def test_matlab_and_python_give_the_same_bits(scenario: arm3r.Scenario, file: Any) -> None:
+    """Also of powers, of scalars and of vectors."""
     matlab = """
 function tau = fcn(q, qd, f, jacobian, t)
   a = [3; 2; 1];
-  tau = jacobian'*(2*f) - a.*qd + sin(q) + [0; cos(t); -q(2)/3];
+  p = q(1)^2 + q(2)^3/7 + (t + 1)^0.5;
+  tau = jacobian'*(2*f) - a.*qd + sin(q) + [p; cos(t); -q(2)/3] - qd.^2;
 end
 """
     python = """
 import numpy as np
 def law(t, q, qd, f_on_tip, jacobian):
     a = np.array([3, 2, 1])
-    return jacobian.T @ (2*f_on_tip) - a*qd + np.sin(q) + np.array([0, np.cos(t), -q[1]/3])
+    p = q[0]**2 + q[1]**3/7 + (t + 1)**0.5
+    return jacobian.T @ (2*f_on_tip) - a*qd + np.sin(q) + np.array([p, np.cos(t), -q[1]/3]) - qd**2
 """
-    runs = [scenario.run(controller=path, rate=200) for path in (file("a.m", matlab), file("b.py", python))]
+    runs = [scenario.run(controller=path) for path in (file("a.m", matlab), file("b.py", python))]
     assert same(*runs) and np.ptp(runs[0]["tau"]) > 0.1
 
 
