@@ -26,6 +26,7 @@ ROOMS = [
     "animation",
     "verify",
     "blocks",
+    "exercises",
     "commands",
     "_api",
     "__init__",

@@ -33,6 +33,7 @@ constexpr Program programs[] = {
     {"animate", "RUN", "draw a film of a run"},
     {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
     {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},
+    {"exercise", "CALL", "list and show exercises, judge what you hand in, and mark a folder of submissions"},
 };
 
 struct Option {

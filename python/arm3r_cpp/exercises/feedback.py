@@ -1,0 +1,33 @@
+"""What a student reads: the task, the mark of a file, and hints."""
+
+from __future__ import annotations
+
+import textwrap
+
+from .mark import RIGHT, Mark
+from .task import FunctionTask, Task
+
+GRADES = (1, 2, 3)
+
+
+def described(task: Task) -> str:
+    """The task in words, with what is given."""
+    files = " or ".join(f"{task.name}{suffix}" for suffix in task.suffixes[:2])
+    parts = [f"{task.name}: {task.title}", task.text.strip("\n")]
+    if task.given:
+        parts.append(f"Given, {task.name}{task.given_suffix}:\n\n" + textwrap.indent(task.given.strip("\n"), "    "))
+    parts.append(f"Hand in {files}.")
+    return "\n\n".join(parts)
+
+
+def answer(task: Task, file: str, mark: Mark, grade: int) -> str:
+    """The mark of a file; where it is not right, the hints up to a grade."""
+    lines = [f"{file}: {mark.word}{f': {mark.reason}' if mark.reason else ''}"]
+    if mark.word == RIGHT:
+        return lines[0]
+    lines += [f"  hint {number}: {task.hints[number - 1]}" for number in GRADES[:grade]]
+    if mark.message and (grade == GRADES[-1] or not (isinstance(task, FunctionTask) and task.kind)):
+        lines.append(textwrap.indent(mark.message, "  "))
+    if grade < GRADES[-1]:
+        lines.append(f"  --hint {grade + 1} says more")
+    return "\n".join(lines)

@@ -1,0 +1,102 @@
+"""Goes through a folder of submissions: a folder for each student, and in it a file for each task."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+from .._messages import did_you_mean
+from ..errors import UsageError
+from .mark import MISSING, WRONG, Mark
+from .task import Task
+from .worker import judge_apart
+
+Progress = Callable[[int, int], None]
+
+
+class Row(NamedTuple):
+    """What one student gets for one task."""
+
+    student: str
+    task: str
+    mark: Mark
+
+
+class Submission(NamedTuple):
+    """The files of a student's folder that are named like a task."""
+
+    student: str
+    task: Task
+    files: list[Path]
+
+
+def submissions(folder: Path, tasks: Sequence[Task]) -> list[Submission]:
+    """One for each student and task, students by name, tasks in their order.
+
+    Raises:
+        UsageError: there is no such folder, or no folder of a student in it.
+    """
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: is no folder; due is one with a folder for each student")
+    students = sorted(one for one in folder.iterdir() if one.is_dir() and not one.name.startswith("."))
+    if not students:
+        raise UsageError(f"{folder}: holds no folders; due is one for each student, with files named by task")
+    return [Submission(student.name, task, _files(student, task)) for student in students for task in tasks]
+
+
+def _files(student: Path, task: Task) -> list[Path]:
+    """The files named by the task, whatever they end with."""
+    if student.is_symlink():
+        return []
+    return sorted(one for one in student.iterdir() if one.stem == task.name)
+
+
+def notes(folder: Path, tasks: Sequence[Task]) -> Iterator[str]:
+    """What is in the folders but is no submission, where its name is nearly that of a task."""
+    names = [task.name for task in tasks]
+    for student in sorted(one for one in folder.iterdir() if one.is_dir()):
+        for file in sorted(student.iterdir()):
+            hint = did_you_mean(file.stem, names) if file.stem not in names else ""
+            if hint:
+                yield f"{file}: is not marked; {hint}"
+
+
+def runs_code(found: Sequence[Submission]) -> bool:
+    """Whether a Python file is among them."""
+    return any(file.suffix == ".py" for one in found for file in one.files)
+
+
+def marks(
+    found: Sequence[Submission], *, jobs: int, forbid_own_package: bool = False, progress: Progress | None = None
+) -> list[Row]:
+    """The rows of the table, in the order of the submissions, whatever the number of jobs."""
+
+    def judge(one: Submission) -> Row:
+        return Row(one.student, one.task.name, _mark(one, forbid_own_package))
+
+    rows = []
+    with ThreadPoolExecutor(max(jobs, 1)) as pool:
+        for row in pool.map(judge, found):
+            rows.append(row)
+            if progress:
+                progress(len(rows), len(found))
+    return rows
+
+
+def _mark(one: Submission, forbid_own_package: bool) -> Mark:
+    if not one.files:
+        return Mark(MISSING)
+    if len(one.files) > 1:
+        names = ", ".join(file.suffix or "no suffix" for file in one.files)
+        return Mark(WRONG, f"there are {len(one.files)} files of this name ({names}); hand in one")
+    if one.files[0].is_symlink():
+        return Mark(WRONG, "is a link; hand in the file itself")
+    return judge_apart(one.task, one.files[0], forbid_own_package=forbid_own_package)
+
+
+def processors() -> int:
+    """Those that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

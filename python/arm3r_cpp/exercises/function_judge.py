@@ -1,0 +1,154 @@
+"""Judges a function that a student hands in: its values beside the right ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._native import Floats
+from ..errors import UsageError
+from ..scenario import Scenario
+from ..verify.comparison import scales
+from ..verify.formula import Formula, from_file
+from ..verify.judge import judge
+from ..verify.kinds import KINDS, standard_form
+from ..verify.names import quantities_of, slot_of
+from ..verify.program.nodes import Call, ProgramError
+from ..verify.program.python_process import PythonProcess
+from ..verify.samples import VECTORS, Samples
+from ..verify.truth.three_r import ThreeR
+from .mark import RIGHT, UNCLEAR, WRONG, Mark, one_line, word_of
+from .task import FunctionTask
+
+THRESHOLD = 1e-6  # of an entry's scale
+_STOPPED = "takes too long"
+_NOT_READ = "is not read"  # a refusal of the MATLAB reader: the file may still be right
+
+
+class OwnWork(PythonProcess):
+    """The process of a file that may not import this package."""
+
+    forbid_own_package = True
+
+
+def judge_function(task: FunctionTask, path: Path, *, forbid_own_package: bool = False) -> Mark:
+    """The mark of a file."""
+    program = None
+    try:
+        formula = formula_of(task, path, OwnWork if forbid_own_package else PythonProcess)
+        program = formula.program
+        states = task.samples()
+        values, again = _values(task, formula, states), _values(task, formula, states)
+    except (UsageError, ProgramError) as error:
+        return _failed(error, path)
+    finally:
+        if isinstance(program, PythonProcess):
+            program.close()
+    if not np.array_equal(values, again, equal_nan=True):
+        return Mark(WRONG, "gives different numbers when it is called again with the same ones")
+    if not np.isfinite(values).all():
+        return Mark(WRONG, "returns NaN or infinity instead of numbers")
+    return _compared(task, values, states)
+
+
+def formula_of(task: FunctionTask, path: Path, sandbox: type[PythonProcess]) -> Formula:
+    """The function of the task's name; where a file has none, the one that `arm3r verify` would take.
+
+    Raises:
+        UsageError: the file cannot be read.
+    """
+    try:
+        return from_file(f"{path}:{task.function}", sandbox=sandbox)
+    except UsageError:
+        return from_file(path, sandbox=sandbox)
+
+
+def reading(task: FunctionTask, path: Path) -> str:
+    """What `arm3r verify` says of the file: the wrong terms, and their lines. Empty where the task is no formula."""
+    if not task.kind:
+        return ""
+    formula = formula_of(task, path, PythonProcess)
+    return str(judge(formula, KINDS[task.kind], ThreeR(Scenario(task.scenario))))
+
+
+def _failed(error: Exception, path: Path) -> Mark:
+    message = str(error).removeprefix(f"{path}: ").replace(str(path), path.name)
+    # What a program raises is in its own words; they may differ each time.
+    reason = message if isinstance(error, UsageError) else message.split(":")[0]
+    line = getattr(error, "line", None)
+    where = f" in line {line}" if line else ""
+    is_unclear = _STOPPED in message or _NOT_READ in message
+    return Mark(UNCLEAR if is_unclear else WRONG, one_line(f"{reason}{where}"), one_line(f"{message}{where}", 400))
+
+
+# ---- values ---------------------------------------------------------------------------------------------------------
+
+
+def _values(task: FunctionTask, formula: Formula, states: dict[str, Floats]) -> Floats:
+    """What the function returns, (N, entries)."""
+    values = _by_name(task, formula, states) if task.kind else _by_position(task, formula, states)
+    flat = values.reshape(len(values), -1)
+    if flat.shape[1] != len(task.entries):
+        raise ProgramError(f"returns {flat.shape[1]} numbers; {len(task.entries)} are due")
+    return flat
+
+
+def _by_name(task: FunctionTask, formula: Formula, states: dict[str, Floats]) -> Floats:
+    """Joint angles, rates and the arm's numbers, each as the argument of its name."""
+    kind, truth = KINDS[task.kind], ThreeR(Scenario(task.scenario))
+    names = [name for name in formula.arguments if not ((slot := slot_of(name)) and slot[0] in kind.inputs)]
+    own = truth.values_of_quantities
+    parameters = {name: what for name, what in quantities_of(names).items() if what in own}
+    known = sorted(set(parameters.values()))
+    count = len(states["q"])
+    samples = Samples({name: states.get(name, np.zeros((count, 3))) for name in VECTORS}, [own])
+    raw = formula.values(formula.bind(kind, truth.joints, parameters, known), samples, known)
+    try:
+        values = standard_form(kind, raw, truth.joints, samples.tiled("qd"))
+    except UsageError as error:
+        raise ProgramError(str(error)) from None
+    return values[:, :3] if task.kind == "jacobian" else values
+
+
+def _by_position(task: FunctionTask, formula: Formula, states: dict[str, Floats]) -> Floats:
+    """The inputs in their order: each as one argument, or number by number."""
+    sizes = [one.size for one in task.inputs]
+    ends = np.cumsum(sizes)
+    together = tuple(
+        int(end) - 1 if size == 1 else tuple(range(end - size, end)) for end, size in zip(ends, sizes, strict=True)
+    )
+    given: dict[int, tuple[Any, ...]] = {len(together): together, int(ends[-1]): tuple(range(ends[-1]))}
+    slots = given.get(len(formula.arguments))
+    if slots is None:
+        raise ProgramError(f"takes {len(formula.arguments)} arguments; due is {task.signature}")
+    table = np.concatenate([states[one.name].reshape(-1, one.size) for one in task.inputs], axis=1)
+    return formula.program.evaluate(Call(slots, {}), table)
+
+
+# ---- comparison -----------------------------------------------------------------------------------------------------
+
+
+def _compared(task: FunctionTask, values: Floats, states: dict[str, Floats]) -> Mark:
+    right = task.right(**states).reshape(len(values), -1)
+    scale = scales(right)
+    words = [word_of(float(error), THRESHOLD) for error in _errors(values, right, scale)]
+    if WRONG not in words:
+        unclear = [name for name, word in zip(task.entries, words, strict=True) if word == UNCLEAR]
+        return Mark(UNCLEAR, f"differs a little in {', '.join(unclear)}: a rounded number?") if unclear else Mark(RIGHT)
+    for mistake in task.mistakes:
+        wrong = mistake.values(**states).reshape(len(values), -1)
+        if (_errors(values, wrong, scale) <= THRESHOLD).all():
+            return Mark(WRONG, mistake.sentence)
+    if (_errors(values, -right, scale) <= THRESHOLD).all():
+        return Mark(WRONG, "every sign is reversed")
+    names = [name for name, word in zip(task.entries, words, strict=True) if word == WRONG]
+    every = len(names) == len(words) and len(words) > 1
+    return Mark(WRONG, "every entry is wrong" if every else f"wrong in {', '.join(names)}")
+
+
+def _errors(values: Floats, due: Floats, scale: Floats) -> Floats:
+    """The largest error of each entry, relative to its scale."""
+    result: Floats = np.abs(values - due).max(axis=0) / scale
+    return result

@@ -1,0 +1,38 @@
+"""What a submission is marked with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+RIGHT, WRONG, UNCLEAR, MISSING = "right", "wrong", "unclear", "missing"
+WORDS = (RIGHT, WRONG, UNCLEAR, MISSING)
+_ROOM = 10.0
+_LONGEST = 160  # characters of a reason
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A mark: one of `WORDS`, and one line that says why."""
+
+    word: str
+    reason: str = ""
+    message: str = ""
+    """What the student's program or the library says; it may differ from machine to machine."""
+
+
+def word_of(error: float, threshold: float) -> str:
+    """Right where an error is less than a tenth of its threshold, wrong above ten times, and unclear between."""
+    if error <= threshold / _ROOM:
+        return RIGHT
+    return UNCLEAR if error < threshold * _ROOM else WRONG
+
+
+def worst(words: list[str]) -> str:
+    """One word for several: wrong if one is wrong, else unclear if one is unclear."""
+    return next((word for word in (WRONG, UNCLEAR) if word in words), RIGHT)
+
+
+def one_line(text: str, longest: int = _LONGEST) -> str:
+    """The text without what could break a line, a table or a terminal, and not too long."""
+    line = "".join(c if c.isprintable() else " " for c in text).strip()
+    return line if len(line) <= longest else f"{line[: longest - 3]}..."

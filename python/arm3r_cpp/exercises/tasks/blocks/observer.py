@@ -1,0 +1,44 @@
+"""The momentum observer: what changes the momentum of the arm."""
+
+from ...._native import Floats
+from ...task import FunctionTask, Input, Mistake
+
+
+def rate(tau: Floats, c: Floats, g: Floats, r: Floats, *, of_c: float = 1, of_g: float = -1, of_r: float = 1) -> Floats:
+    return tau + of_c * c + of_g * g + of_r * r
+
+
+TASK = FunctionTask(
+    name="observer",
+    title="an observer that takes the weight for a collision",
+    text="""\
+A momentum observer finds forces on the arm without a sensor. With p = M qd it keeps a sum s and puts out
+
+    r = K_O (p - s),    ds/dt = what changes p, as far as it is known, and r
+
+r then follows the torque J^T f of an unknown force. The equation of motion is
+M qdd + C qd + tau_g = tau + J^T f, and dM/dt = C + C^T. Write momentum_rate(tau, c, g, r), which returns
+ds/dt: tau is the motors' torque, c = C^T qd, g = tau_g the torque that holds the arm, r the output; each
+is a vector of three. With the listing the observer reports a collision of an arm that stands still.""",
+    hints=(
+        "The arm stands still, held by tau = tau_g: what must ds/dt be for r to stay zero?",
+        "Differentiate p = M qd and put in the equation of motion: dp/dt = tau + C^T qd - tau_g + J^T f.",
+        "ds/dt = tau + c - g + r.",
+    ),
+    given="""\
+function s_dot = momentum_rate(tau, c, g, r)
+s_dot = tau + c + r;
+""",
+    function="momentum_rate",
+    inputs=tuple(Input(name, -10, 10) for name in ("tau", "c", "g", "r")),
+    entries=("s1", "s2", "s3"),
+    right=rate,
+    mistakes=(
+        Mistake("the gravity torque is missing", lambda **given: rate(**given, of_g=0)),
+        Mistake("the gravity torque has the wrong sign: it takes momentum away", lambda **given: rate(**given, of_g=1)),
+        Mistake("C^T qd has the wrong sign", lambda **given: rate(**given, of_c=-1)),
+        Mistake("C^T qd is missing", lambda **given: rate(**given, of_c=0)),
+        Mistake("r is missing: the output never follows", lambda **given: rate(**given, of_r=0)),
+        Mistake("r has the wrong sign: the output grows without end", lambda **given: rate(**given, of_r=-1)),
+    ),
+)

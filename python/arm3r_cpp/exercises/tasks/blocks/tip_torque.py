@@ -1,0 +1,43 @@
+"""The joint torque of a force on the tip: the Jacobian transposed."""
+
+from ...arms import NUMBERS, lab_arm, times, transposed
+from ...task import FunctionTask, Input, Mistake
+
+TASK = FunctionTask(
+    name="tip_torque",
+    title="from a force to torques",
+    text=f"""\
+A force f_on_tip, in base axes, acts on the tip. Write the torque that it puts on the joints, as
+torque(q, f_on_tip), each a vector of three. The listing agrees with a friend's at one pose, and nowhere
+else.
+
+{NUMBERS}""",
+    hints=(
+        "Check the units and the power: f . v must be tau . qd for every motion. What is v in terms of qd?",
+        "f . (J qd) = tau . qd for every qd.",
+        "tau = J' * f, with J transposed.",
+    ),
+    given="""\
+function tau = torque(q, f)
+a2 = 0.8;
+a3 = 0.6;
+r = a2*cos(q(2)) + a3*cos(q(2)+q(3));
+h = a2*sin(q(2)) + a3*sin(q(2)+q(3));
+s = a3*sin(q(2)+q(3));
+J = [-sin(q(1))*r, -cos(q(1))*h, -cos(q(1))*s;
+      cos(q(1))*r, -sin(q(1))*h, -sin(q(1))*s;
+      0, -r, -a3*cos(q(2)+q(3))];
+tau = J*f;
+""",
+    function="torque",
+    inputs=(Input("q", -3, 3), Input("f_on_tip", -20, 20)),
+    entries=("tau1", "tau2", "tau3"),
+    right=lambda q, f_on_tip: times(transposed(lab_arm().jacobian(q)), f_on_tip),
+    mistakes=(
+        Mistake("J is not transposed: due is J^T f", lambda q, f_on_tip: times(lab_arm().jacobian(q), f_on_tip)),
+        Mistake(
+            "this is the torque that holds against the force; the force itself puts its opposite on the joints",
+            lambda q, f_on_tip: -times(transposed(lab_arm().jacobian(q)), f_on_tip),
+        ),
+    ),
+)

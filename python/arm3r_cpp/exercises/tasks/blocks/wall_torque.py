@@ -1,0 +1,47 @@
+"""The joint torque that belongs to a force measured on the wall."""
+
+from ...arms import NUMBERS, lab_arm, times, transposed
+from ...task import FunctionTask, Input, Mistake
+
+TASK = FunctionTask(
+    name="wall_torque",
+    title="a sensor in the wall",
+    text=f"""\
+A sensor in the wall measures f_on_wall, the lecture's K_E (x - x_E), in base axes. Write the torque that
+the contact puts on the arm's joints, as torque(q, f_on_wall), each a vector of three. With the listing
+in the simulation, the wall draws the arm in.
+
+{NUMBERS}""",
+    hints=(
+        "The tip presses on the wall with f_on_wall. With what does the wall press on the tip?",
+        "Action and reaction: f_on_tip = -f_on_wall. The joints feel J^T f_on_tip.",
+        "tau = -J' * f_on_wall.",
+    ),
+    given="""\
+function tau = torque(q, f)
+a2 = 0.8;
+a3 = 0.6;
+r = a2*cos(q(2)) + a3*cos(q(2)+q(3));
+h = a2*sin(q(2)) + a3*sin(q(2)+q(3));
+s = a3*sin(q(2)+q(3));
+J = [-sin(q(1))*r, -cos(q(1))*h, -cos(q(1))*s;
+      cos(q(1))*r, -sin(q(1))*h, -sin(q(1))*s;
+      0, -r, -a3*cos(q(2)+q(3))];
+tau = J'*f;
+""",
+    function="torque",
+    inputs=(Input("q", -3, 3), Input("f_on_wall", -20, 20)),
+    entries=("tau1", "tau2", "tau3"),
+    right=lambda q, f_on_wall: -times(transposed(lab_arm().jacobian(q)), f_on_wall),
+    mistakes=(
+        Mistake(
+            "this takes f_on_wall for the force on the tip; the tip feels its opposite",
+            lambda q, f_on_wall: times(transposed(lab_arm().jacobian(q)), f_on_wall),
+        ),
+        Mistake("J is not transposed: due is -J^T f", lambda q, f_on_wall: -times(lab_arm().jacobian(q), f_on_wall)),
+        Mistake(
+            "J is not transposed, and the sign is that of a force on the tip",
+            lambda q, f_on_wall: times(lab_arm().jacobian(q), f_on_wall),
+        ),
+    ),
+)

@@ -1,0 +1,74 @@
+"""A spring and a damper at the tip, with the error the wrong way round."""
+
+from ...._native import Floats
+from ...arms import NUMBERS, SCENARIO, lab_arm, times, transposed
+from ...task import FunctionTask, Input, Mistake
+
+K, D, X_D = 300.0, 40.0, (0.9, 0.2, 0.3)
+LAW = f"""\
+controller: {{type: stiffness, stiffness: {K}, damping: {D}}}
+reference: {{type: point, tip: {list(X_D)}}}
+"""
+
+
+def torque(q: Floats, qd: Floats, *, spring: float = 1, damper: float = 1, weight: float = 1) -> Floats:
+    """The law (7.9), with a factor before each of its parts."""
+    arm = lab_arm()
+    jacobian = arm.jacobian(q)
+    force = spring * K * (X_D - arm.tip_position(q)) - damper * D * times(jacobian, qd)
+    return weight * arm.gravity_torque(q) + times(transposed(jacobian), force)
+
+
+TASK = FunctionTask(
+    name="impedance",
+    title="a spring that pushes the tip away",
+    text=f"""\
+This control law is meant to hold the tip at x_d as a spring of K = 300 N/m and a damper of
+D = 40 N s/m would, on an arm whose weight is compensated:
+
+    tau = tau_g + J^T (K (x_d - x) - D J qd),   x_d = ({", ".join(map(str, X_D))}) m
+
+In the simulation the tip runs away. Find out why, and hand in the right law, tau(q, qd).
+
+{NUMBERS}""",
+    hints=(
+        "Put the tip a little beside x_d, at rest: which way does the force of your law point?",
+        "A spring pulls towards x_d: the error is x_d - x, and the force K times the error.",
+        "force = K*(x_d - x) - D*(J @ qd); torque = tau_g + J.T @ force.",
+    ),
+    given=f"""\
+import numpy as np
+
+a2, a3, m2, m3, g = 0.8, 0.6, 1.2, 0.7, 9.80665
+K, D = {K}, {D}
+x_d = np.array({list(X_D)})
+
+
+def controller(q, qd):
+    c1, s1 = np.cos(q[0]), np.sin(q[0])
+    c2, s2, c23, s23 = np.cos(q[1]), np.sin(q[1]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
+    r, h = a2 * c2 + a3 * c23, a2 * s2 + a3 * s23
+    x = np.array([c1 * r, s1 * r, -h])
+    J = np.array([[-s1 * r, -c1 * h, -c1 * a3 * s23], [c1 * r, -s1 * h, -s1 * a3 * s23], [0, -r, -a3 * c23]])
+    t3 = -m3 * g * a3 / 2 * c23
+    tau_g = np.array([0, -(m2 / 2 + m3) * g * a2 * c2 + t3, t3])
+    force = K * (x - x_d) - D * (J @ qd)
+    return tau_g + J.T @ force
+""",
+    given_suffix=".py",
+    kind="controller",
+    function="controller",
+    scenario=SCENARIO + LAW,
+    inputs=(Input("q", -3, 3), Input("qd", -2, 2)),
+    entries=("t1", "t2", "t3"),
+    right=torque,
+    mistakes=(
+        Mistake(
+            "the error has the wrong sign: the spring pushes away from x_d", lambda q, qd: torque(q, qd, spring=-1)
+        ),
+        Mistake("the damper has the wrong sign: it feeds energy in", lambda q, qd: torque(q, qd, damper=-1)),
+        Mistake("the damper is missing", lambda q, qd: torque(q, qd, damper=0)),
+        Mistake("the gravity torque is missing", lambda q, qd: torque(q, qd, weight=0)),
+        Mistake("the gravity torque has the wrong sign", lambda q, qd: torque(q, qd, weight=-1)),
+    ),
+)

@@ -1,0 +1,109 @@
+"""Judges each file in a process of its own: whatever a file does to it, other files are judged as before."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from ..errors import Arm3rError
+from ..verify.program.confinement import end_with_parent
+from ..verify.program.nodes import Call, ProgramError
+from ..verify.program.python_process import PythonProcess, _descendants
+from .function_judge import reading
+from .judge import judge_file
+from .mark import RIGHT, UNCLEAR, Mark
+from .task import FunctionTask, Task
+from .tasks import TASKS
+
+_START = "from arm3r_cpp.exercises.worker import main; main()"
+MOST_SECONDS = 300.0  # a right answer takes less than three
+_MEMORY = 4 << 30  # bytes of address space
+
+
+def judge_apart(task: Task, path: Path, *, forbid_own_package: bool = False, with_reading: bool = False) -> Mark:
+    """The mark of a file, judged in another process, which leaves nothing behind.
+
+    Args:
+        with_reading: put what `arm3r verify` says of a wrong formula into the mark's message.
+    """
+    request = {
+        "task": task.name,
+        "path": os.fspath(path.absolute()),
+        "forbid": forbid_own_package,
+        "reading": with_reading,
+    }
+    process = subprocess.Popen(
+        [sys.executable, "-I", "-c", _START],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env={"PATH": os.defpath, "LANG": "C.UTF-8", "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"},
+        start_new_session=True,
+        cwd="/",
+    )
+    try:
+        answer, _ = process.communicate(json.dumps(request).encode(), timeout=MOST_SECONDS)
+        return Mark(**json.loads(answer))
+    except subprocess.TimeoutExpired:
+        return Mark(UNCLEAR, "takes too long")
+    except (ValueError, TypeError):
+        return Mark(UNCLEAR, "ends the process that judges it")
+    finally:
+        _end(process)
+
+
+def what_is_not_barred() -> list[str]:
+    """What this system cannot keep a Python file from, such as "files" or "network"."""
+    process = PythonProcess("def nothing(q):\n    return q\n", "nothing", "nothing.py")
+    process.evaluate(Call((0,), {}), _one_row())
+    unbarred = process.unbarred
+    process.close()
+    return unbarred
+
+
+def _one_row() -> Any:
+    import numpy as np
+
+    return np.zeros((1, 1))
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End the process, if it runs, and all that it started."""
+    if process.poll() is None:
+        for descendant in _descendants(process.pid):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(descendant, signal.SIGKILL)
+        process.kill()
+        process.wait()
+    for stream in (process.stdin, process.stdout):
+        if stream:
+            stream.close()
+
+
+def main() -> None:
+    """A request as JSON on standard input; the mark as JSON on standard output."""
+    end_with_parent()
+    limit(resource.RLIMIT_AS, _MEMORY)
+    limit(resource.RLIMIT_FSIZE, 0)
+    limit(resource.RLIMIT_CORE, 0)
+    request = json.load(sys.stdin)
+    task, path = TASKS[request["task"]], Path(request["path"])
+    mark = judge_file(task, path, forbid_own_package=request["forbid"])
+    if request["reading"] and mark.word != RIGHT and isinstance(task, FunctionTask):
+        with contextlib.suppress(Arm3rError, ProgramError):
+            mark = Mark(mark.word, mark.reason, reading(task, path) or mark.message)
+    sys.stdout.write(json.dumps(asdict(mark)))
+
+
+def limit(what: int, value: int) -> None:
+    hard = resource.getrlimit(what)[1]
+    value = value if hard == resource.RLIM_INFINITY else min(value, hard)
+    resource.setrlimit(what, (value, value))

@@ -1,0 +1,2 @@
+function s_dot = momentum_rate(tau, c, g, r)
+s_dot = tau + c - g + r;

@@ -1,0 +1,102 @@
+"""The exercises: each marks a right, a wrong and a tricky solution as it should, and names the mistake that is given."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from arm3r_cpp import Scenario
+from arm3r_cpp.exercises.function_judge import THRESHOLD
+from arm3r_cpp.exercises.judge import judge_file
+from arm3r_cpp.exercises.mark import RIGHT, UNCLEAR, WRONG, word_of
+from arm3r_cpp.exercises.task import FunctionTask, ScenarioTask
+from arm3r_cpp.exercises.tasks import TASKS
+from arm3r_cpp.verify.kinds import KINDS, entry_name
+from arm3r_cpp.verify.truth.three_r import ThreeR
+
+SUBMISSIONS = Path(__file__).parent / "submissions"
+SOLUTIONS = sorted(path for path in SUBMISSIONS.rglob("*.*") if path.suffix != ".pyc")
+FUNCTIONS = [task for task in TASKS.values() if isinstance(task, FunctionTask)]
+SCENARIOS = [task for task in TASKS.values() if isinstance(task, ScenarioTask)]
+
+
+def test_each_exercise_has_a_right_a_wrong_and_a_tricky_solution() -> None:
+    assert len(TASKS) >= 14
+    for name in TASKS:
+        stems = sorted(path.stem for path in SOLUTIONS if path.parent.name == name)
+        assert len(stems) == 3 and stems[0] == "right" and stems[1].startswith("tricky_") and stems[2] == "wrong", name
+    assert {path.parent.name for path in SOLUTIONS} == set(TASKS)
+
+
+@pytest.mark.parametrize("path", SOLUTIONS, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_a_solution_gets_its_mark(path: Path, tmp_path: Path) -> None:
+    task = TASKS[path.parent.name]
+    file = tmp_path / f"{task.name}{path.suffix}"
+    shutil.copy(path, file)
+    mark = judge_file(task, file)
+    assert mark.word == path.stem.rpartition("_")[2], mark
+    assert bool(mark.reason) == (mark.word != RIGHT)
+    assert len(mark.reason) <= 160 and mark.reason.isprintable()
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS.values() if task.given], ids=lambda task: task.name)
+def test_what_is_given_is_wrong_and_its_mistake_is_named(task: FunctionTask | ScenarioTask, tmp_path: Path) -> None:
+    file = tmp_path / f"{task.name}{task.given_suffix}"
+    file.write_text(task.given)
+    mark = judge_file(task, file)
+    assert mark.word == WRONG
+    if isinstance(task, FunctionTask):
+        assert mark.reason in [mistake.sentence for mistake in task.mistakes]
+    else:
+        assert mark.reason.startswith(tuple(condition.what for condition in task.conditions))
+
+
+@pytest.mark.parametrize("task", FUNCTIONS, ids=lambda task: task.name)
+def test_mistakes_differ_clearly_from_what_is_right_and_from_each_other(task: FunctionTask) -> None:
+    """No two of them are within a factor of a hundred of the threshold."""
+    states = task.samples()
+    count = len(next(iter(states.values())))
+    all_values = [
+        one(**states).reshape(count, -1) for one in (task.right, *(mistake.values for mistake in task.mistakes))
+    ]
+    assert all_values[0].shape[1] == len(task.entries)
+    scale = np.abs(all_values[0]).max()
+    for number, one in enumerate(all_values):
+        for other in all_values[:number]:
+            assert np.abs(one - other).max() > 1e4 * THRESHOLD * scale
+
+
+@pytest.mark.parametrize("task", [task for task in FUNCTIONS if task.kind], ids=lambda task: task.name)
+def test_what_is_right_is_what_verify_takes_for_right(task: FunctionTask) -> None:
+    states = task.samples()
+    truth = ThreeR(Scenario(task.scenario))
+    due = truth.values(task.kind, "simscape", {"qd": np.zeros_like(states["q"])} | states, {})
+    assert np.abs(task.right(**states) - due).max() < 1e-12 * np.abs(due).max()
+    places = list(np.ndindex(due.shape[1:]))
+    if len(places[0]) == 2:
+        assert list(task.entries) == [entry_name(KINDS[task.kind], [row + 1, column + 1]) for row, column in places]
+
+
+@pytest.mark.parametrize("task", SCENARIOS, ids=lambda task: task.name)
+def test_the_right_scenario_is_far_from_every_threshold(task: ScenarioTask, tmp_path: Path) -> None:
+    """A hundredth of the threshold is left, so that no machine sees another mark."""
+    from arm3r_cpp.exercises.scenario_judge import judged
+
+    run = judged(task, Scenario.load(SUBMISSIONS / task.name / "right.yaml")).run()
+    for condition in task.conditions:
+        assert abs(condition.measure(run) - condition.due) <= condition.threshold / 100, condition.what
+
+
+def test_no_mark_hangs_on_a_number_near_its_threshold() -> None:
+    assert [word_of(error, 4.0) for error in (0, 0.4, 0.41, 4, 39.9, 40, 1e9)] == [
+        RIGHT, RIGHT, UNCLEAR, UNCLEAR, UNCLEAR, WRONG, WRONG,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("task", TASKS.values(), ids=lambda task: task.name)
+def test_a_task_can_be_read(task: FunctionTask | ScenarioTask) -> None:
+    assert task.title and not task.title.endswith(".") and len(set(task.hints)) == 3
+    assert all(len(line) <= 110 for line in task.text.splitlines())
+    assert all(len(hint) <= 130 for hint in task.hints)
