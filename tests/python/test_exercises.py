@@ -1,4 +1,4 @@
-"""The exercises: each marks a right, a wrong and a tricky solution as it should, and names the mistake that is given."""
+"""The exercises: each marks a right, a wrong and a tricky solution as it should, and names the given mistake."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_a_solution_gets_its_mark(path: Path, tmp_path: Path) -> None:
     mark = judge_file(task, file)
     assert mark.word == path.stem.rpartition("_")[2], mark
     assert bool(mark.reason) == (mark.word != RIGHT)
-    assert len(mark.reason) <= 160 and mark.reason.isprintable()
+    assert len(mark.reason) <= 200 and mark.reason.isprintable()
 
 
 @pytest.mark.parametrize("task", [task for task in TASKS.values() if task.given], ids=lambda task: task.name)
@@ -48,9 +48,9 @@ def test_what_is_given_is_wrong_and_its_mistake_is_named(task: FunctionTask | Sc
     mark = judge_file(task, file)
     assert mark.word == WRONG
     if isinstance(task, FunctionTask):
-        assert mark.reason in [mistake.sentence for mistake in task.mistakes]
+        assert mark.cause in [mistake.sentence for mistake in task.mistakes]
     else:
-        assert mark.reason.startswith(tuple(condition.what for condition in task.conditions))
+        assert mark.found.startswith(tuple(condition.what for condition in task.conditions))
 
 
 @pytest.mark.parametrize("task", FUNCTIONS, ids=lambda task: task.name)

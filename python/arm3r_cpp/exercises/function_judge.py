@@ -19,8 +19,8 @@ from ..verify.program.nodes import Call, ProgramError
 from ..verify.program.python_process import PythonProcess
 from ..verify.samples import VECTORS, Samples
 from ..verify.truth.three_r import ThreeR
-from .mark import RIGHT, UNCLEAR, WRONG, Mark, one_line, word_of
-from .task import FunctionTask
+from .mark import RIGHT, UNCLEAR, WORDS, WRONG, Mark, one_line, word_of
+from .task import FunctionTask, Mistake
 
 THRESHOLD = 1e-6  # of an entry's scale
 _STOPPED = "takes too long"
@@ -70,7 +70,8 @@ def reading(task: FunctionTask, path: Path) -> str:
     if not task.kind:
         return ""
     formula = formula_of(task, path, PythonProcess)
-    return str(judge(formula, KINDS[task.kind], ThreeR(Scenario(task.scenario))))
+    verdict = judge(formula, KINDS[task.kind], ThreeR(Scenario(task.scenario)))
+    return str(verdict).replace(str(path), path.name)
 
 
 def _failed(error: Exception, path: Path) -> Mark:
@@ -80,7 +81,7 @@ def _failed(error: Exception, path: Path) -> Mark:
     line = getattr(error, "line", None)
     where = f" in line {line}" if line else ""
     is_unclear = _STOPPED in message or _NOT_READ in message
-    return Mark(UNCLEAR if is_unclear else WRONG, one_line(f"{reason}{where}"), one_line(f"{message}{where}", 400))
+    return Mark(UNCLEAR if is_unclear else WRONG, one_line(f"{reason}{where}"), message=one_line(message, 400))
 
 
 # ---- values ---------------------------------------------------------------------------------------------------------
@@ -134,18 +135,28 @@ def _compared(task: FunctionTask, values: Floats, states: dict[str, Floats]) -> 
     right = task.right(**states).reshape(len(values), -1)
     scale = scales(right)
     words = [word_of(float(error), THRESHOLD) for error in _errors(values, right, scale)]
-    if WRONG not in words:
-        unclear = [name for name, word in zip(task.entries, words, strict=True) if word == UNCLEAR]
-        return Mark(UNCLEAR, f"differs a little in {', '.join(unclear)}: a rounded number?") if unclear else Mark(RIGHT)
-    for mistake in task.mistakes:
+    names = {word: [name for name, one in zip(task.entries, words, strict=True) if one == word] for word in WORDS}
+    if not names[WRONG]:
+        unclear = ", ".join(names[UNCLEAR])
+        return Mark(UNCLEAR, f"differs a little in {unclear}: a rounded number?") if unclear else Mark(RIGHT)
+    return Mark(WRONG, _found(names), _cause(task, values, states, scale))
+
+
+def _found(names: dict[str, list[str]]) -> str:
+    """What is right and what is not."""
+    if not names[RIGHT] and not names[UNCLEAR]:
+        return "every entry is wrong"
+    return f"wrong in {', '.join(names[WRONG])}, right in the others"
+
+
+def _cause(task: FunctionTask, values: Floats, states: dict[str, Floats], scale: Floats) -> str:
+    """The sentence of the known mistake with which a function would return the same."""
+    reversed_signs = Mistake("every sign is reversed", lambda **states: -task.right(**states))
+    for mistake in (*task.mistakes, reversed_signs):
         wrong = mistake.values(**states).reshape(len(values), -1)
         if (_errors(values, wrong, scale) <= THRESHOLD).all():
-            return Mark(WRONG, mistake.sentence)
-    if (_errors(values, -right, scale) <= THRESHOLD).all():
-        return Mark(WRONG, "every sign is reversed")
-    names = [name for name, word in zip(task.entries, words, strict=True) if word == WRONG]
-    every = len(names) == len(words) and len(words) > 1
-    return Mark(WRONG, "every entry is wrong" if every else f"wrong in {', '.join(names)}")
+            return mistake.sentence
+    return ""
 
 
 def _errors(values: Floats, due: Floats, scale: Floats) -> Floats:

@@ -7,17 +7,25 @@ from dataclasses import dataclass
 RIGHT, WRONG, UNCLEAR, MISSING = "right", "wrong", "unclear", "missing"
 WORDS = (RIGHT, WRONG, UNCLEAR, MISSING)
 _ROOM = 10.0
-_LONGEST = 160  # characters of a reason
+_LONGEST = 200  # characters of a reason
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A mark: one of `WORDS`, and one line that says why."""
+    """A mark: one of `WORDS`, and why."""
 
     word: str
-    reason: str = ""
+    found: str = ""
+    """What is right and what is not, in one line."""
+    cause: str = ""
+    """The mistake, where it is one that is known."""
     message: str = ""
-    """What the student's program or the library says; it may differ from machine to machine."""
+    """What a program or the library says; it may differ from machine to machine, and is in no table."""
+
+    @property
+    def reason(self) -> str:
+        """One line for the teacher."""
+        return ": ".join(part for part in (self.found, self.cause) if part)
 
 
 def word_of(error: float, threshold: float) -> str:

@@ -23,14 +23,14 @@ def judge_scenario(task: ScenarioTask, path: Path) -> Mark:
     except UnicodeDecodeError:
         return Mark(WRONG, "is no text in UTF-8")
     except BudgetError as error:
-        return Mark(UNCLEAR, "the run takes too many steps", one_line(str(error), 400))
+        return Mark(UNCLEAR, "the run takes too many steps", message=one_line(str(error), 400))
     except ScenarioError as error:
         problem = error.problems[0] if error.problems else {"path": "", "message": "it cannot be read"}
         what = f"{problem['path']}: {problem['message']}" if problem["path"] else problem["message"]
-        return Mark(WRONG, one_line(f"is no valid scenario: {what}"), one_line(str(error), 400))
+        return Mark(WRONG, one_line(f"is no valid scenario: {what}"), message=one_line(str(error), 400))
     except Arm3rError as error:
         outcome = error.run.outcome if error.run else "an error"
-        return Mark(WRONG, f"the run ends as {outcome}", one_line(str(error), 400))
+        return Mark(WRONG, f"the run ends as {outcome}", message=one_line(str(error), 400))
 
 
 def judged(task: ScenarioTask, student: Scenario) -> Scenario:
@@ -46,11 +46,16 @@ def _judge_run(task: ScenarioTask, run: Run) -> Mark:
     word = worst(words)
     if word == RIGHT:
         return Mark(RIGHT)
-    condition = task.conditions[words.index(word)]
+    off = [_off(condition, run) for condition, one in zip(task.conditions, words, strict=True) if one != RIGHT]
+    right = [condition.what for condition, one in zip(task.conditions, words, strict=True) if one == RIGHT]
+    return Mark(word, "; ".join([*off, *(f"{what} is right" for what in right)]))
+
+
+def _off(condition: Condition, run: Run) -> str:
     measured = condition.measure(run)
     if math.isnan(measured):
-        return Mark(word, f"{condition.what}: there is none")
-    return Mark(word, f"{condition.what} is off by {measured - condition.due:.2g} {condition.unit}".rstrip())
+        return f"{condition.what}: there is none"
+    return f"{condition.what} is off by {measured - condition.due:.2g} {condition.unit}".rstrip()
 
 
 def _word(condition: Condition, run: Run) -> str:

@@ -9,7 +9,7 @@ import resource
 import signal
 import subprocess
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -99,7 +99,7 @@ def main() -> None:
     mark = judge_file(task, path, forbid_own_package=request["forbid"])
     if request["reading"] and mark.word != RIGHT and isinstance(task, FunctionTask):
         with contextlib.suppress(Arm3rError, ProgramError):
-            mark = Mark(mark.word, mark.reason, reading(task, path) or mark.message)
+            mark = replace(mark, message=reading(task, path) or mark.message)
     sys.stdout.write(json.dumps(asdict(mark)))
 
 
