@@ -78,6 +78,8 @@ def check(options: argparse.Namespace, marks: list[str]) -> None:
     task = task_of(options.name)
     if not options.file.is_file():
         raise UsageError(f"{options.file}: is no file that can be read", code="usage")
+    if options.file.suffix == ".py":
+        say_what_is_not_barred()
     mark = judge_apart(task, options.file, with_reading=options.hint == 3)
     print_line(answer(task, str(options.file), mark, options.hint))
     marks.append(mark.word)
@@ -127,13 +129,17 @@ def ask_for_trust(is_given: bool) -> None:
     Raises:
         UsageError: it cannot bar everything, and --trust-code is not given.
     """
+    if say_what_is_not_barred() and not is_given:
+        raise UsageError("Python files are among the submissions; --trust-code runs them all the same", code="usage")
+
+
+def say_what_is_not_barred() -> list[str]:
     from ..exercises.worker import what_is_not_barred
 
     unbarred = what_is_not_barred()
     if unbarred:
         say(f"this system cannot bar a submission from: {', '.join(unbarred)}")
-    if unbarred and not is_given:
-        raise UsageError("Python files are among the submissions; --trust-code runs them all the same", code="usage")
+    return unbarred
 
 
 def say(line: str) -> None:

@@ -39,29 +39,42 @@ def submissions(folder: Path, tasks: Sequence[Task]) -> list[Submission]:
     Raises:
         UsageError: there is no such folder, or no folder of a student in it.
     """
-    if not folder.is_dir():
-        raise UsageError(f"{folder}: is no folder; due is one with a folder for each student")
-    students = sorted(one for one in folder.iterdir() if one.is_dir() and not one.name.startswith("."))
+    students = _students(folder)
     if not students:
         raise UsageError(f"{folder}: holds no folders; due is one for each student, with files named by task")
-    return [Submission(student.name, task, _files(student, task)) for student in students for task in tasks]
-
-
-def _files(student: Path, task: Task) -> list[Path]:
-    """The files named by the task, whatever they end with."""
-    if student.is_symlink():
-        return []
-    return sorted(one for one in student.iterdir() if one.stem == task.name)
+    found = [(student, _inside(student)) for student in students]
+    return [
+        Submission(student.name, task, [file for file in files if file.stem == task.name])
+        for student, files in found
+        for task in tasks
+    ]
 
 
 def notes(folder: Path, tasks: Sequence[Task]) -> Iterator[str]:
     """What is in the folders but is no submission, where its name is nearly that of a task."""
     names = [task.name for task in tasks]
-    for student in sorted(one for one in folder.iterdir() if one.is_dir()):
-        for file in sorted(student.iterdir()):
-            hint = did_you_mean(file.stem, names) if file.stem not in names else ""
-            if hint:
-                yield f"{file}: is not marked; {hint}"
+    for file in (file for student in _students(folder) for file in _inside(student)):
+        hint = did_you_mean(file.stem, names) if file.stem not in names else ""
+        if hint:
+            yield f"{file}: is not marked; {hint}"
+
+
+def _students(folder: Path) -> list[Path]:
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: is no folder; due is one with a folder for each student")
+    return [one for one in _inside(folder) if one.is_dir() and not one.name.startswith(".")]
+
+
+def _inside(folder: Path) -> list[Path]:
+    """What lies in a folder, by name.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    try:
+        return sorted(folder.iterdir())
+    except OSError as error:
+        raise UsageError(f"{folder}: cannot be read: {error.strerror}") from None
 
 
 def runs_code(found: Sequence[Submission]) -> bool:
@@ -78,11 +91,14 @@ def marks(
         return Row(one.student, one.task.name, _mark(one, forbid_own_package))
 
     rows = []
-    with ThreadPoolExecutor(max(jobs, 1)) as pool:
+    pool = ThreadPoolExecutor(max(jobs, 1))
+    try:
         for row in pool.map(judge, found):
             rows.append(row)
             if progress:
                 progress(len(rows), len(found))
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no file
     return rows
 
 

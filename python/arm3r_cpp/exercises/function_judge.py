@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import builtins
+import re
 from pathlib import Path
 from typing import Any
 
@@ -66,22 +68,45 @@ def formula_of(task: FunctionTask, path: Path, sandbox: type[PythonProcess]) -> 
 
 
 def reading(task: FunctionTask, path: Path) -> str:
-    """What `arm3r verify` says of the file: the wrong terms, and their lines. Empty where the task is no formula."""
+    """What `arm3r verify` says of the file: the wrong terms, and their lines.
+
+    Empty where the task is no formula of the arm, or the file is right in the other convention.
+    """
     if not task.kind:
         return ""
     formula = formula_of(task, path, PythonProcess)
     verdict = judge(formula, KINDS[task.kind], ThreeR(Scenario(task.scenario)))
-    return str(verdict).replace(str(path), path.name)
+    return "" if verdict.ok else str(verdict).replace(str(path), path.name)
 
 
-def _failed(error: Exception, path: Path) -> Mark:
-    message = str(error).removeprefix(f"{path}: ").replace(str(path), path.name)
-    # What a program raises is in its own words; they may differ each time.
-    reason = message if isinstance(error, UsageError) else message.split(":")[0]
+def _failed(error: UsageError | ProgramError, path: Path) -> Mark:
+    """The mark of a file that cannot be read, or whose function fails."""
+    message = str(error).replace(str(path), path.name)
+    is_text = isinstance(error, UsageError)
+    is_unclear = _NOT_READ in message and path.suffix == ".m" if is_text else message.startswith(_STOPPED)
     line = getattr(error, "line", None)
+    text = f"line {line}: {message}" if line else message
+    reason = _reason_of_text(message, path) if is_text else _reason_of_run(message, line, path)
+    return Mark(UNCLEAR if is_unclear else WRONG, one_line(reason), message=one_line(text, 400))
+
+
+def _reason_of_text(message: str, path: Path) -> str:
+    """What is wrong with the text, in words that are the same with every version of Python."""
+    found = re.fullmatch(rf"(?:{re.escape(path.name)})?(?::(\d+))?(?::\d+)?:? ?(.*)", message, re.S)
+    line, words = found.groups() if found else (None, message)
+    return re.split(r"[:;] ", words)[0] + (f" in line {line}" if line else "")
+
+
+def _reason_of_run(message: str, line: int | None, path: Path) -> str:
+    """What went wrong, without the words of an exception: they may differ each time."""
     where = f" in line {line}" if line else ""
-    is_unclear = _STOPPED in message or _NOT_READ in message
-    return Mark(UNCLEAR if is_unclear else WRONG, one_line(f"{reason}{where}"), message=one_line(message, 400))
+    if path.suffix == ".m" and line:
+        return f"cannot be evaluated{where}"
+    reason = message.split(":")[0]
+    raised = re.fullmatch(r"raises (.*)", reason, re.S)
+    if raised and not hasattr(builtins, raised[1]):
+        reason = "raises an error of a kind that Python does not know"
+    return reason + where
 
 
 # ---- values ---------------------------------------------------------------------------------------------------------
@@ -123,7 +148,8 @@ def _by_position(task: FunctionTask, formula: Formula, states: dict[str, Floats]
     given: dict[int, tuple[Any, ...]] = {len(together): together, int(ends[-1]): tuple(range(ends[-1]))}
     slots = given.get(len(formula.arguments))
     if slots is None:
-        raise ProgramError(f"takes {len(formula.arguments)} arguments; due is {task.signature}")
+        count = len(formula.arguments)
+        raise ProgramError(f"takes {count} argument{'' if count == 1 else 's'}; due is {task.signature}")
     table = np.concatenate([states[one.name].reshape(-1, one.size) for one in task.inputs], axis=1)
     return formula.program.evaluate(Call(slots, {}), table)
 
