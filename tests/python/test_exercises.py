@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from arm3r_cpp import Scenario
+from arm3r_cpp.exercises import function_judge
 from arm3r_cpp.exercises.function_judge import THRESHOLD
 from arm3r_cpp.exercises.judge import judge_file
-from arm3r_cpp.exercises.mark import RIGHT, UNCLEAR, WRONG, word_of
+from arm3r_cpp.exercises.mark import RIGHT, UNCLEAR, WRONG, two_digits, word_of
 from arm3r_cpp.exercises.task import FunctionTask, ScenarioTask
 from arm3r_cpp.exercises.tasks import TASKS
 from arm3r_cpp.verify.kinds import KINDS, entry_name
@@ -31,14 +33,18 @@ def test_each_exercise_has_a_right_a_wrong_and_a_tricky_solution() -> None:
 
 
 @pytest.mark.parametrize("path", SOLUTIONS, ids=lambda path: f"{path.parent.name}-{path.stem}")
-def test_a_solution_gets_its_mark(path: Path, tmp_path: Path) -> None:
-    task = TASKS[path.parent.name]
+def test_a_solution_gets_its_mark(path: Path, tmp_path: Path, monkeypatch: Any) -> None:
+    task, due = TASKS[path.parent.name], path.stem.rpartition("_")[2]
     file = tmp_path / f"{task.name}{path.suffix}"
     shutil.copy(path, file)
     mark = judge_file(task, file)
-    assert mark.word == path.stem.rpartition("_")[2], mark
-    assert bool(mark.reason) == (mark.word != RIGHT)
+    assert mark.word == due, mark
+    assert bool(mark.reason) == (due != RIGHT)
     assert len(mark.reason) <= 200 and mark.reason.isprintable()
+    if isinstance(task, FunctionTask):
+        assert bool(mark.cause) == (path.stem == "wrong") or path.stem == "tricky_wrong"
+        monkeypatch.setattr(function_judge, "THRESHOLD", THRESHOLD * (1e-3 if due == RIGHT else 10))
+        assert judge_file(task, file).word == due  # far from the threshold
 
 
 @pytest.mark.parametrize("task", [task for task in TASKS.values() if task.given], ids=lambda task: task.name)
@@ -93,6 +99,32 @@ def test_no_mark_hangs_on_a_number_near_its_threshold() -> None:
     assert [word_of(error, 4.0) for error in (0, 0.4, 0.41, 4, 39.9, 40, 1e9)] == [
         RIGHT, RIGHT, UNCLEAR, UNCLEAR, UNCLEAR, WRONG, WRONG,
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("plate_face", "format: 1\n", "the instant of contact: there is none"),
+        ("moon", "", "is no valid scenario: the scenario is empty"),
+        ("gravity_constant", "format: 1\ncontroller: {type: joint_pd}\n", "controller.type is joint_pd; due is"),
+        ("steady_force", "format: 1\ncontroller: {type: user}\n", "does not go with what is given: reference.type"),
+        (
+            "steady_force",
+            "format: 1\nwall: {acts_on_arm: true}\ncontroller: {type: hybrid, force_integral_gain: 500}\n",
+            "is off by",
+        ),
+    ],
+)
+def test_what_a_scenario_is_told(name: str, text: str, words: str, tmp_path: Path) -> None:
+    file = tmp_path / f"{name}.yaml"
+    file.write_text(text)
+    mark = judge_file(TASKS[name], file)
+    assert mark.word == WRONG and words in mark.found, mark
+
+
+def test_numbers_have_two_digits() -> None:
+    numbers = (232.05, 81.4, 5.36, -0.00983, 0.0, 1.27e-9, 99.6)
+    assert [two_digits(number) for number in numbers] == ["230", "81", "5.4", "-0.0098", "0", "1.3e-09", "100"]
 
 
 @pytest.mark.parametrize("task", TASKS.values(), ids=lambda task: task.name)

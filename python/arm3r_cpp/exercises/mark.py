@@ -44,3 +44,8 @@ def one_line(text: str, longest: int = _LONGEST) -> str:
     """The text without what could break a line, a table or a terminal, and not too long."""
     line = "".join(c if c.isprintable() else " " for c in text).strip()
     return line if len(line) <= longest else f"{line[: longest - 3]}..."
+
+
+def two_digits(number: float) -> str:
+    """The number with two digits: 230, 81, 0.0098."""
+    return f"{float(f'{number:.2g}'):g}"

@@ -5,59 +5,79 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from ..errors import Arm3rError, BudgetError, ScenarioError
+from ..errors import BudgetError, NumericalError, ScenarioError
 from ..run import Run
 from ..scenario import Scenario
-from .mark import RIGHT, UNCLEAR, WRONG, Mark, one_line, word_of, worst
+from .mark import RIGHT, UNCLEAR, WRONG, Mark, one_line, two_digits, word_of, worst
 from .task import Condition, ScenarioTask
+
+_MOST_SECONDS = 60.0  # of a run; a right one takes less than one
 
 
 def judge_scenario(task: ScenarioTask, path: Path) -> Mark:
     """The mark of a file."""
     try:
-        scenario = judged(task, Scenario(path.read_text(encoding="utf-8"), file=path.name)._quiet())
-        for key, allowed in task.keys.items():
-            if scenario[key] not in allowed:
-                return Mark(WRONG, one_line(f"{key} is {scenario[key]}; due is {' or '.join(map(str, allowed))}"))
-        return _judge_run(task, scenario.run())
+        student = Scenario(path.read_text(encoding="utf-8"), file=path.name)._quiet()
+        student.validate()
     except UnicodeDecodeError:
         return Mark(WRONG, "is no text in UTF-8")
-    except BudgetError as error:
-        return Mark(UNCLEAR, "the run takes too many steps", message=one_line(str(error), 400))
     except ScenarioError as error:
-        problem = error.problems[0] if error.problems else {"path": "", "message": "it cannot be read"}
-        what = f"{problem['path']}: {problem['message']}" if problem["path"] else problem["message"]
-        return Mark(WRONG, one_line(f"is no valid scenario: {what}"), message=one_line(str(error), 400))
-    except Arm3rError as error:
+        return Mark(WRONG, one_line(f"is no valid scenario: {_problem(error)}"), message=one_line(str(error), 400))
+    try:
+        return _judge_run(task, judged(task, student))
+    except ScenarioError as error:
+        return Mark(WRONG, one_line(f"does not go with what is given: {_problem(error)}"))
+    except BudgetError as error:
+        return Mark(UNCLEAR, "the run takes too long", message=one_line(str(error), 400))
+    except NumericalError as error:
         outcome = error.run.outcome if error.run else "an error"
         return Mark(WRONG, f"the run ends as {outcome}", message=one_line(str(error), 400))
 
 
 def judged(task: ScenarioTask, student: Scenario) -> Scenario:
     """The scenario that is run: what is given, with the parts that the task takes from the student's."""
-    student.validate()
     scenario = Scenario(task.given, file=task.name)._quiet()
     scenario.update({path: student[path] for path in task.takes})
     return scenario
 
 
-def _judge_run(task: ScenarioTask, run: Run) -> Mark:
-    words = [_word(condition, run) for condition in task.conditions]
+def _problem(error: ScenarioError) -> str:
+    """The first one, without its place."""
+    if not error.problems:
+        return "it cannot be read"
+    first = error.problems[0]
+    return f"{first['path']}: {first['message']}" if first["path"] else str(first["message"])
+
+
+def _judge_run(task: ScenarioTask, scenario: Scenario) -> Mark:
+    for key, allowed in task.keys.items():
+        if scenario[key] not in allowed:
+            return Mark(WRONG, one_line(f"{key} is {scenario[key]}; due is {' or '.join(map(str, allowed))}"))
+    run = scenario.run(time_limit=_MOST_SECONDS)
+    errors = [_error(condition, run) for condition in task.conditions]
+    words = [_word(error, condition) for error, condition in zip(errors, task.conditions, strict=True)]
     word = worst(words)
     if word == RIGHT:
         return Mark(RIGHT)
-    off = [_off(condition, run) for condition, one in zip(task.conditions, words, strict=True) if one != RIGHT]
-    right = [condition.what for condition, one in zip(task.conditions, words, strict=True) if one == RIGHT]
-    return Mark(word, "; ".join([*off, *(f"{what} is right" for what in right)]))
+    parts = list(zip(task.conditions, errors, words, strict=True))
+    off = [_off(condition, error) for condition, error, one in parts if one != RIGHT]
+    right = [f"{condition.what} is right" for condition, _, one in parts if one == RIGHT]
+    return Mark(word, one_line("; ".join([*off, *right])))
 
 
-def _off(condition: Condition, run: Run) -> str:
-    measured = condition.measure(run)
-    if math.isnan(measured):
+def _error(condition: Condition, run: Run) -> float:
+    """How far a number of the run is off; NaN where the run does not have it."""
+    try:
+        return condition.measure(run) - condition.due
+    except KeyError:  # no such column: no wall
+        return math.nan
+
+
+def _word(error: float, condition: Condition) -> str:
+    return WRONG if math.isnan(error) else word_of(abs(error), condition.threshold)
+
+
+def _off(condition: Condition, error: float) -> str:
+    if math.isnan(error):
         return f"{condition.what}: there is none"
-    return f"{condition.what} is off by {measured - condition.due:.2g} {condition.unit}".rstrip()
-
-
-def _word(condition: Condition, run: Run) -> str:
-    error = abs(condition.measure(run) - condition.due)
-    return WRONG if math.isnan(error) else word_of(error, condition.threshold)
+    return f"{condition.what} is off by {two_digits(error)} {condition.unit}".rstrip()

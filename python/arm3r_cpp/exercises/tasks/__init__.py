@@ -1,7 +1,9 @@
 """The exercises, a file for each: `formulas` of the arm, `blocks` around it, `scenarios` that run.
 
-Each file holds one `TASK`: its text, what is given, three hints, what is right, and the mistakes that are known. Below,
-they stand in the order of the lab sheet, docs/exercises.md.
+Each file holds one `TASK`: its text, what is given, three hints, what is right, and the mistakes that are known. The
+judges know no task by name: a new exercise is a new file, and a line below.
+
+They stand in the order of the lab sheet, docs/exercises.md.
 """
 
 from __future__ import annotations

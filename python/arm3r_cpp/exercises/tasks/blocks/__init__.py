@@ -1,5 +1,7 @@
 """Exercises about the blocks around the arm: contact, torques of a force, selection, observer, admittance.
 
-Each file holds one `TASK`, with a right function and those of its known mistakes. The arguments are taken by position,
-as one vector each or number by number.
+In comes a function of what a block of a Simulink model would be given. Each file holds one `TASK`, with the right
+function and those of its known mistakes.
+
+The arguments are taken by position, as one vector each or number by number.
 """

@@ -1,4 +1,7 @@
 """Exercises about scenarios: what is handed in is run, and what it shows is compared with the physics.
 
-Each file holds one `TASK`. Only some keys are taken from the student's file; the rest is what was given.
+In comes a scenario, of which some keys are taken; the rest is what was given. Each file holds one `TASK`, with the
+numbers of the run that are due.
+
+An error of a tenth of a number's threshold is none; what is right comes from docs/model.md and the lecture.
 """
