@@ -11,9 +11,10 @@ import subprocess
 import sys
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
-from ..errors import Arm3rError
+import numpy as np
+
+from ..errors import Arm3rError, UsageError
 from ..verify.program.confinement import end_with_parent
 from ..verify.program.nodes import Call, ProgramError
 from ..verify.program.python_process import PythonProcess, _descendants
@@ -61,18 +62,19 @@ def judge_apart(task: Task, path: Path, *, forbid_own_package: bool = False, wit
 
 
 def what_is_not_barred() -> list[str]:
-    """What this system cannot keep a Python file from, such as "files" or "network"."""
+    """What this system cannot keep a Python file from, such as "files" or "network".
+
+    Raises:
+        UsageError: it cannot run one at all.
+    """
     process = PythonProcess("def nothing(q):\n    return q\n", "nothing", "nothing.py")
-    process.evaluate(Call((0,), {}), _one_row())
-    unbarred = process.unbarred
-    process.close()
-    return unbarred
-
-
-def _one_row() -> Any:
-    import numpy as np
-
-    return np.zeros((1, 1))
+    try:
+        process.evaluate(Call((0,), {}), np.zeros((1, 1)))
+    except ProgramError as error:
+        raise UsageError(f"a Python file cannot be run here: its process {error}") from None
+    finally:
+        process.close()
+    return process.unbarred
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
