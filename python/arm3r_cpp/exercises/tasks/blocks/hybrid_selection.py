@@ -36,8 +36,8 @@ presses in the direction p = (1, 0, 0); S_f selects the force, S_p = I - S_f the
     F = S_p (K (x_d - x) - D v) + S_f p (f_d + k (f_d - f))
 
 with K = 500 N/m, D = 100 N s/m, k = 0.5. x, v, x_d are vectors of three, the pressing force f and its
-goal f_d are numbers. Write command(x, v, x_d, f, f_d), which returns F. With the listing the tip does
-not press at all, and slides along the wall.""",
+goal f_d are numbers. Write command(x, v, x_d, f, f_d), which returns F. With the listing nothing holds
+the tip along the wall, and the force goes where it likes.""",
     hints=(
         "In which directions can the tip move freely, and in which does the wall hold it?",
         "Force along the normal: S_f = diag(1, 0, 0). Position across it: S_p = diag(0, 1, 1).",

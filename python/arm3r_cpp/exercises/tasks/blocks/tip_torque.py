@@ -8,8 +8,7 @@ TASK = FunctionTask(
     title="from a force to torques",
     text=f"""\
 A force f_on_tip, in base axes, acts on the tip. Write the torque that it puts on the joints, as
-torque(q, f_on_tip), each a vector of three. The listing agrees with a friend's at one pose, and nowhere
-else.
+torque(q, f_on_tip), each a vector of three. The units of the listing are right, its power is not.
 
 {NUMBERS}""",
     hints=(

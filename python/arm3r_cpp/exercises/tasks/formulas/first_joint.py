@@ -9,8 +9,9 @@ TASK = FunctionTask(
     name="first_joint",
     title="an arm that holds still at q1 = 0 only",
     text=f"""\
-This is the lecture's first listing of the gravity torque. In the lecture the arm holds still with it.
-Turned to q1 = 20 degrees it does not. Find out why, and hand in the right one.
+This is the lecture's first listing of the gravity torque, with the numbers of this arm. In the lecture
+the arm holds still with it. Turned to q1 = 20 degrees it does not. Find out why, and hand in the right
+one.
 
 {NUMBERS}""",
     hints=(
