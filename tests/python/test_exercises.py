@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import re
+import secrets
 import shutil
 from pathlib import Path
 from typing import Any
@@ -45,6 +48,66 @@ def test_a_solution_gets_its_mark(path: Path, tmp_path: Path, monkeypatch: Any) 
         assert bool(mark.cause) == (path.stem == "wrong") or path.stem == "tricky_wrong"
         monkeypatch.setattr(function_judge, "THRESHOLD", THRESHOLD * (1e-3 if due == RIGHT else 10))
         assert judge_file(task, file).word == due  # far from the threshold
+
+
+SLIPS = (
+    ("sin", "cos"), ("cos", "sin"), (" + ", " - "), (" - ", " + "), (" * ", " / "), ("a2", "a3"), ("a3", "a2"),
+    ("[1]", "[2]"), ("[0]", "[1]"), ("2", "3"), (".T", ""), ("-", ""),
+)  # fmt: skip
+
+
+def with_a_slip(text: str, random: np.random.Generator) -> str:
+    """The text with one slip behind its first function's head."""
+    places = [(found.start(), old, new) for old, new in SLIPS for found in re.finditer(re.escape(old), text)]
+    places = [place for place in places if place[0] > text.index(":", text.index("def "))]
+    at, old, new = places[random.integers(len(places))]
+    return text[:at] + new + text[at + len(old) :]
+
+
+def values_of(text: str, task: FunctionTask) -> np.ndarray:
+    """What the function of a text returns at states that the judge does not know; NaN where it fails."""
+    names: dict[str, Any] = {"__name__": "solution"}
+    random = np.random.default_rng(987)
+    results = []
+    try:
+        exec(text, names)
+        for _ in range(30):
+            states = [random.uniform(one.low, one.high, one.size) for one in task.inputs]
+            given = [
+                float(state[0]) if one.size == 1 else state for one, state in zip(task.inputs, states, strict=True)
+            ]
+            results.append(np.asarray(names[task.function](*given), float).ravel())
+        return np.array(results)
+    except Exception:
+        return np.full((1, 1), np.nan)
+
+
+@pytest.mark.parametrize("count", [pytest.param(12, id="sample"), pytest.param(400, marks=pytest.mark.gate)])
+def test_a_slip_is_wrong_where_it_changes_a_value(count: int, tmp_path: Path) -> None:
+    seed = int(os.environ.get("ARM3R_SEED", secrets.randbits(32)))
+    print(f"ARM3R_SEED={seed}")
+    random = np.random.default_rng(seed)
+    names = ("degrees", "hybrid_selection", "impedance", "mass_matrix", "observer", "reversed_arguments", "wall_torque")
+    solutions = [
+        path for path in SOLUTIONS if path.parent.name in names and path.suffix == ".py" and "right" in path.stem
+    ]
+    judged = {RIGHT: 0, WRONG: 0}
+    for _ in range(count):
+        path = solutions[random.integers(len(solutions))]
+        task, text = TASKS[path.parent.name], path.read_text()
+        assert isinstance(task, FunctionTask)
+        changed = with_a_slip(text, random)
+        values, due = values_of(changed, task), values_of(text, task)
+        error = np.abs(values - due).max() / np.abs(due).max() if values.shape == due.shape else np.nan
+        if 1e-9 < error < 1e-3:
+            continue
+        file = tmp_path / f"{task.name}.py"
+        file.write_text(changed)
+        word = RIGHT if error <= 1e-9 else WRONG
+        mark = judge_file(task, file)
+        assert mark.word == word, f"{mark}\n{changed}"
+        judged[word] += 1
+    assert judged[WRONG] > count / 2, judged
 
 
 @pytest.mark.parametrize("task", [task for task in TASKS.values() if task.given], ids=lambda task: task.name)
