@@ -32,6 +32,8 @@ def verify() -> int:
 
 def run() -> int:
     return _call("run")
+
+
 def exercise() -> int:
     return _call("exercise")
 
