@@ -111,7 +111,7 @@ public:
     T contact{0.0}, force_phase{0.0};          // inputs of a continuous controller, constant within a step
     LawFunction<P, T> law_function = nullptr;  // the law of a continuous controller, or null
     // s: formulas of time are evaluated at this instant at the latest, just before a jump at the end of the step (5.8)
-    T latest{std::numeric_limits<double>::infinity()};
+    T latest{infinite};
 
     // The stages of a step rotate the cached sines and cosines of the nearest point of a grid of angles
     // (elementary.hpp, sincos_near), which changes rarely. The cache never changes a result: the grid point depends on

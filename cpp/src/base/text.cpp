@@ -1,5 +1,6 @@
 #include "base/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/number_text.hpp"
@@ -108,6 +109,10 @@ std::string listed(const std::vector<std::string>& words, std::string_view betwe
     std::string out;
     for (const std::string& word : words) (out += out.empty() ? "" : between) += word;
     return out;
+}
+
+bool is_in(const std::vector<std::string>& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 }  // namespace arm3r

@@ -30,4 +30,6 @@ std::string counted(std::size_t count, std::string_view what);
 // "a, b, c"
 std::string listed(const std::vector<std::string>& words, std::string_view between = ", ");
 
+bool is_in(const std::vector<std::string>& words, std::string_view word);
+
 }  // namespace arm3r

@@ -7,9 +7,9 @@
 
 namespace cli {
 
-namespace {
-
 std::string directory_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
+
+namespace {
 
 std::string program_directory() {
     const std::unique_ptr<char, decltype(&std::free)> path(realpath("/proc/self/exe", nullptr), std::free);

@@ -272,8 +272,6 @@ std::vector<std::string> search_path() {
     return directories;
 }
 
-std::string directory_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
-
 // The path of the called program: as it was called, then with its links resolved.
 std::vector<std::string> own_directories(const std::string& outlined) {
     std::string path = outlined;

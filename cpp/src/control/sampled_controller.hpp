@@ -341,7 +341,7 @@ private:
 
     double due_time(int lane, double sample) const;
 
-    static constexpr double never = std::numeric_limits<double>::infinity();
+    static constexpr double never = infinite;
 
     DigitalController<T> digital_;
     T count_{0.0}, outputs_done_{0.0};  // number of samples, and of torques that have begun to act

@@ -14,7 +14,7 @@ namespace arm3r {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& message, std::string hint = {}) {
+[[noreturn]] void refuse_output(const std::string& path, const std::string& message, std::string hint = {}) {
     throw Error(
         ARM3R_E_OUTPUT,
         {{.code = "output", .message = "cannot be written: " + message, .hint = std::move(hint), .file = path}});
@@ -24,12 +24,12 @@ std::string directory_of(const std::string& path) { return path.substr(0, path.r
 
 void check_target(const std::string& path) {
     struct stat about{};
-    if (path.empty()) refuse(path, "the file name is empty");
-    if (path.ends_with('/')) refuse(path, std::strerror(EISDIR), "name a file");
+    if (path.empty()) refuse_output(path, "the file name is empty");
+    if (path.ends_with('/')) refuse_output(path, std::strerror(EISDIR), "name a file");
     if (lstat(path.c_str(), &about) != 0) return;
-    if (S_ISDIR(about.st_mode)) refuse(path, std::strerror(EISDIR), "name a file");
+    if (S_ISDIR(about.st_mode)) refuse_output(path, std::strerror(EISDIR), "name a file");
     if (!S_ISREG(about.st_mode) && !S_ISLNK(about.st_mode))
-        refuse(path, "not a regular file", "`-o -` writes to standard output");
+        refuse_output(path, "not a regular file", "`-o -` writes to standard output");
 }
 
 int create_beside(const std::string& path, std::string& temporary) {
@@ -45,7 +45,7 @@ int create_beside(const std::string& path, std::string& temporary) {
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
     check_target(path_);
     descriptor_ = create_beside(path_, temporary_);
-    if (descriptor_ < 0) refuse(path_, std::strerror(errno), errno == ENOENT ? "make the directory first" : "");
+    if (descriptor_ < 0) refuse_output(path_, std::strerror(errno), errno == ENOENT ? "make the directory first" : "");
 }
 
 OutputFile::~OutputFile() {
@@ -56,7 +56,7 @@ OutputFile::~OutputFile() {
 void OutputFile::write(std::string_view data) {
     while (!data.empty()) {
         const ssize_t size = ::write(descriptor_, data.data(), data.size());
-        if (size < 0 && errno != EINTR) refuse(path_, std::strerror(errno));
+        if (size < 0 && errno != EINTR) refuse_output(path_, std::strerror(errno));
         if (size > 0) data.remove_prefix(static_cast<std::size_t>(size));
     }
 }
@@ -64,18 +64,18 @@ void OutputFile::write(std::string_view data) {
 void OutputFile::close() {
     const int result = ::close(descriptor_);
     descriptor_ = -1;
-    if (result != 0) refuse(path_, std::strerror(errno));
+    if (result != 0) refuse_output(path_, std::strerror(errno));
 }
 
 void OutputFile::publish() {
-    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) refuse(path_, std::strerror(errno));
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) refuse_output(path_, std::strerror(errno));
     temporary_.clear();
 }
 
 std::string summary_path(const std::string& path) {
     const std::size_t name = path.rfind('/') + 1, dot = path.rfind('.');
     const std::string summary = (dot == path.npos || dot <= name ? path : path.substr(0, dot)) + ".json";
-    if (summary == path) refuse(path, "the summary goes there", "give the CSV another suffix, .csv");
+    if (summary == path) refuse_output(path, "the summary goes there", "give the CSV another suffix, .csv");
     return summary;
 }
 

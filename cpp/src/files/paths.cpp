@@ -68,6 +68,8 @@ std::string join(std::string_view prefix, std::string_view key) {
     return std::string(prefix) + (prefix.empty() ? "" : ".") + std::string(key);
 }
 
+std::string last_name(std::string_view path) { return std::string(path.substr(path.rfind('.') + 1)); }
+
 std::string item(std::string_view path, std::size_t index) {
     return std::string(path) + "[" + std::to_string(index) + "]";
 }

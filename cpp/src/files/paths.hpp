@@ -22,6 +22,7 @@ const Node* find(const Node& root, const std::vector<Step>& steps);
 SourceLocation locate(const Node& root, const std::vector<Step>& steps);
 
 std::string join(std::string_view prefix, std::string_view key);  // "a" + "b" = "a.b"
+std::string last_name(std::string_view path);                     // of "a.b": "b"
 std::string item(std::string_view path, std::size_t index);       // "a" + 1 = "a[1]"
 std::string below(std::string_view path, std::string_view rest);  // "a" + "[1].b" = "a[1].b"; "a" + "" = "a"
 

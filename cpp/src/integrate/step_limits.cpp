@@ -8,8 +8,6 @@
 namespace arm3r {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 // The stiffness along the normal, N/m, that gives the mass m_n the highest frequency that all springs of the contact
 // together can give.
 double stiffness_felt(const Plant<double>& plant, const Axes<double>& axis, const Pose<double>& p,

@@ -10,7 +10,6 @@
 namespace arm3r {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double accuracy_limit = 1.2;  // of h lambda: above it stability limits the step of the explicit method
 constexpr int enough_signs = 40, enough_doubts = 6;
 constexpr double quiet_motion = 1e-2, rounding_of_motion = 1e-14;  // of the tolerance; rad, rad/s

@@ -51,11 +51,11 @@ ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
         before = max(before, T(abs(e.c[e.order - 1][j]) * scale));
         last = max(last, T(abs(e.c[e.order][j]) * scale));
     }
-    const T infinite(std::numeric_limits<double>::infinity());
+    const T unbounded(infinite);
     const auto trusted = [&](const T& size, int k) ARM3R_INLINE_LAMBDA {
-        return select(size > T(0.0), approximate_root(T(tol / size), k), infinite);
+        return select(size > T(0.0), approximate_root(T(tol / size), k), unbounded);
     };
-    return min(trusted(last, e.order), e.order > 1 ? trusted(before, e.order - 1) : infinite);
+    return min(trusted(last, e.order), e.order > 1 ? trusted(before, e.order - 1) : unbounded);
 }
 
 template <class T>

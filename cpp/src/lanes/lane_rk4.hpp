@@ -268,7 +268,6 @@ private:
     }
 
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
-    static constexpr double infinite = std::numeric_limits<double>::infinity();
 
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};
     bool has_jump_ = false, was_due_ = false;

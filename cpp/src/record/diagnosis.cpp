@@ -14,7 +14,7 @@ constexpr double min_swing = 1;    // relative to the largest torque: the torque
 constexpr double min_growth = 10;  // growth from the first oscillating block to the last one
 constexpr double close_to_singular = 1e-3;
 
-double rounded(double x) { return nearest_integer(1000 * x) / 1000; }
+double to_thousandths(double x) { return nearest_integer(1000 * x) / 1000; }
 
 double determinant(const Arm<double>& arm, const Vec3<double>& q) {  // of J, m^3 (2.8)
     const Pose<double> p = pose(q);
@@ -68,7 +68,7 @@ std::optional<std::string> TorqueOscillation::error_message(double period) const
     const double samples = std::max(1.0, (until_ - since_) / period - changes_per_block);
     const double growth = exp(log(last_swing_ / first_swing_) / samples);
     return "the sampled loop is unstable: from t = " + shortest(since_) + " s on the torque swings to and fro, and " +
-           shortest(rounded(growth)) +
+           shortest(to_thousandths(growth)) +
            " times as far from sample to sample; take a higher sampling.rate, less delay, or lower gains";
 }
 

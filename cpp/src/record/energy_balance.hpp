@@ -60,8 +60,6 @@ public:
     }
 
 private:
-    static constexpr double infinite = std::numeric_limits<double>::infinity();
-
     template <class E>
     ARM3R_INLINE static E stored(const Energies<E>& energies) {
         return abs(energies.kinetic) + abs(energies.potential) + abs(energies.contact);
@@ -72,7 +70,7 @@ private:
 
 // A residual that is NaN counts as infinite.
 inline void include_residual(double& largest, double residual) {
-    const double size = std::isnan(residual) ? std::numeric_limits<double>::infinity() : std::abs(residual);
+    const double size = std::isnan(residual) ? infinite : std::abs(residual);
     largest = std::max(largest, size);
 }
 

@@ -23,7 +23,6 @@ namespace {
 
 using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr int samples_per_step = 9;
 
 // The initial state.

@@ -106,7 +106,7 @@ ARM3R_INLINE void sample_torque(const Arm<P>& arm, const Vec3<T>& tau, const Vec
 template <class T>
 struct PerformanceSums {
     T touching_time{0.0}, force_error_2{0.0}, reached{0.0}, max_force_error{0.0}, overshoot{0.0};
-    T unsettled_until{-std::numeric_limits<double>::infinity()};  // s
+    T unsettled_until{-infinite};  // s
     T path_2{0.0}, max_path_2{0.0}, saturated_time{0.0};
     Vec3<T> work{T(0.0), T(0.0), T(0.0)};
 };
@@ -142,12 +142,12 @@ ARM3R_INLINE T peak_bound_around(const Rule<n>& rule, const Segment<T>& segment,
     const T slope = rise - bend * before;  // at the first of the three nodes
     const auto turns = slope > T(0.0) && fall + bend * after < T(0.0);
     const T top = a - slope * slope / (4.0 * select(turns, bend, T(-1.0)));
-    return select(turns, T(2.0 * top - max(a, max(b, c))), T(-std::numeric_limits<double>::infinity()));
+    return select(turns, T(2.0 * top - max(a, max(b, c))), T(-infinite));
 }
 
 template <std::size_t n, class T, class F>
 ARM3R_INLINE T peak_bound(const Rule<n>& rule, const Segment<T>& segment, F quantity) {
-    T highest(-std::numeric_limits<double>::infinity());
+    T highest(-infinite);
     for (std::size_t j = 1; j + 1 < n; ++j) highest = max(highest, peak_bound_around(rule, segment, quantity, j));
     return highest;
 }
@@ -220,7 +220,7 @@ struct StepView {
     double force_phase = 0;              // of either kind of controller
     const Vec3<double>* held = nullptr;  // N m, the torque of a sampled controller
     // s: formulas of time are evaluated at this instant at the latest
-    double latest = std::numeric_limits<double>::infinity();
+    double latest = infinite;
 
     PerformanceSample<double> operator()(double theta) const;
 };

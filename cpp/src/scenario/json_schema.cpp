@@ -19,12 +19,6 @@ namespace {
 using Words = std::vector<std::string>;
 using Params = std::vector<double>;
 
-bool is_in(const Words& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-std::string last_name(std::string_view path) { return std::string(path.substr(path.rfind('.') + 1)); }
-
 // ---- pieces of JSON
 
 std::string object(const Words& members) { return "{" + listed(members) + "}"; }

@@ -12,14 +12,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-std::string last_name(std::string_view path) { return std::string(path.substr(path.rfind('.') + 1)); }
-
 bool is_digits(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-bool is_in(const Words& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 // Names that textbooks and other programs use, in small letters without underscores, and the last names of the keys with

@@ -25,8 +25,6 @@ using Words = std::vector<std::string>;
 constexpr int format = 1;
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
-std::string last_name(std::string_view path) { return std::string(path.substr(path.rfind('.') + 1)); }
-
 std::string with_unit(std::string value, const Key& key) { return key.unit.empty() ? value : value + " " + key.unit; }
 
 // How a key is written, for messages: "a number (m)", "a list of 3 numbers (N m)".
@@ -259,7 +257,7 @@ private:
         if (key.kind == Kind::flag) return read_flag(key, node);
         if (is_number_here(key, node)) return read_single(key, node);
         if (key.form == Form::vector_or_word && node.type == Node::scalar && node.text == key.word) {
-            std::fill_n(at(key), key.size, std::numeric_limits<double>::infinity());
+            std::fill_n(at(key), key.size, infinite);
             return set_origin(key, node);
         }
         const std::size_t min_size = key.form == Form::list ? key.min_size : key.size;

@@ -16,7 +16,6 @@ namespace arm3r {
 namespace {
 
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinite = std::numeric_limits<double>::infinity();
 using std::numbers::pi;
 
 using Words = std::vector<std::string>;

@@ -16,7 +16,6 @@ namespace arm3r {
 namespace {
 
 using std::numbers::pi;
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // A single number x stands for x times `axis`, three numbers for the vector.
 template <Name path>

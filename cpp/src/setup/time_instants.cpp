@@ -8,8 +8,6 @@
 namespace arm3r {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 template <class Load, class Visit>
 void each_jump_of_external_force(Load& external_force, Visit visit) {
     if (!external_force.on) return;

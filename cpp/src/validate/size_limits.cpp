@@ -12,12 +12,12 @@ constexpr double max_bytes = 2e9;
 constexpr double max_fixed_steps = 1e9;
 constexpr double max_ticks = 1e8;
 
-double rounded(double count) { return count < 1e15 ? nearest_integer(count) : count; }
+double whole(double count) { return count < 1e15 ? nearest_integer(count) : count; }
 
 void refuse_above(double needed, double most, Problem problem) {
     if (needed <= most) return;
-    problem.got = "about " + shortest(rounded(needed));
-    problem.allowed = "at most " + shortest(rounded(most));
+    problem.got = "about " + shortest(whole(needed));
+    problem.allowed = "at most " + shortest(whole(most));
     throw Error(ARM3R_E_SIZE_CAP, {std::move(problem)});
 }
 

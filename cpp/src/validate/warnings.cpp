@@ -86,7 +86,7 @@ void warn_of_units(const Arm<double>& arm, std::vector<std::string>& warnings) {
 double max_shoulder_depth(const Setup& setup) {
     const Wall<double>& wall = setup.plant.wall;
     const Vec3<double> shoulder(0, 0, setup.plant.arm.base_height);
-    double deepest = -std::numeric_limits<double>::infinity();
+    double deepest = -infinite;
     const auto look = [&](double t) {
         const Indentation<double> in = indentation(wall, wall_at(wall, t), shoulder, {0, 0, 0});
         if (inside_outline(wall, in) >= 0) deepest = std::max(deepest, in.depth);

@@ -17,7 +17,7 @@ namespace {
 using Warnings = std::vector<std::string>;
 
 // The number with six digits.
-std::string rounded(double x) {
+std::string short_number(double x) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, 6).ptr};
 }
@@ -42,10 +42,10 @@ struct Loop {
 
 void warn_of_cubic(double m, double b, double c, double d, double gain, const std::string& loop, Warnings& warnings) {
     if (is_stable(m, b, c, d)) return;
-    warnings.push_back("the force loop of " + loop + " is unstable: s^3, s^2, s and 1 have " + rounded(m) + ", " +
-                       rounded(b) + ", " + rounded(c) + " and " + rounded(d) +
+    warnings.push_back("the force loop of " + loop + " is unstable: s^3, s^2, s and 1 have " + short_number(m) + ", " +
+                       short_number(b) + ", " + short_number(c) + " and " + short_number(d) +
                        (b > 0 && c > 0 ? ", and controller.force_integral_gain must stay below " +
-                                             rounded(gain * b * c / (m * d)) + " 1/s"
+                                             short_number(gain * b * c / (m * d)) + " 1/s"
                                        : ", and it has no damping"));
 }
 
@@ -73,7 +73,8 @@ void warn_of_admittance(const Controller<double>& controller, const Loop& loop, 
                                           along(loop.n, g.stiffness), g.inner_bandwidth, g.inner_damping_ratio);
     if (loop.k_e > limit)
         warnings.push_back("wall.contact.stiffness is " + shortest(loop.k_e) +
-                           " N/m, and this admittance over this inner loop is stable on walls up to " + rounded(limit) +
+                           " N/m, and this admittance over this inner loop is stable on walls up to " +
+                           short_number(limit) +
                            " N/m only; raise controller.damping, controller.mass or controller.inner_bandwidth");
 }
 
@@ -84,7 +85,7 @@ void warn_of_reference_gain(const Controller<double>& controller, const Loop& lo
                                               along(loop.n, g.stiffness), loop.k_e);
     if (g.reference_gain >= limit)
         warnings.push_back("controller.reference_gain is " + shortest(g.reference_gain) +
-                           " m/(N s), and the loop is stable below " + rounded(limit) +
+                           " m/(N s), and the loop is stable below " + short_number(limit) +
                            "; a tenth of it is a good choice");
 }
 
@@ -94,10 +95,10 @@ void warn_of_light_mass(const Controller<double>& controller, const Loop& loop, 
                         (controller.type == ControllerType::admittance && controller.inner == Inner::exact);
     const double mass = mass_along(loop.n, controller.gains.mass);
     if (shapes && mass < loop.m_n / 3)
-        warnings.push_back("controller.mass is " + rounded(mass) +
-                           " kg along the wall's normal, less than a third of the " + rounded(loop.m_n) +
+        warnings.push_back("controller.mass is " + short_number(mass) +
+                           " kg along the wall's normal, less than a third of the " + short_number(loop.m_n) +
                            " kg that the arm shows there: noise and delay of the force are amplified " +
-                           rounded(loop.m_n / mass - 1) + " times");
+                           short_number(loop.m_n / mass - 1) + " times");
 }
 
 // Whether the torque depends on the measured contact force: to track a force, to yield to it, or to cancel it.
@@ -140,7 +141,7 @@ void warn_of_raibert_craig(const Setup& setup, Warnings& warnings) {
     const double least = projected_mobility(controller.model, pose(setup.q), setup.plant.wall.n);
     warnings.push_back("hybrid variant raibert_craig is unstable in part of the workspace" +
                        (least < 0
-                            ? ", and at the start too: M^-1 P has the eigenvalue " + rounded(least) + " 1/(kg m^2)"
+                            ? ", and at the start too: M^-1 P has the eigenvalue " + short_number(least) + " 1/(kg m^2)"
                             : std::string(", though not at the start")) +
                        "; projected and dynamic are not");
 }
@@ -159,9 +160,9 @@ void warn_of_slow_samples(const Setup& setup, Warnings& warnings) {
     double longest = max_period(Kp[0], Kd[0]);
     for (int i = 1; i < 3; ++i) longest = std::min(longest, max_period(Kp[i], Kd[i]));
     if (setup.digital.sampling.period >= longest)
-        warnings.push_back("the controller computes every " + rounded(setup.digital.sampling.period) +
+        warnings.push_back("the controller computes every " + short_number(setup.digital.sampling.period) +
                            " s, and these position and velocity gains are stable with periods below " +
-                           rounded(longest) + " s only, min(2 Kd/Kp, 2/Kd); raise sampling.rate");
+                           short_number(longest) + " s only, min(2 Kd/Kp, 2/Kd); raise sampling.rate");
 }
 
 void warn_of_observer(const Setup& setup, Warnings& warnings) {
@@ -169,7 +170,7 @@ void warn_of_observer(const Setup& setup, Warnings& warnings) {
     const Vec3<double>& gain = setup.digital.observer.gain;
     const double product = std::max({gain[0], gain[1], gain[2]}) * setup.digital.sampling.period;
     if (product > 0.2)
-        warnings.push_back("observer.gain times the period of sampling is " + rounded(product) +
+        warnings.push_back("observer.gain times the period of sampling is " + short_number(product) +
                            (product >= 2
                                 ? ": the residual diverges from 2 on; keep it below 0.2"
                                 : ", and above 0.2 the residual is no longer the filter of the external torque"));
@@ -214,10 +215,11 @@ void warn_of_reference(const Setup& setup, Warnings& warnings) {
     const double beyond =
         reference.in_joints ? 0 : workspace_excess(controller.model, reference, setup.start, setup.stop);
     if (beyond > 1e-9)
-        warnings.push_back("the reference of the tip leaves the reach of the arm by " + rounded(beyond) + " m");
+        warnings.push_back("the reference of the tip leaves the reach of the arm by " + short_number(beyond) + " m");
     const double distance = reference.path == Path::table ? distance_at_start(controller, setup.start, setup.q) : 0;
     if (distance > 1e-3)
-        warnings.push_back("the table of the reference begins " + rounded(distance) + " m from where the tip starts");
+        warnings.push_back("the table of the reference begins " + short_number(distance) +
+                           " m from where the tip starts");
     if (is_moving(reference.path) && reference.start > setup.stop)
         warnings.push_back(std::string(reference.path == Path::table ? "reference.t[0]" : "reference.start") + " is " +
                            shortest(reference.start) + " s, and the run ends at " + shortest(setup.stop) + " s");
@@ -280,15 +282,15 @@ void warn_of_held_spring(const Setup& setup, const Spring& spring, Warnings& war
     const double lag = sampling.period * (0.5 + sampling.delay), reach = sampling.period * (1 + sampling.delay);
     const std::string held = "controller.stiffness is " + shortest(spring.stiffness) + " N/m";
     if (setup.controller().type == ControllerType::energy_tank && spring.stiffness * lag > spring.damping)
-        warnings.push_back(held + ", and torques that act " + rounded(lag) +
+        warnings.push_back(held + ", and torques that act " + short_number(lag) +
                            " s late on average make such a spring give out more energy than controller.damping takes: "
                            "the tank empties, and then the brake acts all the time; keep the stiffness "
                            "below " +
-                           rounded(spring.damping / lag) + " N/m, or raise sampling.rate");
+                           short_number(spring.damping / lag) + " N/m, or raise sampling.rate");
     const double turn = reach * std::sqrt(spring.stiffness / spring.mass);
     if (turn > max_foreseen_turn)
-        warnings.push_back(held + ": its oscillation turns by " + rounded(turn) +
-                           " rad until a torque has acted, and beyond " + rounded(max_foreseen_turn) +
+        warnings.push_back(held + ": its oscillation turns by " + short_number(turn) +
+                           " rad until a torque has acted, and beyond " + short_number(max_foreseen_turn) +
                            " rad the controller cannot foresee how much energy it gives out: it may create energy; "
                            "raise sampling.rate or lower sampling.delay");
 }
@@ -298,7 +300,7 @@ double pressed_at_limit(const Setup& setup, const Spring& spring) {
     const Pose<double> p = pose(setup.q);
     const Vec3<double> weight = gravity_torque(setup.controller().model, p);
     const Vec3<double> per_newton = tip_force_torque(setup.controller().model, p, spring.axis);
-    double least = std::numeric_limits<double>::infinity();
+    double least = infinite;
     for (int i = 0; i < 3; ++i)
         if (per_newton[i] != 0)
             least = std::min(least, (setup.plant.arm.torque_limit[i] - std::abs(weight[i])) / std::abs(per_newton[i]));
@@ -310,13 +312,13 @@ void warn_of_counting(const Setup& setup, const std::string& law, Warnings& warn
     const Sampling<double>& sampling = setup.digital.sampling;
     const Sensors<double>& sensors = setup.digital.sensors;
     if (sensors.has_encoder || sensors.velocity != VelocityEstimate::exact)
-        warnings.push_back(
-            law + " computes its energy from sensors.encoder and sensors.velocity" +
-            (sensors.has_encoder ? ", here in steps of " + rounded(sensors.encoder_step) + " rad" : std::string()) +
-            ": it never creates energy only as far as they are exact");
+        warnings.push_back(law + " computes its energy from sensors.encoder and sensors.velocity" +
+                           (sensors.has_encoder ? ", here in steps of " + short_number(sensors.encoder_step) + " rad"
+                                                : std::string()) +
+                           ": it never creates energy only as far as they are exact");
     if (sampling.delay != std::floor(sampling.delay))
         warnings.push_back("sampling.delay is " + shortest(sampling.delay) +
-                           " samples, and two torques act within each period of " + rounded(sampling.period) +
+                           " samples, and two torques act within each period of " + short_number(sampling.period) +
                            " s: " + law +
                            " computes its energy to the third order of the period only; "
                            "whole delays are counted exactly");
@@ -325,9 +327,10 @@ void warn_of_counting(const Setup& setup, const std::string& law, Warnings& warn
     const double depth =
         dot(g.plane_normal, minus(g.plane_point, tip_position(setup.controller().model, pose(setup.q))));
     if (depth > 0 && sampling.delay > 0)
-        warnings.push_back(
-            "the tip starts " + rounded(depth) + " m inside the virtual wall, and the first torque acts there for " +
-            rounded(1 + sampling.delay) + " periods: it may create energy that is taken back later; start outside");
+        warnings.push_back("the tip starts " + short_number(depth) +
+                           " m inside the virtual wall, and the first torque acts there for " +
+                           short_number(1 + sampling.delay) +
+                           " periods: it may create energy that is taken back later; start outside");
     const ExternalForce<double>& external_force = setup.plant.external_force;
     if (!external_force.on) return;
     const double size = std::sqrt(dot(external_force.force, external_force.force)),
@@ -337,7 +340,7 @@ void warn_of_counting(const Setup& setup, const std::string& law, Warnings& warn
                              external_force.force[2] / size);
     const double mass = effective_mass(setup.controller().model, pose(setup.q), along);
     warnings.push_back(
-        "push.force moves the tip by " + rounded(0.5 * reach * reach * size / mass) +
+        "push.force moves the tip by " + short_number(0.5 * reach * reach * size / mass) +
         " m until a torque has acted, which the controller does not foresee: it takes the energy that it "
         "creates meanwhile back at the next samples");
 }
@@ -346,7 +349,7 @@ void warn_of_reserve(const Setup& setup, Warnings& warnings) {
     const Controller<double>& controller = setup.controller();
     if (!has_reserve(controller)) return;
     const std::string law = "controller.type " + std::string(word_of(controller.type));
-    double pressed = std::numeric_limits<double>::infinity();
+    double pressed = infinite;
     for (const Spring& spring : springs_of(controller, pose(setup.q))) {
         if (setup.digital.sampling.on) warn_of_held_spring(setup, spring, warnings);
         if (spring.stiffness > 0) pressed = std::min(pressed, pressed_at_limit(setup, spring));
@@ -354,7 +357,7 @@ void warn_of_reserve(const Setup& setup, Warnings& warnings) {
     if (setup.plant.arm.has_torque_limit)
         warnings.push_back(
             law + " never creates energy as long as no torque is at arm.torque_limit, which a spring pressed by " +
-            rounded(pressed) + " m reaches at the start");
+            short_number(pressed) + " m reaches at the start");
     if (setup.digital.sampling.on) warn_of_counting(setup, law, warnings);
 }
 

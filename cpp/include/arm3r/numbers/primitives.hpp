@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 // Wide registers must never cross a function call: a callee built for an older CPU would pass them differently.
 #ifndef ARM3R_INLINE  // A build without wide packs may define it as `inline`, and ARM3R_INLINE_LAMBDA as nothing.
@@ -10,6 +11,8 @@
 #endif
 
 namespace arm3r {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 template <class T>
 struct SinCos {

@@ -49,7 +49,7 @@ private:
             largest = abs(a[i][k]);
             raised_[k] = i;
         }
-        if (!(largest > 0 && largest < std::numeric_limits<double>::infinity())) return false;
+        if (!(largest > 0 && largest < infinite)) return false;
         std::swap(a[k], a[raised_[k]]);
         return true;
     }
