@@ -22,7 +22,7 @@ from .errors import (
     UsageError,
 )
 from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
-from .run import Event, Run
+from .run import ClosedForm, Event, Run, Trust
 from .scenario import Scenario
 from .simulation import Simulation, Snapshot
 
@@ -30,11 +30,18 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from .accuracy.convergence import Convergence, converge
     from .sweeps.definition import Sweep
     from .sweeps.runner import sweep
     from .sweeps.table import SweepTable
 
-_LATER = {"Sweep": "sweeps.definition", "SweepTable": "sweeps.table", "sweep": "sweeps.runner"}
+_LATER = {
+    "Convergence": "accuracy.convergence",
+    "Sweep": "sweeps.definition",
+    "SweepTable": "sweeps.table",
+    "converge": "accuracy.convergence",
+    "sweep": "sweeps.runner",
+}
 
 
 def __getattr__(name: str) -> Any:
@@ -48,7 +55,9 @@ __all__ = [
     "Arm3rError",
     "Batch",
     "BudgetError",
+    "ClosedForm",
     "ControllerError",
+    "Convergence",
     "Event",
     "IncompatibleError",
     "InternalError",
@@ -65,8 +74,10 @@ __all__ = [
     "Snapshot",
     "Sweep",
     "SweepTable",
+    "Trust",
     "UsageError",
     "__version__",
+    "converge",
     "law_state_index",
     "param_count",
     "param_defaults",

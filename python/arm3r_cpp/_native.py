@@ -299,10 +299,18 @@ def arm3r_python_progress(user: Any, t: float, stop: float, steps: int) -> int:
     return int(progress is not None and bool(progress(t, stop, steps)))
 
 
-def start(function: Callable[..., int], *arguments: Any, progress: Progress | None, time_limit: float | None) -> Any:
+def start(
+    function: Callable[..., int],
+    *arguments: Any,
+    progress: Progress | None,
+    time_limit: float | None,
+    trust: bool = False,
+) -> Any:
     """A run by a function whose last arguments are options and the new run. What `progress` raises comes out again."""
+    options = _run_options(time_limit)
+    options.trust = trust
     with _InProgress(progress):
-        return create("run", function, *arguments, _run_options(time_limit))
+        return create("run", function, *arguments, options)
 
 
 def _run_options(time_limit: float | None) -> Any:

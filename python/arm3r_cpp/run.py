@@ -38,6 +38,33 @@ class Event(NamedTuple):
     """m, base axes"""
 
 
+class ClosedForm(NamedTuple):
+    """What theory says of the contacts of a run, beside the run's own number; docs/model.md, section 9."""
+
+    name: str
+    """Of the summary number."""
+    unit: str
+    own: float
+    closed_form: float
+    allowed: float
+    """How far theory and the tolerance of the method let the two differ."""
+
+
+class Trust(NamedTuple):
+    """How long the joint angles of a run are right; docs/model.md (9.6)."""
+
+    horizon: float
+    """s: the last row before an angle is wrong by more than `error`."""
+    error: float
+    """rad"""
+    to_the_end: bool
+    """Whether no angle ever is."""
+    end_error: float
+    """rad, estimated for the last row."""
+    growth: float
+    """Factor by which a small change of the start grows until the horizon."""
+
+
 class Run:
     """A finished or partial run. `run["q1"]` is a column, `run["q"]`, `run["tip"]` are three of them as (rows, 3).
 
@@ -160,6 +187,18 @@ class Run:
         return [
             Event(e["type"], e["t"], tuple(e["q"]), tuple(e["qd"]), tuple(e["tip"])) for e in self.summary["events"]
         ]
+
+    @property
+    def closed_forms(self) -> list[ClosedForm]:
+        """What theory says of the run's contacts; none where no closed form holds, or says nothing."""
+        found = self.summary.get("closed_forms") or {"numbers": []}
+        return [ClosedForm(**one) for one in found["numbers"]]
+
+    @property
+    def trust(self) -> Trust | None:
+        """Up to when the run is right; None: it was not run with `trust=True`."""
+        found = self.summary.get("trust")
+        return Trust(**found) if found else None
 
     @property
     def checks(self) -> list[dict[str, Any]]:

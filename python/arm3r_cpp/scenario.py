@@ -264,6 +264,7 @@ class Scenario:
         rate: float | None = None,
         progress: Progress | None = None,
         time_limit: float | None = None,
+        trust: bool = False,
     ) -> Run:
         """Simulate. Ctrl-C ends the run at once with KeyboardInterrupt.
 
@@ -281,6 +282,8 @@ class Scenario:
             progress: called as progress(t, stop, steps) at most every 20 ms; a true result stops the run, and what it
                 raises comes out unchanged.
             time_limit: s of wall clock.
+            trust: whether `run.trust` is to say up to when the joint angles are right; it takes three more runs, each
+                of them longer and within `time_limit`. Not with a controller of your own, which may have a memory.
 
         Raises:
             ScenarioError: the scenario is not valid.
@@ -291,6 +294,8 @@ class Scenario:
             Arm3rError: `progress` stopped the run; `error.run` likewise.
         """
         check_time_limit(time_limit)
+        if trust and controller is not None:
+            raise UsageError("trust: it takes more runs, and a law of your own may have a memory", code="usage")
         if isinstance(controller, (str, os.PathLike)):
             from .blocks.block import Block  # it stands above this module
 
@@ -300,7 +305,8 @@ class Scenario:
         mine = self if controller is None else self._for_law(rate)
         mine._warn_of_scenario()
         if controller is None:
-            run = Run._of(_native.start(lib.arm3r_scenario_run, mine._handle, progress=progress, time_limit=time_limit))
+            options: Any = {"progress": progress, "time_limit": time_limit, "trust": bool(trust)}
+            run = Run._of(_native.start(lib.arm3r_scenario_run, mine._handle, **options))
         else:
             run = run_with_law(mine._handle, controller, mine._file, progress=progress, time_limit=time_limit)
         mine._warn(_native.text(lib.arm3r_run_warnings, run._handle).splitlines())

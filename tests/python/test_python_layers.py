@@ -19,6 +19,7 @@ ROOMS = [
     "params arm run_file run",
     "control",
     "scenario",
+    "accuracy",
     "batch simulation",
     "sweeps",
     "plot",

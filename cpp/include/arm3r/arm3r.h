@@ -159,7 +159,9 @@ typedef struct arm3r_run_options {
     arm3r_progress progress;        /* Nullable */
     void *user;                     /* Nullable: handed to progress */
     double time_limit;              /* s of wall clock; 0: none. Beyond it the outcome is `budget` */
-    int64_t reserved[4];            /* 0 */
+    int64_t trust;                  /* 1: the summary also says up to when the joint angles are right to 1e-6 rad, from three
+                                       more runs, each within time_limit; 0: it does not. Not with a law of your own */
+    int64_t reserved[3];            /* 0 */
 } arm3r_run_options;
 
 typedef struct arm3r_event {

@@ -6,6 +6,7 @@
 
 #include "api/c_api.hpp"
 #include "base/text.hpp"
+#include "batch/simulation.hpp"
 #include "schema/schema.hpp"
 
 namespace arm3r {
@@ -136,6 +137,29 @@ RunOptions options_in(const arm3r_run_options* given) {
     if (!(options.time_limit >= 0) || std::isinf(options.time_limit))
         throw Error(ARM3R_E_VALUE, "arm3r_run_options: time_limit must be finite and not negative");
     return {.stop = options.stop, .progress = options.progress, .user = options.user, .time_limit = options.time_limit};
+}
+
+bool wants_trust(const arm3r_run_options* given) {
+    const std::int64_t trust = given ? struct_in(given, "arm3r_run_options").trust : 0;
+    if (trust != 0 && trust != 1) throw Error(ARM3R_E_VALUE, "arm3r_run_options: trust must be 0 or 1");
+    return trust == 1;
+}
+
+void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* given) {
+    const bool trust = wants_trust(given);
+    const RunOptions options = options_in(given);
+    handle.run = simulate(setup, options);
+    handle.setup = setup;
+    const bool is_cut_short = handle.run.outcome == ARM3R_RUN_STOPPED || handle.run.outcome == ARM3R_RUN_BUDGET;
+    if (trust && !is_cut_short) handle.horizon = horizon_of(setup, handle.run, options);
+}
+
+void refuse_trust(const arm3r_run_options* options) {
+    if (wants_trust(options))
+        throw Error(
+            ARM3R_E_VALUE,
+            "arm3r_run_options: trust is not possible with a law of your own: it takes more runs of the same law, "
+            "which may have a memory");
 }
 
 }  // namespace arm3r

@@ -20,6 +20,7 @@
 #include "record/run_data.hpp"
 #include "results/checks.hpp"
 #include "scenario/scenario.hpp"
+#include "trust/horizon.hpp"
 
 namespace arm3r {
 
@@ -115,13 +116,21 @@ struct arm3r_run {
     std::string name;      // "" where there was no scenario
     std::string scenario;  // resolved, as YAML
     std::vector<arm3r::CheckResult> checks;
+    std::optional<arm3r::Setup> setup;
+    std::optional<arm3r::Horizon> horizon;  // where it was asked for
     arm3r::Texts texts;
 };
 
 namespace arm3r {
 
-// Sets what a run keeps of its scenario: name, text, warnings, checks.
+// Sets what a run keeps of its scenario: name, text, warnings, checks, setup.
 void describe(arm3r_run& handle, const Resolved& resolved);
+
+// Sets the run of a setup, and its horizon where the options ask for it.
+void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* options);
+
+// Throws Error ARM3R_E_VALUE where the options ask for the horizon of a run with a law of the user's own.
+void refuse_trust(const arm3r_run_options* options);
 
 }  // namespace arm3r
 

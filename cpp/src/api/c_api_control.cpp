@@ -35,6 +35,7 @@ int32_t arm3r_params_control(const double* params, size_t count, arm3r_law law, 
     return guard([&] {
         need(reinterpret_cast<const void*>(law), "law");
         need(run, "run");
+        refuse_trust(options);
         auto handle = std::make_unique<arm3r_run>();
         const std::span<const double> numbers = params_in(params, count);
         handle->run = run_with_law(numbers, valid_setup(numbers), law, user, options_in(options));
@@ -48,6 +49,7 @@ int32_t arm3r_scenario_control(const arm3r_scenario* scenario, arm3r_law law, vo
         need(scenario, "scenario");
         need(reinterpret_cast<const void*>(law), "law");
         need(run, "run");
+        refuse_trust(options);
         const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();

@@ -427,7 +427,7 @@ int32_t arm3r_params_run(const double* params, size_t count, const arm3r_run_opt
     return guard([&] {
         need(run, "run");
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = simulate(valid_setup(params_in(params, count)), options_in(options));
+        run_in(*handle, valid_setup(params_in(params, count)), options);
         *run = handle.release();
     });
 }

@@ -28,7 +28,9 @@ namespace {
 constexpr std::size_t any_size = SIZE_MAX;     // the reader has its own limit, and its own words for it
 constexpr std::size_t enough = (1 << 20) + 1;  // of a text that is longer than the reader takes
 
-Results results_of(const arm3r_run& run) { return {run.run, run.name, run.scenario, run.checks}; }
+Results results_of(const arm3r_run& run) { 
+    return {run.run, run.name, run.scenario, run.checks, run.setup, run.horizon};
+}
 
 arm3r_scenario* new_scenario(Scenario scenario) {
     auto handle = std::make_unique<arm3r_scenario>();
@@ -70,6 +72,7 @@ void arm3r::describe(arm3r_run& handle, const Resolved& resolved) {
     handle.name = resolved.name;
     handle.scenario = to_yaml(resolved.tree, false);
     handle.run.warnings.insert(handle.run.warnings.begin(), resolved.warnings.begin(), resolved.warnings.end());
+    handle.setup = resolved.setup;
     handle.checks = evaluate(resolved.checks, handle.run, resolved.params);
 }
 
@@ -210,10 +213,9 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
     return guard([&] {
         need(scenario, "scenario");
         need(run, "run");
-        const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        handle->run = with_locations(scenario->scenario, [&] { return simulate(resolved.setup, chosen); });
+        with_locations(scenario->scenario, [&] { run_in(*handle, resolved.setup, options); });
         describe(*handle, resolved);
         *run = handle.release();
     });

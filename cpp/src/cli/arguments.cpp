@@ -32,6 +32,7 @@ constexpr Program programs[] = {
     {"plot", "RUN", "draw figures of a run, of several runs, or of a sweep"},
     {"animate", "RUN", "draw a film of a run"},
     {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
+    {"converge", "FILE", "run a scenario with smaller and smaller steps, and print the observed order"},
     {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},
     {"exercise", "CALL", "list and show exercises, judge what you hand in, and mark a folder of submissions"},
 };
@@ -50,6 +51,7 @@ constexpr Option options[] = {
      "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
     {"--no-checks", "", "", "run", "leave out the scenario's checks, which hold for its own values only"},
     {"--json", "", "", "run", "print the summary as JSON: one object, or an array for several files"},
+    {"--trust", "", "", "run", "say up to which time the joint angles are right to 1e-6 rad; it takes three more runs"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
     {"--controller", "", "FILE[:FUNCTION]", "run",
      "run a MATLAB or Python function of yours as the controller, beside the true one, in the scenario's convention; "
@@ -136,6 +138,7 @@ void apply(const Option& option, const std::string& value, Arguments& arguments)
         arguments.controller = value;
     } else {
         arguments.json |= option.name == "--json";
+        arguments.trust |= option.name == "--trust";
         arguments.no_checks |= option.name == "--no-checks";
         arguments.cmake_dir |= option.name == "--cmake-dir";
         arguments.help |= option.name == "--help";

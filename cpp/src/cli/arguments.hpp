@@ -34,7 +34,7 @@ struct Arguments {
     std::string output, format, controller;
     double time_limit = 0;           // s; 0: none
     std::vector<std::string> words;  // options in their long form, `--`, files: the same once more, for another program
-    bool json = false, no_checks = false, help = false, version = false, cmake_dir = false;
+    bool json = false, no_checks = false, trust = false, help = false, version = false, cmake_dir = false;
 };
 
 bool is_call(std::string_view name);                              // one of the executable's own

@@ -177,14 +177,15 @@ void write_results(const arm3r_run* run, const std::string& path) {
 
 // ---- calls
 
-RunHandle simulate(const ScenarioHandle& scenario, double time_limit) {
+RunHandle simulate(const ScenarioHandle& scenario, const Arguments& arguments) {
     Progress progress(name_of(scenario));
     arm3r_run_options options{};
     options.struct_size = sizeof options;
     options.stop = stop_flag();
     options.progress = Progress::callback;
     options.user = &progress;
-    options.time_limit = time_limit;
+    options.time_limit = arguments.time_limit;
+    options.trust = arguments.trust;
     arm3r_run* run = nullptr;
     require(arm3r_scenario_run(scenario.get(), &options, &run));
     return {run, arm3r_run_free};
@@ -216,7 +217,7 @@ int call_run(const Arguments& arguments) {
     int code = exit_ok;
     std::size_t not_ok = 0;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
-        const RunHandle run = simulate(scenarios[i], arguments.time_limit);
+        const RunHandle run = simulate(scenarios[i], arguments);
         if (stop_requested()) return exit_ok;
         write_results(run.get(), outputs[i]);
         const int this_code = code_of(run.get());

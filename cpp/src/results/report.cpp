@@ -11,6 +11,8 @@
 #include "base/text.hpp"
 #include "record/metrics.hpp"
 #include "results/csv.hpp"
+#include "results/report_lines.hpp"
+#include "results/trust_report.hpp"
 #include "schema/columns.hpp"
 
 namespace arm3r {
@@ -83,21 +85,6 @@ std::string metrics_json(const Run& run) {
 
 // ---- for people
 
-std::string rounded(double value, int digits) {
-    char text[64];
-    const double shown = value == 0 ? 0 : value;
-    return {text, std::to_chars(text, text + sizeof text, shown, std::chars_format::general, digits).ptr};
-}
-
-std::string fixed(double value, int decimals) {
-    char text[400];
-    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
-}
-
-std::string line(const std::string& label, const std::string& text) {
-    return "  " + label + std::string(label.size() < 16 ? 16 - label.size() : 1, ' ') + text + "\n";
-}
-
 std::string vector_text(const std::array<double, 3>& v) {
     return "(" + rounded(v[0], 7) + ", " + rounded(v[1], 7) + ", " + rounded(v[2], 7) + ")";
 }
@@ -169,25 +156,6 @@ std::string score_lines(const Run& run) {
     return out;
 }
 
-// Lines of cells, each column as wide as its widest cell.
-std::string aligned(const std::vector<std::vector<std::string>>& lines) {
-    std::vector<std::size_t> width;
-    for (const auto& cells : lines)
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            if (i == width.size()) width.push_back(0);
-            width[i] = std::max(width[i], count_characters(cells[i]));
-        }
-    std::string out;
-    for (const auto& cells : lines) {
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            out += "  " + cells[i];
-            if (i + 1 < cells.size()) out += std::string(width[i] - count_characters(cells[i]), ' ');
-        }
-        out += "\n";
-    }
-    return out;
-}
-
 std::vector<std::string> check_cells(const CheckResult& check) {
     std::vector<std::string> cells = {check.passed ? "PASS" : "FAIL", visible(check.name, 60)};
     cells.push_back(check.value ? rounded(*check.value, 13) : "no value");
@@ -239,6 +207,8 @@ std::string summary_json(const Results& results) {
     field("impulse", json_number(run.impulse));
     field("energy_residual_max", json_number(run.energy_residual_max));
     field("ledger_residual", json_number(run.ledger_residual));
+    if (results.setup) field("closed_forms", json(closed_forms(*results.setup, run)));
+    if (results.horizon) field("trust", json(*results.horizon));
     field("steps", json(run.steps));
     field("solver", "{\"method\": " + json_string(run.method) + ", \"stiff_steps\": " + json_number(run.stiff_steps) +
                         ", \"choices\": " + json_string(run.choices) + "}");
@@ -260,11 +230,13 @@ std::string report(const Results& results) {
     out += line("simulated", span_text(run) + " in " + std::to_string(run.rows) + " rows");
     out += event_lines(run);
     out += force_line(run);
+    if (results.setup) out += closed_form_lines(closed_forms(*results.setup, run));
     out += score_lines(run);
     out += line("energy residual", rounded(run.energy_residual_max, 3) + " J at most");
     out += line("steps", std::to_string(run.steps.accepted) + " accepted, " + std::to_string(run.steps.rejected) +
                              " rejected, " + std::to_string(run.steps.evaluations) + " evaluations");
     if (!run.choices.empty()) out += line("method", run.choices);
+    if (results.horizon) out += horizon_line(*results.horizon);
     out += line("wall clock", elapsed_text(run.elapsed_s));
     for (const std::string& warning : run.warnings) out += line("warning", visible(warning, 400));
     return out + aligned(each(results.checks, check_cells));

@@ -1,12 +1,14 @@
 #pragma once
 // The summary of a run: as JSON, and as text for people.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "record/run_data.hpp"
 #include "results/checks.hpp"
+#include "trust/horizon.hpp"
 
 namespace arm3r {
 
@@ -16,6 +18,8 @@ struct Results {
     const std::string& name;
     const std::string& scenario;  // YAML; "" where the run came from bare parameters
     const std::vector<CheckResult>& checks;
+    const std::optional<Setup>& setup;
+    const std::optional<Horizon>& horizon;  // where it was asked for
 };
 
 std::string summary_json(const Results& results);

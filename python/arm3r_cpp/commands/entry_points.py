@@ -22,6 +22,10 @@ def animate() -> int:
     return _call("animate")
 
 
+def converge() -> int:
+    return _call("converge")
+
+
 def examples() -> int:
     return _call("examples")
 

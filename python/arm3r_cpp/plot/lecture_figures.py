@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .layout import Panel, Size, lay_out
-from .run_panels import draw_energies, draw_force_on_wall, explained, tip_panels
+from .run_panels import draw_energies, draw_force_on_wall, explained, greyed_out, tip_panels
 from .strobe import strobe
 from .style import BLACK, BLUE, JOINTS, RED, SKY, TRIPLE, XYZ, contact_spans, finish
 
@@ -43,7 +43,7 @@ def figures(run: Run) -> dict[str, Callable[[float], RunFigure]]:
 def over_time(run: Run, name: str, panels: list[Panel], foot: float) -> RunFigure:
     start, end = contact_window(run) if name == "contact" else (run.t[0], run.t[-1])
     first = panels[0]._replace(draw=partial(explained, run, panels[0]))
-    return lay_out([first, *panels[1:]], [], size=Size(foot=foot), start=start, end=end)
+    return lay_out(greyed_out(run, [first, *panels[1:]]), [], size=Size(foot=foot), start=start, end=end)
 
 
 def contact_window(run: Run) -> tuple[float, float]:

@@ -22,7 +22,7 @@ from .force_figure import (
     transient,
 )
 from .layout import Named, Panel, Size, chosen, lay_out
-from .style import AMBER, BLACK, BLUE, GREEN, JOINTS, PINK, RED, TRIPLE, XYZ, explain_contact, finish
+from .style import AMBER, BLACK, BLUE, GREEN, JOINTS, PINK, RED, TRIPLE, XYZ, explain_contact, finish, grey_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -100,6 +100,7 @@ def figure_of(
     if over_time and names_contact:
         over_time[0] = over_time[0]._replace(draw=partial(explained, run.run, over_time[0]))
     t = run.run.t
+    over_time = greyed_out(run.run, over_time)
     return lay_out(over_time, below, size=size, start=float(t[0]), end=float(t[-1]))
 
 
@@ -107,6 +108,16 @@ def explained(run: Run, panel: Panel, ax: Axes, room: float) -> None:
     """A panel whose legend says when there is contact."""
     panel.draw(ax, room)
     explain_contact(ax, run, room=room)
+
+
+def greyed_out(run: Run, panels: Sequence[Panel]) -> list[Panel]:
+    """Panels over time that cover what can no longer be trusted; the legend of the first one says so."""
+
+    def draw(panel: Panel, ax: Axes, room: float) -> None:
+        panel.draw(ax, room)
+        grey_out(ax, run, room=room if panel is panels[0] else None)
+
+    return [panel._replace(draw=partial(draw, panel)) for panel in panels]
 
 
 # ---- panels of any run ----------------------------------------------------------------------------------------------

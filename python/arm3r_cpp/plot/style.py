@@ -19,6 +19,7 @@ TRIPLE: tuple[dict[str, Any], ...] = (
     {"color": GREEN, "ls": "-."},
 )
 LOOKS = tuple(zip((BLUE, RED, GREEN, AMBER, SKY, PINK, BLACK), ("-", "--", "-.", ":", "-", "--", "-."), strict=True))
+GREY = "#e4e4e4"
 XYZ, JOINTS = "xyz", "123"
 DASHES = {"make": ":", "break": (0, (4, 2))}
 EVENT_WORDS = {"make": "contact begins", "break": "contact ends"}
@@ -106,6 +107,21 @@ def shade_contact(ax: Axes, run: Run, *, label: str | None = None) -> None:
         bars = [(start, end - start) for start, end in spans]
         look: Any = {"color": AMBER, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label or HIDDEN}
         ax.broken_barh(bars, (0, 1), transform=ax.get_xaxis_transform(), **look)
+
+
+def grey_out(ax: Axes, run: Run, *, room: float | None = None) -> None:
+    """Cover what lies beyond the time up to which a run can be trusted; `room`: the legend is to say so, and its width.
+
+    A run that does not know this time, or is right to its end, stays as it is.
+    """
+    start, end = float(run.t[0]), float(run.t[-1])
+    if not run.trust or run.trust.to_the_end or run.trust.horizon >= end:
+        return
+    look: Any = {"facecolor": GREY, "edgecolor": "none", "alpha": 0.8, "zorder": 4}
+    label = f"angles off by more than {run.trust.error:g} rad"
+    ax.axvspan(max(run.trust.horizon, start), end, label=HIDDEN if room is None else label, **look)
+    if room is not None:
+        legend_above(ax, room=room)
 
 
 def mark_events(ax: Axes, run: Run, *, labelled: bool = False) -> None:

@@ -1,0 +1,96 @@
+#include "trust/horizon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "batch/simulation.hpp"
+#include "schema/columns.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr double rounding_unit = 0x1p-53;
+constexpr double least_rtol = 1e-14, least_tol = 1e-16;  // smaller ones make no run more exact
+constexpr double direction[] = {0.6, 0.48, -0.64};       // of the change of the start: a unit vector
+
+// The tolerance of the run that is to be more exact, and half of it. Where a smaller one would make no run more exact, it
+// is at least another one: the steps then differ, and with them the rounding.
+struct Refinement {
+    int halvings;
+    bool once_more;
+};
+constexpr Refinement exact_run{6, false}, more_exact_run{6, true};
+
+double refined(double tolerance, double least, const Refinement& by) {
+    const double exact = std::min(std::max(std::ldexp(tolerance, -by.halvings), least), tolerance / 2);
+    return by.once_more ? exact / 2 : exact;
+}
+
+Setup refined(Setup setup, const Refinement& by) {
+    Solver& solver = setup.solver;
+    solver.rtol = refined(solver.rtol, least_rtol, by);
+    solver.atol = refined(solver.atol, 0, by);
+    solver.tol = refined(solver.tol, least_tol, by);
+    solver.step /= by.once_more ? 8 : 4;  // the error of rk4 has the order 4
+    return setup;
+}
+
+// rad: far above the error of a step, so that the errors of the two runs do not count.
+double change_of_start(const Solver& solver) {
+    if (solver.method == SolverMethod::rk4) return 1e-7;
+    return std::clamp(1e3 * (solver.method == SolverMethod::taylor ? solver.tol : solver.rtol), 1e-11, 1e-6);
+}
+
+Setup changed(Setup setup, double change) {
+    for (int i = 0; i < 3; ++i) setup.q[i] += change * direction[i];
+    return setup;
+}
+
+std::span<const double> column(const Run& run, std::string_view name) {
+    const auto place = std::ranges::find_if(run.columns, [&](std::size_t i) { return column_table[i].name == name; });
+    return run.column(static_cast<std::size_t>(place - run.columns.begin()));
+}
+
+// The joint angles and rates of a run's rows.
+struct Trajectory {
+    std::array<std::span<const double>, 6> y;
+
+    explicit Trajectory(const Run& run) {
+        const std::array names{"q1", "q2", "q3", "qd1", "qd2", "qd3"};
+        std::ranges::transform(names, y.begin(), [&](const char* name) { return column(run, name); });
+    }
+
+    std::size_t rows() const { return y[0].size(); }
+    double angle_distance(const Trajectory& other, std::size_t row) const {
+        double largest = 0;
+        for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, std::abs(y[i][row] - other.y[i][row]));
+        return largest;
+    }
+    double distance(const Trajectory& other, std::size_t row) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < 6; ++i) sum += (y[i][row] - other.y[i][row]) * (y[i][row] - other.y[i][row]);
+        return std::sqrt(sum);
+    }
+};
+
+}  // namespace
+
+Horizon horizon_of(const Setup& setup, const Run& run, const RunOptions& options) {
+    const Setup exact = refined(setup, exact_run);
+    const double change = change_of_start(exact.solver);
+    const Run runs[] = {simulate(exact, options), simulate(refined(setup, more_exact_run), options),
+                        simulate(changed(exact, change), options)};
+    const Trajectory own(run), z(runs[0]), half(runs[1]), beside(runs[2]);
+    const std::size_t rows = std::min({own.rows(), z.rows(), half.rows(), beside.rows()});
+    const auto growth = [&](std::size_t row) { return beside.distance(z, row) / change; };
+    const auto error = [&](std::size_t row) {
+        return own.angle_distance(z, row) + z.angle_distance(half, row) + rounding_unit * growth(row);
+    };
+    std::size_t good = 0;
+    while (good < rows && error(good) <= trusted_error) ++good;
+    const std::size_t last = good == 0 ? 0 : good - 1;
+    return {column(run, "t")[last], good == own.rows(), error(rows - 1), growth(last)};
+}
+
+}  // namespace arm3r
