@@ -65,9 +65,9 @@ bool stays_inside(const Wall<double>& wall, const Meeting& at, const Enclosure& 
     return stays(wall.e1, at.in.across1, wall.half1) && stays(wall.e2, at.in.across2, wall.half2);
 }
 
-// The acceleration of the depth without a force, how far it may depart from that, and the mobility in the mean of time.
+// The acceleration of the depth without a force, how far it may depart from that, and how fast the mobility may change.
 struct Approach {
-    double g, departure, mobility_departure;  // m/s^2, m/s^2, 1/kg
+    double g, departure, mobility_rate;  // m/s^2, m/s^2, 1/(kg s)
 };
 
 std::optional<Approach> approach(const Setup& setup, const Meeting& at, const Span& span) {
@@ -77,7 +77,7 @@ std::optional<Approach> approach(const Setup& setup, const Meeting& at, const Sp
     const Enclosure now = at_instant(plant, at.n, at.q, at.qd);
     return Approach{at.wall_acceleration - now.acceleration.low,
                     (box->acceleration - now.acceleration).largest() + wall_departure(plant.wall),
-                    box->mobility_rate.largest() * span.time / 2};
+                    box->mobility_rate.largest()};
 }
 
 Approach approach(const Setup& setup, const Meeting& at) {
@@ -126,12 +126,15 @@ bool is_linear(const Contact<double>& contact) {
 // The span is guessed from the impact, and enlarged until the bounds keep within it.
 std::optional<ImpactNumbers> bounds_of(const Setup& setup, const Meeting& at, const LinearImpact& impact,
                                        const ImpactNumbers& numbers) {
-    for (double share = 1.02; share < 2; share = 1 + 1.7 * (share - 1)) {
-        const Span span{share * numbers.duration, share * numbers.impulse};
+    Span span{1.02 * numbers.duration, 1.02 * numbers.impulse};
+    for (int attempt = 0; attempt < 12; ++attempt) {
         const std::optional<Approach> during = approach(setup, at, span);
         if (!during) return {};
-        const auto bounds = departures(impact, {during->departure, during->mobility_departure, span.time});
-        if (bounds && numbers.impulse + bounds->impulse <= span.impulse) return bounds;
+        const auto bounds = departures(impact, {during->departure, during->mobility_rate, span.time});
+        if (!bounds) return {};
+        const double impulse = numbers.impulse + bounds->most.impulse;
+        if (bounds->end <= span.time && impulse <= span.impulse) return bounds->most;
+        span = {std::max(span.time, 1.02 * bounds->end), std::max(span.impulse, 1.02 * impulse)};
     }
     return {};
 }

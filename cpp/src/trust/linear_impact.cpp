@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "arm3r/model/restitution.hpp"
 
@@ -29,10 +30,10 @@ struct Swing {
 double force_rate(const LinearImpact& of) { return of.k * of.v + of.c * (of.g - of.c * of.v / of.m); }  // at t = 0
 Swing force_swing(const LinearImpact& of) { return {of, of.m * of.g, of.c * of.v, force_rate(of)}; }
 
-// The time from the end of the push, at a speed of leaving u, until the depth is 0.
-double release_time(const LinearImpact& of, double g_over_u) {
+// The time from the end of the push, at a speed of leaving u, until the depth is 0; NaN: the tip falls back.
+double release_time(const LinearImpact& of, double g, double u) {
     const double at_once = of.c / of.k;
-    return 2 * at_once / (1 + std::sqrt(1 - 2 * g_over_u * at_once));  // NaN: the tip falls back
+    return of.c > 0 ? 2 * at_once / (1 + std::sqrt(1 - 2 * at_once * g / u)) : 0;
 }
 
 // The first extremum of the force after t = 0 may lie before it.
@@ -40,6 +41,66 @@ double extremum(const LinearImpact& of) {
     const Swing f = force_swing(of);
     return atan2(force_rate(of), f.b * f.first + f.a * f.second) / f.b;
 }
+
+// The integral of |sin b s|/b from 0 to t, and the integral of that; for b t up to 2 pi, and beyond it infinite.
+struct Gains {
+    double once, twice;
+};
+
+Gains gains(double b, double t) {
+    using std::numbers::pi;
+    const double angle = b * t, b_2 = b * b;
+    const auto [sine, cosine] = sincos(angle);
+    if (angle <= 1e-3) return {t * t / 2, t * t * t / 6};
+    if (angle <= pi) return {(1 - cosine) / b_2, (angle - sine) / (b_2 * b)};
+    if (angle <= 2 * pi) return {(3 + cosine) / b_2, (3 * angle - 2 * pi + sine) / (b_2 * b)};
+    return {INFINITY, INFINITY};
+}
+
+// How far the force may depart from that of the impact by the time t (9.3).
+class ForceDeparture {
+public:
+    const double peak;  // N, of the impact
+
+    ForceDeparture(const LinearImpact& impact, const Disturbance& disturbance)
+        : peak(impact.force(impact.time_of_peak())), impact_(impact), disturbance_(disturbance) {
+        const double share = disturbance.mobility_rate * by_rate(disturbance.time);
+        const double steady = disturbance.acceleration * by_acceleration(disturbance.time);
+        largest_force_ = share < 1 ? (peak + steady) / (1 - share) : INFINITY;
+    }
+
+    double operator()(double t) const {
+        return disturbance_.acceleration * by_acceleration(t) +
+               disturbance_.mobility_rate * largest_force_ * by_rate(t);
+    }
+
+    double of_speed() const {
+        const double t = disturbance_.time;
+        return (disturbance_.acceleration + disturbance_.mobility_rate * largest_force_ * t / 2) * t;
+    }
+
+    // Both up to a time, from upper bounds on short intervals.
+    std::pair<double, double> of_peak_and_impulse(double until) const {
+        constexpr int intervals = 64;
+        const double top = impact_.time_of_peak(), width = until / intervals;
+        double highest = peak, impulse = 0;
+        for (int i = 0; i < intervals; ++i) {
+            const double from = i * width, to = from + width, here = (*this)(to);
+            highest = std::max(highest, impact_.force(std::clamp(top, from, to)) + here);
+            impulse += here * width;
+        }
+        return {std::max(highest - peak, (*this)(top)), impulse};
+    }
+
+private:
+    double by_acceleration(double t) const { return impact_.k * gains(b(), t).once + impact_.c * t; }
+    double by_rate(double t) const { return impact_.k * gains(b(), t).twice + impact_.c * t * t / 2; }
+    double b() const { return force_swing(impact_).b; }
+
+    LinearImpact impact_;
+    Disturbance disturbance_;
+    double largest_force_;  // N, of the motion
+};
 
 }  // namespace
 
@@ -56,30 +117,26 @@ double LinearImpact::time_of_fall(double f) const {
 std::optional<ImpactNumbers> numbers_of(const LinearImpact& impact) {  // (9.1)
     if (!(impact.force(impact.time_of_least_force()) < 0)) return {};
     const double end = impact.time_of_fall(0), leaving = -impact.speed(end);
-    const ImpactNumbers numbers{impact.force(impact.time_of_peak()), end + release_time(impact, impact.g / leaving),
+    const ImpactNumbers numbers{impact.force(impact.time_of_peak()), end + release_time(impact, impact.g, leaving),
                                 impact.m * (impact.v + leaving + impact.g * end)};
     if (!(leaving > 0) || !std::isfinite(numbers.duration)) return {};
     return numbers;
 }
 
-std::optional<ImpactNumbers> departures(const LinearImpact& impact, const Disturbance& disturbance) {  // (9.3)
-    const double time = disturbance.time, peak = impact.force(impact.time_of_peak());
-    const double gain = time * (std::sqrt(impact.k * impact.m) + impact.c);  // kg: N by m/s^2
-    const double share = disturbance.mobility * gain;
-    if (!(share < 1)) return {};
-    const double r = (disturbance.acceleration + disturbance.mobility * peak) / (1 - share);
-    const double force = gain * r;
-    if (!(impact.force(impact.time_of_least_force()) < -force)) return {};
-    const double end = impact.time_of_fall(0), leaving = -impact.speed(end);
-    const double early = force < peak ? impact.time_of_fall(force) : 0, late = impact.time_of_fall(-force);
+std::optional<Departures> departures(const LinearImpact& impact, const Disturbance& disturbance) {  // (9.3)
+    const ForceDeparture departure(impact, disturbance);
+    const double most = departure(disturbance.time);
+    if (!(most >= 0) || !(impact.force(impact.time_of_least_force()) < -most)) return {};
+    const double end = impact.time_of_fall(0), leaving = -impact.speed(end), late = impact.time_of_fall(-most);
+    const double early = most < departure.peak ? impact.time_of_fall(most) : 0;
     const double shift = std::max(end - early, late - end);
-    const double slowest = leaving - r * time - shift * (std::abs(impact.g) + force / impact.m);
-    const double g = std::abs(impact.g), release = release_time(impact, impact.g / leaving);
-    if (!(slowest > 0)) return {};
-    const double longest = release_time(impact, (g + disturbance.acceleration) / slowest);
-    const double shortest = release_time(impact, -(g + disturbance.acceleration) / slowest);
-    if (!(late + longest <= time)) return {};
-    return ImpactNumbers{force, shift + std::max(longest - release, release - shortest), force * late};
+    const double slowest = leaving - departure.of_speed() - shift * (std::abs(impact.g) + most / impact.m);
+    const double g = std::abs(impact.g) + disturbance.acceleration;
+    const double release = release_time(impact, impact.g, leaving), longest = release_time(impact, g, slowest);
+    const double released = std::max(longest - release, release - release_time(impact, -g, slowest));
+    const auto [peak, impulse] = departure.of_peak_and_impulse(late);
+    if (impact.c > 0 && !(slowest > 0 && std::isfinite(longest))) return {};
+    return Departures{{peak, shift + released, impulse}, late + longest};
 }
 
 }  // namespace arm3r

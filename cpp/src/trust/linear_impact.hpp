@@ -26,14 +26,19 @@ struct ImpactNumbers {
 // Nothing where the tip does not come back.
 std::optional<ImpactNumbers> numbers_of(const LinearImpact& impact);
 
-// What the equation of a motion, depth'' = g + r(t) - w(t) f, has more than that of the impact.
+// What the equation of a motion, depth'' = g + r(t) - w(t) f, has more than that of the impact, up to some time.
 struct Disturbance {
-    double acceleration;  // m/s^2, |r| at most
-    double mobility;      // 1/kg, |w - 1/m| at most, in the mean of time
-    double time;          // s, as long as both hold
+    double acceleration;   // m/s^2, |r| at most
+    double mobility_rate;  // 1/(kg s), |dw/dt| at most, from w = 1/m on
+    double time;           // s
 };
 
-// Nothing where the bounds would not hold up to the end of the contact.
-std::optional<ImpactNumbers> departures(const LinearImpact& impact, const Disturbance& disturbance);
+struct Departures {
+    ImpactNumbers most;
+    double end;  // s: the contact is over by then, and the bounds hold if the disturbance does up to then
+};
+
+// Nothing where the motion might depart beyond all bounds.
+std::optional<Departures> departures(const LinearImpact& impact, const Disturbance& disturbance);
 
 }  // namespace arm3r
