@@ -299,7 +299,7 @@ OPTIONS = ffi.sizeof("arm3r_run_options")
     ("size", "tail", "expected"),
     [
         (OPTIONS, b"", "OK"),
-        (OPTIONS - 32, b"", "OK"),  # a caller from before `reserved`
+        (OPTIONS - 32, b"", "OK"),  # a caller from before `trust`
         (ffi.sizeof("size_t"), b"", "OK"),
         (OPTIONS + 16, b"", "OK"),  # a later caller that asks for nothing new
         (OPTIONS + 16, b"\0" * 8 + b"\1", "E_ABI"),
@@ -312,11 +312,16 @@ def test_size_of_the_options(call: Caller, size: int, tail: bytes, expected: str
     assert _run_with(call, size, tail) == getattr(lib, f"ARM3R_{expected}"), message()
 
 
-@pytest.mark.parametrize("place", range(4))
+@pytest.mark.parametrize("place", range(3))
 def test_reserved_fields_must_be_zero(call: Caller, place: int) -> None:
-    reserved = [int(i == place) for i in range(4)]
+    reserved = [int(i == place) for i in range(3)]
     assert _run_with(call, OPTIONS, reserved=reserved) == lib.ARM3R_E_ABI
     assert "reserved" in message()
+
+
+@pytest.mark.parametrize(("trust", "expected"), [(0, "OK"), (1, "OK"), (2, "E_VALUE"), (-1, "E_VALUE")])
+def test_trust_is_asked_for_or_not(call: Caller, trust: int, expected: str) -> None:
+    assert _run_with(call, OPTIONS, trust=trust) == getattr(lib, f"ARM3R_{expected}"), message()
 
 
 @pytest.mark.parametrize("limit", [-1.0, float("nan"), -float("inf")])
