@@ -48,11 +48,12 @@ class Convergence(NamedTuple):
         rows = [[self.key, "steps", "error, rad", "order"], *map(_cells, self.levels)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
-        return "\n".join([head, *(f"  {line}" for line in lines), self._verdict()])
+        return "\n".join([head, *(f"  {line}".rstrip() for line in lines), self._verdict()])
 
     def _verdict(self) -> str:
         if self.order is None:
-            return "no order: the errors are mere rounding"
+            same = len({level.steps for level in self.levels}) < len(self.levels)
+            return "no order: " + ("runs take equally many steps" if same else "the errors are mere rounding")
         own = f"; that of the method is {ORDERS[self.method]}" if self.method in ORDERS else ""
         return f"observed order {self.order:.2f}{own}"
 
