@@ -192,13 +192,19 @@ class Run:
     def closed_forms(self) -> list[ClosedForm]:
         """What theory says of the run's contacts; none where no closed form holds, or says nothing."""
         found = self.summary.get("closed_forms") or {"numbers": []}
-        return [ClosedForm(**one) for one in found["numbers"]]
+        return [
+            ClosedForm(one["name"], one["unit"], *(_number(one[key]) for key in ("own", "closed_form", "allowed")))
+            for one in found["numbers"]
+        ]
 
     @property
     def trust(self) -> Trust | None:
         """Up to when the run is right; None: it was not run with `trust=True`."""
         found = self.summary.get("trust")
-        return Trust(**found) if found else None
+        if not found:
+            return None
+        horizon, error, end_error, growth = (_number(found[key]) for key in ("horizon", "error", "end_error", "growth"))
+        return Trust(horizon, error, bool(found["to_the_end"]), end_error, growth)
 
     @property
     def checks(self) -> list[dict[str, Any]]:
@@ -271,3 +277,8 @@ class Run:
                 the summary was written for: their count and their hash are compared.
         """
         return cls(*read(Path(path)))
+
+
+def _number(value: Any) -> float:
+    """A number of the summary: JSON has no NaN, and the library writes null; it writes "inf", too."""
+    return float("nan" if value is None else value)

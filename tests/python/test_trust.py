@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -272,6 +273,23 @@ def test_the_command_says_up_to_when(cli: Cli, tmp_path: Path, root: Path) -> No
     found = json.loads(cli("run", file, "--trust", "--json", *loose).stdout)["trust"]
     assert arm3r.Trust(**found) == trust
     assert "--trust" in cli("run", "--help").stdout
+
+
+def test_runs_that_are_cut_short_tell_no_horizon() -> None:
+    scenario = arm3r.Scenario("format: 1\nsolver: {method: dopri5, max_steps: 300}\ntime: {stop: 1}\n")
+    steps = scenario.run().summary["steps"]["accepted"]
+    scenario["solver.max_steps"] = steps + scenario.run().summary["steps"]["rejected"]
+    assert scenario.run(trust=True).trust is not None
+    calls = []
+
+    def stop_the_second_run(t: float, stop: float, steps: int) -> bool:
+        calls.append(t)
+        return any(later < earlier for earlier, later in pairwise(calls))
+
+    scenario.update({"solver": {"method": "rk4", "step": 2e-6}, "time.stop": 1.0})
+    run = scenario.run(trust=True, progress=stop_the_second_run)
+    assert run.trust is None
+    assert "is not known" in run.warnings[-1]
 
 
 def test_a_law_of_your_own_has_no_horizon(lecture: arm3r.Scenario) -> None:

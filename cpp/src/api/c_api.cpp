@@ -150,8 +150,10 @@ void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* give
     const RunOptions options = options_in(given);
     handle.run = simulate(setup, options);
     handle.setup = setup;
-    const bool is_cut_short = handle.run.outcome == ARM3R_RUN_STOPPED || handle.run.outcome == ARM3R_RUN_BUDGET;
-    if (trust && !is_cut_short) handle.horizon = horizon_of(setup, handle.run, options);
+    if (trust) handle.horizon = horizon_of(setup, handle.run, options);
+    if (trust && !handle.horizon)
+        handle.run.warnings.emplace_back(
+            "the time up to which the joint angles are right is not known: a limit ended one of the runs that tell it");
 }
 
 void refuse_trust(const arm3r_run_options* options) {

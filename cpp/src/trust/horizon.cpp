@@ -6,6 +6,7 @@
 
 #include "batch/simulation.hpp"
 #include "schema/columns.hpp"
+#include "validate/size_limits.hpp"
 
 namespace arm3r {
 namespace {
@@ -33,6 +34,7 @@ Setup refined(Setup setup, const Refinement& by) {
     solver.atol = refined(solver.atol, 0, by);
     solver.tol = refined(solver.tol, least_tol, by);
     solver.step /= by.once_more ? 8 : 4;  // the error of rk4 has the order 4
+    solver.max_steps *= 8;
     return setup;
 }
 
@@ -49,8 +51,11 @@ Setup changed(Setup setup, double change) {
 
 std::span<const double> column(const Run& run, std::string_view name) {
     const auto place = std::ranges::find_if(run.columns, [&](std::size_t i) { return column_table[i].name == name; });
+    if (place == run.columns.end()) return {};
     return run.column(static_cast<std::size_t>(place - run.columns.begin()));
 }
+
+bool is_cut_short(const Run& run) { return run.outcome == ARM3R_RUN_STOPPED || run.outcome == ARM3R_RUN_BUDGET; }
 
 // The joint angles and rates of a run's rows.
 struct Trajectory {
@@ -61,7 +66,7 @@ struct Trajectory {
         std::ranges::transform(names, y.begin(), [&](const char* name) { return column(run, name); });
     }
 
-    std::size_t rows() const { return y[0].size(); }
+    std::size_t rows() const { return std::ranges::min(y, {}, &std::span<const double>::size).size(); }
     double angle_distance(const Trajectory& other, std::size_t row) const {
         double largest = 0;
         for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, std::abs(y[i][row] - other.y[i][row]));
@@ -76,13 +81,15 @@ struct Trajectory {
 
 }  // namespace
 
-Horizon horizon_of(const Setup& setup, const Run& run, const RunOptions& options) {
-    const Setup exact = refined(setup, exact_run);
+std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunOptions& options) {
+    const Setup exact = refined(setup, exact_run), more_exact = refined(setup, more_exact_run);
+    if (is_cut_short(run) || has_too_many_steps(more_exact)) return {};
     const double change = change_of_start(exact.solver);
-    const Run runs[] = {simulate(exact, options), simulate(refined(setup, more_exact_run), options),
+    const Run runs[] = {simulate(exact, options), simulate(more_exact, options),
                         simulate(changed(exact, change), options)};
     const Trajectory own(run), z(runs[0]), half(runs[1]), beside(runs[2]);
     const std::size_t rows = std::min({own.rows(), z.rows(), half.rows(), beside.rows()});
+    if (rows == 0 || std::ranges::any_of(runs, is_cut_short)) return {};
     const auto growth = [&](std::size_t row) { return beside.distance(z, row) / change; };
     const auto error = [&](std::size_t row) {
         return own.angle_distance(z, row) + z.angle_distance(half, row) + rounding_unit * growth(row);
@@ -90,7 +97,7 @@ Horizon horizon_of(const Setup& setup, const Run& run, const RunOptions& options
     std::size_t good = 0;
     while (good < rows && error(good) <= trusted_error) ++good;
     const std::size_t last = good == 0 ? 0 : good - 1;
-    return {column(run, "t")[last], good == own.rows(), error(rows - 1), growth(last)};
+    return Horizon{column(run, "t")[last], good == own.rows(), error(rows - 1), growth(last)};
 }
 
 }  // namespace arm3r

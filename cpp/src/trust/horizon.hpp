@@ -1,6 +1,8 @@
 #pragma once
 // The time up to which the joint angles of a run are right; docs/model.md (9.6).
 
+#include <optional>
+
 #include "record/run_data.hpp"
 #include "setup/setup.hpp"
 
@@ -15,7 +17,8 @@ struct Horizon {
     double growth;     // until t, of a small change of the start
 };
 
-// Simulates the setup three times more, as exact as the run and more. Not with a law of the user's.
-Horizon horizon_of(const Setup& setup, const Run& run, const RunOptions& options);
+// Simulates the setup three times more, more exactly. Not with a law of the user's. Nothing where one of these runs is cut
+// short by the caller or a limit, or the run does not log its joint angles and rates.
+std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunOptions& options);
 
 }  // namespace arm3r
