@@ -42,7 +42,7 @@ std::string closed_form_lines(const ClosedForms& found) {
     std::vector<std::vector<std::string>> lines;
     for (const ClosedForm& one : found.forms) lines.push_back(cells(one));
     return line("closed forms", "effective mass " + rounded(found.effective_mass, 7) + " kg, met at " +
-                                    rounded(found.approach_speed, 5) + " m/s") +
+                                    rounded(found.approach_speed, 5) + " m/s, at the first contact") +
            aligned(lines);
 }
 
