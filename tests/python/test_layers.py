@@ -13,20 +13,8 @@ import pytest
 
 # From the bottom up: a file includes files of its own room and of rooms that stand before it.
 HEADERS = ("numbers", "model", "ode", "control", "sensing")
-PROGRAM = (
-    "base",
-    "schema",
-    "setup",
-    "validate",
-    "control",
-    "integrate",
-    "contact",
-    "record",
-    "run",
-    "lanes",
-    "batch",
-    "trust",
-)
+PROGRAM = ("base", "schema", "setup", "validate", "control", "integrate", "contact", "record", "run", "lanes")
+PROGRAM = (*PROGRAM, "batch", "trust")
 FACES = ("files", "results", "scenario", "api", "cli")
 ROOMS = [*(f"include/arm3r/{room}" for room in HEADERS), "include/arm3r"]
 ROOMS += [f"src/{room}" for room in PROGRAM + FACES]

@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t any_size = SIZE_MAX;     // the reader has its own limit, and its own words for it
 constexpr std::size_t enough = (1 << 20) + 1;  // of a text that is longer than the reader takes
 
-Results results_of(const arm3r_run& run) { 
+Results results_of(const arm3r_run& run) {
     return {run.run, run.name, run.scenario, run.checks, run.setup, run.horizon};
 }
 

@@ -59,14 +59,20 @@ bool is_cut_short(const Run& run) { return run.outcome == ARM3R_RUN_STOPPED || r
 
 // The joint angles and rates of a run's rows.
 struct Trajectory {
+    std::span<const double> t;
     std::array<std::span<const double>, 6> y;
 
-    explicit Trajectory(const Run& run) {
+    explicit Trajectory(const Run& run) : t(column(run, "t")) {
         const std::array names{"q1", "q2", "q3", "qd1", "qd2", "qd3"};
         std::ranges::transform(names, y.begin(), [&](const char* name) { return column(run, name); });
     }
 
-    std::size_t rows() const { return std::ranges::min(y, {}, &std::span<const double>::size).size(); }
+    // How many rows stand at the same times as those of another run; the last one of a run that failed does not.
+    std::size_t common_rows(const Trajectory& other) const {
+        std::size_t rows = std::min(t.size(), other.t.size());
+        for (const auto& values : y) rows = std::min(rows, values.size());
+        return rows > 0 && t[rows - 1] != other.t[rows - 1] ? rows - 1 : rows;
+    }
     double angle_distance(const Trajectory& other, std::size_t row) const {
         double largest = 0;
         for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, std::abs(y[i][row] - other.y[i][row]));
@@ -88,7 +94,7 @@ std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunO
     const Run runs[] = {simulate(exact, options), simulate(more_exact, options),
                         simulate(changed(exact, change), options)};
     const Trajectory own(run), z(runs[0]), half(runs[1]), beside(runs[2]);
-    const std::size_t rows = std::min({own.rows(), z.rows(), half.rows(), beside.rows()});
+    const std::size_t rows = std::min({own.common_rows(z), own.common_rows(half), own.common_rows(beside)});
     if (rows == 0 || std::ranges::any_of(runs, is_cut_short)) return {};
     const auto growth = [&](std::size_t row) { return beside.distance(z, row) / change; };
     const auto error = [&](std::size_t row) {
@@ -97,7 +103,7 @@ std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunO
     std::size_t good = 0;
     while (good < rows && error(good) <= trusted_error) ++good;
     const std::size_t last = good == 0 ? 0 : good - 1;
-    return Horizon{column(run, "t")[last], good == own.rows(), error(rows - 1), growth(last)};
+    return Horizon{own.t[last], good == own.t.size(), error(rows - 1), growth(last)};
 }
 
 }  // namespace arm3r
