@@ -292,6 +292,16 @@ def test_runs_that_are_cut_short_tell_no_horizon() -> None:
     assert "is not known" in run.warnings[-1]
 
 
+def test_a_run_that_fails_has_a_horizon_too() -> None:
+    scenario = arm3r.Scenario("format: 1\nsolver: {method: rk4, step: 0.05}\ntime: {stop: 20, log_every: 0.05}\n")
+    scenario.update({"arm.link1.inertia_axial": 1e-6, "initial": {"q": [0.1, 0.2, 0.3], "qd": [40, 1, 2]}})
+    with pytest.raises(arm3r.NumericalError) as caught:
+        scenario.run(trust=True)
+    assert caught.value.run is not None
+    assert caught.value.run.trust is not None
+    assert caught.value.run.trust.horizon < caught.value.run.t[-1]
+
+
 def test_a_law_of_your_own_has_no_horizon(lecture: arm3r.Scenario) -> None:
     with pytest.raises(arm3r.UsageError, match="trust"):
         lecture.run(trust=True, controller=lambda t, state: state.tau_g)
@@ -309,6 +319,12 @@ def test_figures_grey_out_what_is_beyond_the_horizon() -> None:
             starts = [patch.get_x() for patch in axes.patches if patch.get_zorder() == 4]
             assert starts == [run.trust.horizon]
     assert not any(patch.get_zorder() == 4 for axes in arm3r.plot.overview(plain).axes for patch in axes.patches)
+    walled = arm3r.Scenario.example("moving_wall")
+    walled.update({"checks": [], "solver": {"method": "dopri5", "rtol": 1e-5}, "controller": {"type": "none"}})
+    one, other = walled._quiet().run(trust=True), walled.run()
+    figure = arm3r.plot.compare({"one": one, "other": other}, panels=["force", "torques"])
+    assert one.trust is not None
+    assert [patch.get_x() for patch in figure.axes[0].patches if patch.get_zorder() == 4] == [one.trust.horizon]
     early = arm3r.plot.overview(run, end=run.trust.horizon)
     assert not any(patch.get_zorder() == 4 for axes in early.axes for patch in axes.patches)
 

@@ -12,6 +12,7 @@ from ..errors import UsageError
 from .contact_plane import draw_contact_plane, locate, needs_locating
 from .force_figure import heights, since_contact, transient
 from .layout import PAD, TWO_PANELS, Named, Panel, Size, chosen, lay_out
+from .run_panels import greyed_out
 from .style import BLACK, JOINTS, LOOKS, contact_spans, legend_above, plain_ticks, widen_if_flat
 
 if TYPE_CHECKING:
@@ -67,7 +68,8 @@ def compare_figure(runs: Sequence[ForceRun], names: Sequence[str] | None, size: 
     wanted = names or [name for name, found in panels.items() if found and name not in left_out]
     over_time, below, last = chosen(panels, wanted, below=("first_contact", "face"), last=("table",))
     start, end = min(run.run.t[0] for run in runs), max(run.run.t[-1] for run in runs)
-    return lay_out(over_time, below, last, size=size, start=start, end=end)
+    first_wrong = min((run.run for run in runs), key=lambda run: run.trust.horizon if run.trust else np.inf)
+    return lay_out(greyed_out(first_wrong, over_time), below, last, size=size, start=start, end=end)
 
 
 def panels_of(runs: Sequence[ForceRun], width: float) -> Named:
