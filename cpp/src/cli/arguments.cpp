@@ -63,8 +63,8 @@ constexpr Option options[] = {
 };
 
 constexpr std::string_view exit_codes =
-    "Exit codes: 0 ok, 1 bug, 2 usage or unreadable file, 3 scenario, 4 numeric, 5 budget, 6 output, 8 controller,\n"
-    "            9 incompatible version, 10 a check failed\n";
+    "Exit codes: 0 ok, 1 bug, 2 usage or unreadable file, 3 scenario, 4 numeric, 5 budget, 6 output, 7 failed runs,\n"
+    "            8 controller, 9 incompatible version, 10 a check failed, 11 a wrong formula, from 128 a signal\n";
 
 [[noreturn]] void usage_error(const std::string& message) { throw Exit{exit_usage, "arm3r: error[usage]: " + message}; }
 
@@ -189,6 +189,8 @@ void check_fit(const Arguments& arguments, const Used& used) {
     for (const Option* option : used.options)
         if (!takes(call->name, *option))
             usage_error("arm3r " + arguments.call + " has no option " + std::string(option->name));
+    if (arguments.trust && !arguments.controller.empty())
+        usage_error("--trust takes more runs, and the function of --controller may have a memory: give one of them");
     if (arguments.files.size() < call->least)
         usage_error("arm3r " + arguments.call + " needs " + std::string(call->operands));
     if (arguments.files.size() > call->most)
