@@ -15,6 +15,7 @@ from .formula import Formula
 from .kinds import Kind, standard_form
 from .program.nodes import Edit, ProgramError
 from .samples import Samples, random_states
+from .truth.three_r import FOLLOWING
 
 TOLERANCE = 1e-9  # of an entry's scale
 _ARMS, _STATES = 5, 8
@@ -32,7 +33,8 @@ class Comparison:
     kind: Kind
     parameters: dict[str, str]
     convention: str = ""
-    inertia: str = "scaled"
+    follows: tuple[str, ...] = FOLLOWING[0]
+    """What changes with a link's length: see `ThreeR.arm`."""
     rows: int = 3
     degrees: bool = False
     shape: tuple[int, ...] = ()
@@ -98,7 +100,7 @@ class Comparison:
             new = {name: float(values[rows][0]) for name, values in (changes or {}).items()}
             quantities = {**arm, **new}
             results.append(
-                self.truth.values(kind, self.convention, here, quantities, inertia=self.inertia, rows=self.rows)
+                self.truth.values(kind, self.convention, here, quantities, follows=self.follows, rows=self.rows)
             )
         return np.concatenate(results)
 

@@ -87,6 +87,11 @@ class Formula:
             return None  # a Python function returns by position, unless its arguments have the same order
         return [digits.index(str(n + 1)) for n in range(len(digits))]
 
+    def numbers(self) -> dict[str, float]:
+        """The numbers that the text gives to names."""
+        assigned = {name: one.value for name, one in self.constants.items()}
+        return {**self.defaults, **self.global_numbers, **assigned}
+
     def parameters(self, kind: Kind, joints: int) -> dict[str, str]:
         """The parameters of the arm among arguments and constants, by the names of the formula."""
         from .names import slot_of

@@ -29,6 +29,8 @@ class PythonText:
         """The names of a function's arguments, and the numbers that some of them have by default."""
         given = self.functions[function].args
         names = [one.arg for one in (*given.posonlyargs, *given.args)]
+        if given.vararg and not names:
+            return ["*"], {}
         defaults = dict(zip(names[len(names) - len(given.defaults) :], given.defaults, strict=True))
         numbers = {name: number_in(value) for name, value in defaults.items()}
         return names, {name: value for name, value in numbers.items() if value is not None}
@@ -56,7 +58,8 @@ class PythonText:
                 number = number_in(value)
                 if number is not None and count[target.id] == 1 and target.id not in changed:
                     found.append(Constant(target.id, number, *self._span(value)))
-        return found
+        names_of = Counter(one.start for one in found)
+        return [one for one in found if names_of[one.start] == 1]  # `a2 = a3 = 1` is one number for both
 
     def returned_names(self, function: str) -> list[str]:
         """The names in `return t3, t2, t1`."""

@@ -181,7 +181,7 @@ class SerialChain:
         return np.stack(columns, axis=2)
 
     def values(self, kind: str, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],
-               *, inertia: str = "scaled", rows: int = 3) -> Floats:  # fmt: skip
+               *, follows: tuple[str, ...] = (), rows: int = 3) -> Floats:  # fmt: skip
         """What is right at the states, (S, ...)."""
         q, qd = states["q"], states["qd"]
         zero = np.zeros_like(q)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,7 +14,8 @@ from ...params import param_index
 from ...scenario import Scenario
 
 CONVENTIONS = ("simscape", "slide")
-_LINK = re.compile(r"(length|com|mass|inertia)(\d)")
+FOLLOWING = (("com", "inertia"), ("com",), (), ("com", "inertia", "mass"))
+"""What may follow a link's length and mass, the likeliest first: its shape, or numbers that stand in the text."""
 _RANGES = {"length": (0.5, 1.6), "com": (0.2, 0.45), "mass": (0.4, 2.5), "inertia": (0.02, 0.2)}
 
 
@@ -87,21 +87,23 @@ class ThreeR:
             drawn[name] = float(random.uniform(low, high))
         return drawn
 
-    def arm(self, convention: str, quantities: Mapping[str, float], inertia: str = "scaled") -> Arm:
+    def arm(
+        self, convention: str, quantities: Mapping[str, float], follows: tuple[str, ...] = FOLLOWING[0]
+    ) -> Arm:
         """The arm with some quantities changed.
 
         Args:
-            inertia: "scaled" keeps the links' shapes where length and mass change; "fixed" keeps the inertia's numbers;
-                "slender" makes the links ideal rods.
+            follows: what changes with a link's length and mass where it is not given itself, the others keep their
+                numbers: "com" in proportion to the length, "inertia" as the same shape has it, "mass" as the length.
         """
-        key = (convention, inertia, *sorted(quantities.items()))
+        key = (convention, follows, *sorted(quantities.items()))
         if key not in self._arms:
             if len(self._arms) > 500:
                 self._arms.clear()
-            self._arms[key] = Arm(self._changed(convention, quantities, inertia))
+            self._arms[key] = Arm(self._changed(convention, quantities, follows))
         return self._arms[key]
 
-    def _changed(self, convention: str, quantities: Mapping[str, float], inertia: str) -> Floats:
+    def _changed(self, convention: str, quantities: Mapping[str, float], follows: tuple[str, ...]) -> Floats:
         params, own = self._params.copy(), self.values_of_quantities
         params[param_index("arm.convention")] = CONVENTIONS.index(convention)
         value = {**own, **quantities}
@@ -111,31 +113,38 @@ class ThreeR:
             params[param_index(f"arm.gravity[{axis}]")] *= scale
         for link in (2, 3):
             names = {f"{what}{link}" for what in ("length", "com", "mass", "inertia")}
-            if names & set(quantities) or inertia != "scaled":
-                self._change_link(params, link, value, quantities, inertia)
+            if names & set(quantities):
+                self._change_link(params, link, value, quantities, follows)
         return params
 
     def _change_link(
-        self, params: Floats, link: int, value: Mapping[str, float], given: Mapping[str, float], inertia: str
+        self,
+        params: Floats,
+        link: int,
+        value: Mapping[str, float],
+        given: Mapping[str, float],
+        follows: tuple[str, ...],
     ) -> None:
         own, length, mass = self.values_of_quantities, value[f"length{link}"], value[f"mass{link}"]
+        if "mass" in follows and f"mass{link}" not in given:
+            mass *= length / own[f"length{link}"]
         at = {what: param_index(f"arm.link{link}.{what}") for what in ("length", "mass", "com")}
         axes = [param_index(f"arm.link{link}.inertia[{axis}]") for axis in range(3)]
         has_own_com, has_own_inertia = not np.isnan(params[at["com"]]), not np.isnan(params[axes]).any()
         params[at["length"]], params[at["mass"]] = length, mass
         if f"com{link}" in given:
             params[at["com"]] = value[f"com{link}"]
+        elif "com" not in follows:
+            params[at["com"]] = own[f"com{link}"]
         elif has_own_com:
             params[at["com"]] = own[f"com{link}"] * length / own[f"length{link}"]
         across = own[f"inertia{link}"]
         axial, ratio = self._axial(link), self._ratio(link)
         if f"inertia{link}" in given:
             across, axial = value[f"inertia{link}"], min(axial, value[f"inertia{link}"])
-        elif inertia == "slender":
-            across, axial, ratio = mass * length**2 / 12, 0.0, 1.0
-        elif inertia == "scaled" and not has_own_inertia:
+        elif "inertia" in follows and not has_own_inertia:
             return  # the library derives it from the shape, for any length and mass
-        elif inertia == "scaled":
+        elif "inertia" in follows:
             old_mass, old_length = own[f"mass{link}"], own[f"length{link}"]
             across = mass / old_mass * (across + old_mass * (length**2 - old_length**2) / 12)
             axial *= mass / old_mass
@@ -163,13 +172,13 @@ class ThreeR:
         states: Mapping[str, Floats],
         quantities: Mapping[str, float],
         *,
-        inertia: str = "scaled",
+        follows: tuple[str, ...] = FOLLOWING[0],
         rows: int = 3,
     ) -> Floats:
         """What is right at the states, (N, ...)."""
         if kind == "controller":
             return self._law_torque(convention, states["q"], states["qd"])
-        arm = self.arm(convention, quantities, inertia)
+        arm = self.arm(convention, quantities, follows)
         q, qd = states["q"], states["qd"]
         if kind == "jacobian":
             return arm.geometric_jacobian(q) if rows == 6 else arm.jacobian(q)

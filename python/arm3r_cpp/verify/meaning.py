@@ -1,0 +1,104 @@
+"""How a formula is meant: its convention, the unit of angles, which of its numbers are varied, what follows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ..errors import UsageError
+from .comparison import Comparison
+from .formula import Formula
+from .kinds import Kind
+from .program.nodes import ProgramError
+from .samples import Samples
+from .truth.three_r import FOLLOWING
+
+_DYNAMIC = ("mass", "coriolis", "inverse", "forward")
+
+
+def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
+    """The comparisons in which fewest entries are wrong: one, or one for each convention."""
+    counted: list[tuple[int, Comparison]] = []
+    for parameters in _choices(formula, kind, truth):
+        counted += _counted(formula, kind, truth, parameters)
+        if any(count == 0 for count, _ in counted):
+            break
+    fewest = min(count for count, _ in counted)
+    best = [case for count, case in counted if count == fewest]
+    return [
+        next(case for case in best if case.convention == convention)
+        for convention in dict.fromkeys(case.convention for case in best)
+    ][: 2 if fewest else 1]
+
+
+def _choices(formula: Formula, kind: Kind, truth: Any) -> Iterator[dict[str, str]]:
+    """The formula's names of quantities that may be varied: all of them, then without those that may mean others."""
+    own = truth.values_of_quantities
+    every = {
+        name: quantity
+        for name, quantity in formula.parameters(kind, truth.joints).items()
+        if quantity in own and kind.name != "controller"
+    }
+    numbers = {name: value for name, value in formula.numbers().items() if name in every}
+    every = {name: quantity for name, quantity in every.items() if not _is_opposite(numbers.get(name), own[quantity])}
+    yield every
+    others = {name for name in every if name in numbers and not np.isclose(numbers[name], own[every[name]], rtol=1e-9)}
+    if others:
+        yield {name: quantity for name, quantity in every.items() if name not in others}
+    idle = _idle(Comparison(formula, truth, kind, every), set(numbers) & set(every))
+    if idle:
+        yield {name: quantity for name, quantity in every.items() if name not in idle}
+
+
+def _is_opposite(number: float | None, own: float) -> bool:
+    """Whether a number is the arm's own with the other sign, such as g = -9.80665."""
+    return number is not None and own != 0 and bool(np.isclose(number, -own, rtol=1e-9))
+
+
+def _idle(case: Comparison, numbers: set[str]) -> set[str]:
+    """The numbers of the text that change nothing in what the formula returns."""
+    samples = case.first
+    values = case.values(samples)
+    found = set()
+    for name in numbers:
+        quantity = case.parameters[name]
+        arms = [{**arm, quantity: 1.37 * arm[quantity]} for arm in samples.arms]
+        if np.array_equal(case.values(Samples(samples.states, arms)), values, equal_nan=True):
+            found.add(name)
+    return found
+
+
+def _counted(
+    formula: Formula, kind: Kind, truth: Any, parameters: dict[str, str]
+) -> Iterator[tuple[int, Comparison]]:
+    """How many entries are wrong, in each convention, unit of angles, and for all that may follow a length."""
+    base = Comparison(formula, truth, kind, parameters)
+    values = base.values(base.second)
+    rows = 6 if kind.name == "jacobian" and values.shape[1] == 6 else 3
+    says_degrees = "deg" in " ".join([*formula.arguments, *formula.comments.lower().split()])
+    varied = {quantity.rstrip("23") for quantity in parameters.values()} & {"length", "mass"}
+    following = FOLLOWING if varied and (kind.name == "gravity" or kind.name in _DYNAMIC) else FOLLOWING[:1]
+    first = truth.convention
+    conventions = (first, *(one for one in truth.conventions if one != first))
+    for convention, follows, degrees in product(conventions, following, (False, True) if says_degrees else (False,)):
+        case = replace(base, convention=convention, follows=follows, rows=rows, degrees=degrees)
+        result = case.values(case.second) if degrees else values
+        yield len(case.wrong(result, case.second)), case
+
+
+def is_right_as_it_stands(case: Comparison) -> bool:
+    """Whether a formula whose varied numbers all stand in its text is right with these numbers."""
+    numbers = case.formula.numbers()
+    if not set(case.parameters) <= set(numbers):
+        return False
+    written = {case.parameters[name]: numbers[name] for name in case.parameters}
+    states = case.second.states
+    due = case.due(Samples(states, [case.own]))
+    try:
+        return not case.wrong(case.values(Samples(states, [{**case.own, **written}])), case.second, due)
+    except (ProgramError, UsageError):
+        return False
