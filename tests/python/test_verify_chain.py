@@ -212,6 +212,8 @@ def wrong_entries(text: str, kind: str, chain: Chain) -> set[tuple[int, ...]] | 
         for q in states(chain.joints)[0]:
             due = chain.values(kind, "", {"q": q[None], "qd": q[None]}, {})[0]
             got = np.asarray(names[kind](q), float)
+            if got.shape != due.shape or not np.isfinite(got).any():
+                return None
             wrong = np.argwhere(~(np.abs(got - due) <= 1e-8 * np.abs(due).max()))
             found |= {tuple(int(one) + 1 for one in place) for place in wrong}
     except Exception:

@@ -17,15 +17,16 @@ from .explain.reader import read_entries
 from .explain.repair import Repair, cover, influential, tried
 from .formula import Formula
 from .kinds import Kind, entry_name
-from .meaning import is_right_as_it_stands, meant
+from .meaning import is_right_as_it_stands, meant, ways
 from .names import slot_of
-from .program.nodes import Edit, ProgramError, line_and_column
+from .program.nodes import Edit, Node, ProcessEnded, ProgramError, line_and_column
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
 
+@np.errstate(all="ignore")
 def judge(
     formula: Formula,
     kind: Kind,
@@ -49,7 +50,10 @@ def judge(
                 break
         verdict, case = min(verdicts, key=lambda one: _unexplained(one[0]))
     except ProgramError as error:
-        return _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
+        verdict = _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
+        if not isinstance(error, ProcessEnded):
+            _mend_failure(verdict, formula, kind, truth, progress)
+        return verdict
     if verdict.findings and is_right_as_it_stands(case):
         _excuse(verdict, case)
     elif len(verdicts) > 1:
@@ -120,6 +124,19 @@ def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
     finding = Finding(None, f"the formula {error}", line=error.line)
     verdict.ok, verdict.residual, verdict.findings = False, float("inf"), [finding]
     return verdict
+
+
+def _mend_failure(
+    verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None
+) -> None:
+    """The edit that makes a formula right which raises, or returns no numbers."""
+    for case in ways(formula, kind, truth):
+        wrong = frozenset(range(int(np.prod(case.due(case.first).shape[1:]))))
+        for repair in _repairs(case, wrong, progress, formula.nodes):
+            if repair.mended == wrong:
+                verdict.convention = case.convention
+                _put_edit(verdict.findings[0], case, repair.edit)
+                return
 
 
 def _own(case: Comparison) -> tuple[Floats, Floats]:
@@ -220,8 +237,14 @@ def _hypotheses(case: Comparison) -> list[str]:
     return [cause for _, cause in sorted(found, key=lambda one: one[0])]
 
 
-def _repairs(case: Comparison, wrong: frozenset[int], progress: Progress | None) -> list[Repair]:
-    """The edits of the text that make wrong entries right, confirmed at fresh states and arms."""
+def _repairs(
+    case: Comparison, wrong: frozenset[int], progress: Progress | None, statements: Sequence[Node] = ()
+) -> list[Repair]:
+    """The edits of the text that make wrong entries right, confirmed at fresh states and arms.
+
+    Args:
+        statements: those that are edited; by default the ones that wrong entries depend on.
+    """
     formula = case.formula
     if not formula.text or not formula.nodes:
         return []
@@ -236,7 +259,7 @@ def _repairs(case: Comparison, wrong: frozenset[int], progress: Progress | None)
     def wrong_at(everywhere: bool) -> Callable[[Floats], frozenset[int]]:
         return lambda values: case.wrong(values, case.second if everywhere else case.first, due[everywhere])
 
-    statements = influential(formula.nodes, formula.text, evaluate, case.values(case.first), wrong)
+    statements = statements or influential(formula.nodes, formula.text, evaluate, case.values(case.first), wrong)
     found = tried(editor.all(statements), evaluate, wrong_at(False), wrong_at(True), wrong, progress)
     return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
 

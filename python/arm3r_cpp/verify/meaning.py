@@ -35,14 +35,15 @@ def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
     ][: 2 if fewest else 1]
 
 
+def ways(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
+    """The comparisons in every convention, for a formula that returns nothing that could be compared."""
+    base = Comparison(formula, truth, kind, _parameters(formula, kind, truth))
+    return [replace(base, convention=convention) for convention in truth.conventions]
+
+
 def _choices(formula: Formula, kind: Kind, truth: Any) -> Iterator[dict[str, str]]:
     """The formula's names of quantities that may be varied: all of them, then without those that may mean others."""
-    own = truth.values_of_quantities
-    every = {
-        name: quantity
-        for name, quantity in formula.parameters(kind, truth.joints).items()
-        if quantity in own and kind.name != "controller"
-    }
+    own, every = truth.values_of_quantities, _parameters(formula, kind, truth)
     numbers = {name: value for name, value in formula.numbers().items() if name in every}
     every = {name: quantity for name, quantity in every.items() if not _is_opposite(numbers.get(name), own[quantity])}
     yield every
@@ -52,6 +53,14 @@ def _choices(formula: Formula, kind: Kind, truth: Any) -> Iterator[dict[str, str
     idle = _idle(Comparison(formula, truth, kind, every), set(numbers) & set(every))
     if idle:
         yield {name: quantity for name, quantity in every.items() if name not in idle}
+
+
+def _parameters(formula: Formula, kind: Kind, truth: Any) -> dict[str, str]:
+    return {
+        name: quantity
+        for name, quantity in formula.parameters(kind, truth.joints).items()
+        if quantity in truth.values_of_quantities and kind.name != "controller"
+    }
 
 
 def _is_opposite(number: float | None, own: float) -> bool:

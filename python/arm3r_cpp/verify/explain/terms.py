@@ -39,7 +39,7 @@ def number_words(number: float) -> str:
     fraction = Fraction(number).limit_denominator(144)
     if fraction and abs(float(fraction) / number - 1) < 1e-7:
         return str(fraction)
-    return f"{number:.6g}"
+    return f"{number:.9g}"
 
 
 def sum_words(terms: Sequence[Term]) -> str:
@@ -107,6 +107,7 @@ class Parameters:
         coefficient: Floats,
         due: Sequence[tuple[float, tuple[int, ...]]],
         limit: float,
+        every: Sequence[Sequence[tuple[float, tuple[int, ...]]]] = (),
     ) -> list[tuple[float, tuple[int, ...]]] | None:
         """The coefficient as a sum of monomials: some of those that are due, and one or two others."""
         if np.abs(coefficient).max() <= limit:
@@ -114,6 +115,22 @@ class Parameters:
         alone = self.single(coefficient, limit)
         if alone and (self.is_simple(alone[0]) or not due):
             return [alone]
+        return (
+            self._nearest(coefficient, due, limit)
+            or self._moved(coefficient, due, every, limit)
+            or ([alone] if alone else self._double(coefficient, limit))
+            or (self._nearest(coefficient, due, limit, any_number=True) if self.arms > 1 else None)
+        )
+
+    def _nearest(
+        self,
+        coefficient: Floats,
+        due: Sequence[tuple[float, tuple[int, ...]]],
+        limit: float,
+        *,
+        any_number: bool = False,
+    ) -> list[tuple[float, tuple[int, ...]]] | None:
+        """As many as possible of the monomials that are due, and a simple number times another one."""
         kept = [number * self.monomial(powers) for number, powers in due]
         for missing in range(len(due) + 1):
             for places in combinations(range(len(due)), len(due) - missing):
@@ -122,11 +139,33 @@ class Parameters:
                 if np.abs(rest).max() <= limit:
                     return chosen
                 other = self.single(rest, limit)
-                if other and (self.is_simple(other[0]) or self.arms > 1):
+                if other and (any_number or self.is_simple(other[0])):
                     return [*chosen, other]
-        if self.is_determined and 0 < len(self.names) <= 6:
-            return self.double(coefficient, limit)
-        return [alone] if alone else None
+        return None
+
+    def _moved(
+        self,
+        coefficient: Floats,
+        due: Sequence[tuple[float, tuple[int, ...]]],
+        every: Sequence[Sequence[tuple[float, tuple[int, ...]]]],
+        limit: float,
+    ) -> list[tuple[float, tuple[int, ...]]] | None:
+        """The monomials that are due here, or none of them, and those of another wave times a simple number."""
+        for kept in (list(due), []):
+            rest = coefficient - self._total(kept)
+            for other in every:
+                total = self._total(other)
+                ratio = float(np.sum(rest * total)) / max(float(np.sum(total**2)), 1e-300)
+                simple = min(_RATIOS, key=lambda one: abs(one - ratio))
+                if np.abs(rest - simple * total).max() <= limit:
+                    return [*kept, *((simple * number, powers) for number, powers in other)]
+        return None
+
+    def _total(self, terms: Sequence[tuple[float, tuple[int, ...]]]) -> Floats:
+        return np.sum([np.zeros(self.arms), *(number * self.monomial(powers) for number, powers in terms)], axis=0)
+
+    def _double(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
+        return self.double(coefficient, limit) if self.is_determined and 0 < len(self.names) <= 6 else None
 
     def term(self, number: float, powers: Sequence[int], waves: tuple[Wave, ...]) -> Term:
         if (waves, number, tuple(powers)) in self.known_terms:
@@ -162,7 +201,8 @@ def terms_of(
         coefficient = found.coefficients[:, place, 0]
         if np.abs(coefficient).max() <= limit:
             continue
-        fitted = parameters.fit(coefficient, due.get(waves, []), limit)
+        here = due.get(waves, [])
+        fitted = parameters.fit(coefficient, here, limit, list(due.values()))
         if fitted is None:
             return None
         monomials[waves] = fitted

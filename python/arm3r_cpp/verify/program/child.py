@@ -10,7 +10,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from .confinement import end_with_parent, enter_namespaces, limit_resources
+from .confinement import confine, end_with_parent, limit_resources
 from .nodes import Call, Edit, ProgramError
 from .python_program import PythonProgram
 
@@ -25,7 +25,7 @@ def main() -> None:
     for descriptor in (0, 1, 2):
         os.dup2(null, descriptor)
     end_with_parent()
-    unbarred = enter_namespaces()
+    unbarred = confine()
     head, _ = receive(requests)
     limit_resources()
     if head["folder"]:

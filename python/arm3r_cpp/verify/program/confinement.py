@@ -8,10 +8,14 @@ import resource
 import signal
 import sys
 
+from .landlock import forbid_writing
+from .seccomp import OTHERS, refuse
+
 _NEWUSER, _NEWNS, _NEWPID, _NEWNET, _NEWIPC = 0x10000000, 0x00020000, 0x20000000, 0x40000000, 0x08000000
 _MS_PRIVATE, _MS_REC = 1 << 18, 1 << 14
 _SYS_MOUNT_SETATTR, _AT_FDCWD, _AT_RECURSIVE, _ATTR_RDONLY = 442, -100, 0x8000, 1
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS = 1, 36, 38
+EVERYTHING = ("network", "files", "processes")
 MEMORY = 2 << 30  # bytes of address space
 PROCESSOR_TIME = 100  # s
 
@@ -26,18 +30,30 @@ def _libc() -> ctypes.CDLL | None:
 
 def limit_resources() -> None:
     """No file is written, no core is dumped, and memory and time are bounded; nothing of this can be taken back."""
+    # The kernel counts all threads of the user, also those outside of a user namespace.
     limits = {
         resource.RLIMIT_AS: MEMORY,
         resource.RLIMIT_CPU: PROCESSOR_TIME,
         resource.RLIMIT_FSIZE: 0,
         resource.RLIMIT_CORE: 0,
         resource.RLIMIT_NOFILE: 64,
-        resource.RLIMIT_NPROC: 64,
+        resource.RLIMIT_NPROC: _threads_of_this_user() + 64,
     }
     for what, value in limits.items():
         hard = resource.getrlimit(what)[1]
         value = value if hard == resource.RLIM_INFINITY else min(value, hard)
         resource.setrlimit(what, (value, value))
+
+
+def _threads_of_this_user() -> int:
+    count = 0
+    for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
+        try:
+            if name.isdigit() and os.stat(f"/proc/{name}").st_uid == os.getuid():
+                count += len(os.listdir(f"/proc/{name}/task"))
+        except OSError:
+            continue  # it has ended
+    return count
 
 
 def end_with_parent() -> None:
@@ -49,18 +65,19 @@ def end_with_parent() -> None:
         libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
 
 
-def enter_namespaces() -> list[str]:
+def confine() -> list[str]:
     """Cut this process off in namespaces of its own, and go on in a child that is the first process in them.
 
-    Returns what could not be barred: "network", "files", "processes". The parent stays behind, and ends as the child.
+    The parent stays behind, and ends as the child. Where the system refuses namespaces, the process restricts itself.
+    Returns what could not be barred, some of `EVERYTHING`.
     """
     libc = _libc()
     if not libc:
-        return ["network", "files", "processes"]
+        return list(EVERYTHING)
     user, group = os.getuid(), os.getgid()
     everything = _NEWUSER | _NEWNS | _NEWPID | _NEWNET | _NEWIPC
     if libc.unshare(everything) != 0:
-        return ["network", "files", "processes"]
+        return _restrict_itself(libc)
     for name, text in (("setgroups", "deny"), ("uid_map", f"{user} {user} 1"), ("gid_map", f"{group} {group} 1")):
         try:
             with open(f"/proc/self/{name}", "w") as file:
@@ -74,6 +91,12 @@ def enter_namespaces() -> list[str]:
     end_with_parent()
     libc.mount(b"proc", b"/proc", b"proc", 0, None)  # only the processes of this namespace, where it is allowed
     return open_to
+
+
+def _restrict_itself(libc: ctypes.CDLL) -> list[str]:
+    """Where there are no namespaces: this process gives up writing, sockets, and reaching or starting processes."""
+    unbarred = [] if forbid_writing(libc) else ["files"]
+    return unbarred if refuse(libc, OTHERS, new_processes=True) else ["network", *unbarred, "processes"]
 
 
 def _make_files_read_only(libc: ctypes.CDLL) -> bool:

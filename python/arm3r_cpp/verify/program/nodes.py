@@ -77,6 +77,10 @@ class ProgramError(Exception):
         self.line = line
 
 
+class ProcessEnded(ProgramError):
+    """The process that runs the user's program hung or ended."""
+
+
 def numbers_of(text: Sequence[str]) -> str:
     """The digits that names end with, in one word: "321" for t3, t2, t1; "" where one has none."""
     digits = [name[-1:] for name in text]

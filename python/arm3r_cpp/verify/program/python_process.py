@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .child import HEAD, send
-from .nodes import Call, Edit, ProgramError
+from .nodes import Call, Edit, ProcessEnded, ProgramError
 
 Floats = NDArray[np.float64]
 _START = "from arm3r_cpp.verify.program.child import main; main()"
@@ -140,7 +140,7 @@ class PythonProcess:
 
     def _fail(self, message: str) -> None:
         self.close()
-        raise ProgramError(message)
+        raise ProcessEnded(message)
 
     def close(self) -> None:
         """End the process and all that it started."""
