@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -23,6 +25,7 @@ from .program.nodes import Edit, Node, ProcessEnded, ProgramError, line_and_colu
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
+_MENDING_TIME = 3.0  # s, for a formula that fails
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
 
@@ -130,6 +133,19 @@ def _mend_failure(
     verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None
 ) -> None:
     """The edit that makes a formula right which raises, or returns no numbers."""
+    deadline = time.monotonic() + _MENDING_TIME
+
+    def in_time(done: int, count: int) -> None:
+        if time.monotonic() > deadline:
+            raise ProcessEnded("takes too long")
+        if progress:
+            progress(done, count)
+
+    with contextlib.suppress(ProcessEnded):
+        _mend_in_time(verdict, formula, kind, truth, in_time)
+
+
+def _mend_in_time(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress) -> None:
     for case in ways(formula, kind, truth):
         wrong = frozenset(range(int(np.prod(case.due(case.first).shape[1:]))))
         for repair in _repairs(case, wrong, progress, formula.nodes):

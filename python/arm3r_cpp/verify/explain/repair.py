@@ -44,7 +44,7 @@ def tried(
     for number, edit in enumerate(edits):
         if edit.rank > enough:
             break
-        if progress and number % 100 == 0:
+        if progress and number % 10 == 0:
             progress(number, len(edits))
         left = _left(evaluate, edit, False, wrong_first)
         if left is None or not left < wrong:
