@@ -153,6 +153,8 @@ def judged(program: Program, text: str, folder: Path) -> str:
     verdict = formula_verdict(from_file(path), program.kind)
     if not all(wrong.values()):
         return "right" if verdict.ok else "alarm"
+    if verdict.findings and verdict.findings[0].entry is None:
+        return "fails" if runner.returns_nothing(program, text) else "missed"
     located = {tuple(finding.entry) for finding in verdict.findings}
     if located != wrong[verdict.convention]:
         return "missed"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import arm3r_cpp as arm3r
@@ -74,6 +75,33 @@ def test_dynamics_are_judged(function: str, written: Any) -> None:
     assert [finding.entry for finding in wrong.findings] == entries
     line = DYNAMICS[: DYNAMICS.index(old)].count("\n") + 1
     assert {finding.line for finding in wrong.findings} == {line}, str(wrong)
+
+
+READ = {
+    "mass_matrix": ("+ 2*B*c2*c23", "+ B*c2*c23", "M(1,1) has 1/2 m3 a2 lc3 C3 "),
+    "coriolis_matrix": (
+        "-b*(qd[1] + qd[2])",
+        "-b*(qd[1] - qd[2])",
+        "h2 has m3 a2 lc3 S3 qd3^2 where -m3 a2 lc3 S3 qd3^2",
+    ),
+}
+
+
+@pytest.mark.parametrize("function", READ)
+def test_terms_of_the_dynamics_are_read(function: str, written: Any) -> None:
+    old, new, words = READ[function]
+    verdict = verify.formula_verdict(f"{written('dynamics.py', DYNAMICS.replace(old, new))}:{function}")
+    assert words in str(verdict) and "right terms" in str(verdict)
+
+
+def test_forward_dynamics_are_read_as_the_torque() -> None:
+    def formula(extra: float, q: Any, qd: Any, tau: Any) -> Any:
+        return ARM.forward_dynamics(q, qd, tau - np.array([0, extra * np.sin(q[2]) * qd[1] ** 2, 0]))
+
+    verdict = verify.forward(partial(formula, 0.3))
+    assert len(verdict.unexplained) == 2
+    (note,) = verdict.warnings
+    assert note.startswith("solved for the torque, t2 has 3/10 S3 qd2^2 where nothing is due"), note
 
 
 def test_a_coriolis_matrix_is_judged_by_its_product() -> None:

@@ -12,7 +12,7 @@ from .._native import Floats
 from ..errors import UsageError
 from .explain.repair import wrong_entries
 from .formula import Formula
-from .kinds import Kind, standard_form
+from .kinds import KINDS, Kind, standard_form
 from .program.nodes import Edit, ProgramError
 from .samples import Samples, random_states
 from .truth.three_r import FOLLOWING
@@ -121,6 +121,36 @@ class Comparison:
         count = len(samples.states["q"])
         own = self.truth.values_of_quantities
         return {name: np.repeat([arm.get(name, own[name]) for arm in samples.arms], count) for name in own}
+
+
+@dataclass
+class Solved(Comparison):
+    """A formula of the forward dynamics, solved for the torque: q'' = A tau + b gives tau = A^-1 (q'' - b)."""
+
+    @classmethod
+    def of(cls, case: Comparison) -> Solved:
+        names = ("formula", "truth", "kind", "parameters", "convention", "follows", "rows", "degrees", "shape")
+        return cls(**{name: getattr(case, name) for name in names})
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.forward, self.kind = self.kind, KINDS["inverse"]
+
+    def values(self, samples: Samples, edit: Edit | None = None) -> Floats:
+        """The torque that makes the formula return samples' accelerations."""
+        n = self.truth.joints
+        torques = [np.zeros(n), *np.eye(n)]
+        bias, *columns = (self._accelerations(samples, torque) for torque in torques)
+        matrix = np.stack([column - bias for column in columns], axis=2)
+        try:
+            return np.asarray(np.linalg.solve(matrix, (samples.tiled("qdd") - bias)[..., None])[..., 0])
+        except np.linalg.LinAlgError:
+            raise ProgramError("does not depend on the torque") from None
+
+    def _accelerations(self, samples: Samples, torque: Floats) -> Floats:
+        states = {**samples.states, "tau": np.tile(torque, (len(samples.states["q"]), 1))}
+        here = Samples(states, samples.arms)
+        return standard_form(self.forward, self.formula.values(self.call, here, self.known), len(torque), None)
 
 
 def scales(due: Floats) -> Floats:

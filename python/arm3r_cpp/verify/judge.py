@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from .._native import Floats
-from .comparison import Comparison, scales
+from .comparison import Comparison, Solved, scales
 from .coverage import seen_by_tests
 from .explain.edits import Editor
 from .explain.hypotheses import hypotheses
 from .explain.reader import read_entries
-from .explain.repair import Repair, cover, influential, tried
+from .explain.repair import Repair, cover, influential, tried, wrong_entries
+from .explain.terms import difference_words
 from .formula import Formula
 from .kinds import Kind, entry_name
 from .meaning import is_right_as_it_stands, meant, ways
@@ -81,7 +82,8 @@ def _excuse(verdict: Verdict, case: Comparison) -> None:
 
 def _unexplained(verdict: Verdict) -> int:
     """The findings that neither an edit nor a mistake of the whole explains."""
-    return sum((one.old is None and " reads " in one.cause) or " explain it" in one.cause for one in verdict.findings)
+    words = (" reads ", " has ", " explain it")
+    return sum(one.old is None and any(word in one.cause for word in words) for one in verdict.findings)
 
 
 def _verdict(case: Comparison, progress: Progress | None) -> Verdict:
@@ -129,9 +131,7 @@ def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
     return verdict
 
 
-def _mend_failure(
-    verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None
-) -> None:
+def _mend_failure(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None) -> None:
     """The edit that makes a formula right which raises, or returns no numbers."""
     deadline = time.monotonic() + _MENDING_TIME
 
@@ -216,9 +216,24 @@ def _explain(verdict: Verdict, case: Comparison, wrong: frozenset[int], progress
             verdict.unexplained.append(case.entry(place))
         if found and found.note and found.note not in verdict.warnings:
             verdict.warnings.append(found.note)
+    if case.kind.name == "forward" and not (causes or chosen):
+        verdict.warnings += _torque_readings(case)
     verdict.alternatives += causes[1:]
     for repair in chosen:
         verdict.alternatives += _other_edits(case, repairs, repair)
+
+
+def _torque_readings(case: Comparison) -> list[str]:
+    """What the formula reads when it is solved for the torque, in the entries in which this differs."""
+    solved = Solved.of(case)
+    values, due = solved.values(solved.second), solved.due(solved.second)
+    wrong = wrong_entries(values, due, scales(due), 1e-8)
+    readings = read_entries(solved, wrong)
+    return [
+        f"solved for the torque, t{place + 1} {difference_words(found.reads, found.due)}"
+        for place, found in readings.items()
+        if found.reads and found.due
+    ]
 
 
 def _hypotheses(case: Comparison) -> list[str]:
@@ -366,7 +381,7 @@ def _cause(
             others += f", together with the mistake in line {line}"
         return f"{name}: in line {finding.line} `{finding.old}` {stands}{others}."
     if finding.reads is not None:
-        return f"{name} reads {finding.reads}; {finding.due} is due."
+        return f"{name} {difference_words(finding.reads, finding.due)}." if finding.due else f"{name} is wrong."
     return f"{name} is wrong, and neither its terms nor a single edit explain it."
 
 

@@ -81,9 +81,7 @@ def _idle(case: Comparison, numbers: set[str]) -> set[str]:
     return found
 
 
-def _counted(
-    formula: Formula, kind: Kind, truth: Any, parameters: dict[str, str]
-) -> Iterator[tuple[int, Comparison]]:
+def _counted(formula: Formula, kind: Kind, truth: Any, parameters: dict[str, str]) -> Iterator[tuple[int, Comparison]]:
     """How many entries are wrong, in each convention, unit of angles, and for all that may follow a length."""
     base = Comparison(formula, truth, kind, parameters)
     values = base.values(base.second)

@@ -7,6 +7,7 @@ from itertools import groupby
 
 import numpy as np
 
+from .explain.terms import difference_words
 from .finding import Finding, Judgement
 from .kinds import KINDS, entry_name
 
@@ -31,7 +32,12 @@ def _head(verdict: Judgement) -> str:
     count = int(np.prod(verdict.shape)) if verdict.shape else 0
     wrong = len({tuple(one.entry) for one in verdict.findings if one.entry})
     if wrong and count:
-        parts.append(f"{wrong} of {count} entries wrong, by up to {verdict.residual:.3g} {KINDS[verdict.kind].unit}")
+        size = (
+            f"by up to {verdict.residual:.3g} {KINDS[verdict.kind].unit}"
+            if np.isfinite(verdict.residual)
+            else "some NaN"
+        )
+        parts.append(f"{wrong} of {count} entries wrong, {size}")
     return ", ".join(parts)
 
 
@@ -56,10 +62,17 @@ def _block(verdict: Judgement, findings: list[Finding]) -> list[str]:
     lines = []
     for one in findings:
         if one.entry and one.reads is not None:
-            lines.append(f"{entry_name(kind, one.entry)} reads {one.reads}, due is {one.due}")
+            said = difference_words(one.reads, one.due) if one.due is not None else f"reads {one.reads}"
+            lines.append(f"{entry_name(kind, one.entry)} {said}")
     names = ", ".join(entry_name(kind, one.entry) for one in findings if one.entry)
-    if not lines or first.reads is None or " reads " not in first.cause:
-        cause = first.cause if not names or first.cause.startswith(names) else f"{names}: {_lower(first.cause)}"
+    if (
+        not lines
+        or first.reads is None
+        or (first.old is None and not first.cause.startswith(f"{entry_name(kind, first.entry or [])} "))
+    ):
+        own = f"{entry_name(kind, first.entry)}: " if first.entry else ""
+        said = first.cause.removeprefix(own)
+        cause = first.cause if not names or first.cause.startswith(f"{names} ") else f"{names}: {_lower(said)}"
         if first.old is None or not lines:
             lines.append(cause)
     lines += [f"  {line}" for line in _place(verdict, first)]

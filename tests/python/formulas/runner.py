@@ -111,6 +111,13 @@ def due(kind: str, arm: arm3r.Arm, q: Floats) -> Floats:
     return function(q)
 
 
+def returns_nothing(program: Program, text: str) -> bool:
+    """Whether no number at all is finite."""
+    numbers = dict(zip(NAMES, ARMS[0], strict=True))
+    results = [values(program, text, numbers, q) for q in STATES]
+    return not any(one is not None and np.isfinite(one).any() for one in results)
+
+
 def wrong_entries(program: Program, text: str, convention: str | None = None) -> set[tuple[int, ...]] | None:
     """The entries, from 1, in which a text differs from the model; None where it fails."""
     found: set[tuple[int, ...]] = set()

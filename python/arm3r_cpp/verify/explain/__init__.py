@@ -2,6 +2,7 @@
 
 In come the user's formula, the truth, and which entries differ. Out come causes, terms and edits, none of them without
 a confirmation at states and arms that played no part in finding it. `hypotheses` tries mistakes that change the formula
-as a whole; `spectrum` and `terms` read entries as sums of sines and cosines with monomials of the parameters;
-`edits` lists the single edits of a text and `repair` tries them. This room prints nothing.
+as a whole; `spectrum` and `terms` read entries as sums of sines and cosines with monomials of the parameters, those of
+the dynamics in the `parts` before each product of rates; `edits` lists the single edits of a text, `repair` tries them.
+This room prints nothing.
 """

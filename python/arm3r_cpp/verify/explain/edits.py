@@ -164,8 +164,9 @@ class Editor:
             for angle in [one for one in self.angles if re.fullmatch(r"[\w\[\]().]+", one)]:
                 bracketed = inner[0] if re.fullmatch(r"[\w\[\]().]+", inner[0]) else f"({inner[0]})"
                 yield Edit(node.parts[0].start, node.parts[0].end, f"{inner[0]}+{angle}", 2)
-                yield Edit(node.parts[0].start, node.parts[0].end, f"{inner[0]}-{angle}", 2)
-                yield Edit(node.parts[0].start, node.parts[0].end, f"{angle}-{bracketed}", 3)
+                if angle != inner[0]:
+                    yield Edit(node.parts[0].start, node.parts[0].end, f"{inner[0]}-{angle}", 2)
+                    yield Edit(node.parts[0].start, node.parts[0].end, f"{angle}-{bracketed}", 3)
         if len(node.parts) == 1:
             yield self._at(node, inner[0], 4, parent)
         if len(node.parts) == 2:
@@ -210,7 +211,7 @@ class Editor:
         if is_end_of_sum and (is_sum or parent.kind in ("assign", "group", "matrix", "row", "binary")):
             brackets = parent.kind == "binary" and not is_sum
             for term in self.products:
-                for sign in _ADDITIVE:
+                for sign in _ADDITIVE if term != text else "+":
                     body = f"{text} {sign} {term}"
                     yield Edit(node.start, node.end, f"({body})" if brackets else body, 5)
         if self.language == "python" and node.kind in ("name", "call", "index") and parent.kind in ("binary", "assign"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations_with_replacement
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,14 +11,17 @@ from ..._native import Floats
 from ..names import SHORT
 from ..program.nodes import ProgramError
 from ..samples import Samples
-from .spectrum import read
+from .parts import Part, parts_of
+from .spectrum import Spectrum, read
 from .terms import Parameters, Term, sum_words, terms_of
 
-_VARIED = {
+_VARIED: dict[str, tuple[str, ...]] = {
     "jacobian": ("length2", "length3"),
     "gravity": ("length2", "length3", "mass2", "mass3", "gravity"),
     "kinematics": ("length2", "length3", "height"),
 }
+_DYNAMIC = ("length2", "com2", "com3", "mass2", "mass3", "inertia2", "inertia3", "gravity")
+_READ = (*_VARIED, "mass", "coriolis", "inverse")
 
 
 class Reading(NamedTuple):
@@ -28,80 +32,177 @@ class Reading(NamedTuple):
 
 def read_entries(case: Any, wrong: frozenset[int]) -> dict[int, Reading]:
     """The readings of the wrong entries that can be read."""
-    if case.kind.name not in _VARIED:
+    if case.kind.name not in _READ:
         return {}
+    reader = _Reader(case)
     found = {}
-    sampled: dict[bytes, Floats] = {}
     for place in sorted(wrong):
         try:
-            found[place] = _entry(case, place, sampled)
+            found[place] = reader.entry(place)
         except (ProgramError, np.linalg.LinAlgError, FloatingPointError):
             continue
     return found
 
 
-def _entry(case: Any, place: int, sampled: dict[bytes, Floats]) -> Reading:
-    own = case.truth.values_of_quantities
-    varied = [name for name in _VARIED[case.kind.name] if own.get(name) or name in case.known]
-    lifted = [name for name in case.known if name in varied or name in ("com2", "com3")]
-    names = {quantity: name for name, quantity in case.parameters.items()}
-    shown = {
-        quantity: names.get(quantity, SHORT.get(quantity, quantity)) for quantity in case.truth.values_of_quantities
-    }
-    due_terms, monomials = _due(case, place, sorted({*varied, *lifted}), shown)
-    arms = _arms(case, case.known, len(case.known) + 5 if case.known else 1)
-    fixed = {
-        shown[name]: own[name] for name in varied if name not in case.known and own.get(name)
-    } | case.truth.named_numbers
-    values = {shown[name]: np.array([arm[name] for arm in arms]) for name in case.known}
-    parameters = Parameters(values, fixed, len(arms))
+class _Reader:
+    """Reads entries of one formula, and the same entries of the truth."""
 
-    def user(q: Floats) -> Floats:
-        key = q.tobytes()
-        if key not in sampled:
-            sampled[key] = _at(case, q, arms, case.values)
-        return sampled[key]
+    def __init__(self, case: Any) -> None:
+        self.case, self.kind = case, case.kind.name
+        self.parts = parts_of(self.kind, case.truth.joints)
+        self.own = case.truth.values_of_quantities
+        names = {quantity: name for name, quantity in case.parameters.items()}
+        self.shown = {quantity: names.get(quantity, SHORT.get(quantity, quantity)) for quantity in self.own}
+        self.varied, self.lifted = self._quantities()
+        self.arms = self._arms(case.known)
+        self.due_arms = self._arms(sorted({*self.varied, *self.lifted}))
+        self._sampled: dict[tuple[bool, bytes], Floats] = {}
 
-    spectrum = read(user, case.truth.groups, case.truth.revolute, place)
-    due_words = sum_words(due_terms) if due_terms is not None else None
-    if spectrum is None:
-        return Reading(None, due_words)
-    scale = float(np.abs(spectrum.coefficients).max()) or 1.0
-    hints = _hints(monomials, parameters, fixed) if monomials else {}
-    result = terms_of(spectrum, parameters, hints, scale)
-    if result is None:
-        return Reading(None, due_words)
-    note = ""
-    equal = [
-        pair
-        for pair in (("length2", "length3"), ("mass2", "mass3"))
-        if set(pair) <= set(varied) and not set(pair) & set(case.known) and own[pair[0]] == own[pair[1]]
-    ]
-    if equal:
-        note = "cannot tell " + ", ".join(f"{shown[a]} from {shown[b]}" for a, b in equal) + " here: they are equal"
-    return Reading(sum_words(_like(result[0], due_terms or [])), due_words, note)
+    def _quantities(self) -> tuple[list[str], list[str]]:
+        """The quantities in which what is due is written, and those of them that the formula's text varies."""
+        known = self.case.known
+        if self.kind in _VARIED:
+            varied = [name for name in _VARIED[self.kind] if self.own.get(name) or name in known]
+            return varied, [name for name in known if name in varied or name in ("com2", "com3")]
+        varied = list(known) or [name for name in _DYNAMIC if self.own.get(name)]
+        return [name for name in varied if name != "gravity" or self.kind == "inverse"], list(known)
+
+    def _arms(self, names: list[str]) -> list[dict[str, float]]:
+        random = np.random.default_rng(31)
+        count = 4 + max(len(names), *(len(self._monomials(part, names)) for part in self.parts))
+        return [self.case.truth.random_quantities(set(names), random) for _ in range(count)] if names else [{}]
+
+    def _monomials(self, part: Part, names: list[str]) -> list[tuple[str, ...]]:
+        return monomials(names, is_torque=not part.words and self.kind == "inverse") if self.kind in _DYNAMICS else []
+
+    def _at(self, q: Floats, of_truth: bool) -> Floats:
+        """The parts at joint angles: (arms, S, entries times parts)."""
+        key = of_truth, q.tobytes()
+        if key not in self._sampled:
+            arms = self.due_arms if of_truth else self.arms
+            found: dict[bytes, Floats] = {}
+            self._sampled[key] = np.stack([self._part(q, part, arms, of_truth, found) for part in self.parts], axis=3)
+            self._sampled[key] = self._sampled[key].reshape(len(arms), len(q), -1)
+        return self._sampled[key]
+
+    def _part(
+        self, q: Floats, part: Part, arms: list[dict[str, float]], of_truth: bool, found: dict[bytes, Floats]
+    ) -> Floats:
+        total: Any = 0.0
+        for weight, vectors in part.weights:
+            states = {name: np.zeros_like(q) + vectors.get(name, 0.0) for name in ("qd", "qdd", "tau")}
+            key = b"".join(one[:1].tobytes() for one in states.values())
+            if key not in found:
+                found[key] = self._values(Samples({"q": q, **states}, arms), of_truth)
+            total = total + weight * found[key]
+        return np.asarray(total)
+
+    def _values(self, samples: Samples, of_truth: bool) -> Floats:
+        values = (self.case.due if of_truth else self.case.values)(samples)
+        if not np.isfinite(values).all():
+            raise ProgramError("is not finite")
+        return np.asarray(values.reshape(len(samples.arms), len(samples.states["q"]), -1))
+
+    def entry(self, place: int) -> Reading:
+        """What an entry reads, and what is due."""
+        due_terms: list[Term] | None = []
+        terms: list[Term] | None = []
+        for number, part in enumerate(self.parts):
+            index = place * len(self.parts) + number
+            due, monomials_due = self._due(index, part)
+            due_terms = None if due is None or due_terms is None else due_terms + due
+            read_ones = self._read(index, part, monomials_due)
+            terms = None if read_ones is None or terms is None else terms + _like(read_ones, due or [])
+        due_words = sum_words(due_terms) if due_terms is not None else None
+        if terms is None or not self._is_whole(place):
+            return Reading(None, due_words)
+        return Reading(sum_words(terms), due_words, self._note())
+
+    def _is_whole(self, place: int) -> bool:
+        """Whether the parts give the entry at random states."""
+        if len(self.parts) == 1:
+            return True
+        random = np.random.default_rng(41)
+        n = self.case.truth.joints
+        states = {name: random.uniform(-2, 2, (6, n)) for name in ("q", "qd", "qdd", "tau")}
+        values = self._values(Samples(states, self.arms), False)[..., place]
+        parts = self._at(states["q"], False).reshape(*values.shape, -1, len(self.parts))[:, :, place]
+        factors = np.stack([part.factor(states) for part in self.parts], axis=1)
+        return bool(np.abs((parts * factors).sum(axis=2) - values).max() < 1e-8 * (1e-6 + np.abs(values).max()))
+
+    def _due(self, index: int, part: Part) -> tuple[list[Term] | None, Any]:
+        """The terms of the truth with all quantities varied, and their monomials."""
+        names = sorted({*self.varied, *self.lifted})
+        values = {self.shown[name]: np.array([arm[name] for arm in self.due_arms]) for name in names}
+        parameters = Parameters(values, dict(self.case.truth.named_numbers), len(self.due_arms))
+        parameters.candidates = self._candidates(part, names, parameters)
+        spectrum = self._spectrum(index, True)
+        result = spectrum and terms_of(spectrum, parameters, {}, self._scale(index, True), part.words)
+        if not result:
+            return None, {}
+        return result[0], {
+            waves: [(number, dict(zip(parameters.names, powers, strict=True))) for number, powers in found]
+            for waves, found in result[1].items()
+        }
+
+    def _read(self, index: int, part: Part, monomials_due: Any) -> list[Term] | None:
+        """The terms of the formula."""
+        known = self.case.known
+        fixed = {self.shown[name]: self.own[name] for name in self.varied if name not in known and self.own.get(name)}
+        fixed |= self.case.truth.named_numbers
+        values = {self.shown[name]: np.array([arm[name] for arm in self.arms]) for name in known}
+        parameters = Parameters(values, fixed, len(self.arms))
+        parameters.candidates = self._candidates(part, known, parameters)
+        spectrum = self._spectrum(index, False)
+        if spectrum is None:
+            return None
+        result = terms_of(
+            spectrum, parameters, _hints(monomials_due, parameters, fixed), self._scale(index, False), part.words
+        )
+        return result[0] if result else None
+
+    def _spectrum(self, index: int, of_truth: bool) -> Spectrum | None:
+        truth = self.case.truth
+        self._at(np.random.default_rng(43).uniform(-3, 3, (8, truth.joints)), of_truth)
+        scale = self._scale(index, of_truth) if len(self.parts) > 1 else 0.0
+        return read(lambda q: self._at(q, of_truth), truth.groups, truth.revolute, index, scale=scale)
+
+    def _scale(self, index: int, of_truth: bool) -> float:
+        """The largest value of all parts of an entry."""
+        first = index - index % len(self.parts)
+        here = [values[..., first : first + len(self.parts)] for (truth, _), values in self._sampled.items()
+                if truth == of_truth]  # fmt: skip
+        return max((float(np.abs(values).max()) for values in here), default=0.0) or 1.0
+
+    def _candidates(self, part: Part, names: list[str], parameters: Parameters) -> list[tuple[int, ...]]:
+        """The powers of the monomials that a part may hold."""
+        shown = [[self.shown[name] for name in one] for one in self._monomials(part, names)]
+        return [tuple(one.count(name) for name in parameters.names) for one in shown]
+
+    def _note(self) -> str:
+        shown, known = self.shown, set(self.case.known)
+        equal = [
+            f"{shown[a]} from {shown[b]}"
+            for a, b in (("length2", "length3"), ("mass2", "mass3"))
+            if {a, b} <= set(self.varied) and not {a, b} & known and self.own[a] == self.own[b]
+        ]
+        return f"cannot tell {', '.join(equal)} here: they are equal" if equal else ""
 
 
-def _due(case: Any, place: int, varied: list[str], shown: dict[str, str]) -> tuple[list[Term] | None, Any]:
-    """The terms of the truth with all quantities varied, and their monomials."""
-    arms = _arms(case, varied, len(varied) + 5)
-    values = {shown[name]: np.array([arm[name] for arm in arms]) for name in varied}
-    parameters = Parameters(values, dict(case.truth.named_numbers), len(arms))
+_DYNAMICS = ("mass", "coriolis", "inverse")
 
-    def truth(q: Floats) -> Floats:
-        return _at(case, q, arms, case.due)
 
-    spectrum = read(truth, case.truth.groups, case.truth.revolute, place)
-    if spectrum is None:
-        return None, None
-    scale = float(np.abs(spectrum.coefficients).max()) or 1.0
-    result = terms_of(spectrum, parameters, {}, scale)
-    if result is None:
-        return None, None
-    return result[0], {
-        waves: [(number, dict(zip(parameters.names, powers, strict=True))) for number, powers in found]
-        for waves, found in result[1].items()
-    }
+def monomials(names: list[str], *, is_torque: bool) -> list[tuple[str, ...]]:
+    """What stands before waves in a mass matrix (a mass times two lengths, an inertia), or in a gravity torque."""
+    lengths = [name for name in names if name.startswith(("length", "com"))]
+    masses = [(name,) for name in names if name.startswith("mass")]
+    inertias = [(name,) for name in names if name.startswith("inertia")]
+    singles = [(), *((name,) for name in lengths)]
+    if is_torque:
+        g: list[tuple[str, ...]] = [("gravity",)] if "gravity" in names else [()]
+        return [(*mass, *one, *force) for mass in [(), *masses] for one in singles for force in {(), *g}]
+    pairs = list(combinations_with_replacement(lengths, 2))
+    return [*((*mass, *one) for mass in [(), *masses] for one in (*singles, *pairs)), *inertias]
 
 
 def _hints(monomials: Any, parameters: Parameters, fixed: dict[str, float]) -> Any:
@@ -134,17 +235,3 @@ def _like(terms: list[Term], due: list[Term]) -> list[Term]:
         return (waves.index(term.waves), 1) if term.waves in waves else (len(order), 0)
 
     return sorted(terms, key=place)
-
-
-def _arms(case: Any, names: list[str], count: int) -> list[dict[str, float]]:
-    random = np.random.default_rng(31)
-    return [case.truth.random_quantities(set(names), random) for _ in range(count)] if names else [{}]
-
-
-def _at(case: Any, q: Floats, arms: list[dict[str, float]], function: Any) -> Floats:
-    """(arms, S, entries)"""
-    zero = np.zeros_like(q)
-    values = function(Samples({"q": q, "qd": zero, "qdd": zero, "tau": zero}, arms))
-    if not np.isfinite(values).all():
-        raise ProgramError("is not finite")
-    return values.reshape(len(arms), len(q), -1)

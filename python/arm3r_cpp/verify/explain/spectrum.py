@@ -114,19 +114,23 @@ def _circle(order: int, period: float) -> Floats:
     return (np.arange(2 * order + 1) / (2 * order + 1) + _OFFSET) * period
 
 
-def kinds_of_axes(sampler: Sampler, revolute: Sequence[bool], entry: int) -> list[tuple[str, int]] | None:
+def kinds_of_axes(
+    sampler: Sampler, revolute: Sequence[bool], entry: int, least: float = 1e-3
+) -> list[tuple[str, int]] | None:
     """For each joint what the entry is in it ("angle", "degree", "power"), and its order; None where it is neither."""
     base = np.random.default_rng(11).uniform(-2, 2, (2, len(revolute)))
     kinds = []
     for joint, turns in enumerate(revolute):
-        found = _kind_of_axis(sampler, base, joint, turns, entry)
+        found = _kind_of_axis(sampler, base, joint, turns, entry, least)
         if found is None:
             return None
         kinds.append(found)
     return kinds
 
 
-def _kind_of_axis(sampler: Sampler, base: Floats, joint: int, turns: bool, entry: int) -> tuple[str, int] | None:
+def _kind_of_axis(
+    sampler: Sampler, base: Floats, joint: int, turns: bool, entry: int, least: float
+) -> tuple[str, int] | None:
     def along(steps: Floats) -> Floats:
         """(arms, bases, steps)"""
         q = np.repeat(base, len(steps), axis=0)
@@ -136,13 +140,13 @@ def _kind_of_axis(sampler: Sampler, base: Floats, joint: int, turns: bool, entry
 
     for kind, period in (("angle", 2 * np.pi), ("degree", 360.0)):
         values = along(np.append(np.arange(_POINTS) / _POINTS, 1.0) * period)
-        scale = 1e-3 + np.abs(values).max()
+        scale = least + np.abs(values).max()
         if (turns or kind == "degree") and np.abs(values[..., -1] - values[..., 0]).max() < 1e-9 * scale:
             harmonics = np.abs(np.fft.rfft(values[..., :-1])).max(axis=(0, 1)) / _POINTS
             orders = np.flatnonzero(harmonics > 1e-11 * scale)
             return kind, int(orders.max(initial=0))
     values = along(np.arange(4.0))
-    limit = 1e-9 * (1e-3 + np.abs(values).max())
+    limit = 1e-9 * (least + np.abs(values).max())
     for order in range(3):
         values = np.diff(values)
         if np.abs(values).max() < limit:
@@ -151,14 +155,21 @@ def _kind_of_axis(sampler: Sampler, base: Floats, joint: int, turns: bool, entry
 
 
 def read(
-    sampler: Sampler, groups: Sequence[Sequence[int]], revolute: Sequence[bool], entry: int, budget: int = 3000
+    sampler: Sampler,
+    groups: Sequence[Sequence[int]],
+    revolute: Sequence[bool],
+    entry: int,
+    *,
+    scale: float = 0.0,
+    budget: int = 3000,
 ) -> Spectrum | None:
     """The spectrum of one entry, confirmed at random states; None where it is no such sum.
 
     Args:
+        scale: of what the entry is a part of; what is very small beside it is rounding.
         budget: the most points of a grid that is tried.
     """
-    kinds = kinds_of_axes(sampler, revolute, entry)
+    kinds = kinds_of_axes(sampler, revolute, entry, max(scale, 1e-3))
     if kinds is None:
         return None
     n = len(revolute)
@@ -174,5 +185,5 @@ def read(
     found = spectrum(lambda q: sampler(q)[..., [entry]], axes, n)
     probe = np.random.default_rng(12).uniform(-3, 3, (12, n))
     due = sampler(probe)[..., [entry]]
-    limit = 1e-8 * (np.abs(due).max() + 1e-6)
+    limit = 1e-8 * (np.abs(due).max() + 1e-6 + scale)
     return found if np.abs(found.at(probe) - due).max() < limit else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, product
@@ -14,6 +14,7 @@ from ..._native import Floats
 from .spectrum import Spectrum, Wave
 
 _RATIOS = (1, -1, 0.5, -0.5, 2, -2, 1.5, -1.5, 0.25, -0.25, 1 / 3, -1 / 3)  # of a number to a product of named ones
+_MANY = 5  # terms that two sums have in common: then only the others are said
 _ORDER = "mgaLlrcIJ"  # of the letters in a term: masses, gravity, lengths
 
 
@@ -24,11 +25,13 @@ class Term:
     number: float
     powers: tuple[tuple[str, int], ...]
     waves: tuple[Wave, ...]
+    rates: str = ""
+    """The product of rates or accelerations that it stands before."""
 
     def __str__(self) -> str:
         """With its sign in front: "+ 1/2 m2 g a2 C2"."""
         words = [name if power == 1 else f"{name}^{power}" for name, power in self.powers if power > 0]
-        words += [str(wave) for wave in self.waves]
+        words += [*(str(wave) for wave in self.waves), *self.rates.split()]
         size = number_words(abs(self.number))
         text = " ".join(words if size == "1" and words else [size, *words])
         text += "".join(f"/{name}" * -power for name, power in self.powers if power < 0)
@@ -50,6 +53,33 @@ def sum_words(terms: Sequence[Term]) -> str:
     return text[2:] if text.startswith("+") else f"-{text[2:]}"
 
 
+def difference_words(reads: str, due: str) -> str:
+    """ "reads X, due is Y"; of long sums only the terms in which they differ."""
+    theirs, right = _summands(reads), _summands(due)
+    common = [one for one in theirs if one in right]
+    if len(common) <= _MANY:
+        return f"reads {reads}, due is {due}"
+    has, needs = ([one for one in ones if one not in common] for ones in (theirs, right))
+    return f"has {_joined(has)} where {_joined(needs)} is due, beside {len(common)} right terms"
+
+
+def _joined(summands: list[str]) -> str:
+    text = " ".join(summands)
+    return f"-{text[2:]}" if text.startswith("- ") else text.removeprefix("+ ") or "nothing"
+
+
+def _summands(text: str) -> list[str]:
+    """The terms of a sum, each with its sign in front."""
+    depth, found, start = 0, [], 0
+    for place, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        if depth == 0 and text[place : place + 3] in (" + ", " - "):
+            found.append(text[start:place])
+            start = place + 1
+    found.append(text[start:])
+    return [one if one[:2] in ("+ ", "- ") else f"- {one[1:]}" if one[:1] == "-" else f"+ {one}" for one in found]
+
+
 class Parameters:
     """The values that named parameters have in several arms, and fits of coefficients by their monomials."""
 
@@ -63,6 +93,8 @@ class Parameters:
         self.arms = arms
         self.known_terms: dict[tuple[tuple[Wave, ...], float, tuple[int, ...]], Term] = {}
         """What terms with these numbers are called."""
+        self.candidates: list[tuple[int, ...]] = []
+        """The powers of the monomials of which a coefficient may be any sum."""
         self.is_determined = arms >= len(self.names) + 2 or not self.names
 
     def monomial(self, powers: Sequence[int]) -> Floats:
@@ -165,7 +197,23 @@ class Parameters:
         return np.sum([np.zeros(self.arms), *(number * self.monomial(powers) for number, powers in terms)], axis=0)
 
     def _double(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
+        if self.candidates:
+            return self._summed(coefficient, limit)
         return self.double(coefficient, limit) if self.is_determined and 0 < len(self.names) <= 6 else None
+
+    def _summed(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
+        """Any sum of the candidates, by least squares, without those that are too small to be there."""
+        kept = self.candidates
+        for _ in range(3):
+            matrix = np.stack([self.monomial(one) for one in kept], axis=1)
+            numbers = np.linalg.lstsq(matrix, coefficient, rcond=None)[0]
+            if np.abs(matrix @ numbers - coefficient).max() > limit:
+                return None
+            here = np.abs(numbers) > 1e-7 * np.abs(numbers).max()
+            if here.all():
+                break
+            kept = [one for one, is_here in zip(kept, here, strict=True) if is_here]
+        return [(float(number), powers) for number, powers in zip(numbers, kept, strict=True)]
 
     def term(self, number: float, powers: Sequence[int], waves: tuple[Wave, ...]) -> Term:
         if (waves, number, tuple(powers)) in self.known_terms:
@@ -193,6 +241,7 @@ def terms_of(
     parameters: Parameters,
     due: dict[tuple[Wave, ...], list[tuple[float, tuple[int, ...]]]],
     scale: float,
+    rates: str = "",
 ) -> tuple[list[Term], dict[tuple[Wave, ...], list[tuple[float, tuple[int, ...]]]]] | None:
     """The terms of one entry, and the monomials of each wave; None where a coefficient has no name."""
     limit = 2e-9 * scale
@@ -206,5 +255,17 @@ def terms_of(
         if fitted is None:
             return None
         monomials[waves] = fitted
-        terms += [parameters.term(number, powers, waves) for number, powers in fitted]
-    return terms, monomials
+        terms += [replace(parameters.term(number, powers, waves), rates=rates) for number, powers in fitted]
+    return _collected(terms), monomials
+
+
+def _collected(terms: Sequence[Term]) -> list[Term]:
+    """Terms of the same kind as one."""
+    numbers: dict[Term, list[float]] = {}
+    for term in terms:
+        numbers.setdefault(replace(term, number=0.0), []).append(term.number)
+    return [
+        replace(term, number=sum(parts))
+        for term, parts in numbers.items()
+        if abs(sum(parts)) > 1e-12 * max(map(abs, parts))
+    ]

@@ -62,7 +62,7 @@ def refuse(libc: ctypes.CDLL, names: Iterable[str], *, new_processes: bool = Fal
         steps += [*_refused(_CLONE3, errno.ENOSYS), *_unless(_CLONE[column], _ANY_BIT, _CLONE_THREAD)]
         steps += _unless(_PRLIMIT[column], _EQUAL, 0)  # the limits of this process alone
     steps.append((_RETURN, 0, 0, _ALLOW))
-    code = (_Instruction * len(steps))(*steps)
+    code = (_Instruction * len(steps))(*(_Instruction(*step) for step in steps))
     program = _Program(len(steps), code)
     return bool(libc.prctl(_PR_SET_SECCOMP, _MODE_FILTER, ctypes.byref(program), 0, 0) == 0)
 

@@ -87,9 +87,7 @@ class ThreeR:
             drawn[name] = float(random.uniform(low, high))
         return drawn
 
-    def arm(
-        self, convention: str, quantities: Mapping[str, float], follows: tuple[str, ...] = FOLLOWING[0]
-    ) -> Arm:
+    def arm(self, convention: str, quantities: Mapping[str, float], follows: tuple[str, ...] = FOLLOWING[0]) -> Arm:
         """The arm with some quantities changed.
 
         Args:
