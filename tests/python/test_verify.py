@@ -16,6 +16,7 @@ import pytest
 from arm3r_cpp.verify.formula import from_file
 from arm3r_cpp.verify.functions import formula_verdict
 from formulas import reading, runner
+from formulas.foreign import foreign_mutants
 from formulas.mutants import mutants, two_mistakes
 from formulas.programs import MATLAB_GRAVITY, MATLAB_JACOBIAN, PROGRAMS, Program
 from formulas.rewriting import rewritten
@@ -154,7 +155,13 @@ def judged(program: Program, text: str, folder: Path) -> str:
     if not all(wrong.values()):
         return "right" if verdict.ok else "alarm"
     if verdict.findings and verdict.findings[0].entry is None:
-        return "fails" if runner.returns_nothing(program, text) else "missed"
+        if verdict.findings[0].old is None:
+            return "fails" if runner.returns_nothing(program, text) else "missed"
+        return (
+            "false"
+            if runner.wrong_entries(program, with_edits(text, verdict.findings), verdict.convention)
+            else "named"
+        )
     located = {tuple(finding.entry) for finding in verdict.findings}
     if located != wrong[verdict.convention]:
         return "missed"
@@ -168,12 +175,13 @@ def is_false(program: Program, text: str, verdict: Any, finding: Any) -> bool:
     """Whether what a finding says does not hold for the program as it is."""
     entry = tuple(place - 1 for place in finding.entry)
     numbers = dict(zip(runner.NAMES, runner.ARMS[0], strict=True))
+    arm = runner.arm_of(verdict.convention, numbers, with_inertia=program.kind == "mass")
     for q in runner.STATES[:3]:
         got = runner.values(program, text, numbers, q)
-        right = runner.due(program.kind, runner.arm_of(verdict.convention, numbers), q)
+        right = runner.due(program.kind, arm, q)
         for sentence, value in ((finding.reads, got), (finding.due, right)):
             if sentence is not None and value is not None:
-                said = reading.value(sentence, q, numbers)
+                said = reading.value(sentence, q, numbers | runner.INERTIA)
                 if not abs(said - value[entry]) <= 1e-6 * (1 + abs(value[entry])):
                     return True
     if finding.old is None:
@@ -197,21 +205,23 @@ def test_right_programs_are_right(program: Program, tmp_path: Path) -> None:
     assert verdict.ok and verdict.convention in (program.convention, "simscape"), str(verdict)
 
 
-def counted(count: int, seed: int, folder: Path, *, two: bool = False) -> Counter[str]:
+def counted(count: int, seed: int, folder: Path, *, two: bool = False, foreign: bool = False) -> Counter[str]:
     """The outcomes for random mutants that differ from what is right and run."""
     print(f"ARM3R_SEED={seed}")
     choose = random.Random(seed)
     outcomes: Counter[str] = Counter()
     while sum(outcomes[one] for one in ("missed", "false", "named", "unexplained")) < count:
-        program = choose.choice(PROGRAMS)
-        if two:
+        program = choose.choice([one for one in PROGRAMS if not foreign or one.language == "python"])
+        if foreign:
+            text = choose.choice(foreign_mutants(program.text))
+        elif two:
             text = next(two_mistakes(program.text, program.language, choose.randrange(10**9), 1), None)
         else:
             text = choose.choice(mutants(program.text, program.language))
         if text is not None:
             outcome = judged(program, text, folder)
             outcomes[outcome] += 1
-            if outcome in ("missed", "false", "alarm"):
+            if outcome in ("missed", "false", "alarm", "unexplained"):
                 print(outcome, program.name, text, sep="\n")
     print(dict(outcomes))
     return outcomes
@@ -220,6 +230,19 @@ def counted(count: int, seed: int, folder: Path, *, two: bool = False) -> Counte
 def test_single_mistakes_are_found_and_named(tmp_path: Path) -> None:
     outcomes = counted(4, SEED, tmp_path)
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+
+
+def test_mistakes_by_a_foreign_tool_are_found(tmp_path: Path) -> None:
+    outcomes = counted(3, SEED, tmp_path, foreign=True)
+    assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("part", range(10))
+def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
+    outcomes = counted(60, SEED + part, tmp_path, foreign=True)
+    assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+    assert outcomes["named"] >= 59
 
 
 @pytest.mark.gate

@@ -3,6 +3,8 @@
 {victim} is a file, {folder} its folder, {new} a path where nothing is, {seconds} marks the processes that are started.
 """
 
+# ruff: noqa: E501
+
 from __future__ import annotations
 
 _RAISED = ("ValueError", "TypeError", "ZeroDivisionError", "MemoryError", "KeyboardInterrupt", "SystemExit",

@@ -9,7 +9,10 @@ from ...errors import UsageError
 from .nodes import Constant, Node
 from .python_program import PythonProgram, number_in, pairs
 
-_OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**", ast.MatMult: "@"}
+_OPERATORS = {
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**", ast.MatMult: "@", ast.Mod: "%",
+    ast.FloorDiv: "//",
+}  # fmt: skip
 
 
 class PythonText:
