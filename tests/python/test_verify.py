@@ -19,6 +19,7 @@ from formulas import reading, runner
 from formulas.foreign import foreign_mutants
 from formulas.mutants import mutants, two_mistakes
 from formulas.programs import MATLAB_GRAVITY, MATLAB_JACOBIAN, PROGRAMS, Program
+from formulas.progress import Progress
 from formulas.rewriting import rewritten
 
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
@@ -205,26 +206,30 @@ def test_right_programs_are_right(program: Program, tmp_path: Path) -> None:
     assert verdict.ok and verdict.convention in (program.convention, "simscape"), str(verdict)
 
 
-def counted(count: int, seed: int, folder: Path, *, two: bool = False, foreign: bool = False) -> Counter[str]:
-    """The outcomes for random mutants that differ from what is right and run."""
-    print(f"ARM3R_SEED={seed}")
-    choose = random.Random(seed)
-    outcomes: Counter[str] = Counter()
-    while sum(outcomes[one] for one in ("missed", "false", "named", "unexplained")) < count:
+COUNTED = ("missed", "false", "named", "unexplained", "alarm")
+
+
+def counted(
+    count: int, seed: int, folder: Path, *, two: bool = False, foreign: bool = False, name: str = ""
+) -> Counter[str]:
+    """The outcomes for random mutants that differ from what is right and run; with a name the count can go on later."""
+    progress = Progress(seed, name)
+    for choose in progress.draws():
+        if sum(progress.outcomes[one] for one in COUNTED) >= count:
+            break
         program = choose.choice([one for one in PROGRAMS if not foreign or one.language == "python"])
         if foreign:
-            text = choose.choice(foreign_mutants(program.text))
+            text: str | None = choose.choice(foreign_mutants(program.text))
         elif two:
             text = next(two_mistakes(program.text, program.language, choose.randrange(10**9), 1), None)
         else:
             text = choose.choice(mutants(program.text, program.language))
         if text is not None:
             outcome = judged(program, text, folder)
-            outcomes[outcome] += 1
+            progress.outcomes[outcome] += 1
             if outcome in ("missed", "false", "alarm", "unexplained"):
                 print(outcome, program.name, text, sep="\n")
-    print(dict(outcomes))
-    return outcomes
+    return progress.finish()
 
 
 def test_single_mistakes_are_found_and_named(tmp_path: Path) -> None:
@@ -240,7 +245,7 @@ def test_mistakes_by_a_foreign_tool_are_found(tmp_path: Path) -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("part", range(10))
 def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
-    outcomes = counted(60, SEED + part, tmp_path, foreign=True)
+    outcomes = counted(60, SEED + part, tmp_path, foreign=True, name=f"foreign_{part}")
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
     assert outcomes["named"] >= 59
 
@@ -248,7 +253,7 @@ def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("part", range(10))
 def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
-    outcomes = counted(100, SEED + part, tmp_path)
+    outcomes = counted(100, SEED + part, tmp_path, name=f"single_{part}")
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
     assert outcomes["named"] >= 99
 
@@ -256,22 +261,25 @@ def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("part", range(5))
 def test_many_pairs_of_mistakes(part: int, tmp_path: Path) -> None:
-    outcomes = counted(60, SEED + part, tmp_path, two=True)
+    outcomes = counted(60, SEED + part, tmp_path, two=True, name=f"pairs_{part}")
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
     assert outcomes["named"] >= 54
 
 
-def no_alarms(count: int, seed: int, folder: Path) -> None:
-    print(f"ARM3R_SEED={seed}")
-    choose = random.Random(seed)
+def no_alarms(count: int, seed: int, folder: Path, name: str = "") -> None:
+    progress = Progress(seed, name)
     programs = [program for program in PROGRAMS if program.language == "python"]
-    for _ in range(count):
+    for choose in progress.draws():
+        if progress.done >= count:
+            break
         program = choose.choice(programs)
         text = rewritten(program.text, choose.randrange(10**9))
         path = folder / "program.py"
         path.write_text(text)
         verdict = formula_verdict(from_file(path), program.kind)
         assert verdict.ok, f"{text}\n{verdict}"
+        progress.outcomes["right"] += 1
+    progress.finish()
 
 
 def test_equivalent_programs_raise_no_alarm(tmp_path: Path) -> None:
@@ -281,7 +289,7 @@ def test_equivalent_programs_raise_no_alarm(tmp_path: Path) -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("part", range(10))
 def test_no_alarm_on_ten_thousand_right_programs(part: int, tmp_path: Path) -> None:
-    no_alarms(1000, SEED + part, tmp_path)
+    no_alarms(1000, SEED + part, tmp_path, name=f"alarms_{part}")
 
 
 # ---- coverage -------------------------------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ from arm3r_cpp.verify.program.nodes import ProgramError
 from arm3r_cpp.verify.samples import Samples
 from formulas import reading
 from formulas.mutants import mutants
+from formulas.progress import Progress
 from numpy.typing import NDArray
 
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
@@ -191,22 +192,29 @@ def with_edits(text: str, findings: list[Any]) -> str:
     return text
 
 
-def counted(count: int, seed: int, folder: Path, files: list[Path] = FILES) -> Counter[str]:
-    """The outcomes for random mutants that differ from what is right and run."""
-    print(f"ARM3R_SEED={seed}")
-    choose = random.Random(seed)
-    outcomes: Counter[str] = Counter()
-    while sum(outcomes[one] for one in ("missed", "false", "named", "unexplained", "alarm")) < count:
+def counted(count: int, seed: int, folder: Path, files: list[Path] = FILES, name: str = "") -> Counter[str]:
+    """The outcomes for random mutants that differ from what is right and run; with a name the count can go on later."""
+    progress = Progress(seed, name)
+    for choose in progress.draws():
+        if sum(progress.outcomes[one] for one in ("missed", "false", "named", "unexplained", "alarm")) >= count:
+            break
         path = choose.choice(files)
         text = choose.choice(mutants(path.read_text(), "matlab" if path.suffix == ".m" else "python"))
         result, words = outcome(path, text, folder)
-        outcomes[result] += 1
-        if result in ("missed", "false", "alarm") or (result == "unexplained" and os.environ.get("ARM3R_SHOW")):
+        progress.outcomes[result] += 1
+        if result in ("missed", "false", "alarm", "unexplained"):
             print(result, path.name, text, words, sep="\n")
-    print(dict(outcomes))
-    return outcomes
+    return progress.finish()
 
 
 def test_single_mistakes_of_students(tmp_path: Path) -> None:
     outcomes = counted(4, SEED, tmp_path)
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("part", range(10))
+def test_many_mistakes_of_students(part: int, tmp_path: Path) -> None:
+    outcomes = counted(100, SEED + part, tmp_path, name=f"students_{part}")
+    assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
+    assert outcomes["named"] >= 95

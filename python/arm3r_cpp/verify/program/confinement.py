@@ -30,7 +30,6 @@ def _libc() -> ctypes.CDLL | None:
 
 def limit_resources() -> None:
     """No file is written, no core is dumped, and memory and time are bounded; nothing of this can be taken back."""
-    # The kernel counts all threads of the user, also those outside of a user namespace.
     limits = {
         resource.RLIMIT_AS: MEMORY,
         resource.RLIMIT_CPU: PROCESSOR_TIME,
@@ -46,6 +45,7 @@ def limit_resources() -> None:
 
 
 def _threads_of_this_user() -> int:
+    """Without a user namespace the kernel counts them all against RLIMIT_NPROC."""
     count = 0
     for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
         try:
