@@ -133,11 +133,16 @@ def _finding(kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floa
         return Finding(entry, f"{name} is wrong, and it is no sum of sines and cosines of first order.")
     if fitted.differs(due).max() <= SIGNIFICANT:
         return None
-    snapped = fitted.snapped()
     due[np.abs(due) < 1e-9 * np.abs(due).max(initial=1e-9)] = 0.0
     due = np.where(np.abs(due - np.round(due * 24) / 24) < 1e-9, np.round(due * 24) / 24, due)
-    reads, right_words = fitted.words(snapped, SHORT), fitted.words(due, SHORT)
-    error = fitted.matrix @ (snapped - fitted.values)
-    if np.abs(error).max() > 3 * max(fitted.noise, 1e-12 * np.abs(right).max()) or reads == right_words:
+    snapped, right_words = fitted.snapped(due), fitted.words(due, SHORT)
+    reads = right_words if snapped is None else fitted.words(snapped, SHORT)
+    if snapped is None or reads == right_words or _is_off(fitted, snapped, right):
         return Finding(entry, f"{name} is wrong, with a coefficient that has no simple name.", None, right_words)
     return Finding(entry, f"{name} reads {reads}; {right_words} is due.", reads, right_words)
+
+
+def _is_off(fitted: Fit, coefficients: Floats, right: Floats) -> bool:
+    """Whether coefficients do not give the values of the fit, up to the noise."""
+    error = fitted.matrix @ (coefficients - fitted.values)
+    return bool(np.abs(error).max() > 3 * max(fitted.noise, 1e-12 * np.abs(right).max()))

@@ -15,7 +15,7 @@ from .terms import Term, sum_words
 
 SIGNIFICANT = 6.0  # standard deviations: with a thousand coefficients, chance exceeds it once in a million times
 _FLOOR = 1e-12  # of the scale: numbers of a log are not more exact
-_SNAP = 4.0  # standard deviations within which a simple number is taken for a coefficient
+_SIMPLE = {1: 4.0, 2: 4.0, 4: 4.0, 12: 2.5}  # largest denominator: standard deviations within which it is taken
 _MONOMIALS = {
     "jacobian": (("length2",), ("length3",)),
     "kinematics": (("length2",), ("length3",), ("height",)),
@@ -38,15 +38,23 @@ class Fit:
         """By how many standard deviations each coefficient differs from what is due."""
         return np.abs(self.values - due) / self.deviations
 
-    def snapped(self) -> Floats:
-        """Simple numbers in the place of coefficients that are as near to them as the noise lets one tell."""
-        found = self.values.copy()
-        for place, (value, deviation) in enumerate(zip(self.values, self.deviations, strict=True)):
-            for largest in (1, 2, 4, 12):
-                simple = float(Fraction(float(value)).limit_denominator(largest))
-                if abs(simple - value) <= _SNAP * deviation and (simple or abs(value) < SIGNIFICANT * deviation):
-                    found[place] = simple
-                    break
+    def snapped(self, due: Floats) -> Floats | None:
+        """Each coefficient as what is due or as a simple number, as far as the noise lets one tell; None for others."""
+        found = due.copy()
+        for place in np.flatnonzero(self.differs(due) > SIGNIFICANT):
+            value, deviation = float(self.values[place]), float(self.deviations[place])
+            if abs(value) <= SIGNIFICANT * deviation:
+                found[place] = 0.0
+                continue
+            simple = (
+                float(Fraction(value).limit_denominator(largest))
+                for largest, within in _SIMPLE.items()
+                if abs(float(Fraction(value).limit_denominator(largest)) - value) <= within * deviation
+            )
+            nearest = next((one for one in simple if one), None)
+            if nearest is None:
+                return None
+            found[place] = nearest
         return found
 
     def words(self, coefficients: Floats, shown: Mapping[str, str]) -> str:
