@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -15,7 +14,8 @@ from .terms import Term, sum_words
 
 SIGNIFICANT = 6.0  # standard deviations: with a thousand coefficients, chance exceeds it once in a million times
 _FLOOR = 1e-12  # of the scale: numbers of a log are not more exact
-_SIMPLE = {1: 4.0, 2: 4.0, 4: 4.0, 12: 2.5}  # largest denominator: standard deviations within which it is taken
+_SIMPLE = {**dict.fromkeys((1, 2, 3, 4), 4.0), **dict.fromkeys((5, 6, 8, 10, 12), 2.5)}
+"""Denominators: by how many standard deviations a coefficient may differ from such a number."""
 _MONOMIALS = {
     "jacobian": (("length2",), ("length3",)),
     "kinematics": (("length2",), ("length3",), ("height",)),
@@ -47,9 +47,9 @@ class Fit:
                 found[place] = 0.0
                 continue
             simple = (
-                float(Fraction(value).limit_denominator(largest))
-                for largest, within in _SIMPLE.items()
-                if abs(float(Fraction(value).limit_denominator(largest)) - value) <= within * deviation
+                round(value * denominator) / denominator
+                for denominator, within in _SIMPLE.items()
+                if abs(round(value * denominator) / denominator - value) <= within * deviation
             )
             nearest = next((one for one in simple if one), None)
             if nearest is None:
