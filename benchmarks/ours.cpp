@@ -154,7 +154,7 @@ template class PackStepper<state_size>;
 
 void run_fixed_steps(const std::vector<double>& params, int steps) {
     std::vector<double> run = params;
-    run[param_index("solver.method")] = SolverMethod::rk4;
+    run[param_index("solver.method")] = double(SolverMethod::rk4);
     run[param_index("solver.step")] = step;
     run[param_index("time.stop")] = run[param_index("time.log_every")] = steps * step;
     simulate(valid_setup(run), {});
