@@ -1,13 +1,13 @@
 #include "arm3r/control/control_laws.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <boost/test/unit_test.hpp>
 
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "control/compiled_laws.hpp"
 #include "fixtures.hpp"
+#include "linear_algebra.hpp"
 
 namespace arm3r {
 
@@ -636,7 +636,7 @@ BOOST_AUTO_TEST_CASE(hybrid_of_raibert_and_craig_is_unstable_where_it_is_known_t
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) slope(i, j) = tau[i].slope[std::size_t(j)];
         const Matrix M = mass_matrix(controller.model, pose(q));
-        return Eigen::EigenSolver<Matrix>(-(M.inverse() * slope)).eigenvalues().real().minCoeff();
+        return eigenvalues(-(M.inverse() * slope)).real().minCoeff();
     };
     BOOST_TEST(close(-0.4323820891, min_eigenvalue(Variant::raibert_craig), 1e-9));
     BOOST_TEST(std::abs(min_eigenvalue(Variant::projected)) < 1e-9);

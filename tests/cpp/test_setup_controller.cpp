@@ -1,10 +1,10 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
 #include "arm3r/lanes.hpp"
 #include "arm3r/model/dynamics.hpp"
 #include "fixtures.hpp"
+#include "linear_algebra.hpp"
 #include "setup/make_controller.hpp"
 #include "validate/stability_limits.hpp"
 #include "validate/validate.hpp"
@@ -519,7 +519,7 @@ BOOST_AUTO_TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
 // ---- limits of loops
 
 static double max_real_part(const Eigen::MatrixXd& A) {
-    return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().real().maxCoeff();
+    return eigenvalues(A).real().maxCoeff();
 }
 
 // The value of c[n] s^n + ... + c[0].
@@ -577,7 +577,7 @@ BOOST_AUTO_TEST_CASE(a_reference_may_be_moved_by_the_force_error_up_to_where_its
 static double growth_of_held_acceleration(double Kp, double Kd, double T) {
     Eigen::MatrixXd A(2, 2);
     A << 1 - Kp * T * T / 2, T - Kd * T * T / 2, -Kp * T, 1 - Kd * T;
-    return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().cwiseAbs().maxCoeff();
+    return eigenvalues(A).cwiseAbs().maxCoeff();
 }
 
 BOOST_AUTO_TEST_CASE(a_held_acceleration_is_stable_up_to_the_longest_period) {
@@ -604,7 +604,7 @@ BOOST_AUTO_TEST_CASE(projected_mobility_is_an_eigenvalue_of_the_oblique_projecto
         const Eigen::Matrix3d J = jacobian(arm, p), M = mass_matrix(arm, p);
         const Eigen::Matrix3d S_p = Eigen::Matrix3d::Identity() - n * n.transpose();
         const Eigen::Matrix3d loop = M.inverse() * J.inverse() * S_p * J;
-        const Eigen::Vector3d parts = Eigen::EigenSolver<Eigen::Matrix3d>(loop, false).eigenvalues().real();
+        const Eigen::Vector3d parts = eigenvalues(loop).real();
         std::vector<double> sorted(parts.data(), parts.data() + 3);
         std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
         const double least = std::min(sorted[0], sorted[1]), size = std::abs(sorted[0]);

@@ -362,6 +362,21 @@ HOSTILE = {
 }
 
 
+GROWING = {
+    "jacobian.m": ("function J = f(q1, q2, q3)\n  x = [q1 q2];\n" + "  x = [x x];\n" * 60 + "  J = [x; x; x];\nend\n",
+                   "a matrix of 1 x 16 is too large"),
+    "jacobian.py": ("a = 1 << 99999999999\n\n\ndef jacobian(q):\n    return [[a] * 3] * 3\n", "raises"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", GROWING)
+def test_a_text_that_is_read_takes_no_memory_of_this_process(written: Any, name: str) -> None:
+    text, cause = GROWING[name]
+    verdict = arm3r.verify.jacobian(written(name, text))
+    (finding,) = verdict.findings
+    assert not verdict.ok and cause in finding.cause and finding.line
+
+
 @pytest.mark.parametrize("body", HOSTILE)
 def test_a_hostile_file_is_one_clear_line(written: Any, body: str, monkeypatch: Any) -> None:
     monkeypatch.setattr("arm3r_cpp.verify.program.python_process.ANSWER_TIME", 1.0)

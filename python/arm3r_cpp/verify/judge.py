@@ -126,7 +126,7 @@ def _largest(difference: Floats) -> float:
 
 
 def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
-    finding = Finding(None, f"the formula {error}", line=error.line)
+    finding = Finding(None, f"the formula fails: {error}", line=error.line)
     verdict.ok, verdict.residual, verdict.findings = False, float("inf"), [finding]
     return verdict
 

@@ -226,6 +226,9 @@ class MatlabProgram:
     def _matrix(self, node: Node, variables: dict[str, Floats]) -> Floats:
         rows = [[self._value(part, variables) for part in row.parts] for row in node.parts]
         count = max((len(one) for row in rows for one in row), default=1)
+        width = max((sum(one.shape[2] for one in row) for row in rows), default=0)
+        height = sum(row[0].shape[1] for row in rows if row)
+        _check_size(height, width)
         wide = [np.concatenate([np.broadcast_to(one, (count, *one.shape[1:])) for one in row], axis=2) for row in rows]
         if not wide:
             return np.zeros((1, 0, 0))
@@ -299,13 +302,17 @@ def _counted(name: str, parts: list[Floats], count: int) -> list[Floats]:
     return parts
 
 
+def _check_size(rows: int, columns: int) -> None:
+    if not (0 <= rows <= _MAX_SIZE and 0 <= columns <= _MAX_SIZE):
+        raise ProgramError(f"a matrix of {rows} x {columns} is too large")
+
+
 def _other(name: str, parts: list[Floats]) -> Floats:
     """The functions of matrices."""
     if name in ("eye", "zeros", "ones"):
         sizes = [int(part[0, 0, 0]) for part in parts] or [1]
         rows, columns = (sizes * 2)[:2]
-        if not (0 <= rows <= _MAX_SIZE and 0 <= columns <= _MAX_SIZE):
-            raise ProgramError(f"a matrix of {rows} x {columns} is too large")
+        _check_size(rows, columns)
         matrix = np.eye(rows, columns) if name == "eye" else np.full((rows, columns), float(name == "ones"))
         return matrix[None]
     if name in ("cross", "dot"):

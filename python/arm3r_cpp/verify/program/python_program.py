@@ -18,16 +18,15 @@ from .nodes import Call, Edit, ProgramError
 Floats = NDArray[np.float64]
 LIFTED = "__arm3r_lifted__"
 _NUMBER = (ast.Constant, ast.UnaryOp, ast.BinOp)
+_ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.UAdd, ast.USub)  # no power or shift: they can be endless
 
 
 def number_in(node: ast.AST) -> float | None:
     """The value of an expression of numbers only, such as 9.81/6."""
-    allowed = (ast.Expression, *_NUMBER, ast.operator, ast.unaryop)
+    allowed = (ast.Expression, *_NUMBER, *_ARITHMETIC)
     if not all(isinstance(inner, allowed) for inner in ast.walk(node)):
         return None
     if not all(type(inner.value) in (int, float) for inner in ast.walk(node) if isinstance(inner, ast.Constant)):
-        return None
-    if any(isinstance(inner, ast.Pow) for inner in ast.walk(node)):
         return None
     try:
         return float(eval(compile(ast.fix_missing_locations(ast.Expression(node)), "", "eval"), {"__builtins__": {}}))  # type: ignore[arg-type]
