@@ -332,7 +332,7 @@ print(s.arm.mass_matrix(q[0]).tobytes().hex(), s.arm.forward_dynamics(*q, 0 * q[
 def test_arrays_of_a_host_need_no_alignment(offset: int) -> None:
     """The C interface knows no type of Eigen, whose alignment depends on flags: doubles may lie anywhere."""
     q = np.random.default_rng(4).uniform(-1, 1, (37, 3))
-    room = np.zeros(q.nbytes + 64, np.uint8)
+    room = np.zeros(q.nbytes + 64 + offset, np.uint8)
     begin = -room.ctypes.data % 64 + offset
     moved = room[begin : begin + q.nbytes].view(float).reshape(q.shape)
     moved[:] = q
