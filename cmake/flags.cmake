@@ -23,7 +23,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Pairing scalars up lengthens the chain of a step by a tenth, and numbers that were written one by one have to be waited
   # for when they are read in pairs. What is to be computed side by side is written as packs.
   list(APPEND _numeric -fno-tree-vectorize)
-  set(_memory --param=ggc-min-expand=60) # g++ frees memory sooner: below 600 MB for each file
+  set(_memory --param=ggc-min-expand=60) # g++ frees memory sooner: below 600 MB for each file of the library
 endif()
 add_library(arm3r_flags INTERFACE)
 target_compile_features(arm3r_flags INTERFACE cxx_std_20)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from ._native import nearest_word
@@ -33,6 +33,13 @@ def did_you_mean(word: str, words: Iterable[str]) -> str:
     """A question with the word that is most like the given one; "" where none is like it."""
     near = nearest_word(word, words)
     return f"did you mean {near}?" if near else ""
+
+
+def in_columns(rows: Sequence[Sequence[str]], *, right: bool = False) -> list[str]:
+    """A line a row, cells below each other, set to the left or to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    pad = str.rjust if right else str.ljust
+    return ["  ".join(map(pad, row, widths)).rstrip() for row in rows]
 
 
 def no_column(name: object, names: Iterable[str]) -> KeyError:

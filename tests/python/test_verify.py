@@ -132,19 +132,6 @@ def test_the_convention_is_found() -> None:
 # ---- mutants --------------------------------------------------------------------------------------------------------
 
 
-def with_edits(text: str, findings: list[Any]) -> str:
-    """The text after the edits that findings name, at the places that they name."""
-    lines = text.split("\n")
-    starts = {}
-    for one in findings:
-        if one.old is not None:
-            starts[sum(len(line) + 1 for line in lines[: one.line - 1]) + one.column - 1] = one
-    for start, one in sorted(starts.items(), reverse=True):
-        assert text[start : start + len(one.old)] == one.old
-        text = text[:start] + one.new + text[start + len(one.old) :]
-    return text
-
-
 def judged(program: Program, text: str, folder: Path) -> str:
     """ "right", "fails", "missed", "false", "named" or "unexplained"."""
     wrong = {convention: runner.wrong_entries(program, text, convention) for convention in ("simscape", "slide")}
@@ -160,7 +147,7 @@ def judged(program: Program, text: str, folder: Path) -> str:
             return "fails" if runner.returns_nothing(program, text) else "missed"
         return (
             "false"
-            if runner.wrong_entries(program, with_edits(text, verdict.findings), verdict.convention)
+            if runner.wrong_entries(program, reading.with_edits(text, verdict.findings), verdict.convention)
             else "named"
         )
     located = {tuple(finding.entry) for finding in verdict.findings}
@@ -187,7 +174,7 @@ def is_false(program: Program, text: str, verdict: Any, finding: Any) -> bool:
                     return True
     if finding.old is None:
         return False
-    left = runner.wrong_entries(program, with_edits(text, verdict.findings), verdict.convention)
+    left = runner.wrong_entries(program, reading.with_edits(text, verdict.findings), verdict.convention)
     return left is None or tuple(finding.entry) in left
 
 

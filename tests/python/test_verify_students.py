@@ -164,7 +164,7 @@ def false_sentence(path: Path, text: str, verdict: Any, found: Floats, wrong: se
                 said, is_so = reading.value(sentence, q, named | rates), due_values[(row, *place)]
                 if not abs(said - is_so) <= 1e-6 * (1 + abs(is_so)):
                     return f"{one.entry}: {sentence} is {said} at {q}, not {is_so}"
-    edited = with_edits(text, verdict.findings)
+    edited = reading.with_edits(text, verdict.findings)
     mended = values(edited, path, kind)
     if mended is None:
         return "the edits fail"
@@ -177,19 +177,6 @@ def number_of(arm: str, quantity: str) -> float:
     names = {"length2": "a2", "length3": "a3", "mass2": "m2", "mass3": "m3", "gravity": "g", "com2": "l2", "com3": "l3",
              "height": "d1", "inertia2": "I2", "inertia3": "I3"}  # fmt: skip
     return NUMBERS[arm].get(names.get(quantity, ""), float("nan"))
-
-
-def with_edits(text: str, findings: list[Any]) -> str:
-    """The text after the edits that findings name, at the places that they name."""
-    lines = text.split("\n")
-    starts = {}
-    for one in findings:
-        if one.old is not None:
-            starts[sum(len(line) + 1 for line in lines[: one.line - 1]) + one.column - 1] = one
-    for start, one in sorted(starts.items(), reverse=True):
-        assert text[start : start + len(one.old)] == one.old
-        text = text[:start] + one.new + text[start + len(one.old) :]
-    return text
 
 
 def counted(count: int, seed: int, folder: Path, files: list[Path] = FILES, name: str = "") -> Counter[str]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._messages import in_columns
 from ..run import Run
 from ..scenario import Scenario
 
@@ -46,9 +47,7 @@ class Convergence(NamedTuple):
     def __str__(self) -> str:
         head = f"{self.name}: {self.method}, angles beside those of a run with {self.key} = {self.reference:.3g}"
         rows = [[self.key, "steps", "error, rad", "order"], *map(_cells, self.levels)]
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
-        return "\n".join([head, *(f"  {line}".rstrip() for line in lines), self._verdict()])
+        return "\n".join([head, *(f"  {line}" for line in in_columns(rows, right=True)), self._verdict()])
 
     def _verdict(self) -> str:
         if self.order is None:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._messages import in_columns
+
 if TYPE_CHECKING:
     from ..run import Run
     from .comparison import Comparison
@@ -44,9 +46,7 @@ def table(beside: Comparison) -> str:
         column = "f_on_wall" if name == "force" else name
         ends = (numbers(run[column][last]) for run in (beside.yours, beside.true))
         rows.append((f"{words}, {unit}", *ends, f"{difference.size:.3g} at {difference.t:.6g} s"))
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
-    return "\n".join(f"  {line.rstrip()}" for line in lines)
+    return "\n".join(f"  {line}" for line in in_columns(rows))
 
 
 def numbers(values: Any) -> str:
@@ -67,7 +67,7 @@ def convention_of(run: Run) -> str:
 
 
 def as_json(beside: Comparison) -> dict[str, Any]:
-    """What the JSON summary of the user's run has under `controller_beside`."""
+    """What the JSON summary of the user's run has under `beside`."""
     return {
         "controller": beside.name,
         "true_controller": beside.true_name or None,

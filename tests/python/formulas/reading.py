@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,3 +54,16 @@ def _factor(word: str, q: Floats, parameters: dict[str, float]) -> float:
         return float(q[int(name[1]) - 1] ** int(power or 1))
     numerator, _, denominator = word.partition("/")
     return float(numerator) / float(denominator or 1)
+
+
+def with_edits(text: str, findings: list[Any]) -> str:
+    """The text after the edits that findings name, at the places that they name."""
+    lines = text.split("\n")
+    starts = {}
+    for one in findings:
+        if one.old is not None:
+            starts[sum(len(line) + 1 for line in lines[: one.line - 1]) + one.column - 1] = one
+    for start, one in sorted(starts.items(), reverse=True):
+        assert text[start : start + len(one.old)] == one.old
+        text = text[:start] + one.new + text[start + len(one.old) :]
+    return text
