@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -200,6 +201,13 @@ def test_the_command_finds_the_programs_beside_it(scripts: Path, tmp_path: Path)
     done = subprocess.run(["arm3r", "plot", "--help"], capture_output=True, text=True,
                           env={**os.environ, "PATH": str(scripts)})  # fmt: skip
     assert done.returncode == 0 and "usage: arm3r-plot" in done.stdout
+
+
+def test_a_controller_from_a_file_without_the_package(cli: Any, root: Path) -> None:
+    done = cli("run", "s.yaml", "--controller", "x.m", env={"PATH": "/nonexistent"})
+    named = re.search(r"install the package: (`pip install \S+`)", done.stderr)
+    assert done.returncode == 2 and "no program arm3r-run" in done.stderr
+    assert named and named[1] in (root / "README.md").read_text()
 
 
 # ---- F10: small stacks, functions that are called back --------------------------------------------------------------

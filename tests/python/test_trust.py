@@ -362,6 +362,18 @@ def test_a_run_without_errors_shows_no_order(lecture: arm3r.Scenario) -> None:
     assert "mere rounding" in str(arm3r.converge(lecture))
 
 
+@pytest.mark.parametrize("solver", [{"method": "dopri5", "rtol": 1e-12}, {"method": "taylor", "tol": 1e-14}])
+def test_no_run_is_more_exact_than_a_scenario_may_ask_for(solver: dict[str, Any]) -> None:
+    """The reference is as exact as the schema allows, and 1 % more is refused."""
+    scenario = arm3r.Scenario(FALL)
+    scenario["solver"] = solver
+    found = arm3r.converge(scenario)
+    scenario[found.key] = found.reference
+    with pytest.raises(arm3r.ScenarioError, match="must be"):
+        scenario[found.key] = 0.99 * found.reference
+        scenario.validate()
+
+
 def test_the_command_prints_the_order(scripts: Path, written: Any) -> None:
     file = written("fall.yaml", FALL)
     call = [scripts / "arm3r", "converge", file, "--set", "solver={method: rk4, step: 0.00125}"]

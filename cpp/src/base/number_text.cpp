@@ -232,4 +232,10 @@ std::string shortest(double value) {
     return {text, write_shortest(text, value)};
 }
 
+std::string rounded(double value, int digits) {
+    char text[64];
+    const double shown = value == 0 ? 0 : value;
+    return {text, std::to_chars(text, text + sizeof text, shown, std::chars_format::general, digits).ptr};
+}
+
 }  // namespace arm3r

@@ -24,6 +24,9 @@ std::optional<double> read_number(std::string_view text, const NumberRules& rule
 // A double in the shortest form that reads back to the same bits; "inf". No sign on zero.
 std::string shortest(double value);
 
+// A double for people, to significant digits. No sign on zero.
+std::string rounded(double value, int digits);
+
 // The same value for a YAML file, so that readers of YAML 1.1 take it for a number too: 1.0e-9, 1.0e+6. From a text with
 // the syntax above, or from a double.
 std::string yaml_number(std::string_view text);

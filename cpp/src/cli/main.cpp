@@ -306,7 +306,7 @@ void become(const std::string& name, const std::string& called, char** words) {
     become("run", called, words.data());
     throw Exit{exit_usage,
                "arm3r: error[usage]: --controller is run by the Python package, and there is no program arm3r-run "
-               "beside this one or on PATH; install it: pip install arm3r_cpp"};
+               "beside this one or on PATH; install the package: `pip install .` in the sources"};
 }
 
 int main(int count, char** words) {

@@ -7,12 +7,6 @@
 
 namespace arm3r {
 
-std::string rounded(double value, int digits) {
-    char text[64];
-    const double shown = value == 0 ? 0 : value;
-    return {text, std::to_chars(text, text + sizeof text, shown, std::chars_format::general, digits).ptr};
-}
-
 std::string fixed(double value, int decimals) {
     char text[400];
     return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};

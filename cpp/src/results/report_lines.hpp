@@ -1,12 +1,11 @@
 #pragma once
-// Numbers and lines of the report that people read.
+// Lines of the report that people read.
 
 #include <string>
 #include <vector>
 
 namespace arm3r {
 
-std::string rounded(double value, int digits);  // to significant digits
 std::string fixed(double value, int decimals);
 std::string line(const std::string& label, const std::string& text);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "results/report_lines.hpp"
 

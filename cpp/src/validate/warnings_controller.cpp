@@ -1,7 +1,6 @@
 // Warnings about a controller: gains with which its linearised loop is unstable, references that cannot be reached.
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -16,11 +15,7 @@ namespace {
 
 using Warnings = std::vector<std::string>;
 
-// The number with six digits.
-std::string short_number(double x) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, 6).ptr};
-}
+std::string short_number(double x) { return rounded(x, 6); }
 
 // The gain along a unit vector, from gains of the three base axes.
 double along(const Vec3<double>& n, const Vec3<double>& gains) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from itertools import pairwise
 from typing import NamedTuple
@@ -9,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from .._messages import in_columns
+from .._native import ffi, lib
 from ..run import Run
 from ..scenario import Scenario
 
 LEVELS = 4
-LEAST_TOLERANCE = {"solver.rtol": 2.3e-14, "solver.tol": 1e-15}
 ORDERS = {"rk4": 4, "dopri5": 5, "rodas4": 4}
 ROUNDING = 1e-13  # rad: an error below it tells nothing of the steps
 
@@ -90,8 +91,16 @@ def _settings(key: str, own: float) -> tuple[list[float], float]:
     """Those of the levels, from the coarsest one; and that of the reference."""
     if key == "solver.step":
         return [own / 2**i for i in range(LEVELS)], own / 2 ** (LEVELS + 1)
-    finest = max(own / 16, 64 * LEAST_TOLERANCE[key])
+    finest = max(own / 16, 64 * _least(key))
     return [finest * 16 ** (LEVELS - 1 - i) for i in range(LEVELS)], finest / 64
+
+
+def _least(key: str) -> float:
+    """The smallest value that the schema allows."""
+    section, name = key.split(".")
+    schema = json.loads(ffi.string(lib.arm3r_schema_json()))
+    forms = (form["then"]["properties"] for form in schema["properties"][section]["allOf"])
+    return next(form[name]["minimum"] for form in forms if name in form)
 
 
 def _run(scenario: Scenario, key: str, setting: float) -> Run:
