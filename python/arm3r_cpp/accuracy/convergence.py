@@ -99,7 +99,7 @@ def _least(key: str) -> float:
     """The smallest value that the schema allows."""
     section, name = key.split(".")
     schema = json.loads(ffi.string(lib.arm3r_schema_json()))
-    forms = (form["then"]["properties"] for form in schema["properties"][section]["allOf"])
+    forms = (form["then"]["properties"] for form in schema["definitions"][section]["allOf"])
     return next(form[name]["minimum"] for form in forms if name in form)
 
 
