@@ -1,4 +1,5 @@
 # make run: build, replay the lecture's moving wall, draw it and a force controller.   make test: build and pass everything.
+# make test NEED=page,wasm,notebooks: these optional parts must be there; else their tests are skipped and counted.
 # Needed: python3 >= 3.10 with venv and headers, g++ and make. The rest comes from the package index into .venv.
 
 PYTHON ?= python3
@@ -7,6 +8,10 @@ BUILD  ?= build/ctest
 BIN    := $(VENV)/bin
 export PATH := $(abspath $(BIN)):$(PATH)
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
+
+ifdef NEED
+export ARM3R_NEED := $(NEED)
+endif
 
 SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md $(wildcard docs/*.schema.json) \
            $(shell find cpp cmake python scenarios -type f -not -path '*/__pycache__/*')

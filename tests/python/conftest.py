@@ -10,6 +10,9 @@ from pathlib import Path
 
 import arm3r_cpp as arm3r
 import pytest
+from parts import pytest_configure as pytest_configure
+from parts import pytest_runtest_setup as pytest_runtest_setup
+from parts import pytest_terminal_summary as pytest_terminal_summary
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(arm3r.__file__).parent
