@@ -48,6 +48,7 @@ format: $(VENV)/dev
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 	$(BIN)/python cmake/wrap_markdown.py README.md CONTRIBUTING.md docs/*.md $$(find cpp -name README.md)
+	$(BIN)/python cmake/strip_notebooks.py docs/notebooks/*.ipynb
 
 lint: $(VENV)/dev
 	$(BIN)/clang-format --dry-run -Werror $(CODE)
