@@ -4,6 +4,7 @@
 #include <bit>
 #include <boost/test/unit_test.hpp>
 #include <cfloat>
+#include <charconv>
 #include <cmath>
 #include <random>
 
@@ -44,6 +45,31 @@ BOOST_AUTO_TEST_CASE(random_doubles_read_back_to_the_same_bits) {
         BOOST_REQUIRE(std::bit_cast<std::uint64_t>(read(shortest(value)).value()) ==
                       std::bit_cast<std::uint64_t>(value));
     }
+}
+
+// Of std::to_chars, digit by digit, whatever the way by which they were found.
+static void check_shortest(double value) {
+    char text[number_room];
+    const std::string_view expected(text, std::to_chars(text, text + sizeof text, value).ptr - text);
+    BOOST_REQUIRE_EQUAL(shortest(value), expected);
+}
+
+BOOST_AUTO_TEST_CASE(the_shortest_digits_are_those_of_the_standard_library) {
+    std::mt19937_64 random(2);
+    constexpr std::uint64_t sign_and_fraction = ~(std::uint64_t{0x7FF} << 52);
+    for (int i = 0; i < 200'000; ++i) {  // from 2^-210 to 2^60: a little more than shortest_decimal() takes
+        const std::uint64_t exponent = 1023 - 210 + random() % 270;
+        check_shortest(std::bit_cast<double>((random() & sign_and_fraction) | exponent << 52));
+    }
+    for (int exponent = -215; exponent < 60; ++exponent) {
+        const double power = std::ldexp(1.0, exponent);
+        for (const double value : {power, std::nextafter(power, 0.0), std::nextafter(power, 2 * power)}) {
+            check_shortest(value);
+            check_shortest(-value);
+        }
+    }
+    for (int i = 1; i < 20'000; ++i)
+        for (const double unit : {1e-9, 0.001, 0.01, 0.125, 1.0, 1000.0, 1e9, 1e-30}) check_shortest(i * unit);
 }
 
 BOOST_AUTO_TEST_CASE(degrees_are_one_product_and_one_quotient) {

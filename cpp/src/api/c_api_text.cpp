@@ -1,6 +1,7 @@
 // The text half of the C interface: scenarios, results, reference.
 
 #include <algorithm>
+#include <future>
 #include <memory>
 
 #include "api/c_api.hpp"
@@ -38,10 +39,16 @@ arm3r_scenario* new_scenario(Scenario scenario) {
     return handle.release();
 }
 
+const char* summary_of(const arm3r_run& run) {
+    return run.texts.get("summary", [&] { return summary_json(results_of(run)); });
+}
+
+// The hash of the summary takes about as long as the text of the rows: another thread computes it, if there can be one.
 void save(const arm3r_run& run, const std::string& path) {
     OutputFile csv(path), summary(summary_path(path));
+    std::future<const char*> summary_text = std::async([&] { return summary_of(run); });
     write_csv(run.run, [&](std::string_view piece) { return csv.write(piece), true; });
-    summary.write(summary_json(results_of(run)));
+    summary.write(summary_text.get());
     csv.close();
     summary.close();
     csv.publish();
@@ -238,7 +245,7 @@ int32_t arm3r_run_summary(const arm3r_run* run, const char** json) {
     return guard([&] {
         need(run, "run");
         need(json, "json");
-        *json = run->texts.get("summary", [&] { return summary_json(results_of(*run)); });
+        *json = summary_of(*run);
     });
 }
 

@@ -1,10 +1,16 @@
 #include "base/number_text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cfloat>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
 
+#include "base/shortest_decimal.hpp"
 #include "base/text.hpp"
 
 namespace arm3r {
@@ -143,6 +149,69 @@ std::string based_hint(std::string_view text) {
     return "only decimal numbers: this would be " + std::string(text.substr(0, sign)) + std::to_string(value);
 }
 
+constexpr auto digit_pairs = [] {
+    std::array<char, 200> pairs{};
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        pairs[i] = static_cast<char>('0' + (i % 2 == 0 ? i / 20 : i / 2 % 10));
+    return pairs;
+}();
+
+void write_pair(char* out, std::uint32_t below_100) { std::memcpy(out, &digit_pairs[2 * below_100], 2); }
+
+void write_8_digits(char* out, std::uint32_t number) {
+    const std::uint32_t high = number / 10000, low = number % 10000;
+    write_pair(out, high / 100), write_pair(out + 2, high % 100);
+    write_pair(out + 4, low / 100), write_pair(out + 6, low % 100);
+}
+
+constexpr int most_digits = 18;  // that write_decimal() takes
+constexpr std::uint64_t eight_digits = 100'000'000;
+
+int count_digits(std::uint64_t number) {
+    static constexpr auto powers = [] {
+        std::array<std::uint64_t, most_digits + 1> all{1};
+        for (std::size_t i = 1; i < all.size(); ++i) all[i] = 10 * all[i - 1];
+        return all;
+    }();
+    const int least = (std::bit_width(number) * 1233) >> 12;
+    return least + (number >= powers[static_cast<std::size_t>(least)]);
+}
+
+// In the shorter of the two notations, as std::to_chars does: 0.00123, 1.23e-05. Pieces of fixed sizes are copied, past
+// the end of what is wanted.
+char* write_decimal(char* out, const ShortestDecimal& decimal) {
+    char text[48] = "";  // the last digit is number 24
+    const std::uint64_t leading = decimal.digits / eight_digits;
+    write_pair(text + 6, static_cast<std::uint32_t>(leading / eight_digits));
+    write_8_digits(text + 8, static_cast<std::uint32_t>(leading % eight_digits));
+    write_8_digits(text + 16, static_cast<std::uint32_t>(decimal.digits % eight_digits));
+    const int size = count_digits(decimal.digits), exponent = decimal.exponent, point = size + exponent;
+    const char* const digits = text + 24 - size;
+    const int point_saved = size == 1;
+    if (exponent < -(size + 3) + point_saved || exponent > 5 - point_saved) {
+        out[0] = digits[0], out[1] = '.';
+        std::memcpy(out + 2, digits + 1, most_digits);
+        out += size > 1 ? size + 1 : 1;
+        out[0] = 'e', out[1] = point > 0 ? '+' : '-';
+        write_pair(out + 2, static_cast<std::uint32_t>(std::abs(point - 1)));
+        return out + 4;
+    }
+    if (exponent >= 0) {
+        std::memcpy(out, digits, most_digits);
+        std::memset(out + size, '0', 6);
+        return out + point;
+    }
+    if (point <= 0) {
+        std::memcpy(out, "0.0000000000000000000000", 24);
+        std::memcpy(out + 2 - point, digits, most_digits);
+        return out + 2 - exponent;
+    }
+    std::memcpy(out, digits, most_digits);
+    out[point] = '.';
+    std::memcpy(out + point + 1, digits + point, most_digits);
+    return out + size + 1;
+}
+
 std::string without(std::string_view text, char drop) {
     std::string out;
     for (const char c : text)
@@ -205,8 +274,11 @@ std::optional<double> read_number(std::string_view text, const NumberRules& rule
     return value && in_degrees ? *value * pi / 180 : value;
 }
 
-char* write_shortest(char* begin, double value) {
-    return std::to_chars(begin, begin + 32, value == 0 ? 0.0 : value).ptr;
+char* write_shortest(char* out, double value) {
+    if (!has_shortest_decimal(value)) return std::to_chars(out, out + number_room, value == 0 ? 0.0 : value).ptr;
+    *out = '-';
+    out += value < 0;
+    return write_decimal(out, shortest_decimal(value));
 }
 
 std::string yaml_number(std::string_view text) {
@@ -228,7 +300,7 @@ std::string yaml_number(std::string_view text) {
 std::string yaml_number(double value) { return yaml_number(shortest(value)); }
 
 std::string shortest(double value) {
-    char text[32];
+    char text[number_room];
     return {text, write_shortest(text, value)};
 }
 

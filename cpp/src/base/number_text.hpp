@@ -32,7 +32,9 @@ std::string rounded(double value, int digits);
 std::string yaml_number(std::string_view text);
 std::string yaml_number(double value);
 
-// Writes the shortest form into a buffer of at least 32 characters; returns the end.
+// Writes the shortest form into a buffer of at least `number_room` characters, all of which it may change; returns the
+// end. The bytes are those of std::to_chars.
+inline constexpr std::size_t number_room = 64;
 char* write_shortest(char* begin, double value);
 
 }  // namespace arm3r

@@ -10,7 +10,7 @@ namespace arm3r {
 
 namespace {
 
-constexpr std::size_t piece = 256 << 10, longest_number = 32;
+constexpr std::size_t piece = 256 << 10, longest_number = 24;  // -2.2250738585072014e-308
 constexpr std::uint64_t fnv_start = 0xCBF29CE484222325, fnv_prime = 0x100000001B3;
 
 std::string header(const Run& run) {
@@ -22,7 +22,7 @@ std::string header(const Run& run) {
 // One line of text and where each of its cells begins. Most cells repeat the line before: their text is copied.
 class Line {
 public:
-    explicit Line(std::size_t columns) : text_(columns * (longest_number + 1) + 1), begin_(columns + 1) {}
+    explicit Line(std::size_t columns) : text_(columns * (longest_number + 1) + number_room), begin_(columns + 1) {}
 
     std::string_view text() const { return {text_.data(), begin_.back()}; }
 
