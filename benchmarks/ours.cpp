@@ -142,11 +142,10 @@ void PackStepper<Size>::advance(int steps) {
     const int lanes = max_lanes(), before = taken_ / lanes;
     taken_ += steps;
     const int each = taken_ / lanes - before;
-#if ARM3R_WIDE_PACKS
-    if (lanes == 8) return march<8>(each);
-    if (lanes == 4) return march<4>(each);
-#endif
-    march<2>(each);
+#define MARCH(T) \
+    if (Lanes<T>::count == lanes) return march<Lanes<T>::count>(each);
+    ARM3R_LANE_PACKS(MARCH)
+    throw std::runtime_error("this build has no packs that this processor has registers for: take ARM3R_LANES=all");
 }
 
 template class PackStepper<motion_size>;

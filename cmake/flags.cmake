@@ -33,17 +33,30 @@ target_compile_options(arm3r_flags INTERFACE ${_numeric} ${_memory} -Wall -Wextr
                        "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:${_false_alarms}>")
 target_compile_definitions(arm3r_flags INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY ARM3R_VERSION="${PROJECT_VERSION}")
 
+# Results have the same bits for any lanes, and fewer widths compile faster. A build for one width runs on any processor:
+# on one that lacks the registers, runs go one by one.
+set(ARM3R_LANES all CACHE STRING "The runs that a batch steps side by side: all (2, 4 and 8 are compiled, and the processor
+  decides), native (as many as this processor has registers for), or 8, 4, 2 or 1")
+set_property(CACHE ARM3R_LANES PROPERTY STRINGS all native 8 4 2 1)
+set(_lanes ${ARM3R_LANES})
+if(ARM3R_LANES STREQUAL "native")
+  unset(_native CACHE) # the folder may have come from another machine
+  try_run(_native _compiled ${CMAKE_CURRENT_BINARY_DIR}/lanes ${CMAKE_CURRENT_SOURCE_DIR}/cmake/max_lanes.cpp
+          CMAKE_FLAGS -DINCLUDE_DIRECTORIES=${CMAKE_CURRENT_SOURCE_DIR}/cpp/include
+          COMPILE_DEFINITIONS -O1 -std=c++20 COMPILE_OUTPUT_VARIABLE _messages)
+  if(NOT _compiled OR NOT _native MATCHES "^[248]$")
+    message(FATAL_ERROR "ARM3R_LANES=native: this processor's registers are not known; take ARM3R_LANES=all. ${_messages}")
+  endif()
+  set(_lanes ${_native})
+endif()
+if(NOT _lanes MATCHES "^(all|8|4|2|1)$")
+  message(FATAL_ERROR "ARM3R_LANES is ${ARM3R_LANES}; it can be all, native, 8, 4, 2 or 1")
+elseif(NOT _lanes STREQUAL "all")
+  target_compile_definitions(arm3r_flags INTERFACE ARM3R_LANES=${_lanes})
+endif()
+
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 list(JOIN _numeric " " _numeric)
 string(JOIN " " ARM3R_BUILD_INFO ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}
-       ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_numeric})
-
-# Fewer lanes compile faster; results have the same bits. 1 is for development: a batch then has no packs at all.
-set(ARM3R_LANES 8 CACHE STRING "The most runs that a batch steps side by side: 8, 2 or 1")
-set_property(CACHE ARM3R_LANES PROPERTY STRINGS 8 2 1)
-if(ARM3R_LANES LESS 8)
-  target_compile_definitions(arm3r_flags INTERFACE ARM3R_NARROW)
-endif()
-if(ARM3R_LANES LESS 2)
-  target_compile_definitions(arm3r_flags INTERFACE ARM3R_ONE_LANE=1)
-endif()
+       ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_numeric} ARM3R_LANES=${_lanes})
+message(STATUS "${ARM3R_BUILD_INFO}")

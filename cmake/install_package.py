@@ -12,13 +12,14 @@ import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 
-CPU_MINUTES = 6  # to compile everything, measured on one core of an AMD EPYC with g++ 12
+CPU_MINUTES = 4  # to compile everything, measured on one core of an AMD EPYC with g++ 12
 STEP = re.compile(r"\s*\[(\d+)/(\d+)\] (Building \w+ object )?(.*)")
 SHORTEST = 10  # steps of a build of which it is said how long it takes
 
 
 def main(folder: str) -> int:
-    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--no-build-isolation", "-v", folder]
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--no-build-isolation", "-v"]
+    pip += ["-Ccmake.define.ARM3R_LANES=native", folder]  # this processor's alone: a third less to compile
     output: list[str] = []
     with subprocess.Popen(pip, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, bufsize=1) as build:
         assert build.stdout is not None

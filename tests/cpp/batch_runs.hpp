@@ -52,8 +52,9 @@ struct Runs {
 };
 
 inline std::vector<int> widths() {
-    std::vector<int> all = {1};
-    for (int width = 2; width <= max_lanes(); width *= 2) all.push_back(width);
+    std::vector<int> all;
+    for (const int lanes : {1, 2, 4, 8})
+        if (widest(LaneTypes{}, lanes) == lanes) all.push_back(lanes);
     return all;
 }
 

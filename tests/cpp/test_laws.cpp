@@ -735,13 +735,12 @@ static void check_lanes(Random& random, const Controller<double>& form) {
 BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_each_law_alone) {
     Random random(21);
     for (const Controller<double>& form : all_laws(random)) {
-        check_lanes<Pack<2>, 2>(random, form);
-        check_lanes<double, 2>(random, form);
-#if ARM3R_WIDE_PACKS
-        if (max_lanes() >= 4) check_lanes<double, 4>(random, form);
-        if (max_lanes() >= 4) check_lanes<Pack<4>, 4>(random, form);
-        if (max_lanes() >= 8) check_lanes<Pack<8>, 8>(random, form);
-#endif
+#define CHECK_ROWS(T) \
+    if (has_registers_for(Lanes<T>::count)) check_lanes<double, Lanes<T>::count>(random, form);
+#define CHECK_LANES(T) \
+    if (has_registers_for(Lanes<T>::count)) check_lanes<T, Lanes<T>::count>(random, form);
+        ARM3R_ROW_PACKS(CHECK_ROWS)
+        ARM3R_PACKS(CHECK_LANES)
     }
 }
 

@@ -225,43 +225,47 @@ BOOST_AUTO_TEST_CASE(the_series_is_the_motion) {
 }
 
 // Each lane with a plant, a state and an instant of its own, at every order.
-#if ARM3R_WIDE_PACKS
-BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_double) {
-    if (max_lanes() < 8) return;  // what this processor can do: test_batch.cpp
-
+template <int N>
+static void check_lanes() {
     Random random(3);
     for (std::size_t i = 0; i < recipes.size(); ++i) {
-        Plant<double> plants[8];
-        State<double, state_size> y[8];
-        Plant<Pack<8>> pack_plant;
-        State<Pack<8>, state_size> pack_y;
-        Pack<8> t, tol(1e-9);
-        for (int lane = 0; lane < 8; ++lane) {
+        Plant<double> plants[N];
+        State<double, state_size> y[N];
+        Plant<Pack<N>> pack_plant;
+        State<Pack<N>, state_size> pack_y;
+        Pack<N> t, tol(1e-9);
+        for (int lane = 0; lane < N; ++lane) {
             plants[lane] = random_plant(recipes[i], random);
             plants[lane].wall.motion = plants[0].wall.motion;
             y[lane] = random_state(random);
             copy_choices(plants[lane], pack_plant);
-            each_number([lane](Pack<8>& all, const double& one) { all.set(lane, one); }, pack_plant, plants[lane]);
+            each_number([lane](Pack<N>& all, const double& one) { all.set(lane, one); }, pack_plant, plants[lane]);
             for (std::size_t j = 0; j < state_size; ++j) pack_y[j].set(lane, y[lane][j]);
             t.set(lane, lane * 0.1);
         }
         for (int n = 1; n <= max_degree; ++n) {
-            Expansion<Pack<8>> packed;
+            Expansion<Pack<N>> packed;
             expand(Kernel(i), pack_plant, t, pack_y, n, packed);
-            const Pack<8> h = step_of(packed, tol);
-            for (int lane = 0; lane < 8; ++lane) {
+            const Pack<N> h = step_of(packed, tol);
+            for (int lane = 0; lane < N; ++lane) {
                 Expansion<double> one;
                 expand(Kernel(i), plants[lane], t[lane], y[lane], n, one);
                 BOOST_REQUIRE(same_bits(step_of(one, tol[lane]), h[lane]));
                 for (std::size_t j = 0; j < quantities; ++j) {
-                    BOOST_REQUIRE(same_bits(value(one, j, 0.01), value(packed, j, Pack<8>(0.01))[lane]));
+                    BOOST_REQUIRE(same_bits(value(one, j, 0.01), value(packed, j, Pack<N>(0.01))[lane]));
                     for (int k = 0; k <= n; ++k) BOOST_REQUIRE(same_bits(one.c[k][j], packed.c[k][j][lane]));
                 }
             }
         }
     }
 }
-#endif
+
+BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_double) {
+    BOOST_TEST(max_lanes() >= 1);
+#define CHECK_LANES(T) \
+    if (has_registers_for(Lanes<T>::count)) check_lanes<Lanes<T>::count>();
+    ARM3R_LANE_PACKS(CHECK_LANES)
+}
 
 BOOST_AUTO_TEST_CASE(a_lower_order_is_the_beginning_of_a_higher_one) {
     Random random(4);

@@ -57,6 +57,7 @@ PARTS = {
         lambda: have_modules("nbclient", "nbformat", "ipykernel"),
         "`pip install nbclient nbformat ipykernel`, which the extra `test` brings",
     ),
+    "qemu": Part(lambda: shutil.which("qemu-x86_64") is not None, "the system's package qemu-user"),
 }
 
 LEFT_OUT = "left out: "

@@ -115,6 +115,18 @@ def test_hidden_processor_features_change_nothing(
     assert hashes(executable, files, GLIBC_TUNABLES=f"glibc.cpu.hwcaps={hidden}") == expected
 
 
+@pytest.mark.needs("qemu")
+@pytest.mark.parametrize("processor", ["Nehalem", "Haswell"])
+def test_a_lesser_processor_gives_the_same(
+    executable: Path, files: list[Path], expected: dict[str, str], processor: str
+) -> None:
+    """Also where the build is for the wide registers of this one alone."""
+    command = ["qemu-x86_64", "-cpu", processor, executable, "run", "--json", *files[: len(TEXTS)]]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert all(expected[summary["name"]] == summary["hash"] for summary in json.loads(done.stdout))
+
+
 @pytest.mark.parametrize("name", TEXTS)
 def test_csv_holds_the_bits_of_the_arrays(cli: Any, tmp_path: Path, name: str) -> None:
     scenario, output = tmp_path / f"{name}.yaml", tmp_path / "out.csv"
@@ -138,11 +150,15 @@ CALLS = "-O0 -DARM3R_INLINE=inline -DARM3R_INLINE_LAMBDA="  # without inlining: 
 
 @pytest.mark.parametrize(
     ("flags", "lanes"),  # a run by itself has no lanes, so that the plain test can leave out most of their code
-    [(CALLS, 1), pytest.param("-O0", 8, marks=pytest.mark.gate), pytest.param("-O2", 8, marks=pytest.mark.gate)],
+    [
+        (CALLS, "1"),
+        pytest.param("-O0", "all", marks=pytest.mark.gate),
+        pytest.param("-O2", "all", marks=pytest.mark.gate),
+    ],
 )
 def test_other_optimisation_gives_the_same(
     root: Path, package: Path, scripts: Path, files: list[Path], expected: dict[str, str], tmp_path: Path,
-    flags: str, lanes: int,
+    flags: str, lanes: str,
 ) -> None:  # fmt: skip
     environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
 
@@ -154,6 +170,12 @@ def test_other_optimisation_gives_the_same(
     cmake("-S", root, "-B", tmp_path, "-G", "Ninja", *options, f"-DCMAKE_PREFIX_PATH={package.parent}")
     cmake("--build", tmp_path, "--target", "arm3r_cli", "--parallel", cores_of_this_worker())
     assert hashes(tmp_path / "arm3r", files) == expected
+    if flags != "-O2":
+        return
+    cmake("-S", root, "-B", tmp_path, "-DARM3R_TESTS=ON")  # batches of every width, which `make test` does not compile
+    cmake("--build", tmp_path, "--target", "arm3r_tests", "--parallel", cores_of_this_worker())
+    done = subprocess.run([tmp_path / "tests/cpp/arm3r_tests"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def table(batch: arm3r.Batch, order: np.ndarray | slice = slice(None)) -> bytes:

@@ -229,7 +229,7 @@ typedef struct arm3r_batch_options {
     arm3r_batch_progress progress;  /* Nullable */
     void *user;                     /* Nullable: handed to progress */
     int32_t threads;                /* 0: as many as the CPUs that this process may use */
-    int32_t lanes;                  /* runs that a thread computes in parallel: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
+    int32_t lanes;                  /* runs that a thread computes in parallel, at most: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
     int64_t reserved[4];            /* 0 */
 } arm3r_batch_options;
 

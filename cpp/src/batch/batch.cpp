@@ -57,7 +57,7 @@ class Batch {
 public:
     Batch(const Variation& variation, const BatchOptions& options, double* results)
         : options_(options), job_{variation,   Checker(variation.params, variation.varied),
-                                  results,     options.lanes ? options.lanes : max_lanes(),
+                                  results,     options.lanes ? widest(LaneTypes{}, options.lanes) : max_lanes(),
                                   options.law, poll_of_this_thread()} {}
 
     void run() {
@@ -152,9 +152,9 @@ private:
 void run_batch(const Variation& variation, const BatchOptions& options, double* results) {
     check_variation(variation);
     refuse_unknown_choices(variation.params);
-    if (options.lanes > max_lanes())
-        throw Error(ARM3R_E_VALUE, "lanes: this processor has instructions for " + std::to_string(max_lanes()) +
-                                       ", not for " + std::to_string(options.lanes));
+    if (options.lanes > 0 && !has_registers_for(options.lanes))
+        throw Error(ARM3R_E_VALUE,
+                    "lanes: this processor, or this build, has no registers for " + std::to_string(options.lanes));
     if (variation.varied.empty()) valid_setup(variation.params);  // throws what is wrong in all runs alike
     Batch(variation, options, results).run();
 }

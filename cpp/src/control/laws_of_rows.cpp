@@ -27,6 +27,6 @@ void of_rows(const Controller<double>& controller, const Measurement<T>& sensed,
     LawFunction<double, T> compiled_law() { \
         return of_rows;                     \
     }
-ARM3R_PACKS(ARM3R_COMPILED_LAW)
+ARM3R_ROW_PACKS(ARM3R_COMPILED_LAW)
 
 }  // namespace arm3r

@@ -22,10 +22,22 @@ ARM3R_INLINE void fill_block(const RowContext& context, const double* t, RowBloc
     }
 }
 
+// Where a build for another processor is run: one row after the other.
+template <>
+void fill_block<double>(const RowContext& context, const double* t, RowBlock& rows) {
+    rows.first_link_behind_wall = rows_per_block;
+    for (int i = rows_per_block - 1; i >= 0; --i) {
+        const double theta = (t[i] - context.dense.t0) / context.dense.h;
+        const Row row = make_row(context, t[i], context.dense(theta), theta);
+        for (std::size_t column = 0; column < column_count; ++column) rows.value[column][i] = row.value[column];
+        if (row.link_behind_wall) rows.first_link_behind_wall = i;
+    }
+}
+
 }  // namespace
 
 void make_row_block(const RowContext& context, const double* t, RowBlock& rows) {
-    static const int lanes = ARM3R_WIDE_PACKS && max_lanes() >= 4 ? 4 : 2;
+    static const int lanes = widest(RowTypes{}, 4);
     run_at_width(RowTypes{}, lanes, [&]<class T>() ARM3R_INLINE_LAMBDA { fill_block<T>(context, t, rows); });
 }
 

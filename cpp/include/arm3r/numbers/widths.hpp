@@ -2,14 +2,26 @@
 // a build has.
 #pragma once
 
+#include <algorithm>
+
 #include "arm3r/numbers/lane_access.hpp"
 
 // ARM3R_WIDEST: a function of packs that is compiled for several instruction sets; the widest one of the CPU is chosen
 // at run time, and all give the same bits. All functions that it calls are inlined. Functions with ARM3R_FOR_FOUR and
-// ARM3R_FOR_EIGHT may be called only if the processor has registers for packs of 4 or 8 (max_lanes); without such
-// variants (ARM3R_WIDE_PACKS 0) packs have 2 lanes.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && !defined(ARM3R_NARROW)
+// ARM3R_FOR_EIGHT may be called only if the processor has registers for packs of 4 or 8 (has_registers_for); without
+// such variants (ARM3R_WIDE_PACKS 0) packs have 2 lanes.
+//
+// ARM3R_LANES, where it is defined: the only width of packs that a batch has in this build (1: no packs), which compiles
+// faster. Otherwise a build has packs of 2, 4 and 8.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && \
+    !(defined(ARM3R_LANES) && ARM3R_LANES <= 2)
+#if !defined(ARM3R_LANES)
 #define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#elif ARM3R_LANES == 4
+#define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3")))
+#else
+#define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v4")))
+#endif
 #define ARM3R_WIDEST_SCALARS __attribute__((target_clones("default", "arch=x86-64-v3")))
 #define ARM3R_FOR_FOUR __attribute__((target("arch=x86-64-v3")))
 #define ARM3R_FOR_EIGHT __attribute__((target("arch=x86-64-v4")))
@@ -21,51 +33,61 @@
 #define ARM3R_FOR_EIGHT
 #define ARM3R_WIDE_PACKS 0
 #endif
-#ifndef ARM3R_ONE_LANE
-#define ARM3R_ONE_LANE 0  // 1: a batch has no packs, to compile faster while developing
-#endif
 
-// X(T) for each pack of this build, and for each T that a lane run may have.
-#if ARM3R_WIDE_PACKS
-#define ARM3R_PACKS(X) X(arm3r::Pack<2>) X(arm3r::Pack<4>) X(arm3r::Pack<8>)
+// X(T) for each pack of the lanes of a batch; of a row block, which has at most four lanes, because eight take twice as
+// long: more numbers than registers; and of both.
+#if !ARM3R_WIDE_PACKS
+#if defined(ARM3R_LANES) && ARM3R_LANES == 1
+#define ARM3R_LANE_PACKS(X)
 #else
+#define ARM3R_LANE_PACKS(X) X(arm3r::Pack<2>)
+#endif
+#define ARM3R_ROW_PACKS(X) X(arm3r::Pack<2>)
 #define ARM3R_PACKS(X) X(arm3r::Pack<2>)
-#endif
-#if ARM3R_ONE_LANE
-#define ARM3R_LANE_TYPES(X) X(double)
+#elif !defined(ARM3R_LANES)
+#define ARM3R_LANE_PACKS(X) X(arm3r::Pack<2>) X(arm3r::Pack<4>) X(arm3r::Pack<8>)
+#define ARM3R_ROW_PACKS(X) X(arm3r::Pack<2>) X(arm3r::Pack<4>)
+#define ARM3R_PACKS(X) ARM3R_LANE_PACKS(X)
+#elif ARM3R_LANES == 4
+#define ARM3R_LANE_PACKS(X) X(arm3r::Pack<4>)
+#define ARM3R_ROW_PACKS(X) X(arm3r::Pack<4>)
+#define ARM3R_PACKS(X) X(arm3r::Pack<4>)
 #else
-#define ARM3R_LANE_TYPES(X) X(double) ARM3R_PACKS(X)
+#define ARM3R_LANE_PACKS(X) X(arm3r::Pack<8>)
+#define ARM3R_ROW_PACKS(X) X(arm3r::Pack<4>)
+#define ARM3R_PACKS(X) X(arm3r::Pack<4>) X(arm3r::Pack<8>)
 #endif
+// X(T) for each T that a lane run may have.
+#define ARM3R_LANE_TYPES(X) X(double) ARM3R_LANE_PACKS(X)
 
 namespace arm3r {
 
-// The same as lists of types; a row block has at most four lanes, because eight take twice as long: more numbers than
-// registers.
+// The same as lists of types.
 template <class... T>
 struct TypeList {};
-#if ARM3R_WIDE_PACKS
-using RowTypes = TypeList<Pack<2>, Pack<4>>;
-#else
-using RowTypes = TypeList<Pack<2>>;
-#endif
-#if ARM3R_ONE_LANE
-using LaneTypes = TypeList<double>;
-#elif ARM3R_WIDE_PACKS
-using LaneTypes = TypeList<double, Pack<2>, Pack<4>, Pack<8>>;
-#else
-using LaneTypes = TypeList<double, Pack<2>>;
-#endif
+#define ARM3R_COMMA_BEFORE(T) , T
+using LaneTypes = TypeList<double ARM3R_LANE_PACKS(ARM3R_COMMA_BEFORE)>;
+using RowTypes = TypeList<double ARM3R_ROW_PACKS(ARM3R_COMMA_BEFORE)>;
+#undef ARM3R_COMMA_BEFORE
 
-// The number of lanes in the widest registers of this processor.
-inline int max_lanes() {
-#if ARM3R_ONE_LANE
-    return 1;
-#elif ARM3R_WIDE_PACKS
-    if (__builtin_cpu_supports("x86-64-v4")) return 8;
-    if (__builtin_cpu_supports("x86-64-v3")) return 4;
+// Whether this processor has registers for as many lanes, and this build instructions for them.
+inline bool has_registers_for(int lanes) {
+#if ARM3R_WIDE_PACKS
+    if (lanes == 8) return __builtin_cpu_supports("x86-64-v4");
+    if (lanes == 4) return __builtin_cpu_supports("x86-64-v3");
 #endif
-    return 2;
+    return lanes <= 2;
 }
+
+// The most lanes of a type in the list that this processor has registers for, at most `limit`.
+template <class... T>
+int widest(TypeList<T...>, int limit) {
+    const auto usable = [limit](int lanes) { return lanes <= limit && has_registers_for(lanes) ? lanes : 1; };
+    return std::max({usable(Lanes<T>::count)...});
+}
+
+// The most lanes of a batch of this build on this processor.
+inline int max_lanes() { return widest(LaneTypes{}, 8); }
 
 // Functions that are not inlined and that are compiled for the registers that hold T. run(f) calls f, so that rare code
 // does not spill registers in a hot loop; call<F> is the function of a class without data, for a function pointer.
