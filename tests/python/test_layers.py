@@ -13,7 +13,19 @@ import pytest
 
 # From the bottom up: a file includes files of its own room and of rooms that stand before it.
 HEADERS = ("numbers", "model", "ode", "control", "sensing")
-PROGRAM = ("base", "schema", "setup", "validate", "control", "integrate", "contact", "record", "run", "lanes")
+PROGRAM = (
+    "platform",
+    "base",
+    "schema",
+    "setup",
+    "validate",
+    "control",
+    "integrate",
+    "contact",
+    "record",
+    "run",
+    "lanes",
+)
 PROGRAM = (*PROGRAM, "batch", "trust")
 FACES = ("files", "results", "scenario", "api", "cli")
 ROOMS = [*(f"include/arm3r/{room}" for room in HEADERS), "include/arm3r"]
@@ -24,16 +36,12 @@ MOST_FILES = 16  # with a name of their own: X.hpp and X.cpp are one
 RESERVED = {
     r"yaml-cpp/.*": {"yaml_tree"},
     r"fstream|filesystem|fcntl\.h|unistd\.h|sys/.*|cstdio|stdio\.h": {
-        "input_file",
-        "output_file",
-        "main",
-        "arguments",
-        "terminal",
+        "posix",
+        "windows",
         "launcher",
-        "column_memory",
         "derive_taylor",
     },
-    r"iostream": {"main", "arguments", "terminal"},
+    r"windows\.h|csignal|cxxabi\.h|sched\.h|io\.h|process\.h|mach-o/.*": {"posix", "windows", "threads", "terminal"},
 }
 
 
@@ -101,6 +109,8 @@ def test_a_function_is_defined_in_the_file_that_declares_it(root: Path) -> None:
     """Declared in X.hpp, a function is defined in X.cpp, or in X_something.cpp beside it."""
     elsewhere = []
     for header in (root / "cpp/src").rglob("*.hpp"):
+        if header.parent.name == "platform":
+            continue
         own = [path.read_text() for path in header.parent.glob("*.cpp") if path.stem.startswith(header.stem)]
         for name in sorted(_declared_functions(header)):
             definition = re.compile(
@@ -109,6 +119,30 @@ def test_a_function_is_defined_in_the_file_that_declares_it(root: Path) -> None:
             if not any(definition.search(text) for text in own):
                 elsewhere.append(f"{_room(root, header)}/{header.name} declares {name}")
     assert elsewhere == []
+
+
+def test_every_platform_defines_every_function(root: Path) -> None:
+    room = root / "cpp/src/platform"
+    declared = set[str]().union(*(_declared_functions(header) for header in room.glob("*.hpp")))
+    assert len(declared) > 20
+    platforms = {path.name: path.read_text() for path in room.glob("*.cpp")}
+    assert platforms.keys() == {"posix.cpp", "windows.cpp"}
+    missing = [
+        f"{file} has no {name}"
+        for file, text in platforms.items()
+        for name in sorted(declared)
+        if not re.search(rf"^\w[^\n;=]*\b{name}\(", text, re.M)
+    ]
+    assert missing == []
+
+
+def test_no_other_file_asks_which_system_it_is_compiled_for(root: Path) -> None:
+    asking = {
+        path.relative_to(root / "cpp").as_posix()
+        for path in _sources(root)
+        if re.search(r"__linux__|_WIN32|__APPLE__|__EMSCRIPTEN__", path.read_text())
+    }
+    assert {name for name in asking if not name.startswith("src/platform/")} <= {"include/arm3r/arm3r.h"}
 
 
 def _function_lengths(path: Path) -> list[tuple[int, str]]:
@@ -163,7 +197,7 @@ def test_files_and_yaml_stay_where_they_belong(root: Path) -> None:
 def test_the_executable_knows_only_the_c_interface(root: Path) -> None:
     for path in (root / "cpp/src/cli").iterdir():
         own = (
-            [name for kind, name in _includes(path) if kind == '"' and not name.startswith("cli/")]
+            [name for kind, name in _includes(path) if kind == '"' and not name.startswith(("cli/", "platform/"))]
             if path.suffix != ".md"
             else []
         )

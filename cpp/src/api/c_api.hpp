@@ -1,8 +1,6 @@
 #pragma once
 // Common parts of the C interface: the guard, the checks of arguments, and the handles.
 
-#include <cxxabi.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -17,6 +15,7 @@
 #include "arm3r/arm3r.h"
 #include "base/error.hpp"
 #include "base/fp_environment.hpp"
+#include "platform/threads.hpp"
 #include "record/run_data.hpp"
 #include "results/checks.hpp"
 #include "scenario/scenario.hpp"
@@ -39,7 +38,7 @@ int32_t guard(Body&& body) {
     try {
         body();
         return ARM3R_OK;
-    } catch (const abi::__forced_unwind&) {
+    } catch (const platform::ThreadEnd&) {
         throw;
     } catch (const Error& error) {
         return store_error(error);

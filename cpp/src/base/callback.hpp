@@ -1,13 +1,12 @@
 #pragma once
 // How the library calls a function of its caller.
 
-#include <cxxabi.h>
-
 #include <exception>
 #include <string>
 
 #include "base/error.hpp"
 #include "base/fp_environment.hpp"
+#include "platform/threads.hpp"
 
 namespace arm3r {
 
@@ -23,7 +22,7 @@ auto call_back(Function* function, Arguments... arguments) {
         const auto answer = function(arguments...);
         set_standard_fp_environment();
         return answer;
-    } catch (const abi::__forced_unwind&) {
+    } catch (const platform::ThreadEnd&) {
         throw;
     } catch (const std::exception& error) {
         refuse(std::string("an exception: ") + error.what());

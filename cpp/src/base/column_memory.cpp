@@ -1,28 +1,23 @@
 #include "base/column_memory.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <new>
 #include <utility>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "platform/memory.hpp"
 
 namespace arm3r {
 
-void FreeRows::operator()(double* block) const { std::free(block); }
+void FreeRows::operator()(double* block) const { platform::free_aligned(block); }
 
 RowMemory allocate_rows(std::size_t doubles) {
     constexpr std::size_t large_page = std::size_t{1} << 21, cache_line = 64;
     const std::size_t wanted = doubles * sizeof(double);
     const std::size_t unit = wanted >= large_page / 2 ? large_page : cache_line;
     const std::size_t bytes = (wanted + unit - 1) / unit * unit;
-    void* block = std::aligned_alloc(unit, bytes);
+    void* block = platform::allocate_aligned(unit, bytes);
     if (!block) throw std::bad_alloc();
-#ifdef MADV_HUGEPAGE
-    if (unit == large_page) madvise(block, bytes, MADV_HUGEPAGE);  // advice: nothing depends on it being taken
-#endif
+    if (unit == large_page) platform::advise_large_pages(block, bytes);
     return RowMemory(static_cast<double*>(block));
 }
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cfloat>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "base/shortest_decimal.hpp"
 #include "base/text.hpp"
@@ -83,7 +83,7 @@ std::optional<double> convert(std::string_view number, const Parts& parts, Numbe
         fault = {"number.range", "out of double range", "the largest double is 1.7976931348623157e308"};
         return {};
     }
-    if (out_of_range || std::abs(value) < DBL_MIN) {
+    if (out_of_range || std::abs(value) < std::numeric_limits<double>::min()) {
         fault = {"number.range", "underflows: too small for a double", "write 0, or at least 2.2250738585072014e-308"};
         return {};
     }

@@ -1,8 +1,5 @@
 #include "batch/batch.hpp"
 
-#include <cxxabi.h>
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -16,6 +13,7 @@
 #include "base/callback.hpp"
 #include "base/error.hpp"
 #include "batch/worker.hpp"
+#include "platform/threads.hpp"
 #include "schema/schema.hpp"
 #include "validate/validate.hpp"
 
@@ -25,12 +23,6 @@ namespace {
 constexpr std::size_t min_runs_per_thread = 64;
 constexpr std::chrono::milliseconds poll_interval{5}, report_interval{20};
 using Clock = std::chrono::steady_clock;
-
-int allowed_threads() {
-    cpu_set_t cpus;
-    const int allowed = sched_getaffinity(0, sizeof cpus, &cpus) == 0 ? CPU_COUNT(&cpus) : 1;
-    return std::max(1, allowed);
-}
 
 void check_variation(const Variation& variation) {
     std::vector<bool> seen(param_count());
@@ -67,15 +59,16 @@ public:
     }
 
 private:
-    // A law that is not re-entrant is called by the calling thread, which then works itself.
+    // A law that is not re-entrant is called by the calling thread, which then works itself; as it does where it is the
+    // only one that there can be.
     std::function<void()> poll_of_this_thread() {
-        if (!options_.law.function || options_.law.reentrant) return {};
+        if (platform::has_threads && (!options_.law.function || options_.law.reentrant)) return {};
         return [this] { poll_caller(); };
     }
 
     void run_in_threads() {
         const std::size_t runs = job_.variation.runs;
-        const std::size_t wanted = options_.threads > 0 ? options_.threads : allowed_threads();
+        const std::size_t wanted = options_.threads > 0 ? options_.threads : platform::allowed_cpus();
         const std::size_t runs_per_thread = options_.law.function ? 1 : min_runs_per_thread;
         const std::size_t count = std::clamp<std::size_t>(runs / runs_per_thread, 1, wanted);
         std::vector<std::jthread> threads;
@@ -93,7 +86,7 @@ private:
         const EndOfWorker end{*this};
         try {
             BatchWorker(job_).run();
-        } catch (const abi::__forced_unwind&) {
+        } catch (const platform::ThreadEnd&) {
             fail(std::make_exception_ptr(Error(ARM3R_E_CALLBACK, "the law ended the thread that called it")));
             throw;
         } catch (...) {

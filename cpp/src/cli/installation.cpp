@@ -1,26 +1,20 @@
 #include "cli/installation.hpp"
 
-#include <cstdlib>
-#include <memory>
-
 #include "cli/arguments.hpp"
+#include "platform/files.hpp"
+#include "platform/program.hpp"
 
 namespace cli {
 
-std::string directory_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
+std::string directory_of(const std::string& path) { return path.substr(0, arm3r::platform::last_separator(path)); }
 
 namespace {
 
-std::string program_directory() {
-    const std::unique_ptr<char, decltype(&std::free)> path(realpath("/proc/self/exe", nullptr), std::free);
-    return path ? directory_of(path.get()) : "";
-}
+std::string program_directory() { return directory_of(arm3r::platform::program_path()); }
 
 // The path of a part that lies at `from_program`, seen from the folder of the executable; "" where it is missing.
 std::string part(const char* from_program) {
-    const std::string path = program_directory() + "/" + from_program;
-    const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr), std::free);
-    return real ? real.get() : "";
+    return arm3r::platform::absolute_path(program_directory() + "/" + from_program);
 }
 
 }  // namespace

@@ -1,11 +1,6 @@
 // The executable. It knows the library only by its C interface.
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <csignal>
-#include <cstdlib>
 #include <memory>
 #include <set>
 #include <string>
@@ -15,8 +10,12 @@
 #include "cli/arguments.hpp"
 #include "cli/installation.hpp"
 #include "cli/terminal.hpp"
+#include "platform/files.hpp"
+#include "platform/program.hpp"
 
 namespace cli {
+
+namespace platform = arm3r::platform;
 
 namespace {
 
@@ -95,30 +94,27 @@ std::string name_of(const ScenarioHandle& scenario) {
 
 // ---- output files
 
-bool is_directory(const std::string& path) {
-    struct stat about{};
-    return stat(path.c_str(), &about) == 0 && S_ISDIR(about.st_mode);
+bool is_directory(const std::string& path) { return platform::kind_of(path) == platform::FileKind::directory; }
+
+bool ends_with_separator(const std::string& path) {
+    return !path.empty() && platform::last_separator(path) == path.size() - 1;
 }
 
-// With those above it.
+void make_with_parents(const std::string& path) {
+    const std::size_t end = platform::last_separator(path);
+    if (end != path.npos && end > 0) make_with_parents(path.substr(0, end));
+    platform::make_directory(path);
+}
+
 void make_directory(const std::string& path) {
-    for (std::size_t end = 0; end != path.npos;) {
-        end = path.find('/', end + 1);
-        mkdir(path.substr(0, end).c_str(), 0777);
-    }
+    make_with_parents(path);
     if (!is_directory(path))
         throw Exit{exit_output, path + ": error[output]: cannot be made; for several scenarios -o names a directory"};
 }
 
-bool is_same_file(const std::string& a, const std::string& b) {
-    struct stat one{}, other{};
-    return stat(a.c_str(), &one) == 0 && stat(b.c_str(), &other) == 0 && one.st_dev == other.st_dev &&
-           one.st_ino == other.st_ino;
-}
-
 void spare_scenarios(const std::vector<std::string>& files, const std::string& path) {
     for (const std::string& file : files)
-        if (is_same_file(file, path))
+        if (platform::is_same_file(file, path))
             throw Exit{exit_usage, path + ": error[usage]: this would overwrite a scenario; give -o another name"};
 }
 
@@ -142,7 +138,7 @@ std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vec
     std::set<std::string> seen;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         const std::string path =
-            directory ? output + (output.ends_with('/') ? "" : "/") + name_of(scenarios[i]) + ".csv" : output;
+            directory ? output + (ends_with_separator(output) ? "" : "/") + name_of(scenarios[i]) + ".csv" : output;
         if (!seen.insert(path).second)
             throw Exit{exit_usage, path + ": error[usage]: two scenarios would write this file; give them names"};
         spare_scenarios(arguments.files, path);
@@ -261,62 +257,46 @@ int call(const Arguments& arguments) {
 
 // ---- arm3r NAME: another program
 
-std::vector<std::string> search_path() {
-    std::vector<std::string> directories;
-    const char* path = std::getenv("PATH");
-    std::string rest = path ? path : "";
-    while (!rest.empty()) {
-        const std::size_t colon = std::min(rest.find(':'), rest.size());
-        if (colon > 0) directories.push_back(rest.substr(0, colon));
-        rest.erase(0, colon + 1);
-    }
-    return directories;
-}
-
 // The path of the called program: as it was called, then with its links resolved.
-std::vector<std::string> own_directories(const std::string& outlined) {
-    std::string path = outlined;
-    if (outlined.find('/') == outlined.npos)
-        for (const std::string& directory : search_path())
-            if (path == outlined && access((directory + "/" + outlined).c_str(), X_OK) == 0)
-                path = directory + "/" + outlined;
-    if (path.find('/') == path.npos) return {};
+std::vector<std::string> own_directories(const std::string& called) {
+    std::string path = called;
+    if (platform::last_separator(called) == called.npos)
+        for (const std::string& directory : platform::search_path())
+            if (const std::string found = platform::program_in(directory, called); path == called && !found.empty())
+                path = found;
+    if (platform::last_separator(path) == path.npos) return {};
     std::vector<std::string> directories = {directory_of(path)};
-    const std::unique_ptr<char, decltype(&std::free)> real(realpath(path.c_str(), nullptr), std::free);
-    if (real) directories.push_back(directory_of(real.get()));
+    if (const std::string real = platform::absolute_path(path); !real.empty())
+        directories.push_back(directory_of(real));
     return directories;
 }
 
-// Goes on as the program arm3r-NAME, with the words behind words[0]. Returns where there is none.
-void become(const std::string& name, const std::string& called, char** words) {
+// Goes on as the program arm3r-NAME, with these words behind its own name. Returns where there is none.
+void become(const std::string& name, const std::string& called, std::vector<std::string> words) {
+    if (platform::last_separator(name) != name.npos) return;
     std::vector<std::string> directories = own_directories(called);
-    for (const std::string& directory : search_path()) directories.push_back(directory);
+    for (const std::string& directory : platform::search_path()) directories.push_back(directory);
+    words.insert(words.begin(), "");
     for (const std::string& directory : directories) {
-        const std::string program = directory + "/arm3r-" + name;
-        if (name.find('/') != name.npos || access(program.c_str(), X_OK) != 0 || is_directory(program)) continue;
-        words[0] = const_cast<char*>(program.c_str());
-        execv(program.c_str(), words);
+        words[0] = platform::program_in(directory, "arm3r-" + name);
+        if (!words[0].empty()) platform::become_program(words[0], words);
     }
 }
 
-[[noreturn]] void run_controller(const Arguments& arguments, const char* called) {
-    std::vector<char*> words = {nullptr};
-    for (const std::string& word : arguments.words) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
-    become("run", called, words.data());
+[[noreturn]] void run_controller(const Arguments& arguments, const std::string& called) {
+    become("run", called, arguments.words);
     throw Exit{exit_usage,
                "arm3r: error[usage]: --controller is run by the Python package, and there is no program arm3r-run "
                "beside this one or on PATH; install the package: `pip install .` in the sources"};
 }
 
-int main(int count, char** words) {
-    if (count > 1 && words[1][0] != '-' && !is_call(words[1])) {
-        const std::string name = words[1];
-        become(name, words[0], words + 1);
+int main(const std::vector<std::string>& words) {
+    if (words.size() < 2) return print(help("")), exit_ok;
+    if (const std::string& name = words[1]; !name.starts_with('-') && !is_call(name)) {
+        become(name, words[0], {words.begin() + 2, words.end()});
         throw Exit{exit_usage, "arm3r: error[usage]: " + unknown_call(name)};
     }
-    if (count <= 1) return print(help("")), exit_ok;
-    const Arguments arguments = read_arguments({words + 1, words + count});
+    const Arguments arguments = read_arguments({words.begin() + 1, words.end()});
     if (arguments.help) return print(help(arguments.call)), exit_ok;
     if (arguments.version)
         return print("arm3r " + std::string(arm3r_version()) + "\n" + arm3r_build_info() + "\n"), exit_ok;
@@ -330,11 +310,10 @@ int main(int count, char** words) {
 }  // namespace cli
 
 int main(int count, char** words) {
-    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit then returns an error
-    std::signal(SIGPIPE, SIG_DFL);  // also where the caller ignores it: a reader that has gone ends the program quietly
+    arm3r::platform::prepare_program();
     int code = cli::exit_internal;
     try {
-        code = cli::main(count, words);
+        code = cli::main(arm3r::platform::program_arguments(count, words));
     } catch (const cli::Exit& exit) {
         cli::complain(exit.message + "\n");
         code = exit.code;

@@ -1,18 +1,22 @@
 #include "cli/terminal.hpp"
 
-#include <unistd.h>
-#include <csignal>
-
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 
 #include "cli/arguments.hpp"
+#include "platform/files.hpp"
+#include "platform/program.hpp"
 
 namespace cli {
 
+namespace platform = arm3r::platform;
+
 namespace {
+
+constexpr int standard_output = 1, standard_error = 2;
 
 volatile std::int32_t stop = 0;
 volatile std::sig_atomic_t caught = 0;
@@ -22,35 +26,21 @@ void on_signal(int number) {
     stop = 1;
 }
 
-void catch_one(int number) {
-    struct sigaction before{}, action{};
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_RESETHAND;
-    sigaction(number, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);
-}
-
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
-void catch_signals() {
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) catch_one(number);
-}
+void catch_signals() { platform::catch_end_requests(on_signal); }
 
 const volatile std::int32_t* stop_flag() { return &stop; }
 
 bool stop_requested() { return stop != 0; }
 
-void die_by_signal() {
-    std::signal(caught, SIG_DFL);
-    std::raise(caught);
-    _exit(128 + caught);
-}
+void die_by_signal() { platform::die_of(caught); }
 
 void print(std::string_view text) {
     while (!text.empty()) {
-        const ssize_t size = write(STDOUT_FILENO, text.data(), text.size());
+        const std::ptrdiff_t size = platform::write_some(standard_output, text.data(), text.size());
         if (size < 0 && errno == EINTR && !stop_requested()) continue;
         if (size < 0)
             throw Exit{exit_output, "arm3r: error[output]: standard output: " + std::string(std::strerror(errno))};
@@ -60,14 +50,14 @@ void print(std::string_view text) {
 
 void complain(std::string_view text) {
     while (!text.empty()) {
-        const ssize_t size = write(STDERR_FILENO, text.data(), text.size());
+        const std::ptrdiff_t size = platform::write_some(standard_error, text.data(), text.size());
         if (size <= 0) return;
         text.remove_prefix(static_cast<std::size_t>(size));
     }
 }
 
 Progress::Progress(std::string name)
-    : name_(name.substr(0, 30)), start_(now()), next_(start_ + 1), terminal_(isatty(STDERR_FILENO)) {}
+    : name_(name.substr(0, 30)), start_(now()), next_(start_ + 1), terminal_(platform::is_terminal(standard_error)) {}
 
 Progress::~Progress() {
     if (drawn_) complain("\r\x1b[K");

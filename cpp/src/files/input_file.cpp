@@ -1,19 +1,17 @@
 #include "files/input_file.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 
 #include "base/error.hpp"
+#include "platform/files.hpp"
 
 namespace arm3r {
 
 namespace {
 
+constexpr int standard_input = 0;
 constexpr std::size_t enough = (1 << 20) + 1;  // one byte more than a scenario may have
 
 [[noreturn]] void refuse(const std::string& path, std::string code, std::string message, std::string hint = {}) {
@@ -25,7 +23,7 @@ class File {
 public:
     explicit File(int descriptor) : descriptor_(descriptor) {}
     ~File() {
-        if (descriptor_ > STDIN_FILENO) close(descriptor_);
+        if (descriptor_ > standard_input) platform::close_file(descriptor_);
     }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
@@ -41,8 +39,8 @@ std::string read_up_to(int descriptor, const std::string& path) {
     while (text.size() < enough) {
         const std::size_t before = text.size(), wanted = std::min(at_a_time, enough - before);
         text.resize(before + wanted);
-        const ssize_t size = read(descriptor, text.data() + before, wanted);
-        text.resize(before + static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+        const std::ptrdiff_t size = platform::read_some(descriptor, text.data() + before, wanted);
+        text.resize(before + static_cast<std::size_t>(std::max<std::ptrdiff_t>(size, 0)));
         if (size < 0 && errno != EINTR) refuse(path, "file.read", std::strerror(errno));
         if (size == 0) break;
     }
@@ -53,14 +51,13 @@ std::string read_up_to(int descriptor, const std::string& path) {
 
 std::string read_input(const std::string& path) {
     if (path.empty()) refuse(path, "file.name", "the file name is empty");
-    if (path == "-") return read_up_to(STDIN_FILENO, "standard input");
-    // O_NONBLOCK: opening a FIFO must not wait for its writer.
-    const File file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    if (path == "-") return read_up_to(standard_input, "standard input");
+    const File file(platform::open_to_read(path));
     if (file.descriptor() < 0) refuse(path, "file.open", std::strerror(errno));
-    struct stat about{};
-    if (fstat(file.descriptor(), &about) != 0) refuse(path, "file.open", std::strerror(errno));
-    if (S_ISDIR(about.st_mode)) refuse(path, "file.kind", std::strerror(EISDIR));
-    if (!S_ISREG(about.st_mode)) refuse(path, "file.kind", "not a regular file", "`-` reads standard input");
+    const platform::FileKind kind = platform::kind_of(file.descriptor());
+    if (kind == platform::FileKind::directory) refuse(path, "file.kind", std::strerror(EISDIR));
+    if (kind != platform::FileKind::regular)
+        refuse(path, "file.kind", "not a regular file", "`-` reads standard input");
     return read_up_to(file.descriptor(), path);
 }
 

@@ -9,6 +9,7 @@
 #include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "files/paths.hpp"
+#include "platform/files.hpp"
 #include "scenario/meant_key.hpp"
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
@@ -48,7 +49,7 @@ std::string expected(const Key& key, std::span<const double> params) {
 
 // Text as a file name: forbidden characters become _.
 std::string as_name(std::string_view file) {
-    std::string_view stem = file.substr(file.rfind('/') + 1);
+    std::string_view stem = file.substr(platform::last_separator(file) + 1);
     if (const std::size_t dot = stem.rfind('.'); dot != stem.npos && dot > 0) stem = stem.substr(0, dot);
     std::string name;
     for (std::size_t at = 0; at < stem.size();) {
