@@ -75,6 +75,24 @@ def test_equal_lengths_hide_nothing(written: Any) -> None:
     assert (finding.old, finding.new) == ("a2", "a3")
 
 
+def test_two_exchanged_names_hide_behind_no_equal_numbers(written: Any) -> None:
+    """m3 for m2 and a3 for a2 in one entry: no single edit mends it, and the lecture's numbers are equal."""
+    text = LECTURE_GRAVITY.replace("t2 = -(m2*g*(a2/2)*cos(q2) + m3*g*(a2*", "t2 = -(m3*g*(a2/2)*cos(q2) + m3*g*(a3*")
+    verdict = arm3r.verify.gravity(written("g.m", text))
+    (finding,) = verdict.findings
+    assert finding.entry == [2] and finding.reads.startswith("-1/2 m3 g a2 C2 - m3 g a3 C2"), str(verdict)
+    assert "right for the numbers in the text" in verdict.warnings[0]
+
+
+def test_a_lost_length_hides_behind_no_number_that_is_1(written: Any) -> None:
+    text = LECTURE_GRAVITY.replace("(a3/2)", "1/2")
+    assert arm3r.verify.gravity(written("g.m", text)).ok  # a3 plays no part: it is written as 1
+    text = "a2, a3, m2, m3, g = 1.0, 1.0, 0.785, 0.785, 9.80665\nfrom math import cos\n\n\ndef gravity(q1, q2, q3):\n"
+    text += "    t3 = -m3*g/2*cos(q2+q3)\n    return 0, -(m2*g*a2/2 + m3*g*a2)*cos(q2) + t3, t3\n"
+    verdict = arm3r.verify.gravity(written("g.py", text))
+    assert {(one.old, one.new) for one in verdict.findings} == {("g", "a3*g")}, str(verdict)
+
+
 def test_numbers_that_are_not_the_arms(written: Any) -> None:
     path = written("g.m", LECTURE_GRAVITY.replace("g=9.80665", "g=9.81"))
     verdict = arm3r.verify.gravity(path)
@@ -324,7 +342,7 @@ def test_the_command_prints_json(written: Any, command: Any) -> None:
     ("name", "text", "words"),
     [
         ("missing.m", None, "cannot be read"),
-        ("x.m", "function J = jac(q)\nfor i = 1:3\n", "x.m:2:1: `for` is not read"),
+        ("x.m", "function J = jac(q)\nwhile q\n", "x.m:2:1: `while` is not read"),
         ("x.py", "def jacobian(q:\n", "x.py:1: this is not Python"),
         ("x.py", "def f(q):\n    return q\n", "--kind"),
         ("x.py", "def jacobian(q, friction, y, z):\n    return q\n", "the argument friction is not understood"),
@@ -349,9 +367,24 @@ HOSTILE = {
 }
 
 
+def test_the_search_for_an_edit_ends_in_time(written: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("arm3r_cpp.verify.judge.REPAIR_TIME", 0.0)
+    text = "from math import cos\n\n\ndef gravity(q1, q2, q3):\n    return [0, cos(q2)/(2 + cos(q3)), 1]\n"
+    verdict = arm3r.verify.gravity(written("gravity.py", text))
+    assert not verdict.ok and verdict.unexplained == [[2]]
+    assert "the search for an edit that mends it was ended after 0 s" in verdict.warnings
+
+
 GROWING = {
     "jacobian.m": ("function J = f(q1, q2, q3)\n  x = [q1 q2];\n" + "  x = [x x];\n" * 60 + "  J = [x; x; x];\nend\n",
                    "a matrix of 1 x 16 is too large"),
+    "loops.m": (
+        "function J = jacobian(q)\nfor a = 1:9000\nfor b = 1:9000\nx = 1;\nend\nend\nJ = q*q';\nend\n",
+        "takes more than 20000 steps",
+    ),
+    "range.m": ("function J = jacobian(q)\nfor i = 1:1e300\nJ = eye(3);\nend\nend\n", "a range has at most 20000"),
+    "cell.m": ("function J = jacobian(q)\nT = cell(1, 1e9);\nJ = eye(3);\nend\n", "of 1 x 1000000000 is too large"),
+    "handle.m": ("function J = jacobian(q)\nf = @(f, x) f(f, x);\nJ = f(f, q);\nend\n", ""),
     "jacobian.py": ("a = 1 << 99999999999\n\n\ndef jacobian(q):\n    return [[a] * 3] * 3\n", "raises"),
 }  # fmt: skip
 

@@ -99,9 +99,16 @@ def test_forward_dynamics_are_read_as_the_torque() -> None:
         return ARM.forward_dynamics(q, qd, tau - np.array([0, extra * np.sin(q[2]) * qd[1] ** 2, 0]))
 
     verdict = verify.forward(partial(formula, 0.3))
-    assert len(verdict.unexplained) == 2
-    (note,) = verdict.warnings
-    assert note.startswith("solved for the torque, t2 has 3/10 S3 qd2^2 where nothing is due"), note
+    words = "is wrong: solved for the torque, t2 has 3/10 S3 qd2^2 where nothing is due"
+    assert len(verdict.findings) == 2 and not verdict.unexplained
+    assert all(words in finding.cause for finding in verdict.findings), str(verdict)
+
+
+def test_a_rate_that_is_lost_is_read(written: Any) -> None:
+    text = DYNAMICS.replace("b*qd[1], 0]])", "b, 0]])")
+    verdict = verify.formula_verdict(f"{written('dynamics.py', text)}:coriolis_matrix")
+    (finding,) = verdict.findings
+    assert finding.entry == [3] and "S3 qd2 " in f"{finding.reads} ", str(verdict)
 
 
 def test_a_coriolis_matrix_is_judged_by_its_product() -> None:
@@ -155,6 +162,11 @@ def test_sympy_expressions_are_taken() -> None:
 def test_degrees_are_taken_where_the_names_say_so() -> None:
     verdict = verify.jacobian(lambda q1_deg, q2_deg, q3_deg: ARM.jacobian(np.radians([q1_deg, q2_deg, q3_deg])))
     assert verdict.ok and "angles in degrees" in verdict.found
+
+
+def test_names_that_say_degrees_are_kept_to() -> None:
+    verdict = verify.jacobian(lambda q1_deg, q2_deg, q3_deg: ARM.jacobian([q1_deg, q2_deg, q3_deg]))
+    assert not verdict.ok and "taken in radians, while the arguments' names" in verdict.findings[0].cause
 
 
 LAW = """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,10 @@ class Comparison:
     rows: int = 3
     degrees: bool = False
     shape: tuple[int, ...] = ()
+    error: float = 0.0
+    """The median difference, relative to the entries' scales."""
+    edited: dict[Any, Floats | None] = field(default_factory=dict)
+    """What the formula returns at the first samples with edits: the same for all that it may mean."""
 
     def __post_init__(self) -> None:
         self.known = sorted(set(self.parameters.values()))
@@ -72,6 +76,23 @@ class Comparison:
             return standard_form(self.kind, raw, self.truth.joints, samples.tiled("qd"))
         except UsageError as error:
             raise ProgramError(str(error)) from None
+
+    def first_values(self, edit: Edit) -> Floats:
+        """What the formula returns at the first samples with an edit, which is evaluated once.
+
+        Raises:
+            ProgramError: it failed.
+        """
+        key = (edit.start, edit.end, edit.new, self.degrees)
+        if key not in self.edited:
+            try:
+                self.edited[key] = self.values(self.first, edit)
+            except (ProgramError, ValueError):
+                self.edited[key] = None
+        values = self.edited[key]
+        if values is None:
+            raise ProgramError("the edit makes it fail")
+        return values
 
     def due(
         self, samples: Samples, changes: Mapping[str, Floats] | None = None, states: Mapping[str, Floats] | None = None

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from .._native import Floats
-from .comparison import Comparison, Solved, scales
+from .comparison import TOLERANCE, Comparison, Solved, scales
 from .coverage import seen_by_tests
+from .explain.budget import Budget
 from .explain.edits import Editor
 from .explain.hypotheses import hypotheses
 from .explain.reader import read_entries
@@ -20,13 +21,14 @@ from .explain.repair import Repair, cover, influential, tried, wrong_entries
 from .explain.terms import difference_words
 from .formula import Formula
 from .kinds import Kind, entry_name
-from .meaning import is_right_as_it_stands, meant, ways
+from .meaning import doubted, is_right_as_it_stands, meant, ways
 from .names import slot_of
 from .program.nodes import Edit, Node, ProcessEnded, ProgramError, line_and_column
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
 _MENDING_TIME = 3.0  # s, for a formula that fails
+REPAIR_TIME = 10.0  # s of computing, for the edits of all that a formula may mean
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
 
@@ -47,12 +49,11 @@ def judge(
             raise ProgramError("gives different numbers when it is called again with the same ones")
         if not np.isfinite(values).any():
             raise ProgramError("returns NaN or infinity instead of numbers")
-        verdicts = []
-        for case in cases:
-            verdicts.append((_verdict(case, progress), case))
-            if not _unexplained(verdicts[-1][0]):
-                break
-        verdict, case = min(verdicts, key=lambda one: _unexplained(one[0]))
+        budget = Budget(formula.program, REPAIR_TIME)
+        verdicts = _verdicts(cases, progress, budget)
+        if not verdicts[0][0].findings and (strict := _with_unused_numbers(cases[0], progress, budget)):
+            verdicts = [strict]
+        verdict, case = min(verdicts, key=lambda one: (len(one[0].unexplained), _without_cause(one[0])))
     except ProgramError as error:
         verdict = _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
         if not isinstance(error, ProcessEnded):
@@ -60,8 +61,7 @@ def judge(
         return verdict
     if verdict.findings and is_right_as_it_stands(case):
         _excuse(verdict, case)
-    elif len(verdicts) > 1:
-        other = next(one.convention for one in cases if one is not case)
+    elif other := next((one.convention for _, one in verdicts if one.convention != case.convention), ""):
         verdict.alternatives.append(f"in the convention {other} as many entries would be wrong")
     _judge_constants(verdict, case)
     verdict.ok = not verdict.findings
@@ -69,10 +69,35 @@ def judge(
     return verdict
 
 
+def _verdicts(
+    cases: Sequence[Comparison], progress: Progress | None, budget: Budget
+) -> list[tuple[Verdict, Comparison]]:
+    """The verdicts on a formula that may be meant in several ways, up to one that explains everything."""
+    verdicts: list[tuple[Verdict, Comparison]] = []
+    for number, case in enumerate(cases):
+        if verdicts and (not _without_cause(verdicts[-1][0]) or budget.is_over()):
+            break
+        share = budget.share(len(cases) - number)  # edits that were tried once cost nothing again
+        verdicts.append((_verdict(case, progress, share), case))
+    return verdicts
+
+
+def _with_unused_numbers(
+    case: Comparison, progress: Progress | None, budget: Budget
+) -> tuple[Verdict, Comparison] | None:
+    """The verdict on a right formula with others of the numbers that it does not use, if one edit puts them in."""
+    for strict in doubted(case.formula, case.kind, case.truth, case):
+        verdict = _verdict(strict, progress, budget)
+        edits = {(one.line, one.column, one.old, one.new) for one in verdict.findings}
+        if len(edits) == 1 and verdict.findings[0].old is not None:
+            return verdict, strict
+    return None
+
+
 def _excuse(verdict: Verdict, case: Comparison) -> None:
-    """What is right with the numbers in the text is wrong only if edits of it explain why others spoil it."""
+    """What is right with the numbers in the text is wrong only if edits or terms explain why others spoil it."""
     names = ", ".join(sorted({*case.parameters}))
-    if all(one.old is not None for one in verdict.findings):
+    if all(one.old is not None for one in verdict.findings) or _has_other_names(verdict, case):
         verdict.warnings.append(f"right for the numbers in the text; others of {names} show the mistake")
         return
     entries = ", ".join(entry_name(case.kind, one.entry) for one in verdict.findings if one.entry)
@@ -80,14 +105,21 @@ def _excuse(verdict: Verdict, case: Comparison) -> None:
     verdict.warnings = [f"right for the numbers in the text; with others of {names} it would differ in {entries}"]
 
 
-def _unexplained(verdict: Verdict) -> int:
+def _has_other_names(verdict: Verdict, case: Comparison) -> bool:
+    """Whether the wrong entries read what is due with other names in it: a3 for a2, and no bare number for either."""
+    wrong = case.wrong(case.values(case.second), case.second)
+    readings = read_entries(case, wrong)
+    return set(readings) == wrong and all(one.has_due_units for one in readings.values())
+
+
+def _without_cause(verdict: Verdict) -> int:
     """The findings that neither an edit nor a mistake of the whole explains."""
     words = (" reads ", " has ", " explain it")
     return sum(one.old is None and any(word in one.cause for word in words) for one in verdict.findings)
 
 
-def _verdict(case: Comparison, progress: Progress | None) -> Verdict:
-    """The verdict on a formula that is meant in one way."""
+def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Verdict:
+    """The verdict on a formula that is meant in one way; edits are tried as long as a budget lasts."""
     formula = case.formula
     verdict = Verdict(True, case.kind.name, case.convention, 0.0, file=formula.file, text=formula.text)
     values, due = case.values(case.second), case.due(case.second)
@@ -102,8 +134,9 @@ def _verdict(case: Comparison, progress: Progress | None) -> Verdict:
     if case.kind.name == "coriolis" and not wrong:
         _note_skewness(verdict, case)
     if wrong:
-        verdict.residual = verdict.residual if verdict.residual > 0 else _largest(values - due)
-        _explain(verdict, case, wrong, progress)
+        is_rounding = verdict.residual <= TOLERANCE * _largest(own_due)
+        verdict.residual = _largest(values - due) if is_rounding else verdict.residual
+        _explain(verdict, case, wrong, progress, budget)
     return verdict
 
 
@@ -193,16 +226,18 @@ def _only_structured(verdict: Verdict, values: Floats, due: Floats, wrong: froze
 # ---- why ------------------------------------------------------------------------------------------------------------
 
 
-def _explain(verdict: Verdict, case: Comparison, wrong: frozenset[int], progress: Progress | None) -> None:
+def _explain(
+    verdict: Verdict, case: Comparison, wrong: frozenset[int], progress: Progress | None, budget: Budget
+) -> None:
     causes = _hypotheses(case)
-    repairs = _repairs(case, wrong, progress)
+    repairs = _repairs(case, wrong, progress, budget=budget)
     reads = read_entries(case, wrong)
     chosen = cover(repairs, wrong)
     if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
         chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)
     joint = None
-    if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress)):
+    if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):
         joint, chosen = chosen[0].edit, [*chosen, *more]
     for place in sorted(wrong):
         found = reads.get(place)
@@ -216,24 +251,37 @@ def _explain(verdict: Verdict, case: Comparison, wrong: frozenset[int], progress
             verdict.unexplained.append(case.entry(place))
         if found and found.note and found.note not in verdict.warnings:
             verdict.warnings.append(found.note)
-    if case.kind.name == "forward" and not (causes or chosen):
-        verdict.warnings += _torque_readings(case)
+    if budget.is_over() and verdict.unexplained:
+        verdict.warnings.append(f"the search for an edit that mends it was ended after {REPAIR_TIME:g} s")
+    if case.kind.name == "forward" and verdict.unexplained:
+        _read_torque(verdict, case)
     verdict.alternatives += causes[1:]
     for repair in chosen:
         verdict.alternatives += _other_edits(case, repairs, repair)
 
 
-def _torque_readings(case: Comparison) -> list[str]:
-    """What the formula reads when it is solved for the torque, in the entries in which this differs."""
+def _read_torque(verdict: Verdict, case: Comparison) -> None:
+    """Say what the formula reads when it is solved for the torque, in the entries in which this differs."""
     solved = Solved.of(case)
     values, due = solved.values(solved.second), solved.due(solved.second)
     wrong = wrong_entries(values, due, scales(due), 1e-8)
     readings = read_entries(solved, wrong)
-    return [
-        f"solved for the torque, t{place + 1} {difference_words(found.reads, found.due)}"
-        for place, found in readings.items()
+    words = [
+        f"t{place + 1} {difference_words(found.reads, found.due)}"
+        for place, found in sorted(readings.items())
         if found.reads and found.due
     ]
+    if not words:
+        return
+    if len(words) < len(wrong):
+        verdict.warnings.append(f"solved for the torque, {'; '.join(words)}")
+        return
+    for finding in verdict.findings:
+        if finding.entry in verdict.unexplained:
+            finding.cause = (
+                f"{entry_name(case.kind, finding.entry)} is wrong: solved for the torque, {'; '.join(words)}."
+            )
+    verdict.unexplained = []
 
 
 def _hypotheses(case: Comparison) -> list[str]:
@@ -256,6 +304,7 @@ def _hypotheses(case: Comparison) -> list[str]:
             case.truth.joints,
             rotation and (lambda: rotation(case.convention, states["q"])),
             case.given(samples),
+            in_degrees=case.degrees,
         )
 
     for one, other in zip(list_at(fitting), list_at(fresh), strict=True):
@@ -269,12 +318,17 @@ def _hypotheses(case: Comparison) -> list[str]:
 
 
 def _repairs(
-    case: Comparison, wrong: frozenset[int], progress: Progress | None, statements: Sequence[Node] = ()
+    case: Comparison,
+    wrong: frozenset[int],
+    progress: Progress | None,
+    statements: Sequence[Node] = (),
+    budget: Budget | None = None,
 ) -> list[Repair]:
     """The edits of the text that make wrong entries right, confirmed at fresh states and arms.
 
     Args:
         statements: those that are edited; by default the ones that wrong entries depend on.
+        budget: how long edits are tried; by default all of them.
     """
     formula = case.formula
     if not formula.text or not formula.nodes:
@@ -285,13 +339,13 @@ def _repairs(
     due = {everywhere: case.due(case.second if everywhere else case.first) for everywhere in (False, True)}
 
     def evaluate(edit: Edit, everywhere: bool) -> Floats:
-        return case.values(case.second if everywhere else case.first, edit)
+        return case.values(case.second, edit) if everywhere else case.first_values(edit)
 
     def wrong_at(everywhere: bool) -> Callable[[Floats], frozenset[int]]:
         return lambda values: case.wrong(values, case.second if everywhere else case.first, due[everywhere])
 
     statements = statements or influential(formula.nodes, formula.text, evaluate, case.values(case.first), wrong)
-    found = tried(editor.all(statements), evaluate, wrong_at(False), wrong_at(True), wrong, progress)
+    found = tried(editor.all(statements), evaluate, wrong_at(False), wrong_at(True), wrong, progress, budget)
     return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
 
 
@@ -302,7 +356,7 @@ def _hold_together(case: Comparison, chosen: list[Repair], wrong: frozenset[int]
         formula = formula.edited(one.edit) if formula else None
     if formula is None:
         return False
-    other = replace(case, formula=formula)
+    other = replace(case, formula=formula, edited={})
     left = wrong - frozenset(place for one in chosen for place in one.mended)
     try:
         return all(other.wrong(other.values(samples), samples) <= left for samples in (other.second, other.fresh))
@@ -310,14 +364,16 @@ def _hold_together(case: Comparison, chosen: list[Repair], wrong: frozenset[int]
         return False
 
 
-def _after(case: Comparison, edit: Edit, left: frozenset[int], progress: Progress | None) -> list[Repair]:
+def _after(
+    case: Comparison, edit: Edit, left: frozenset[int], progress: Progress | None, budget: Budget
+) -> list[Repair]:
     """The edit that mends more entries in the text with a first edit, moved to its place in the text without it."""
     formula = case.formula.edited(edit)
     if formula is None:
         return []
-    other = replace(case, formula=formula)
+    other = replace(case, formula=formula, edited={})
     other.shape = case.shape
-    found = [one for one in _repairs(other, left, progress) if not _overlap(one.edit, edit)]
+    found = [one for one in _repairs(other, left, progress, budget=budget) if not _overlap(one.edit, edit)]
     shift = len(edit.new) - (edit.end - edit.start)
     moved = [
         one.edit.start - shift if one.edit.start >= edit.start + len(edit.new) else one.edit.start for one in found

@@ -10,29 +10,52 @@ from typing import Any
 import numpy as np
 
 from ..errors import UsageError
-from .comparison import Comparison
+from .comparison import Comparison, scales
 from .formula import Formula
 from .kinds import Kind
 from .program.nodes import ProgramError
 from .samples import Samples
 from .truth.three_r import FOLLOWING
 
+_MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
 _DYNAMIC = ("mass", "coriolis", "inverse", "forward")
 
 
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
-    """The comparisons in which fewest entries are wrong: one, or one for each convention."""
+    """The comparisons in which fewest entries are wrong; where some are, all that may be meant, the likeliest first."""
     counted: list[tuple[int, Comparison]] = []
     for parameters in _choices(formula, kind, truth):
         counted += _counted(formula, kind, truth, parameters)
         if any(count == 0 for count, _ in counted):
             break
+    return _fewest(counted)
+
+
+def doubted(formula: Formula, kind: Kind, truth: Any, case: Comparison) -> list[Comparison]:
+    """For a formula that is right as long as numbers of it that it does not use keep their values: with others."""
+    parameters = next(_choices(formula, kind, truth))
+    if not set(case.parameters) < set(parameters):
+        return []
+    unused = _idle(Comparison(formula, truth, kind, parameters), set(parameters) - set(case.parameters))
+    if set(case.parameters) | unused != set(parameters):
+        return []
+    counted = [one for one in _counted(formula, kind, truth, parameters) if one[1].follows == FOLLOWING[0]]
+    return _fewest(counted)[:1]
+
+
+def _fewest(counted: list[tuple[int, Comparison]]) -> list[Comparison]:
+    """The comparisons with the fewest wrong entries: of what may follow a length, what comes nearest goes first."""
     fewest = min(count for count, _ in counted)
     best = [case for count, case in counted if count == fewest]
-    return [
-        next(case for case in best if case.convention == convention)
-        for convention in dict.fromkeys(case.convention for case in best)
-    ][: 2 if fewest else 1]
+    if fewest == 0:
+        return best[:1]
+    errors: dict[tuple[str, ...], float] = {}
+    for case in best:
+        errors[case.follows] = min(errors.get(case.follows, float("inf")), case.error)
+    meanings: dict[Any, Comparison] = {}
+    for case in sorted(best, key=lambda case: (errors[case.follows], FOLLOWING.index(case.follows))):
+        meanings.setdefault((tuple(case.parameters), case.due(case.second).tobytes()), case)
+    return list(meanings.values())[:_MOST_MEANINGS]
 
 
 def ways(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
@@ -86,15 +109,26 @@ def _counted(formula: Formula, kind: Kind, truth: Any, parameters: dict[str, str
     base = Comparison(formula, truth, kind, parameters)
     values = base.values(base.second)
     rows = 6 if kind.name == "jacobian" and values.shape[1] == 6 else 3
-    says_degrees = "deg" in " ".join([*formula.arguments, *formula.comments.lower().split()])
+    units = _units_of_angles(formula)
     varied = {quantity.rstrip("23") for quantity in parameters.values()} & {"length", "mass"}
     following = FOLLOWING if varied and (kind.name == "gravity" or kind.name in _DYNAMIC) else FOLLOWING[:1]
     first = truth.convention
     conventions = (first, *(one for one in truth.conventions if one != first))
-    for convention, follows, degrees in product(conventions, following, (False, True) if says_degrees else (False,)):
+    for convention, follows, degrees in product(conventions, following, units):
         case = replace(base, convention=convention, follows=follows, rows=rows, degrees=degrees)
         result = case.values(case.second) if degrees else values
-        yield len(case.wrong(result, case.second)), case
+        due = case.due(case.second)
+        wrong = case.wrong(result, case.second, due)
+        error = float(np.median(np.abs(result - due) / scales(due)))
+        case.error = float(f"{error:.6g}") if np.isfinite(error) else float("inf")
+        yield len(wrong), case
+
+
+def _units_of_angles(formula: Formula) -> tuple[bool, ...]:
+    """Whether angles may be in degrees, the likelier answer first: names of arguments decide it, comments do not."""
+    if any("deg" in name for name in formula.arguments):
+        return (True,)
+    return (False, True) if "deg" in formula.comments.lower() else (False,)
 
 
 def is_right_as_it_stands(case: Comparison) -> bool:

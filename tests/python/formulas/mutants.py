@@ -38,15 +38,9 @@ _PAIRS = {
 
 
 def python_mutants(text: str) -> list[str]:
-    """Every mutant of a Python text by one change inside of its functions."""
+    """Every mutant of a Python text by one change of what it computes."""
     tree = ast.parse(text)
-    places = [
-        node
-        for function in tree.body
-        if isinstance(function, ast.FunctionDef)
-        for statement in function.body
-        for node in ast.walk(statement)
-    ]
+    places = [node for statement in _computing(tree) for node in ast.walk(statement)]
     constants = {
         id(node.value) for node in places if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
     }
@@ -60,6 +54,18 @@ def python_mutants(text: str) -> list[str]:
                 found.append(ast.unparse(ast.fix_missing_locations(tree)) + "\n")
             vars(node).update(before)
     return list(dict.fromkeys(found))
+
+
+def _computing(tree: ast.Module) -> Iterator[ast.stmt]:
+    """The statements in functions and methods, and those outside that compute something from names."""
+    for statement in tree.body:
+        if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
+            yield from statement.body
+        elif isinstance(statement, (ast.Assign, ast.AugAssign)) and any(
+            isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in ("np", "sp", "sympy")
+            for node in ast.walk(statement.value)
+        ):
+            yield statement
 
 
 def _changed(node: ast.AST, change: int) -> bool:

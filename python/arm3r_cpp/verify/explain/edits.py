@@ -27,7 +27,9 @@ class Editor:
         self.text, self.nodes, self.language = text, list(nodes), language
         self.factors = list(dict.fromkeys(factors))[:8]
         every = [inner for node in self.nodes for inner in node.walk()]
-        self.names = list(dict.fromkeys(one.word for one in every if one.kind == "name"))[:40]
+        named = ("name", "call") if language == "matlab" else ("name",)  # x(2) may be an element
+        words = (one.word for one in every if one.kind in named and one.word not in _TRIGONOMETRIC)
+        self.names = list(dict.fromkeys(words))[:40]
         self.trig = [
             one for one in every if one.kind == "call" and _last(one.word) in _TRIGONOMETRIC and len(one.parts) == 1
         ]
@@ -35,6 +37,8 @@ class Editor:
             :14
         ]
         self.products = list(dict.fromkeys(self._of(one) for one in self._terms() if one.kind != "number"))[:24]
+        self.waves = [name for name in self.names if re.fullmatch(r"[csCS]_?\d{1,3}", name)][:8]
+        """Names such as c2, s23, which stand for a cosine or a sine."""
         self.power = "**" if language == "python" else "^"
 
     def _of(self, node: Node) -> str:
@@ -75,12 +79,12 @@ class Editor:
         return sorted(found, key=lambda edit: edit.rank)[:_MOST]
 
     def _of_node(self, node: Node, parent: Node) -> Iterator[Edit]:
-        if node.kind in ("other", "row", "all", "range", "assign"):
+        if node.kind in ("other", "row", "all", "last", "range", "cell", "handle", "assign"):
             if node.kind == "other" and parent.kind != "index" and not node.word.startswith(("np", "math")):
                 yield from self._wrapped(node, parent)
             return
         yield from getattr(self, f"_{node.kind}", self._nothing)(node, parent)
-        is_value = parent.kind not in ("index", "other") or parent.parts[:1] != (node,)
+        is_value = parent.kind not in ("index", "part", "other") or parent.parts[:1] != (node,)
         if is_value and not (parent.kind == "index" and node.kind == "number"):
             yield from self._wrapped(node, parent)
 
@@ -123,6 +127,8 @@ class Editor:
         for new in dict.fromkeys(values):
             yield self._at(node, f"{new:.10g}", 2, parent if new < 0 else None)
         yield from (self._at(node, name, 6) for name in self.factors)
+        if value == 1 and parent.kind != "index":
+            yield from (self._at(node, name, 4) for name in self.waves)
         if value == 0 and parent.kind != "index":
             yield from (self._at(node, term, 4) for term in self.products)
 
@@ -133,13 +139,15 @@ class Editor:
 
     def _binary(self, node: Node, parent: Node) -> Iterator[Edit]:
         left, right = node.parts
-        for word in ("+", "-", "*", "/", self.power, "@" if self.language == "python" else "*"):
+        for word in ("+", "-", "*", "/", self.power, *(("@",) if self.language == "python" else ("\\", "./"))):
             if word != node.word:
                 yield Edit(
                     node.at, node.at + len(node.word), word, 1 if word in _ADDITIVE and node.word in _ADDITIVE else 2
                 )
         yield self._at(node, self._of(left), 3, parent)
         yield self._at(node, self._of(right) if node.word != "-" else f"-{self._of(right)}", 3, parent)
+        if node.word == "@":
+            yield self._at(node, f"np.linalg.solve({self._of(left)}, {self._of(right)})", 5)
         if node.word in ("-", "/", "@", "*"):
             yield self._at(node, f"{self._of(right)} {node.word} {self._of(left)}", 4, parent)
         if node.word in (*_ADDITIVE, *_MULTIPLICATIVE) and left.kind == "binary" and left.word in _ADDITIVE:
@@ -174,6 +182,7 @@ class Editor:
 
     def _transpose(self, node: Node, parent: Node) -> Iterator[Edit]:
         yield self._at(node, self._of(node.parts[0]), 1, parent)
+        yield from (self._at(node, name, 5) for name in self.names if node.parts[0].kind == "name")
 
     def _matrix(self, node: Node, parent: Node) -> Iterator[Edit]:
         """Two elements of a list, or two rows of a matrix, in the other order; the whole transposed."""
@@ -207,6 +216,7 @@ class Editor:
             yield self._at(node, f"{whole}{self.power}2", 4)
             for call in {one.word + one_arg for one in self.trig for one_arg in (f"({self._of(one.parts[0])})",)}:
                 yield Edit(node.start, node.end, f"{whole}*{call}", 5)
+            yield from (Edit(node.start, node.end, f"{whole}*{name}", 5) for name in self.waves)
         is_end_of_sum = parent.kind in ("assign", "group", "matrix", "row") or (parent.kind == "binary" and not is_sum)
         if is_end_of_sum and (is_sum or parent.kind in ("assign", "group", "matrix", "row", "binary")):
             brackets = parent.kind == "binary" and not is_sum

@@ -30,31 +30,42 @@ def hypotheses(
     joints: int,
     rotation: Callable[[], Floats] | None,
     scales: dict[str, Floats],
+    *,
+    in_degrees: bool = False,
 ) -> Iterator[Hypothesis]:
-    """All of them, each to be evaluated when it is asked for."""
-    yield from _inputs(truth, states, joints, kind)
+    """All of them, each to be evaluated when it is asked for.
+
+    Args:
+        in_degrees: whether the formula is given angles in degrees; `states` are in radians.
+    """
+    yield from _inputs(truth, states, joints, kind, in_degrees)
     yield from _outputs(kind, lambda: truth(states, {}), joints, rotation)
     yield from _quantities(truth, states, scales)
 
 
-def _inputs(truth: Truth, states: States, joints: int, kind: str) -> Iterator[Hypothesis]:
+def _inputs(truth: Truth, states: States, joints: int, kind: str, in_degrees: bool) -> Iterator[Hypothesis]:
     q = states["q"]
 
     def with_q(new: Floats, **other: Floats) -> Callable[[], Floats]:
         return lambda: truth({**states, "q": new, **other}, {})
 
-    yield Hypothesis("the angles are taken in degrees; radians are due", with_q(np.deg2rad(q)))
-    yield Hypothesis(
-        "the angles are turned into degrees before they are used; they are due in radians", with_q(np.rad2deg(q))
-    )
+    if in_degrees:
+        words = "the angles are taken in radians, while the arguments' names or the comments say degrees"
+        yield Hypothesis(words, with_q(np.rad2deg(q)))
+        yield Hypothesis("the angles are turned from degrees into radians twice", with_q(np.deg2rad(q)))
+    else:
+        yield Hypothesis("the angles are taken in degrees; radians are due", with_q(np.deg2rad(q)))
+        words = "the angles are turned into degrees before they are used; they are due in radians"
+        yield Hypothesis(words, with_q(np.rad2deg(q)))
     yield Hypothesis("all joint angles have the wrong sign", with_q(-q))
     for joint in range(joints):
         turned = q.copy()
         turned[:, joint] *= -1
         yield Hypothesis(f"q{joint + 1} has the wrong sign", with_q(turned), 2)
         turned = q.copy()
-        turned[:, joint] = np.deg2rad(turned[:, joint])
-        yield Hypothesis(f"q{joint + 1} is taken in degrees; radians are due", with_q(turned), 2)
+        turned[:, joint] = (np.rad2deg if in_degrees else np.deg2rad)(turned[:, joint])
+        units = ("radians", "degrees") if in_degrees else ("degrees", "radians")
+        yield Hypothesis(f"q{joint + 1} is taken in {units[0]}; {units[1]} are due", with_q(turned), 2)
     for joint in range(1, joints):
         absolute = q.copy()
         absolute[:, joint] -= absolute[:, joint - 1]

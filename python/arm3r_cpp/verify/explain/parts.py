@@ -26,26 +26,29 @@ class Part(NamedTuple):
 
 def parts_of(kind: str, joints: int) -> list[Part]:
     """The parts of a kind of formula; a single one where it depends on nothing but the angles."""
-    units = np.eye(joints)
-    rest: tuple[tuple[float, Vectors], ...] = ((-1.0, {}),)
+    rest = Part("", ((1.0, {}),), lambda x: np.ones(len(x["q"])))
     if kind not in ("coriolis", "inverse"):
-        return [Part("", ((1.0, {}),), lambda x: np.ones(len(x["q"])))]
-    found = []
-    for j in range(joints):
-        square = ((1.0, {"qd": units[j]}), *rest)
-        found.append(Part(f"qd{j + 1}^2", square, lambda x, j=j: x["qd"][:, j] ** 2))  # type: ignore[misc]
-    for j, k in combinations(range(joints), 2):
-        mixed: tuple[tuple[float, Vectors], ...] = (
-            (1.0, {"qd": units[j] + units[k]}),
-            (-1.0, {"qd": units[j]}),
-            (-1.0, {"qd": units[k]}),
-            (1.0, {}),
-        )
-        found.append(Part(f"qd{j + 1} qd{k + 1}", mixed, lambda x, j=j, k=k: x["qd"][:, j] * x["qd"][:, k]))  # type: ignore[misc]
-    if kind == "coriolis":
-        return found
-    masses = [
-        Part(f"qdd{j + 1}", ((1.0, {"qdd": units[j]}), *rest), lambda x, j=j: x["qdd"][:, j])  # type: ignore[misc]
-        for j in range(joints)
-    ]
-    return [*masses, *found, Part("", ((1.0, {}),), lambda x: np.ones(len(x["q"])))]
+        return [rest]
+    units = np.eye(joints)
+    found = [_linear("qdd", j, units[j]) for j in range(joints) if kind == "inverse"]
+    found += [_square(j, units[j]) for j in range(joints)]
+    found += [_mixed(j, k, units[j], units[k]) for j, k in combinations(range(joints), 2)]
+    return [*found, *(_linear("qd", j, units[j]) for j in range(joints)), rest]
+
+
+def _linear(vector: str, j: int, unit: Floats) -> Part:
+    """The odd part; nothing of it is due before a rate, but a lost factor leaves one."""
+    weights: tuple[tuple[float, Vectors], ...] = ((0.5, {vector: unit}), (-0.5, {vector: -unit}))
+    return Part(f"{vector}{j + 1}", weights, lambda x: x[vector][:, j])
+
+
+def _square(j: int, unit: Floats) -> Part:
+    weights: tuple[tuple[float, Vectors], ...] = ((0.5, {"qd": unit}), (0.5, {"qd": -unit}), (-1.0, {}))
+    return Part(f"qd{j + 1}^2", weights, lambda x: x["qd"][:, j] ** 2)
+
+
+def _mixed(j: int, k: int, one: Floats, other: Floats) -> Part:
+    weights: tuple[tuple[float, Vectors], ...] = tuple(
+        (0.25 * first * second, {"qd": first * one + second * other}) for first in (1, -1) for second in (1, -1)
+    )
+    return Part(f"qd{j + 1} qd{k + 1}", weights, lambda x: x["qd"][:, j] * x["qd"][:, k])

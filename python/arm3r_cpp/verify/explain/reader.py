@@ -13,7 +13,7 @@ from ..program.nodes import ProgramError
 from ..samples import Samples
 from .parts import Part, parts_of
 from .spectrum import Spectrum, read
-from .terms import Parameters, Term, sum_words, terms_of
+from .terms import Parameters, Term, is_simple_number, sum_words, terms_of
 
 _VARIED: dict[str, tuple[str, ...]] = {
     "jacobian": ("length2", "length3"),
@@ -24,10 +24,16 @@ _DYNAMIC = ("length2", "com2", "com3", "mass2", "mass3", "inertia2", "inertia3",
 _READ = (*_VARIED, "mass", "coriolis", "inverse")
 
 
+_UNITS = {"length": (1, 0, 0), "com": (1, 0, 0), "height": (1, 0, 0), "mass": (0, 1, 0), "inertia": (2, 1, 0)}
+"""Powers of a length, a mass and g."""
+
+
 class Reading(NamedTuple):
     reads: str | None
     due: str | None
     note: str = ""
+    has_due_units: bool = False
+    """Whether all terms have simple numbers and the units of what is due: no quantity is a bare number in them."""
 
 
 def read_entries(case: Any, wrong: frozenset[int]) -> dict[int, Reading]:
@@ -116,7 +122,16 @@ class _Reader:
         due_words = sum_words(due_terms) if due_terms is not None else None
         if terms is None or not self._is_whole(place):
             return Reading(None, due_words)
-        return Reading(sum_words(terms), due_words, self._note())
+        units = {self._units(term) for term in (*terms, *(due_terms or []))}
+        is_simple = all(is_simple_number(term.number) for term in (*terms, *(due_terms or [])))
+        return Reading(sum_words(terms), due_words, self._note(), is_simple and len(units) == 1)
+
+    def _units(self, term: Term) -> tuple[int, ...]:
+        quantities = {shown: quantity for quantity, shown in self.shown.items()}
+        total = np.zeros(3, int)
+        for name, power in term.powers:
+            total += power * np.array(_UNITS.get(quantities.get(name, "").rstrip("0123456789"), (0, 0, 1)))
+        return tuple(map(int, total))
 
     def _is_whole(self, place: int) -> bool:
         """Whether the parts give the entry at random states."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..._native import Floats
 from ..program.nodes import Edit, Node, ProgramError
+from .budget import Budget
 
 Evaluate = Callable[[Edit, bool], Floats]
 """The formula with an edit at the first samples, or with True at all of them: (rows, entries)."""
@@ -34,15 +35,17 @@ def tried(
     wrong_all: Callable[[Floats], frozenset[int]],
     wrong: frozenset[int],
     progress: Progress | None = None,
+    budget: Budget | None = None,
 ) -> list[Repair]:
     """The edits that make some wrong entries right and no right one wrong, the best ones first.
 
-    They are tried in the order of their ranks, up to the first rank with one that mends everything.
+    They are tried in the order of their ranks, up to the first rank with one that mends everything, as long as the
+    budget lasts.
     """
     found: list[Repair] = []
     enough = 100
     for number, edit in enumerate(edits):
-        if edit.rank > enough:
+        if edit.rank > enough or (budget and budget.is_over()):
             break
         if progress and number % 10 == 0:
             progress(number, len(edits))

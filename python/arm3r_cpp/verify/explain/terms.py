@@ -45,6 +45,12 @@ def number_words(number: float) -> str:
     return f"{number:.9g}"
 
 
+def is_simple_number(number: float) -> bool:
+    """Whether it is a fraction of small numbers."""
+    fraction = Fraction(number).limit_denominator(144)
+    return bool(fraction) and abs(float(fraction) / number - 1) < 1e-7
+
+
 def sum_words(terms: Sequence[Term]) -> str:
     """ "-a3 S1 S23 + a2 C2"; "0" for no terms."""
     if not terms:
@@ -111,10 +117,6 @@ class Parameters:
         number = float(np.mean(coefficient / monomial))
         return (number, powers) if np.abs(coefficient - number * monomial).max() <= limit else None
 
-    def is_simple(self, number: float) -> bool:
-        fraction = Fraction(number).limit_denominator(144)
-        return bool(fraction) and abs(float(fraction) / number - 1) < 1e-7
-
     @cache  # noqa: B019
     def _dictionary(self) -> tuple[list[tuple[int, ...]], Floats]:
         powers = [one for one in product(range(3), repeat=len(self.names)) if sum(one) <= 4]
@@ -130,7 +132,7 @@ class Parameters:
             near = np.abs(fitted - np.round(fitted)).max(axis=1, initial=0) < 1e-4
             for place in np.flatnonzero(near):
                 other = self.single(rest[place], limit)
-                if other and self.is_simple(other[0]):
+                if other and is_simple_number(other[0]):
                     return [(number, powers[place]), other]
         return None
 
@@ -145,7 +147,7 @@ class Parameters:
         if np.abs(coefficient).max() <= limit:
             return []
         alone = self.single(coefficient, limit)
-        if alone and (self.is_simple(alone[0]) or not due):
+        if alone and (is_simple_number(alone[0]) or not due):
             return [alone]
         return (
             self._nearest(coefficient, due, limit)
@@ -171,7 +173,7 @@ class Parameters:
                 if np.abs(rest).max() <= limit:
                     return chosen
                 other = self.single(rest, limit)
-                if other and (any_number or self.is_simple(other[0])):
+                if other and (any_number or is_simple_number(other[0])):
                     return [*chosen, other]
         return None
 

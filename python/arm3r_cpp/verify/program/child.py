@@ -6,6 +6,7 @@ import json
 import os
 import struct
 import sys
+import time
 from typing import IO, Any
 
 import numpy as np
@@ -45,9 +46,9 @@ def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> N
     call = Call(tuple(one if isinstance(one, int) else tuple(one) for one in head["slots"]), head["lifted"])
     try:
         values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
-        send(answers, {"shape": values.shape}, np.ascontiguousarray(values).tobytes())
+        send(answers, {"shape": values.shape, "seconds": time.process_time()}, np.ascontiguousarray(values).tobytes())
     except ProgramError as error:
-        send(answers, {"error": str(error), "line": error.line}, b"")
+        send(answers, {"error": str(error), "line": error.line, "seconds": time.process_time()}, b"")
     except MemoryError:
         send(answers, {"error": "needs too much memory", "line": None}, b"")
 

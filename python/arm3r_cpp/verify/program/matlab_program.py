@@ -3,64 +3,33 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import UsageError
+from .matlab_functions import FUNCTIONS, MAX_SIZE, OPERATORS, check_size, integer, number, result_of, stacked
 from .matlab_reader import Function, Statement, read, read_expression
 from .nodes import Call, Constant, Edit, Node, ProgramError, line_and_column
 
 Floats = NDArray[np.float64]
 _MAX_CALLS = 2000
-_MAX_SIZE = 12  # rows or columns of a matrix
+_MAX_STEPS = 20_000  # statements and turns of loops of one evaluation
 
 
-def _power(base: Floats, exponent: Floats) -> Floats:
-    """Element by element; at one state with the bits of Python's `**`, which np.power does not always have."""
-    if len(base) > 1 or len(exponent) > 1 or exponent.size > 1:
-        return np.power(base, exponent)
-    power = exponent.item()
-    return base**power if base.size > 1 else np.full((1, 1, 1), np.float64(base.item()) ** power)
+class Handle(NamedTuple):
+    """An anonymous function, with the variables of the place where it stands."""
 
-
-_ELEMENTWISE: dict[str, Callable[..., Any]] = {
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
-    "sqrt": np.sqrt,
-    "abs": np.abs,
-    "exp": np.exp,
-    "log": np.log,
-    "asin": np.arcsin,
-    "acos": np.arccos,
-    "atan": np.arctan,
-    "atan2": np.arctan2,
-    "sign": np.sign,
-    "tanh": np.tanh,
-    "deg2rad": np.deg2rad,
-    "rad2deg": np.rad2deg,
-    "sind": lambda x: np.sin(np.deg2rad(x)),
-    "power": _power,
-    "cosd": lambda x: np.cos(np.deg2rad(x)),
-    "tand": lambda x: np.tan(np.deg2rad(x)),
-    "hypot": np.hypot,
-}
-_OPERATORS: dict[str, Callable[..., Any]] = {
-    "+": np.add,
-    "-": np.subtract,
-    ".*": np.multiply,
-    "./": np.divide,
-    ".^": _power,
-}
-_OTHERS = ("transpose", "inv", "eye", "zeros", "ones", "diag", "det", "cross", "dot", "norm", "sum", "double")
-FUNCTIONS = (*_ELEMENTWISE, *_OTHERS, "pi")
+    names: tuple[str, ...]
+    body: Node
+    variables: dict[str, Any]
 
 
 class MatlabProgram:
-    """A MATLAB function file; every value is an array (states, rows, columns)."""
+    """A MATLAB function file; a value is an array (states, rows, columns), a list for a cell array, or a `Handle`."""
 
     def __init__(self, text: str, file: str, function: str | None = None) -> None:
         self.text, self.file = text, file
@@ -70,7 +39,7 @@ class MatlabProgram:
         self.function = function or next(iter(self.functions))
         if not self.functions[self.function].outputs:
             raise UsageError(f"{file}:{self.functions[self.function].line}: {self.function} has no output")
-        self._calls = 0
+        self._calls = self._steps = 0
         self._known: dict[str, Floats] = {}
         self._replaced: tuple[Statement, Node] | None = None
 
@@ -86,7 +55,8 @@ class MatlabProgram:
         return " ".join(line.split("%", 1)[1] for line in self.text.splitlines() if "%" in line)
 
     def statements(self) -> list[Statement]:
-        return [statement for function in self.functions.values() for statement in function.body]
+        every = [statement for function in self.functions.values() for statement in function.body]
+        return [inner for statement in every for inner in statement.walk()]
 
     def nodes(self) -> list[Node]:
         return [Node("assign", one.start, one.end, (one.value,)) for one in self.statements()]
@@ -98,9 +68,14 @@ class MatlabProgram:
         found = []
         for one in self.statements():
             (name, index), value = one.targets[0], one.value
-            if len(one.targets) == 1 and index is None and count[name] == 1 and self._is_number(value):
-                number = float(self._value(value, {})[0, 0, 0])
-                found.append(Constant(name, number, value.start, value.end))
+            if (
+                one.body is None
+                and len(one.targets) == 1
+                and index is None
+                and count[name] == 1
+                and self._is_number(value)
+            ):
+                found.append(Constant(name, float(self._value(value, {})[0, 0, 0]), value.start, value.end))
         return found
 
     def _is_number(self, node: Node) -> bool:
@@ -113,7 +88,7 @@ class MatlabProgram:
         Raises:
             ProgramError: the function failed.
         """
-        self._calls = 0
+        self._calls = self._steps = 0
         self._replaced = self._edited(edit) if edit else None
         self._known = {name: table[:, column].reshape(-1, 1, 1) for name, column in call.lifted.items()}
         inputs = [table[:, [slot] if isinstance(slot, int) else list(slot)][:, :, None] for slot in call.slots]
@@ -122,6 +97,8 @@ class MatlabProgram:
                 outputs = self._run(self.functions[self.function], inputs)
             finally:
                 self._replaced = None
+        if not all(isinstance(one, np.ndarray) for one in outputs):
+            raise ProgramError("returns a cell array or a function instead of numbers")
         outputs = [np.broadcast_to(one, (len(table), *one.shape[1:])) for one in outputs]
         if len(outputs) == 1:
             result = outputs[0]
@@ -136,7 +113,7 @@ class MatlabProgram:
         Raises:
             ProgramError: the function failed.
         """
-        self._calls = 0
+        self._calls = self._steps = 0
         columns = [np.asarray(one, np.float64) for one in arguments]
         inputs = [(one if one.ndim == 2 else one.reshape(-1, 1))[np.newaxis] for one in columns]
         with np.errstate(all="ignore"):
@@ -153,7 +130,7 @@ class MatlabProgram:
                     break
         raise ProgramError("the edit gives no MATLAB")
 
-    def _run(self, function: Function, inputs: list[Floats]) -> list[Floats]:
+    def _run(self, function: Function, inputs: list[Any]) -> list[Any]:
         self._calls += 1
         if self._calls > _MAX_CALLS:
             raise ProgramError(f"calls functions more than {_MAX_CALLS} times", function.line)
@@ -162,18 +139,53 @@ class MatlabProgram:
                 f"{function.name} takes {len(function.inputs)} arguments, got {len(inputs)}", function.line
             )
         variables = dict(zip(function.inputs, inputs, strict=False))
-        for statement in function.body:
-            self._assign(statement, variables)
+        self._execute(function.body, variables)
         for name in function.outputs:
             if name not in variables:
                 raise ProgramError(f"the output {name} is not assigned", function.line)
         return [variables[name] for name in function.outputs]
 
-    def _assign(self, statement: Statement, variables: dict[str, Floats]) -> None:
-        value = statement.value
-        if self._replaced and self._replaced[0] is statement:
-            value = self._replaced[1]
+    def _execute(self, statements: list[Statement], variables: dict[str, Any]) -> None:
+        for statement in statements:
+            self._steps += 1
+            if self._steps > _MAX_STEPS:
+                line, _ = line_and_column(self.text, statement.start)
+                raise ProgramError(f"takes more than {_MAX_STEPS} steps", line)
+            if statement.body is None:
+                self._assign(statement, variables)
+                continue
+            for value in self._turns(statement, variables):
+                self._steps += 1
+                variables[statement.targets[0][0]] = value
+                self._execute(statement.body, variables)
+
+    def _value_of(self, statement: Statement) -> Node:
+        return self._replaced[1] if self._replaced and self._replaced[0] is statement else statement.value
+
+    def _turns(self, statement: Statement, variables: dict[str, Any]) -> Iterator[Floats]:
+        """The values of a loop's variable: numbers of a range, or the columns of a matrix."""
+        node = self._value_of(statement)
+        while node.kind == "group":
+            (node,) = node.parts
+        with self._at(statement):
+            if node.kind == "range":
+                return (number(one) for one in self._range(node, variables))
+            matrix = self._array(node, variables)
+            return (matrix[:, :, [column]] for column in range(matrix.shape[2]))
+
+    @contextmanager
+    def _at(self, statement: Statement) -> Iterator[None]:
+        """Errors of the program get the statement's line."""
         try:
+            yield
+        except ProgramError as error:
+            raise ProgramError(str(error), error.line or line_and_column(self.text, statement.start)[0]) from None
+        except (ValueError, IndexError, np.linalg.LinAlgError, RecursionError) as error:
+            raise ProgramError(str(error).split("\n")[0], line_and_column(self.text, statement.start)[0]) from None
+
+    def _assign(self, statement: Statement, variables: dict[str, Any]) -> None:
+        value = self._value_of(statement)
+        with self._at(statement):
             is_one = len(statement.targets) == 1
             values = [self._value(value, variables)] if is_one else self._several(value, variables)
             for (name, index), given in zip(statement.targets, values, strict=False):
@@ -183,35 +195,65 @@ class MatlabProgram:
                     variables[name] = self._known[name]
                 else:
                     variables[name] = given
-        except ProgramError as error:
-            raise ProgramError(str(error), error.line or line_and_column(self.text, statement.start)[0]) from None
-        except (ValueError, IndexError, np.linalg.LinAlgError, RecursionError) as error:
-            raise ProgramError(str(error).split("\n")[0], line_and_column(self.text, statement.start)[0]) from None
 
-    def _several(self, node: Node, variables: dict[str, Floats]) -> list[Floats]:
+    def _several(self, node: Node, variables: dict[str, Any]) -> list[Any]:
         if node.kind == "call" and node.word in self.functions:
             return self._run(self.functions[node.word], [self._value(part, variables) for part in node.parts])
         raise ProgramError("several outputs come only from a local function")
 
-    def _value(self, node: Node, variables: dict[str, Floats]) -> Floats:
+    def _array(self, node: Node, variables: dict[str, Any]) -> Floats:
+        """The value of a node that is a matrix of numbers."""
+        value = self._value(node, variables)
+        if not isinstance(value, np.ndarray):
+            raise ProgramError(f"{self.text[node.start : node.end]!r} is no number")
+        return value
+
+    def _value(self, node: Node, variables: dict[str, Any]) -> Any:
         if node.kind == "number":
-            return np.full((1, 1, 1), float(node.word.lower().replace("d", "e")))
-        if node.kind == "name":
+            return number(float(node.word.lower().replace("d", "e")))
+        if node.kind in ("name", "last"):
             return variables[node.word] if node.word in variables else self._call(node, variables)
         if node.kind == "group":
             return self._value(node.parts[0], variables)
         if node.kind == "unary":
-            inner = self._value(node.parts[0], variables)
+            inner = self._array(node.parts[0], variables)
             return -inner if node.word == "-" else inner
         if node.kind == "binary":
-            return self._binary(node.word, *(self._value(part, variables) for part in node.parts))
+            return self._binary(node.word, *(self._array(part, variables) for part in node.parts))
         if node.kind == "transpose":
-            return np.swapaxes(self._value(node.parts[0], variables), 1, 2)
+            return np.swapaxes(self._array(node.parts[0], variables), 1, 2)
         if node.kind == "matrix":
-            return self._matrix(node, variables)
+            return stacked([self._row(row, variables) for row in node.parts] or [np.zeros((1, 0, 0))], 1)
+        if node.kind == "range":
+            numbers = self._range(node, variables)
+            check_size(1, len(numbers))
+            return np.array(numbers, float).reshape(1, 1, -1)
         if node.kind == "call":
             return self._call(node, variables)
+        return self._other_value(node, variables)
+
+    def _other_value(self, node: Node, variables: dict[str, Any]) -> Any:
+        """Cell arrays, parts of their elements, and anonymous functions."""
+        if node.kind == "cell":
+            check_size(1, sum(len(row.parts) for row in node.parts))
+            return [self._value(part, variables) for row in node.parts for part in row.parts]
+        if node.kind == "part":
+            return self._index(self._array(node.parts[0], variables), node.parts[1:], variables)
+        if node.kind == "handle":
+            names = node.info if isinstance(node.info, tuple) else ()
+            return Handle(names, node.parts[0], dict(variables))
         raise ProgramError(f"{self.text[node.start : node.end]!r} is not read here")
+
+    def _row(self, row: Node, variables: dict[str, Any]) -> Floats:
+        return stacked([self._array(part, variables) for part in row.parts], 2)
+
+    def _range(self, node: Node, variables: dict[str, Any]) -> list[float]:
+        """The numbers of first:last or first:step:last."""
+        first, *step, last = (self._array(part, variables) for part in node.parts)
+        start, change, end = integer(first), integer(step[0]) if step else 1, integer(last)
+        if change == 0 or abs(end - start) > _MAX_STEPS:
+            raise ProgramError(f"a range has at most {_MAX_STEPS} numbers")
+        return [float(one) for one in range(start, end + (1 if change > 0 else -1), change)]
 
     def _binary(self, word: str, left: Floats, right: Floats) -> Floats:
         is_scalar = left.shape[1:] == (1, 1) or right.shape[1:] == (1, 1)
@@ -219,61 +261,82 @@ class MatlabProgram:
             return np.matmul(left, right)
         if word == "/" and right.shape[1:] != (1, 1):
             return np.matmul(left, np.linalg.inv(right))
+        if word == "\\":
+            return right / left if left.shape[1:] == (1, 1) else np.matmul(np.linalg.inv(left), right)
         if word == "^" and left.shape[1:] != (1, 1):
             raise ProgramError("a power of a matrix is not read; write .^ for that of its elements")
-        return _OPERATORS[word if word in _OPERATORS else f".{word}"](left, right)
+        return np.asarray(OPERATORS[word if word in OPERATORS else f".{word}"](left, right))
 
-    def _matrix(self, node: Node, variables: dict[str, Floats]) -> Floats:
-        rows = [[self._value(part, variables) for part in row.parts] for row in node.parts]
-        count = max((len(one) for row in rows for one in row), default=1)
-        width = max((sum(one.shape[2] for one in row) for row in rows), default=0)
-        height = sum(row[0].shape[1] for row in rows if row)
-        _check_size(height, width)
-        wide = [np.concatenate([np.broadcast_to(one, (count, *one.shape[1:])) for one in row], axis=2) for row in rows]
-        if not wide:
-            return np.zeros((1, 0, 0))
-        return np.concatenate(wide, axis=1)
-
-    def _call(self, node: Node, variables: dict[str, Floats]) -> Floats:
+    def _call(self, node: Node, variables: dict[str, Any]) -> Any:
         name = node.word
         if name in variables:
-            return self._index(variables[name], node.parts, variables)
+            held = variables[name]
+            if isinstance(held, Handle):
+                return self._apply(held, [self._value(part, variables) for part in node.parts])
+            if node.info == "element":
+                return self._element(held, node, variables)
+            if isinstance(held, list):
+                raise ProgramError(f"an element of the cell array {name} is taken by {name}{{...}}")
+            return self._index(held, node.parts, variables)
         parts = [self._value(part, variables) for part in node.parts]
         if name in self.functions:
             outputs = self._run(self.functions[name], parts)
             if not outputs:
                 raise ProgramError(f"{name} has no output")
             return outputs[0]
-        if name in _ELEMENTWISE:
-            return _ELEMENTWISE[name](*_counted(name, parts, 2 if name in ("atan2", "power", "hypot") else 1))
-        if name == "pi":
-            return np.full((1, 1, 1), np.pi)
-        if name in _OTHERS:
-            return _other(name, parts)
+        if name in FUNCTIONS and node.info is None:
+            return result_of(name, parts)
         raise ProgramError(f"{name!r} is not known: no variable, no local function and none of {', '.join(FUNCTIONS)}")
 
-    def _places(self, part: Node, size: int, variables: dict[str, Floats]) -> list[int]:
+    def _apply(self, handle: Handle, inputs: list[Any]) -> Any:
+        self._calls += 1
+        if self._calls > _MAX_CALLS:
+            raise ProgramError(f"calls functions more than {_MAX_CALLS} times")
+        if len(inputs) != len(handle.names):
+            raise ProgramError(f"an anonymous function takes {len(handle.names)} arguments, got {len(inputs)}")
+        return self._value(handle.body, {**handle.variables, **dict(zip(handle.names, inputs, strict=True))})
+
+    def _element(self, cell: Any, node: Node, variables: dict[str, Any]) -> Any:
+        """T{i} of a cell array with one row or one column."""
+        if not isinstance(cell, list):
+            raise ProgramError(f"{node.word} is no cell array")
+        place = self._place_in_cell(node.parts, len(cell), variables)
+        if not 0 <= place < len(cell) or cell[place] is None:
+            raise ProgramError(f"the cell array {node.word} has no element {place + 1}")
+        return cell[place]
+
+    def _place_in_cell(self, parts: tuple[Node, ...], size: int, variables: dict[str, Any]) -> int:
+        places = [self._places(part, size, variables) for part in parts]
+        if not 1 <= len(places) <= 2 or any(len(one) != 1 for one in places):
+            raise ProgramError("one element of a cell array is taken at a time")
+        if len(places) == 2 and 0 not in (places[0][0], places[1][0]):
+            raise ProgramError("cell arrays of one row or one column are read")
+        return max(one[0] for one in places)
+
+    def _places(self, part: Node, size: int, variables: dict[str, Any]) -> list[int]:
         if part.kind == "all":
             return list(range(size))
+        inside = {**variables, "end": number(size)}
         if part.kind == "range":
-            first, last = (int(self._value(one, variables)[0, 0, 0]) for one in part.parts)
-            return list(range(first - 1, last))
-        return [round(float(one)) - 1 for one in self._value(part, variables)[0].ravel()]
+            return [int(one) - 1 for one in self._range(part, inside)]
+        return [round(float(one)) - 1 for one in self._array(part, inside)[0].ravel()]
 
-    def _index(self, array: Floats, parts: tuple[Node, ...], variables: dict[str, Floats]) -> Floats:
+    def _index(self, array: Floats, parts: tuple[Node, ...], variables: dict[str, Any]) -> Floats:
         rows, columns = array.shape[1:]
         if len(parts) == 1:
             flat = np.swapaxes(array, 1, 2).reshape(len(array), rows * columns)
             places = self._places(parts[0], flat.shape[1], variables)
             _check_places(places, flat.shape[1])
             chosen = flat[:, places]
-            return chosen[:, None, :] if rows == 1 else chosen[:, :, None]
+            return chosen[:, None, :] if rows == 1 and parts[0].kind != "all" else chosen[:, :, None]
         first, second = (self._places(part, size, variables) for part, size in zip(parts, (rows, columns), strict=True))
         _check_places(first, rows)
         _check_places(second, columns)
         return array[:, first][:, :, second]
 
-    def _put(self, array: Floats | None, index: Node, given: Floats, variables: dict[str, Floats]) -> Floats:
+    def _put(self, array: Any, index: Node, given: Any, variables: dict[str, Any]) -> Any:
+        if index.word == "{" or isinstance(array, list):
+            return self._put_element(array, index, given, variables)
         array = np.zeros((1, 0, 0)) if array is None else array
         sizes = [*array.shape[1:]]
         if len(index.parts) == 1:
@@ -283,61 +346,25 @@ class MatlabProgram:
         else:
             places = [self._places(part, size, variables) for part, size in zip(index.parts, sizes, strict=True)]
         shape = [max(size, 1 + max(one, default=0)) for size, one in zip(sizes, places, strict=True)]
-        if max(shape) > _MAX_SIZE or min(min(one, default=0) for one in places) < 0:
+        if max(shape) > MAX_SIZE or min(min(one, default=0) for one in places) < 0:
             raise ProgramError("an index is out of range")
         result = np.zeros((max(len(array), len(given)), *shape))
         result[:, : sizes[0], : sizes[1]] = array
         result[np.ix_(range(len(result)), *places)] = given
         return result
 
+    def _put_element(self, cell: Any, index: Node, given: Any, variables: dict[str, Any]) -> list[Any]:
+        """The cell array with an element replaced or appended."""
+        if index.word != "{" or not isinstance(cell, (list, type(None))):
+            raise ProgramError("an element of a cell array is set by T{i} = ...")
+        place = self._place_in_cell(index.parts, len(cell or ()), variables)
+        if not 0 <= place < MAX_SIZE:
+            raise ProgramError("an index is out of range")
+        result = [*(cell or ()), *[None] * (place + 1 - len(cell or ()))]
+        result[place] = given
+        return result
+
 
 def _check_places(places: list[int], size: int) -> None:
     if any(not 0 <= place < size for place in places):
         raise ProgramError(f"index {max(places, default=0) + 1} is out of range: there are {size} elements")
-
-
-def _counted(name: str, parts: list[Floats], count: int) -> list[Floats]:
-    if len(parts) != count:
-        raise ProgramError(f"{name} takes {count} argument{'s' if count > 1 else ''}, got {len(parts)}")
-    return parts
-
-
-def _check_size(rows: int, columns: int) -> None:
-    if not (0 <= rows <= _MAX_SIZE and 0 <= columns <= _MAX_SIZE):
-        raise ProgramError(f"a matrix of {rows} x {columns} is too large")
-
-
-def _other(name: str, parts: list[Floats]) -> Floats:
-    """The functions of matrices."""
-    if name in ("eye", "zeros", "ones"):
-        sizes = [int(part[0, 0, 0]) for part in parts] or [1]
-        rows, columns = (sizes * 2)[:2]
-        _check_size(rows, columns)
-        matrix = np.eye(rows, columns) if name == "eye" else np.full((rows, columns), float(name == "ones"))
-        return matrix[None]
-    if name in ("cross", "dot"):
-        first, second = _counted(name, parts, 2)
-        flat = [np.swapaxes(one, 1, 2).reshape(len(one), -1) for one in (first, second)]
-        if name == "dot":
-            return np.sum(flat[0] * flat[1], axis=1)[:, None, None]
-        if flat[0].shape[1] != 3 or flat[1].shape[1] != 3:
-            raise ProgramError("cross takes two vectors of three numbers")
-        product = np.cross(flat[0], flat[1])
-        return product[:, :, None] if first.shape[2] == 1 else product[:, None, :]
-    (array,) = _counted(name, parts, 1)
-    if name == "transpose":
-        return np.swapaxes(array, 1, 2)
-    if name == "inv":
-        return np.asarray(np.linalg.inv(array), np.float64)
-    if name == "det":
-        return np.asarray(np.linalg.det(array), np.float64)[:, None, None]
-    if name == "norm":
-        return np.sqrt(np.sum(array**2, axis=(1, 2)))[:, None, None]
-    if name == "sum":
-        return array.sum(axis=2 if array.shape[1] == 1 else 1, keepdims=True)
-    if name == "diag":
-        if 1 in array.shape[1:]:
-            diagonal = array.reshape(len(array), -1)
-            return diagonal[:, :, None] * np.eye(diagonal.shape[1])
-        return np.diagonal(array, axis1=1, axis2=2)[:, :, None]
-    return array

@@ -1,8 +1,12 @@
-"""Reads MATLAB function files in the style of the lecture: assignments, arithmetic, matrices and local functions."""
+"""Reads MATLAB function files in the style of the lecture and of students.
+
+Read are assignments, arithmetic, matrices, cell arrays, anonymous functions, `for` and local functions.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -12,11 +16,10 @@ from .nodes import Node, line_and_column
 _TOKEN = re.compile(
     r"(?P<blank>[ \t]+|\.\.\.[^\n]*\n)|(?P<comment>%[^\n]*)|(?P<newline>\n)"
     r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)(?![A-Za-z_])"
-    r"|(?P<name>[A-Za-z]\w*)|(?P<operator>\.\*|\./|\.\^|\.'|[-+*/^'=(),;:\[\]])"
+    r"|(?P<name>[A-Za-z]\w*)|(?P<operator>\.\*|\./|\.\^|\.'|[-+*/\\^'=(),;:\[\]{}@])"
 )
 _REFUSED = frozenset(
     [
-        "for",
         "while",
         "if",
         "else",
@@ -40,8 +43,14 @@ _REFUSED = frozenset(
         "feval",
     ]
 )
+_KEYWORDS = frozenset([*_REFUSED, "for", "end", "function"])
+KNOWN = "known are assignments, arithmetic, matrices, cell arrays, anonymous functions, `for` and functions"
 MAX_CHARACTERS = 200_000
 MAX_DEPTH = 150
+
+
+_CLOSING = {"(": ")", "{": "}"}
+_CLOSING_OF_MATRIX = {"[": "]", "{": "}"}
 
 
 class Token(NamedTuple):
@@ -55,12 +64,22 @@ class Token(NamedTuple):
 
 @dataclass
 class Statement:
-    """`targets = value`; a target is a name, with the node of its index where it has one."""
+    """`targets = value`; a target is a name, with the node of its index where it has one.
+
+    With a body it is the loop `for target = value`.
+    """
 
     targets: list[tuple[str, Node | None]]
     value: Node
     start: int
     end: int
+    body: list[Statement] | None = None
+
+    def walk(self) -> Iterator[Statement]:
+        """The statement and those in its body."""
+        yield self
+        for inner in self.body or ():
+            yield from inner.walk()
 
 
 @dataclass
@@ -114,10 +133,7 @@ class _Reader:
             found = _TOKEN.match(text, at)
             if not found:
                 line, column = line_and_column(text, at)
-                raise UsageError(
-                    f"{self.file}:{line}:{column}: {text[at]!r} is not read; known are assignments, "
-                    "arithmetic, matrices and functions"
-                )
+                raise UsageError(f"{self.file}:{line}:{column}: {text[at]!r} is not read; {KNOWN}")
             kind = found.lastgroup or ""
             if kind in ("blank", "comment"):
                 spaced = True
@@ -183,13 +199,19 @@ class _Reader:
             self.next()
             inputs = self.names(")")
         function = Function(name, outputs, inputs, line)
-        self.skip_separators()
-        while self.peek().text not in ("end", "function") and self.peek().kind != "end":
-            function.body.append(self.statement())
-            self.skip_separators()
+        function.body = self.statements()
         if self.peek().text == "end":
             self.next()
         return function
+
+    def statements(self) -> list[Statement]:
+        """Those up to `end`, the next function or the end of the file."""
+        found = []
+        self.skip_separators()
+        while self.peek().text not in ("end", "function") and self.peek().kind != "end":
+            found.append(self.statement())
+            self.skip_separators()
+        return found
 
     def names(self, closing: str) -> list[str]:
         names = []
@@ -202,23 +224,25 @@ class _Reader:
 
     def name(self) -> str:
         token = self.next()
-        if token.kind != "name" or token.text in _REFUSED:
+        if token.kind != "name" or token.text in _KEYWORDS:
             raise self.refusal(f"a name is needed here, got {token.text!r}", token)
         return token.text
 
     def statement(self) -> Statement:
         start = self.peek()
         if start.text in _REFUSED:
-            raise self.refusal(f"`{start.text}` is not read; known are assignments, arithmetic, matrices and functions")
+            raise self.refusal(f"`{start.text}` is not read; {KNOWN}")
+        if start.text == "for":
+            return self.loop()
         targets: list[tuple[str, Node | None]] = []
         if start.text == "[":
             self.next()
             targets = [(name, None) for name in self.names("]")]
         elif start.kind == "name":
             name, index = self.name(), None
-            if self.peek().text == "(":
+            if self.peek().text in _CLOSING:
                 opening = self.next()
-                index = Node("index", opening.start, 0, self.arguments(")"))
+                index = Node("index", opening.start, 0, self.arguments(_CLOSING[opening.text]), opening.text)
                 index.end = self.tokens[self.at - 1].end
             targets = [(name, index)]
         if not targets or self.peek().text != "=":
@@ -229,29 +253,50 @@ class _Reader:
             raise self.refusal(f"the expression goes on with {self.peek().text!r}, which is not read")
         return Statement(targets, value, start.start, value.end)
 
+    def loop(self) -> Statement:
+        """for i = 1:3, for (i = 1:3)"""
+        start = self.next()
+        has_brackets = self.peek().text == "("
+        if has_brackets:
+            self.next()
+        name = self.name()
+        self.expect("=")
+        value = self.expression()
+        if has_brackets:
+            self.expect(")")
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise self.refusal(f"loops are nested more than {MAX_DEPTH} deep")
+        body = self.statements()
+        self.depth -= 1
+        end = self.expect("end")
+        return Statement([(name, None)], value, start.start, end.end, body)
+
     # ---- expressions -------------------------------------------------------------------------------------------------
 
     def expression(self) -> Node:
-        """Sums; a colon between sums is a range."""
+        """Sums; colons between sums make a range, first:last or first:step:last."""
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise self.refusal(f"the expression is nested more than {MAX_DEPTH} deep")
-        left = self.sum()
-        if self.peek().text == ":" and not self.ends_element():
-            token = self.next()
-            right = self.sum()
-            left = Node("range", left.start, right.end, (left, right), ":", token.start)
+        parts, colon = [self.sum()], self.peek()
+        while self.peek().text == ":" and len(parts) < 3 and not self.ends_element():
+            self.next()
+            parts.append(self.sum())
         self.depth -= 1
-        return left
+        if len(parts) == 1:
+            return parts[0]
+        return Node("range", parts[0].start, parts[-1].end, tuple(parts), ":", colon.start)
 
     def ends_element(self) -> bool:
         """Whether a blank before the next token separates two elements of a matrix: [a -b] but not [a - b]."""
         token = self.peek()
-        if not self.inside or self.inside[-1] != "[" or not token.spaced:
+        if not self.inside or self.inside[-1] == "(" or not token.spaced:
             return False
         return not (token.text in ("+", "-") and self.peek(1).spaced) and token.text not in (
             "*",
             "/",
+            "\\",
             "^",
             ".*",
             "./",
@@ -270,7 +315,7 @@ class _Reader:
         return self.chain(("+", "-"), self.product)
 
     def product(self) -> Node:
-        return self.chain(("*", "/", ".*", "./"), self.signed)
+        return self.chain(("*", "/", "\\", ".*", "./"), self.signed)
 
     def signed(self) -> Node:
         if self.peek().text in ("+", "-"):
@@ -313,21 +358,48 @@ class _Reader:
             self.inside.pop()
             closing = self.expect(")")
             return Node("group", token.start, closing.end, (inner,))
-        if token.text == "[":
+        if token.text in ("[", "{"):
             return self.matrix(token)
-        if token.kind == "name" and token.text not in _REFUSED and token.text not in ("end", "function"):
-            if self.peek().text == "(" and not (self.ends_element()):
-                self.next()
-                parts = self.arguments(")")
-                return Node("call", token.start, self.tokens[self.at - 1].end, parts, token.text, token.start)
-            return Node("name", token.start, token.end, (), token.text)
+        if token.text == "@":
+            return self.handle(token)
+        if token.text == "end" and self.inside:
+            return Node("last", token.start, token.end, (), "end")
+        if token.kind == "name" and token.text not in _KEYWORDS:
+            node = Node("name", token.start, token.end, (), token.text)
+            while self.peek().text in _CLOSING and not self.ends_element() and (node.kind == "name" or node.info):
+                node = self.call(node, token)
+            return node
         raise self.refusal(f"a value is needed here, got {token.text!r}", token)
+
+    def call(self, node: Node, name: Token) -> Node:
+        """f(x), or the element T{i} of a cell array, which can be indexed further."""
+        opening = self.next()
+        if opening.text == "{" and node.kind != "name":
+            raise self.refusal("an element of an element of a cell array is not read", opening)
+        parts = self.arguments(_CLOSING[opening.text])
+        end = self.tokens[self.at - 1].end
+        if opening.text == "{":
+            return Node("call", node.start, end, parts, name.text, name.start, "element")
+        if node.kind == "name":
+            return Node("call", node.start, end, parts, name.text, name.start)
+        return Node("part", node.start, end, (node, *parts))
+
+    def handle(self, sign: Token) -> Node:
+        """@(x, y) an expression of x and y."""
+        if self.peek().text != "(":
+            raise self.refusal("`@` is followed by the arguments in brackets, as in @(t)")
+        self.next()
+        names = self.names(")")
+        self.inside.append("(")
+        body = self.expression()
+        self.inside.pop()
+        return Node("handle", sign.start, body.end, (body,), "@", sign.start, tuple(names))
 
     def arguments(self, closing: str) -> tuple[Node, ...]:
         parts: list[Node] = []
         self.inside.append("(")
         while self.peek().text != closing:
-            if self.peek().text == ":" and self.peek(1).text in (",", ")"):
+            if self.peek().text == ":" and self.peek(1).text in (",", closing):
                 token = self.next()
                 parts.append(Node("all", token.start, token.end))
             else:
@@ -335,17 +407,17 @@ class _Reader:
             if self.peek().text == ",":
                 self.next()
             elif self.peek().text != closing:
-                raise self.refusal(f"',' or ')' is needed here, got {self.peek().text!r}")
+                raise self.refusal(f"',' or {closing!r} is needed here, got {self.peek().text!r}")
         self.next()
         self.inside.pop()
         return tuple(parts)
 
     def matrix(self, opening: Token) -> Node:
-        """Rows are separated by semicolons or new lines, elements by commas or blanks."""
+        """Rows are separated by semicolons or new lines, elements by commas or blanks; {} is a cell array."""
         rows: list[Node] = []
         row: list[Node] = []
-        self.inside.append("[")
-        while self.peek().text != "]":
+        self.inside.append(opening.text)
+        while self.peek().text != _CLOSING_OF_MATRIX[opening.text]:
             token = self.peek()
             if token.kind == "end":
                 raise self.refusal("the matrix is not closed", opening)
@@ -362,4 +434,4 @@ class _Reader:
             rows.append(Node("row", row[0].start, row[-1].end, tuple(row)))
         self.inside.pop()
         closing = self.next()
-        return Node("matrix", opening.start, closing.end, tuple(rows))
+        return Node("matrix" if opening.text == "[" else "cell", opening.start, closing.end, tuple(rows))

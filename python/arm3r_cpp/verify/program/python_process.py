@@ -37,6 +37,8 @@ class PythonProcess:
     def __init__(self, text: str, function: str, file: str) -> None:
         self.text, self.function, self.file = text, function, file
         self.unbarred: list[str] = []
+        self.seconds = 0.0
+        """How long it has computed, as it says."""
         self._process: subprocess.Popen[bytes] | None = None
         self._answers = -1
         self._hung = 0
@@ -54,6 +56,8 @@ class PythonProcess:
         head = {"rows": len(table), "slots": call.slots, "lifted": call.lifted, "edit": edit and list(edit)}
         self._send(head, np.ascontiguousarray(table).tobytes())
         head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
+        if isinstance(seconds := head.get("seconds"), float):
+            self.seconds = seconds
         if "error" in head:
             line = head.get("line")
             raise ProgramError(str(head["error"])[:300], line if isinstance(line, int) else None)
