@@ -13,13 +13,13 @@ ifdef NEED
 export ARM3R_NEED := $(NEED)
 endif
 
-SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md $(wildcard docs/*.schema.json) \
+SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md $(wildcard docs/*.schema.json build/page/live.html) \
            $(shell find cpp cmake python scenarios -type f -not -path '*/__pycache__/*')
 CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
-.PHONY: run test gates bench format lint clean
+.PHONY: run test gates page bench format lint clean
 
 run: $(VENV)/installed
 	mkdir -p out
@@ -36,6 +36,11 @@ test: $(VENV)/test $(BUILD)/tests
 gates: $(VENV)/test $(BUILD)/tests
 	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(PYTEST) -m gate
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
+
+# The live page, into build/page: needs node with npm, and Emscripten.
+page: build/page/arm3r.wasm
+	npm --prefix docs/live ci --no-audit --no-fund
+	node docs/live/build.mjs
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null

@@ -11,6 +11,8 @@ endif()
 set(_data ${CMAKE_INSTALL_DATADIR}/arm3r)
 install(DIRECTORY scenarios DESTINATION ${_data} FILES_MATCHING PATTERN "*.yaml")
 install(FILES docs/scenario.schema.json docs/sweep.schema.json DESTINATION ${_data}/docs)
+# The live page, where `make page` has built it.
+install(DIRECTORY build/page/ DESTINATION ${_data}/live OPTIONAL)
 install(DIRECTORY cpp/include/arm3r DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} PATTERN README.md EXCLUDE)
 install(FILES ${ARM3R_YAML_LIBRARY} DESTINATION ${CMAKE_INSTALL_LIBDIR})
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from .accuracy.convergence import Convergence, converge
+    from .live.show import show
     from .sweeps.definition import Sweep
     from .sweeps.runner import sweep
     from .sweeps.table import SweepTable
@@ -40,6 +41,7 @@ _LATER = {
     "Sweep": "sweeps.definition",
     "SweepTable": "sweeps.table",
     "converge": "accuracy.convergence",
+    "show": "live.show",
     "sweep": "sweeps.runner",
 }
 
@@ -84,5 +86,6 @@ __all__ = [
     "param_index",
     "param_key",
     "param_name",
+    "show",
     "sweep",
 ]

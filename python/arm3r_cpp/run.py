@@ -268,6 +268,17 @@ class Run:
 
         return tables.run_to_xarray(self)
 
+    def to_html(self, path: str | os.PathLike[str]) -> None:
+        """Write the live page with this run into one file that opens from disk, whole or not at all.
+
+        Raises:
+            OutputError: it cannot be written.
+            UsageError: the installation has no page, or the run's summary holds no scenario.
+        """
+        from .live import show
+
+        show.write(self, path)
+
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Run:
         """Read what `to_csv`, `arm3r run -o` (PATH.csv, with PATH.json beside it) or `to_npz` wrote, to the same bits.

@@ -25,6 +25,7 @@ ROOMS = [
     "plot",
     "notebook",
     "animation",
+    "live",
     "verify",
     "blocks",
     "exercises",
@@ -36,6 +37,7 @@ ROOMS = [
 # Public names that a room below hands on: these imports point up, and they are done when the name is used.
 LATER = {("scenario", "batch"), ("plot", "animation")}
 LATER |= {(room, "blocks") for room in ("scenario", "batch", "sweeps")}  # controllers in files
+LATER |= {("run", "live")}  # the page with a run
 LATER |= {(room, "notebook") for room in ("run", "scenario", "batch")}  # their pages and tables
 
 MAX_MODULES = 16  # in a folder

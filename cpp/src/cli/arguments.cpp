@@ -31,6 +31,8 @@ constexpr Program programs[] = {
     {"examples", "[NAME]", "list the scenarios of this installation, print one, or copy them into a folder"},
     {"plot", "RUN", "draw figures of a run, of several runs, or of a sweep"},
     {"animate", "RUN", "draw a film of a run"},
+    {"live", "[SCENARIO]", "open the live page: a scenario as scene, plots, text and sliders, in a browser"},
+    {"view", "RUN", "open a run in the live page"},
     {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
     {"converge", "FILE", "run a scenario with smaller and smaller steps, and print the observed order"},
     {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},

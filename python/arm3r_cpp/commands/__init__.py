@@ -1,4 +1,4 @@
-"""The commands `arm3r-plot`, `-sweep`, `-animate`, `-examples`, `-verify`, `-run`: a module for each program.
+"""The commands `arm3r-plot`, `-sweep`, `-animate`, `-examples`, `-live`, `-verify`, `-run`: a module for each program.
 
 In come the words of a command line. Out go files, lines on standard output, and one of the exit codes of `arm3r`.
 The installed scripts start in `entry_points`, and `exit_codes` turns errors and signals into the end of a process.

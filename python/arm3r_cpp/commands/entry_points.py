@@ -42,6 +42,14 @@ def exercise() -> int:
     return _call("exercise")
 
 
+def live() -> int:
+    return _call("live")
+
+
+def view() -> int:
+    return _call("view")
+
+
 def _call(module: str) -> int:
     warnings.showwarning = _say  # type: ignore[assignment]
     main = import_module(f".{module}", __package__).main

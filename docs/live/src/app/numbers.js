@@ -1,0 +1,31 @@
+/** Numbers as people read them, and as YAML has them. */
+
+/** With so many significant digits, a minus sign instead of a hyphen, and no exponent where that can be read. */
+export function shown(value, digits = 4) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  const size = Math.abs(value);
+  const text = size !== 0 && (size < 1e-4 || size >= 1e6) ? value.toExponential(digits - 1) : plain(value, digits);
+  return text.replace("-", "−").replace(/e\+?(−|-)?/, (_, minus) => `e${minus ? "−" : ""}`);
+}
+
+function plain(value, digits) {
+  const size = Math.abs(value);
+  const before = size >= 1 ? Math.floor(Math.log10(size)) + 1 : 1;
+  return value.toFixed(Math.max(0, digits - before));
+}
+
+/** Rounded to significant digits: a number, such as a slider gives it. */
+export function rounded(value, digits = 4) {
+  return Number(value.toPrecision(digits));
+}
+
+/** As every YAML reader takes it for a number: with a point and a sign in front of an exponent. */
+export function yaml(value) {
+  if (!Number.isFinite(value)) return value > 0 ? "inf" : "-inf";
+  const [digits, exponent] = String(value).split("e");
+  if (exponent === undefined) return digits;
+  return `${digits.includes(".") ? digits : `${digits}.0`}e${/^[+-]/.test(exponent) ? "" : "+"}${exponent}`;
+}
+
+export const DEGREE = Math.PI / 180;

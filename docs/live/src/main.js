@@ -1,0 +1,106 @@
+/** Where the page starts: makes its parts, and shows the scenario or the run that it was given. */
+import "uplot/dist/uPlot.min.css";
+import "../style/theme.css";
+import "../style/layout.css";
+import "../style/parts.css";
+import "../style/editor.css";
+import { at } from "./app/dom.js";
+import { given } from "./app/given.js";
+import { Store } from "./app/store.js";
+import { startTheme } from "./app/theme.js";
+import { Controls } from "./controls/controls.js";
+import { Editor } from "./editor/editor.js";
+import { startBand } from "./parts/band.js";
+import { Checks } from "./parts/checks.js";
+import { startDownloads } from "./parts/downloads.js";
+import { startKeyboard } from "./parts/keyboard.js";
+import { Menu } from "./parts/menu.js";
+import { startStatus } from "./parts/status.js";
+import { startTabs } from "./parts/tabs.js";
+import { Tour } from "./parts/tour.js";
+import { Transport } from "./parts/transport.js";
+import { Plots } from "./plots/plots.js";
+import { textOf } from "./scenario/link.js";
+import { Scene } from "./scene/scene.js";
+import { recordedRun } from "./simulate/recorded.js";
+import { Simulation, shippedScenarios } from "./simulate/simulation.js";
+
+const FIRST = "moving_wall";
+
+const store = new Store({
+  text: "", name: "scenario", checked: "", problems: [], warnings: [], failure: "", resolved: null, schema: null, opened: 0,
+  run: null, panels: [], band: { within: 0, keys: [] }, bandRun: null, busy: false, tab: "", theme: "light",
+  time: 0, playing: false, speed: 1, range: null, axes: true, chosenPlots: {},
+}); // prettier-ignore
+
+async function start() {
+  startTheme(store);
+  startTabs(store);
+  const say = startStatus(store);
+  const examples = await shippedScenarios();
+  const simulation = new Simulation(store);
+  const editor = new Editor(store);
+  const open = (text, name) => {
+    store.set({ name: name.split("/").at(-1), opened: store.get("opened") + 1 });
+    at("scenario-name").textContent = name.replaceAll("_", " ");
+    editor.open(text);
+  };
+  const parts = makeParts({ editor, simulation, examples, open });
+  startBand(store);
+  startDownloads(store, simulation, parts, say);
+  startKeyboard(store, { ...parts, editor });
+  await openFirst(open, examples);
+  await simulation.start();
+  document.body.classList.add("started");
+}
+
+function makeParts({ editor, simulation, examples, open }) {
+  const transport = new Transport(store);
+  const plots = new Plots(store);
+  new Checks(store);
+  new Controls(store, editor, simulation);
+  const scene = sceneOrNull();
+  const menu = new Menu(examples, (example) => {
+    store.set({ range: null, playing: false });
+    open(example.text, example.name);
+  });
+  const tour = new Tour(store, { editor, transport, examples, open });
+  for (const button of document.querySelectorAll("[data-view]")) {
+    button.addEventListener("click", () => scene?.view.look(button.dataset.view));
+  }
+  at("axes").addEventListener("change", (event) => store.set({ axes: event.target.checked }));
+  store.on(["axes"], () => (at("axes").checked = store.get("axes")));
+  at("open-help").addEventListener("click", () => at("help").showModal());
+  at("help-close").addEventListener("click", () => at("help").close());
+  return { transport, plots, scene, menu, tour };
+}
+
+/** A browser without WebGL shows all but the scene. */
+function sceneOrNull() {
+  try {
+    return new Scene(store);
+  } catch (error) {
+    at("scene").classList.add("missing");
+    at("scene-missing").textContent = `This browser cannot draw in three dimensions (${error.message}); all else works.`;
+    return null;
+  }
+}
+
+/** The run or the scenario that Python gave, or that of the link, or the lecture's. */
+async function openFirst(open, examples) {
+  const data = given("arm3r-data");
+  if (data?.matrix) {
+    const run = await recordedRun(data);
+    store.set({ run: { ...run, text: data.scenario }, resolved: run.resolved });
+  }
+  const linked = data ? null : await textOf(location.hash);
+  const example = examples.find((one) => one.name === FIRST);
+  if (data) open(data.scenario, data.name);
+  else if (linked !== null) open(linked, "scenario");
+  else open(example.text, example.name);
+}
+
+start().catch((error) => {
+  document.body.classList.add("broken");
+  at("status").textContent = `The page cannot start: ${error.message}`;
+});

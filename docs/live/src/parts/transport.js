@@ -1,0 +1,106 @@
+/** Play, scrub and speed: the present time of the run. */
+import { at } from "../app/dom.js";
+import { later } from "../app/frames.js";
+import { shown } from "../app/numbers.js";
+
+const STEPS = 10_000; // positions of the scrubber
+const ICONS = { play: "M7 4l13 8-13 8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z" };
+
+export class Transport {
+  constructor(store) {
+    this.store = store;
+    this.scrubber = at("scrubber");
+    this.scrubber.max = STEPS;
+    at("play").addEventListener("click", () => this.toggle());
+    at("to-start").addEventListener("click", () => this.seek(this.span[0]));
+    at("to-end").addEventListener("click", () => this.seek(this.span[1]));
+    at("speed").addEventListener("change", (event) => store.set({ speed: Number(event.target.value) }));
+    this.scrubber.addEventListener("input", () => this.#scrubbed());
+    store.on(["opened"], () => (this.rewind = true));
+    store.on(["run"], () => this.#fit());
+    store.on(["time", "run"], () => later("transport", () => this.#show()));
+    store.on(["playing"], () => this.#play());
+    store.on(["speed"], () => (at("speed").value = String(store.get("speed"))));
+  }
+
+  get span() {
+    const { t } = this.store.get("run")?.columns ?? { t: [0] };
+    return [t[0], t[t.length - 1]];
+  }
+
+  toggle() {
+    const [start, end] = this.span;
+    if (!this.store.get("playing") && this.store.get("time") >= end) this.store.set({ time: start });
+    this.store.set({ playing: !this.store.get("playing") });
+  }
+
+  /** Play from the start. */
+  restart(speed) {
+    this.store.set({ time: this.span[0], speed, playing: true });
+  }
+
+  /** Go to a time, s, and stay there. */
+  seek(time) {
+    const [start, end] = this.span;
+    this.store.set({ time: this.#inside(time, start, end), playing: false });
+  }
+
+  /** Go so many hundredths of the run on, or back. */
+  step(hundredths) {
+    const [start, end] = this.span;
+    this.seek(this.store.get("time") + (hundredths * (end - start)) / 100);
+  }
+
+  /** Play this many places of the list faster, or slower. */
+  change(places) {
+    const speeds = [...at("speed").options].map((option) => Number(option.value));
+    const now = speeds.indexOf(this.store.get("speed"));
+    this.store.set({ speed: speeds[Math.min(speeds.length - 1, Math.max(0, now + places))] });
+  }
+
+  #inside(time, start, end) {
+    return Math.min(end, Math.max(start, time));
+  }
+
+  #scrubbed() {
+    const [start, end] = this.span;
+    this.store.set({ time: start + ((end - start) * this.scrubber.value) / STEPS, playing: false });
+  }
+
+  #fit() {
+    const [start, end] = this.span;
+    this.store.set({ time: this.rewind ? start : this.#inside(this.store.get("time"), start, end) });
+    this.rewind = false;
+  }
+
+  #show() {
+    const [start, end] = this.span;
+    const time = this.store.get("time");
+    this.scrubber.value = end > start ? Math.round((STEPS * (time - start)) / (end - start)) : 0;
+    const digits = end - start < 0.1 ? 5 : 3;
+    at("time").textContent = `${time.toFixed(digits)} s`;
+    this.scrubber.setAttribute("aria-valuetext", `${shown(time)} seconds of ${shown(end)}`);
+  }
+
+  #play() {
+    const playing = this.store.get("playing");
+    at("play").setAttribute("aria-label", playing ? "Pause" : "Play");
+    at("play").querySelector("path").setAttribute("d", playing ? ICONS.pause : ICONS.play);
+    if (!playing || this.running) return;
+    this.running = true;
+    this.last = performance.now();
+    requestAnimationFrame((now) => this.#frame(now));
+  }
+
+  #frame(now) {
+    if (!this.store.get("playing")) {
+      this.running = false;
+      return;
+    }
+    const [start, end] = this.span;
+    const time = this.store.get("time") + ((now - this.last) / 1000) * this.store.get("speed");
+    this.last = now;
+    this.store.set({ time: this.#inside(time, start, end), playing: time < end });
+    requestAnimationFrame((next) => this.#frame(next));
+  }
+}

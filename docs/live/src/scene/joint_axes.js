@@ -1,0 +1,48 @@
+/** The joints' axes with their positive directions: an arrow along each axis, and an arc with a head around it. */
+import { ConeGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry, Vector3 } from "three";
+import { BLUE, GREEN, RED } from "../app/colours.js";
+import { Arrow } from "./arrow.js";
+
+const ARC = 1.5 * Math.PI;
+const Z = new Vector3(0, 0, 1);
+
+export class JointAxes {
+  constructor() {
+    this.axes = [BLUE, RED, GREEN].map((colour) => new JointAxis(colour));
+    this.object = new Group().add(...this.axes.map((axis) => axis.object));
+  }
+
+  place({ shoulder, elbow, jointAxis }, size) {
+    this.axes[0].place([shoulder[0], shoulder[1], shoulder[2] + 0.03 * size], [0, 0, 1], size);
+    this.axes[1].place(shoulder, jointAxis, size);
+    this.axes[2].place(elbow, jointAxis, size);
+  }
+
+  /** Where the labels stand. */
+  ends() {
+    return this.axes.map((axis) => axis.arrow.tip);
+  }
+}
+
+class JointAxis {
+  constructor(colour) {
+    const material = new MeshStandardMaterial({ color: colour, roughness: 0.6 });
+    this.arrow = new Arrow(colour, 1);
+    this.arc = new Mesh(new TorusGeometry(1, 0.07, 10, 48, ARC), material);
+    this.head = new Mesh(new ConeGeometry(0.2, 0.5, 16), material);
+    this.head.position.set(Math.cos(ARC), Math.sin(ARC), 0);
+    this.head.rotation.z = ARC; // a cone points along +y, and the arc ends in the direction (-sin, cos)
+    this.turn = new Group().add(this.arc, this.head);
+    this.object = new Group().add(this.arrow.object, this.turn);
+  }
+
+  place(point, axis, size) {
+    const direction = new Vector3(...axis);
+    const from = new Vector3(...point);
+    this.arrow.thickness = 0.005 * size;
+    this.arrow.point(from, direction.clone().multiplyScalar(0.17 * size));
+    this.turn.scale.setScalar(0.055 * size);
+    this.turn.position.copy(from).addScaledVector(direction, 0.1 * size);
+    this.turn.quaternion.copy(new Quaternion().setFromUnitVectors(Z, direction));
+  }
+}

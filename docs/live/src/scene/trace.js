@@ -1,0 +1,63 @@
+/** The path of the tip: all of it faint, up to the present time strong; and the path of its reference. */
+import { Group } from "three";
+import { Line2 } from "three/addons/lines/Line2.js";
+import { LineGeometry } from "three/addons/lines/LineGeometry.js";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { rowAt, thin } from "../simulate/thin.js";
+
+const MOST = 1500; // points of a path
+
+export class Trace {
+  constructor() {
+    this.whole = new Path({ linewidth: 1.5, transparent: true, opacity: 0.35 });
+    this.past = new Path({ linewidth: 3 });
+    this.reference = new Path({ linewidth: 1.5, dashed: true });
+    this.object = new Group().add(this.whole.line, this.past.line, this.reference.line);
+  }
+
+  colour(theme) {
+    this.whole.material.color.set(theme.amber);
+    this.past.material.color.set(theme.amber);
+    this.reference.material.color.set(theme.ink);
+  }
+
+  resize(width, height) {
+    for (const path of [this.whole, this.past, this.reference]) path.material.resolution.set(width, height);
+  }
+
+  /** Take the paths of another run. size: what the dashes go by, m. */
+  show({ columns }, size) {
+    const points = (name) => ["x", "y", "z"].map((axis) => columns[`${name}_${axis}`]);
+    this.rows = this.whole.set(points("tip"));
+    this.times = Float64Array.from(this.rows, (row) => columns.t[row]);
+    this.past.set(points("tip"));
+    this.reference.material.dashSize = this.reference.material.gapSize = 0.012 * size;
+    this.reference.line.visible = "tip_ref_x" in columns;
+    if (this.reference.line.visible) this.reference.set(points("tip_ref"));
+  }
+
+  /** Draw what has been passed at a time. */
+  upTo(time) {
+    const passed = rowAt(this.times, time);
+    this.past.line.geometry.instanceCount = passed;
+    this.past.line.visible = passed > 0;
+  }
+}
+
+class Path {
+  constructor(look) {
+    this.material = new LineMaterial({ worldUnits: false, ...look });
+    this.line = new Line2(new LineGeometry(), this.material);
+    this.line.frustumCulled = false;
+  }
+
+  set(axes) {
+    const rows = thin(axes, 0, axes[0].length, MOST);
+    const places = new Float32Array(3 * Math.max(2, rows.length));
+    for (let i = 0; i < places.length; i += 1) places[i] = axes[i % 3][rows[Math.min((i / 3) | 0, rows.length - 1)]];
+    this.line.geometry.dispose();
+    this.line.geometry = new LineGeometry().setPositions(places);
+    if (this.material.dashed) this.line.computeLineDistances();
+    return rows;
+  }
+}

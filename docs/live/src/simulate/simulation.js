@@ -1,0 +1,93 @@
+/** From the text in the store to results in the store: every change of the text runs the whole scenario again. */
+import { given } from "../app/given.js";
+import { Runner } from "./runner.js";
+import { source } from "./source.js";
+
+const QUIET = 150; // ms without a change after which a band of runs is asked for
+const RUNS = 1000;
+
+export class Simulation {
+  #store;
+  #runner;
+  #waiting = 0;
+  #promises = new Map(); // of the questions whose answer is waited for, by kind
+
+  constructor(store) {
+    this.#store = store;
+    store.on(["text"], () => this.#ask());
+    store.on(["band", "run", "panels"], () => this.#askForBand());
+  }
+
+  /** Load the simulator. Throws an Error where it cannot be loaded. */
+  async start() {
+    const { wasm, makeWorker } = await source();
+    this.#runner = new Runner(makeWorker, wasm, (message) => this.#answers[message.kind](message));
+    this.#ask();
+  }
+
+  /** The run of the present text as CSV. */
+  csv() {
+    return this.#wait("csv", {});
+  }
+
+  /** The text with another choice (YAML) at a path, without the keys of the old one; `needed`: keys it must have. */
+  choose(path, value, needed) {
+    return this.#wait("choose", { path, value, needed });
+  }
+
+  #wait(kind, question) {
+    return new Promise((resolve, reject) => {
+      this.#promises.set(kind, { resolve, reject });
+      this.#runner.ask({ kind, ...this.#scenario(), ...question });
+    });
+  }
+
+  #scenario() {
+    return { text: this.#store.get("text"), name: `${this.#store.get("name")}.yaml` };
+  }
+
+  #ask() {
+    if (!this.#runner || this.#store.get("run")?.text === this.#store.get("text")) return;
+    this.#store.set({ busy: true });
+    this.#runner.ask({ kind: "run", ...this.#scenario() });
+  }
+
+  #askForBand() {
+    clearTimeout(this.#waiting);
+    const { within, keys } = this.#store.get("band");
+    if (!within) return this.#store.set({ bandRun: null });
+    this.#waiting = setTimeout(() => {
+      const run = this.#store.get("run");
+      if (!run || this.#runner.busy || run.text !== this.#store.get("text")) return;
+      const columns = this.#store.get("panels").flatMap((panel) => panel.series.map((one) => one.column));
+      const options = { runs: RUNS, seed: 1, columns, within: Object.fromEntries(keys.map((key) => [key, within])) };
+      this.#store.set({ busy: true });
+      this.#runner.ask({ kind: "band", ...this.#scenario(), options });
+    }, QUIET);
+    return undefined;
+  }
+
+  #answers = {
+    loaded: ({ version, schema }) => {
+      if (!this.#store.get("schema")) this.#store.set({ version, schema: JSON.parse(schema) });
+    },
+    read: ({ text, problems, warnings, resolved }) => {
+      this.#store.set({ problems, warnings, checked: text, ...(resolved ? { resolved } : { busy: false }) });
+    },
+    run: ({ run, text }) => this.#store.set({ run: { ...run, text }, failure: "", busy: false, bandRun: null }),
+    band: ({ band, text, last }) => {
+      if (text === this.#store.get("text")) this.#store.set({ bandRun: band, busy: !last });
+    },
+    chosen: ({ text }) => this.#promises.get("choose").resolve(text),
+    csv: ({ csv }) => this.#promises.get("csv").resolve(csv),
+    failed: ({ message, problems, question }) => {
+      this.#promises.get(question?.kind)?.reject(new Error(message));
+      this.#store.set({ failure: message, problems, busy: false });
+    },
+  };
+}
+
+/** What stands beside the page's HTML about the build: the scenarios by name, in the menu's order. */
+export async function shippedScenarios() {
+  return given("arm3r-examples") ?? (await fetch("examples.json")).json();
+}

@@ -1,0 +1,62 @@
+"""What the page is given: a scenario to simulate, or a run to show as it is."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+from base64 import b64encode
+from typing import Any
+
+import numpy as np
+
+from .. import _native
+from ..errors import UsageError
+from ..run import Run
+from ..scenario import Scenario
+
+
+def of_text(text: str, name: str) -> dict[str, Any]:
+    """A scenario, valid or not: the page says what is wrong. name: of its file, without the suffix."""
+    return {"name": name, "scenario": text}
+
+
+def of_run(run: Run) -> dict[str, Any]:
+    """All rows and columns, to the last bit, with the scenario they came from.
+
+    Raises:
+        UsageError: the run's summary holds no scenario.
+    """
+    text = run.summary.get("scenario")
+    if not text:
+        why = "the run's summary holds no scenario, so that its arm is not known; run it again"
+        raise UsageError(why, code="usage")
+    matrix = np.stack([run[name] for name in run.columns]).astype("<f8").tobytes()
+    data = {
+        **of_text(text, run.summary["name"]),
+        "resolved": _resolved(Scenario(text)),
+        "columns": run.columns,
+        "units": run.units,
+        "matrix": b64encode(gzip.compress(matrix, 6, mtime=0)).decode(),
+        "summary": {key: value for key, value in run.summary.items() if key != "scenario"},
+        "report": run.report() if run._text() is not None else "",
+    }
+    plain: dict[str, Any] = _plain(data)
+    return plain
+
+
+def _resolved(scenario: Scenario) -> dict[str, Any]:
+    """Every section with its defaults."""
+    schema = json.loads(_native.ffi.string(_native.lib.arm3r_schema_json()))
+    return {section: scenario[section] for section in schema["properties"]}
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no infinity and no NaN: "inf", "-inf" and null, as in the summary's file."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else ("inf" if value > 0 else "-inf")
+    return value
