@@ -19,7 +19,7 @@ CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
-.PHONY: run test gates page bench format lint clean
+.PHONY: run test gates page docs bench format lint clean
 
 run: $(VENV)/installed
 	mkdir -p out
@@ -33,7 +33,7 @@ test: $(VENV)/test $(BUILD)/tests
 	$(PYTEST) || failed=1; \
 	exit $$failed
 
-gates: $(VENV)/test $(BUILD)/tests
+gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests
 	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(PYTEST) -m gate
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
 
@@ -41,6 +41,9 @@ gates: $(VENV)/test $(BUILD)/tests
 page: build/page/arm3r.wasm
 	npm --prefix docs/live ci --no-audit --no-fund
 	node docs/live/build.mjs
+
+docs: $(VENV)/docs
+	$(BIN)/python docs/site/build.py
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
@@ -76,7 +79,7 @@ $(VENV)/tools: pyproject.toml
 	@touch $@
 
 # An extra of the installed package.
-$(VENV)/test $(VENV)/dev $(VENV)/bench: $(VENV)/%: pyproject.toml | $(VENV)/installed
+$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/bench: $(VENV)/%: pyproject.toml | $(VENV)/installed
 	$(PIP) 'arm3r_cpp[$*]'
 	@touch $@
 

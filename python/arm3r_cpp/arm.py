@@ -99,7 +99,7 @@ class Arm:
         return self._one(lib.arm3r_arm_effective_mass, q=q, direction=direction)
 
     def manipulability(self, q: ArrayLike) -> Floats | float:
-        """|det J|: (...,), m^3."""
+        """`|det J|`: (...,), m^3."""
         return self._one(lib.arm3r_arm_manipulability, q=q)
 
     def energy(self, q: ArrayLike, qd: ArrayLike) -> tuple[Floats | float, Floats | float]:

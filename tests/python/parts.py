@@ -58,6 +58,10 @@ PARTS = {
         "`pip install nbclient nbformat ipykernel`, which the extra `test` brings",
     ),
     "qemu": Part(lambda: shutil.which("qemu-x86_64") is not None, "the system's package qemu-user"),
+    "site": Part(
+        lambda: have_modules("sphinx", "myst_nb", "furo", "ziamath"),
+        "`pip install 'arm3r_cpp[docs]'`, with Python 3.11 or later",
+    ),
 }
 
 LEFT_OUT = "left out: "
