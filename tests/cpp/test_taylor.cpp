@@ -36,7 +36,7 @@ static Plant<double> random_plant(const Recipe& recipe, Random& random) {
     if (!recipe.damping) params.set("arm.damping", {0, 0, 0});
     if (!recipe.friction) params.set("arm.friction", {0, 0, 0});
     params.set("arm.friction_velocity", 1);  // at the speeds tried, tanh is far enough from 1 to be compared
-    if (!recipe.azimuth || recipe.signals) params.set("arm.gravity", {0, 0, random.in(-10, 10)});
+    if (!recipe.oblique) params.set("arm.gravity", {0, 0, random.in(-10, 10)});
     if (recipe.signals) put_wall(params, recipe, random);
     const char* const types[] = {"none", "constant", "gravity_compensation"};
     params.choose("controller.type", types[int(recipe.torque)]).set("controller.torque", random.vector(-3, 3));
@@ -285,7 +285,7 @@ BOOST_AUTO_TEST_CASE(a_lower_order_is_the_beginning_of_a_higher_one) {
 BOOST_AUTO_TEST_CASE(a_wall_of_no_stiffness_changes_no_bit) {
     Random random(5);
     for (std::size_t i = 0; i < recipes.size(); ++i) {
-        if (!recipes[i].force || recipes[i].friction) continue;
+        if (!recipes[i].force || recipes[i].oblique) continue;
         for (int n = 0; n < 100; ++n) {
             Plant<double> plant = random_plant(recipes[i], random);
             plant.contact.stiffness[0] = 0;
@@ -340,7 +340,7 @@ BOOST_AUTO_TEST_CASE(a_step_keeps_its_tolerance) {
 
     Random random(8);
     for (int n = 0; n < 100; ++n) {
-        const Recipe recipe = recipes[std::size_t(random.in(0, 9))];
+        const Recipe recipe = recipes[std::size_t(random.in(0, recipes.size() - 2))];
         const Plant<double> plant = random_plant(recipe, random);
         const State<double, state_size> y = random_state(random);
         const Kernel kernel = kernel_of(plant, recipe.force);

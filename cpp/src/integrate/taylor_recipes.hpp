@@ -18,13 +18,13 @@ enum class TorqueSource { none, held, gravity_compensation };
 struct Recipe {
     TorqueSource torque = TorqueSource::none;
     bool damping = false;   // and the quadratures of torque and damping
-    bool azimuth = false;   // q1 matters: oblique gravity, or a wall
     bool signals = false;   // where the tip is on the plate
     bool force = false;     // the contact law acts
+    bool oblique = false;   // gravity
     bool friction = false;  // dry
 };
 
-// The cheapest first.
+// The cheapest first. With oblique gravity or friction a wall that does not press is one of no stiffness.
 inline constexpr std::array recipes = [] {
     constexpr TorqueSource held = TorqueSource::held, gravity = TorqueSource::gravity_compensation;
     return std::array{
@@ -35,6 +35,8 @@ inline constexpr std::array recipes = [] {
         Recipe{gravity, true, true},
         Recipe{held, true, true, true},
         Recipe{gravity, true, true, true},
+        Recipe{held, true, false, false, true},
+        Recipe{gravity, true, false, false, true},
         Recipe{held, true, true, true, true},
         Recipe{gravity, true, true, true, true},
         Recipe{held, true, true, true, true, true},

@@ -11,11 +11,17 @@ namespace arm3r {
 template <class Element, int N>
 struct Register {
     typedef Element type __attribute__((vector_size(sizeof(Element) * N)));
-    // Written out for the widths of registers, because g++ 12 takes three times as long for a loop over the lanes.
+    // Written out for the widths of registers, because g++ 12 takes three times as long for a loop over the lanes. Eight
+    // written out it would set one by one, with masks: where the function is defined it knows no register for them.
     ARM3R_INLINE static void set_all(type& v, Element x) {
         if constexpr (N == 2) v = type{x, x};
         else if constexpr (N == 4) v = type{x, x, x, x};
-        else if constexpr (N == 8) v = type{x, x, x, x, x, x, x, x};
+#if __has_builtin(__builtin_shufflevector)
+        else if constexpr (N == 8) {
+            const typename Register<Element, 2>::type two{x, x};
+            v = __builtin_shufflevector(two, two, 0, 0, 0, 0, 0, 0, 0, 0);
+        }
+#endif
         else
             for (int lane = 0; lane < N; ++lane) v[lane] = x;
     }
