@@ -67,6 +67,18 @@ def test_a_lost_angle_is_named_in_its_line(written: Any, command: Any) -> None:
     assert lines[-1] == "1 mistake in 1 file"
 
 
+@pytest.mark.parametrize("head", ["(q):\n    q2 = q[1]", "(q):\n    q1, q2, q3 = q", "(q1, q2, q3):\n    pass"])
+def test_an_angle_that_is_lost_everywhere_is_due(written: Any, head: str) -> None:
+    """q3 stands nowhere in the formula, yet in the edit."""
+    text = f"from math import cos\na2 = a3 = 1.0\nm2 = m3 = 0.785\ng = 9.80665\n\n\ndef gravity{head}\n"
+    text += "    t3 = -m3*g*a3/2*cos(q2)\n    return 0, t3 - (m2/2 + m3)*g*a2*cos(q2), t3\n"
+    if "q[1]" in head:
+        text = text.replace("q2 = q[1]", "pass").replace("(q2)", "(q[1])")
+    verdict = arm3r.verify.gravity(written("gravity.py", text))
+    due = "q[1]+q[2]" if "q[1]" in head else "q2+q3"
+    assert {one.new for one in verdict.findings} == {due}, str(verdict)
+
+
 def test_equal_lengths_hide_nothing(written: Any) -> None:
     """a1/2 and a2/2 in the place of a3/2, as the lecture's slides print it."""
     path = written("g.m", LECTURE_GRAVITY.replace("t3 = -(m3*g*(a3/2)", "t3 = -(m3*g*(a2/2)"))

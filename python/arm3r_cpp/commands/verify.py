@@ -17,6 +17,15 @@ if TYPE_CHECKING:
 
 KINDS = ("jacobian", "gravity", "kinematics", "mass", "coriolis", "inverse", "forward", "controller")
 
+EXAMPLES = """\
+A file holds a function of the joint angles that returns numbers: in Python `def jacobian(q)` or
+`def gravity(q1, q2, q3)`, in MATLAB `function J = jacobian(q)`. Its name says what it computes, or --kind.
+
+  arm3r verify my_jacobian.m my_gravity.m      against the lecture's arm
+  arm3r verify dynamics.py:mass_matrix --arm my_arm.yaml
+  arm3r verify log.csv                         columns q1 q2 q3 and J11.. or g1..
+"""
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-verify`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
@@ -29,7 +38,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="arm3r-verify",
-        description="Judge formulas of the arm: exit code 0 if all are right, 11 if one is wrong; see docs/verify.md.",
+        description="Judge formulas of the arm: exit code 0 if all are right, 11 if one is wrong.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add(

@@ -24,6 +24,18 @@ The arm: a2 = {A2} m, a3 = {A3} m, m2 = {M2} kg, m3 = {M3} kg, g = {G} m/s^2. Li
 slender, with the centre of mass in the middle. Joint 1 turns about the vertical. Convention
 simscape, as in the lecture's code: positive q2 and q3 lower the arm. Angles are in radians."""
 
+JACOBIAN_LISTING = f"""\
+a2 = {A2};
+a3 = {A3};
+r = a2*cos(q(2)) + a3*cos(q(2)+q(3));
+h = a2*sin(q(2)) + a3*sin(q(2)+q(3));
+s = a3*sin(q(2)+q(3));
+J = [-sin(q(1))*r, -cos(q(1))*h, -cos(q(1))*s;
+      cos(q(1))*r, -sin(q(1))*h, -sin(q(1))*s;
+      0, -r, -a3*cos(q(2)+q(3))];
+"""
+"""What is given in MATLAB where the arm's Jacobian J of q is right."""
+
 
 @cache
 def lab_arm() -> Arm:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -334,7 +335,7 @@ def _repairs(
     if not formula.text or not formula.nodes:
         return []
     angles = [name for name in formula.arguments if (slot := slot_of(name)) and slot[0] == "q" and slot[1] is not None]
-    angles = sorted(angles) or _indexed_angles(formula)
+    angles = sorted(angles) or _indexed_angles(formula, case.truth.joints)
     editor = Editor(formula.text, formula.nodes, formula.language, angles, list(case.parameters))
     due = {everywhere: case.due(case.second if everywhere else case.first) for everywhere in (False, True)}
 
@@ -393,23 +394,26 @@ def _is_confirmed(case: Comparison, repair: Repair, wrong: frozenset[int]) -> bo
         return False
 
 
-def _indexed_angles(formula: Formula) -> list[str]:
-    """q[0], q[1], ... where the formula takes a vector."""
+def _indexed_angles(formula: Formula, joints: int) -> list[str]:
+    """q[0], q[1], ... where the formula takes a vector, or the names that it gives to its elements."""
+    text = formula.text or ""
+    every = [node for top in formula.nodes for node in top.walk()]
     names = [name for name in formula.arguments if (slot := slot_of(name)) and slot[0] == "q"]
-    texts = sorted(
-        {
-            formula.text[node.start : node.end]
-            for top in formula.nodes
-            for node in top.walk()
-            if formula.text
-            and node.kind in ("index", "call")
-            and node.parts
-            and (node.word in names or formula.text[node.parts[0].start : node.parts[0].end] in names)
-        }
-    )
-    used = {node.word for top in formula.nodes for node in top.walk() if node.kind == "name"}
-    plain = sorted(name for name in used if (slot := slot_of(name)) and slot[0] == "q" and slot[1] is not None)
-    return plain or texts
+    used = {node.word for node in every if node.kind == "name"}
+    plain = {
+        name.rstrip("0123456789") for name in used if (slot := slot_of(name)) and slot[0] == "q" and slot[1] is not None
+    }
+    given = [f"{stem}{joint + 1}" for stem in sorted(plain) for joint in range(joints)]
+    if given:
+        return [name for name in given if re.search(rf"\b{name}\b", text)]  # a lost angle still has its name
+    indexed = {text[node.parts[0].start : node.parts[0].end] for node in every if node.kind == "index" and node.parts}
+    called = {node.word for node in every if node.kind == "call"}
+    return [
+        f"{name}({joint + 1})" if formula.language == "matlab" else f"{name}[{joint}]"
+        for name in names
+        if name in indexed | called
+        for joint in range(joints)
+    ]
 
 
 def _put_edit(finding: Finding, case: Comparison, edit: Edit) -> None:

@@ -1,6 +1,6 @@
 """The joint torque of a force on the tip: the Jacobian transposed."""
 
-from ...arms import NUMBERS, lab_arm, times, transposed
+from ...arms import JACOBIAN_LISTING, NUMBERS, lab_arm, times, transposed
 from ...task import FunctionTask, Input, Mistake
 
 TASK = FunctionTask(
@@ -16,17 +16,9 @@ torque(q, f_on_tip), each a vector of three. The units of the listing are right,
         "f . (J qd) = tau . qd for every qd.",
         "tau = J' * f, with J transposed.",
     ),
-    given="""\
+    given=f"""\
 function tau = torque(q, f)
-a2 = 0.8;
-a3 = 0.6;
-r = a2*cos(q(2)) + a3*cos(q(2)+q(3));
-h = a2*sin(q(2)) + a3*sin(q(2)+q(3));
-s = a3*sin(q(2)+q(3));
-J = [-sin(q(1))*r, -cos(q(1))*h, -cos(q(1))*s;
-      cos(q(1))*r, -sin(q(1))*h, -sin(q(1))*s;
-      0, -r, -a3*cos(q(2)+q(3))];
-tau = J*f;
+{JACOBIAN_LISTING}tau = J*f;
 """,
     function="torque",
     inputs=(Input("q", -3, 3), Input("f_on_tip", -20, 20)),

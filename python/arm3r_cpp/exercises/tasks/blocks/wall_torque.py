@@ -1,6 +1,6 @@
 """The joint torque that belongs to a force measured on the wall."""
 
-from ...arms import NUMBERS, lab_arm, times, transposed
+from ...arms import JACOBIAN_LISTING, NUMBERS, lab_arm, times, transposed
 from ...task import FunctionTask, Input, Mistake
 
 TASK = FunctionTask(
@@ -17,17 +17,9 @@ in the simulation, the wall draws the arm in.
         "Action and reaction: f_on_tip = -f_on_wall. The joints feel J^T f_on_tip.",
         "tau = -J' * f_on_wall.",
     ),
-    given="""\
+    given=f"""\
 function tau = torque(q, f)
-a2 = 0.8;
-a3 = 0.6;
-r = a2*cos(q(2)) + a3*cos(q(2)+q(3));
-h = a2*sin(q(2)) + a3*sin(q(2)+q(3));
-s = a3*sin(q(2)+q(3));
-J = [-sin(q(1))*r, -cos(q(1))*h, -cos(q(1))*s;
-      cos(q(1))*r, -sin(q(1))*h, -sin(q(1))*s;
-      0, -r, -a3*cos(q(2)+q(3))];
-tau = J'*f;
+{JACOBIAN_LISTING}tau = J'*f;
 """,
     function="torque",
     inputs=(Input("q", -3, 3), Input("f_on_wall", -20, 20)),
