@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -13,6 +14,8 @@ import pytest
 from parts import pytest_configure as pytest_configure
 from parts import pytest_runtest_setup as pytest_runtest_setup
 from parts import pytest_terminal_summary as pytest_terminal_summary
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell that starts tests in the background ignores it
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(arm3r.__file__).parent

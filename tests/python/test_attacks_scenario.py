@@ -755,13 +755,16 @@ def test_a_signal_ends_a_run_within_100_ms_by_the_signal_itself(executable, tmp_
         run = subprocess.Popen(
             [executable, "run", moving_wall, *LONG_RUN, "-o", tmp_path / "x.csv"], stderr=subprocess.PIPE
         )
-        time.sleep(0.3)
-        assert run.poll() is None, run.stderr.read()
-        begin = time.monotonic()
-        run.send_signal(number)
-        assert run.wait(timeout=5) == -number
-        assert list(tmp_path.iterdir()) == []
-        return time.monotonic() - begin
+        try:
+            time.sleep(0.3)
+            assert run.poll() is None, run.stderr.read()
+            begin = time.monotonic()
+            run.send_signal(number)
+            assert run.wait(timeout=5) == -number
+            assert list(tmp_path.iterdir()) == []
+            return time.monotonic() - begin
+        finally:
+            run.kill()  # where it does not end
 
     assert once_within(0.1, delay)
 
