@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -320,6 +321,12 @@ def _run_options(time_limit: float | None) -> Any:
     options.progress = lib.arm3r_python_progress
     options.time_limit = 0.0 if time_limit is None else time_limit
     return options
+
+
+@cache
+def column_names() -> tuple[str, ...]:
+    """Of every column that a run can have."""
+    return tuple(line.split()[0] for line in string(lib.arm3r_columns_text()).splitlines())
 
 
 def outcome(run: Any) -> str:

@@ -283,6 +283,8 @@ def axis_of(base: Scenario, key: str, value: Any) -> Axis:
     kind = param_key(indices[0]).kind
     if kind == "section":
         raise UsageError(f"{key}: a section cannot vary; name a key in it, such as {_below(key)}", code="usage")
+    if kind == "column":
+        raise UsageError(f"{key}: it chooses columns of a log, which the runs of a batch do not have", code="usage")
     try:
         array = np.asarray(value)
     except ValueError as error:

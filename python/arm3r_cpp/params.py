@@ -44,7 +44,7 @@ class ParamKey(NamedTuple):
     path: str
     """ "wall.contact.stiffness" """
     kind: str
-    """ "number", "angle", "integer", "flag", "choice" or "section" """
+    """ "number", "angle", "integer", "flag", "choice", "section" or "column" """
     unit: str
     """ "N/m"; "" for none"""
 

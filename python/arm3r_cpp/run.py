@@ -104,7 +104,17 @@ class Run:
             return self._columns[name]
         if parts := self._three(name):
             return np.stack([self._columns[part] for part in parts], axis=-1)
+        if name in _native.column_names():
+            raise KeyError(
+                f"the log of this run does not have {name!r}: {self._why_not()}; there are {', '.join(self)}"
+            )
         raise no_column(name, self._columns)
+
+    def _why_not(self) -> str:
+        """Why a column of other runs is none of this one's."""
+        if "log_columns:" in (self.summary["scenario"] or ""):
+            return "add it to time.log_columns"
+        return "`arm3r columns` says what a run needs for it"
 
     def __contains__(self, name: object) -> bool:
         """Whether run[name] is there."""

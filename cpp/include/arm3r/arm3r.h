@@ -91,13 +91,14 @@ ARM3R_API int32_t arm3r_nearest_word(const char *word, const char *const *words,
 /* ---- numbers: parameters ------------------------------------------------------------------------------------------
  * A scenario is a flat array of arm3r_param_count() doubles. A key of the scenario file with one number has the key's
  * path as its name, "wall.contact.stiffness"; one with several has "initial.q[0]", "initial.q[1]", ... A choice is stored as
- * the index of its word, a flag as 0 or 1, and NaN means "not given": the value then follows from others.
+ * the index of its word, a column as its place in arm3r_columns_text, a flag as 0 or 1, and NaN means "not given": the value then follows from others.
  */
 
 ARM3R_API size_t arm3r_param_count(void);
 ARM3R_API int32_t arm3r_param_index(const char *name, size_t name_size, size_t *index);
 ARM3R_API int32_t arm3r_param_name(size_t index, const char **name);
-/* The key that a number belongs to; what it is: "number", "angle", "integer", "flag", "choice" or "section"; its unit, "" for none. */
+/* The key that a number belongs to; what it is: "number", "angle", "integer", "flag", "choice", "section" or "column"; its unit,
+ * "" for none. */
 ARM3R_API int32_t arm3r_param_key(size_t index, const char **key, const char **kind, const char **unit);
 ARM3R_API int32_t arm3r_param_defaults(double *params, size_t count); /* the lecture's arm, at rest, no wall, no control */
 

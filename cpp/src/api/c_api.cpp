@@ -145,9 +145,10 @@ bool wants_trust(const arm3r_run_options* given) {
     return trust == 1;
 }
 
-void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* given) {
+void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* given, const ColumnSet& kept) {
     const bool trust = wants_trust(given);
-    const RunOptions options = options_in(given);
+    RunOptions options = options_in(given);
+    options.kept = trust ? kept | states_in_log() : kept;
     handle.run = simulate(setup, options);
     handle.setup = setup;
     if (trust) handle.horizon = horizon_of(setup, handle.run, options);

@@ -125,8 +125,8 @@ namespace arm3r {
 // Sets what a run keeps of its scenario: name, text, warnings, checks, setup.
 void describe(arm3r_run& handle, const Resolved& resolved);
 
-// Sets the run of a setup, and its horizon where the options ask for it.
-void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* options);
+// Sets the run of a setup, and its horizon where the options ask for it. kept: columns beside those of the log.
+void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* options, const ColumnSet& kept = {});
 
 // Throws Error ARM3R_E_VALUE where the options ask for the horizon of a run with a law of the user's own.
 void refuse_trust(const arm3r_run_options* options);

@@ -50,8 +50,9 @@ int32_t arm3r_scenario_control(const arm3r_scenario* scenario, arm3r_law law, vo
         need(reinterpret_cast<const void*>(law), "law");
         need(run, "run");
         refuse_trust(options);
-        const RunOptions chosen = options_in(options);
         const Resolved& resolved = scenario->resolved();
+        RunOptions chosen = options_in(options);
+        chosen.kept = columns_in(resolved.checks);
         auto handle = std::make_unique<arm3r_run>();
         handle->run = with_locations(scenario->scenario,
                                      [&] { return run_with_law(resolved.params, resolved.setup, law, user, chosen); });
@@ -155,7 +156,7 @@ int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation
             const Setup& setup = handle->resolved->setup;
             refuse_lane_method(setup);
             handle->view = std::make_shared<LawView>(setup);
-            handle->run = start_interactive_run(setup, {});
+            handle->run = start_interactive_run(setup, {.kept = columns_in(handle->resolved->checks)});
         });
         *simulation = handle.release();
     });

@@ -222,7 +222,8 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         need(run, "run");
         const Resolved& resolved = scenario->resolved();
         auto handle = std::make_unique<arm3r_run>();
-        with_locations(scenario->scenario, [&] { run_in(*handle, resolved.setup, options); });
+        with_locations(scenario->scenario,
+                       [&] { run_in(*handle, resolved.setup, options, columns_in(resolved.checks)); });
         describe(*handle, resolved);
         *run = handle.release();
     });

@@ -21,18 +21,25 @@ RowMemory allocate_rows(std::size_t doubles) {
     return RowMemory(static_cast<double*>(block));
 }
 
-RowTable::RowTable(const RowTable& other) {
+RowTable::RowTable(const RowTable& other) : columns(other.columns), hidden(other.hidden) {
     if (!other.data) return;
-    reserve(other.columns, other.capacity);
+    reserve(other.capacity);
     rows = other.rows;
-    for (std::size_t i = 0; i < columns.size(); ++i)
+    for (std::size_t i = 0; i < columns.size() + hidden.size(); ++i)
         std::copy_n(other.data.get() + i * capacity, rows, data.get() + i * capacity);
 }
 
-void RowTable::reserve(std::vector<std::size_t> wanted, std::size_t max_rows) {
-    columns = std::move(wanted);
+void RowTable::reserve(std::size_t max_rows) {
     capacity = max_rows;
-    data = allocate_rows(capacity * columns.size());
+    data = allocate_rows(capacity * (columns.size() + hidden.size()));
+}
+
+std::span<const double> RowTable::find(std::size_t index) const {
+    if (const auto at = std::ranges::find(columns, index); at != columns.end())
+        return column(static_cast<std::size_t>(at - columns.begin()));
+    if (const auto at = std::ranges::find(hidden, index); at != hidden.end())
+        return column(columns.size() + static_cast<std::size_t>(at - hidden.begin()));
+    return {};
 }
 
 }  // namespace arm3r

@@ -35,6 +35,9 @@ void check_variation(const Variation& variation) {
         const Key& key = key_at(number);
         if (key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section)
             throw Error(ARM3R_E_INDEX, "varied: " + key.path + " is no number but a choice; make a batch for each");
+        if (key.kind == Kind::column)
+            throw Error(ARM3R_E_INDEX,
+                        "varied: " + key.path + " chooses columns of a log, which a batch does not have");
     }
 }
 

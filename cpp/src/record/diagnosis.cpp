@@ -77,14 +77,15 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
     const Arm<double>& model = setup.controller().model;
     double closest = determinant(model, q), before = closest, when = run.t_end;
     bool passes = false;
+    const auto t = run.find(ColumnIndex("t"));
+    const auto q1 = run.find(ColumnIndex("q1")), q2 = run.find(ColumnIndex("q2")), q3 = run.find(ColumnIndex("q3"));
     for (std::size_t row = run.rows; row-- > 0 && !passes;) {
-        const auto angle = [&](std::size_t joint) { return run.column(joint)[row]; };  // the columns begin with t and q
-        const Vec3<double> there(angle(1), angle(2), angle(3));
+        const Vec3<double> there(q1[row], q2[row], q3[row]);
         const double here = determinant(model, setup.simscape ? change_convention(there) : there);
         passes = (here < 0) != (before < 0);
         if (passes || std::abs(here) < std::abs(closest)) {
             closest = here;
-            when = run.column(0)[row];
+            when = t[row];
         }
         before = here;
     }

@@ -1,4 +1,6 @@
 #include "record/row_values.hpp"
+#include "setup/make_controller.hpp"
+#include "validate/size_limits.hpp"
 
 namespace arm3r {
 
@@ -11,6 +13,44 @@ Energies<double> energies(const Plant<double>& plant, double t, const FullState&
     }
     return {kinetic_energy(plant.arm, p, rates(y)), potential_energy(plant.arm, p), stored};
 }
+
+namespace {
+
+// The parts of a row that a column needs.
+constexpr unsigned parts_of(std::size_t column) {
+    const auto is_between = [column](ColumnIndex first, ColumnIndex last) { return column >= first && column <= last; };
+    if (is_between("qdd1", "qdd3")) return applied_torque | acceleration;
+    if (is_between("tau1", "tau3")) return applied_torque;
+    if (is_between("tau_g1", "tau_g3")) return gravity_part;
+    if (is_between("tip_x", "tip_vz")) return transform_sensor;
+    if (is_between("tip_jvx", "tip_jvz")) return jacobian_velocity;
+    if (is_between("tip_dvx", "tip_dvz")) return differentiated_position;
+    if (is_between("force", "q_ref3")) return law_signals;
+    if (is_between("residual1", "collision")) return observer_signals;
+    if (is_between("stiffness_estimate", "tank_energy")) return memory_signals;
+    if (is_between("saturated", "saturated")) return applied_torque | memory_signals;
+    if (is_between("energy_dissipated_joints", "energy_dissipated_edges")) return losses;
+    return 0;
+}
+
+RowPlan with_parts(std::vector<std::size_t> columns, std::vector<std::size_t> hidden) {
+    unsigned parts = 0;
+    for (const std::size_t column : columns) parts |= parts_of(column);
+    for (const std::size_t column : hidden) parts |= parts_of(column);
+    return {std::move(columns), std::move(hidden), parts};
+}
+
+}  // namespace
+
+// A law that inverts the Jacobian keeps the angles: a bad end is explained by the poses before it.
+RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept) {
+    ColumnSet hidden = kept;
+    if (inverts_jacobian(setup.controller()))
+        for (const ColumnIndex angle : {ColumnIndex("q1"), ColumnIndex("q2"), ColumnIndex("q3")}) hidden.set(angle);
+    return with_parts(columns_of(setup), in_order(hidden & possible_columns(setup) & ~setup.logged));
+}
+
+RowPlan plan_of_end() { return {{}, {}, applied_torque | acceleration}; }
 
 Row make_row(const RowContext& context, double t, const FullState& y, double theta) {
     RowValues<double> row;

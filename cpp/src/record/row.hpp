@@ -46,11 +46,35 @@ ARM3R_INLINE std::array<T, 4> dissipated_parts(const Plant<P>& plant, const Stat
     return {joints, contact, friction, edges};
 }
 
-// All columns (schema/columns.hpp); joint vectors in the arm's convention.
+// The columns of the plan, and energy_residual; joint vectors in the arm's convention. Others are 0.
 struct Row {
     std::array<double, column_count> value;
     bool link_behind_wall;  // the elbow, or a link that is not in contact itself, lies behind the plate
 };
+
+// What rows are computed from beside motion, contact and energy, which are known of each row: each is computed only if
+// a column needs it.
+enum RowPart : unsigned {
+    applied_torque = 1,
+    acceleration = 2,
+    gravity_part = 4,
+    transform_sensor = 8,
+    jacobian_velocity = 16,
+    differentiated_position = 32,
+    law_signals = 64,
+    observer_signals = 128,
+    memory_signals = 256,
+    losses = 512,
+};
+
+// The columns of a log, those that are kept beside them, and the parts of a row that they need.
+struct RowPlan {
+    std::vector<std::size_t> columns, hidden;
+    unsigned parts;
+};
+
+RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept);
+RowPlan plan_of_end();  // of what EndValues has (run_data.hpp); in memory it has no column
 
 // The data that all rows within a step share.
 struct RowContext {
@@ -64,6 +88,9 @@ struct RowContext {
     const ControllerState<double>& controller_state;  // of the sampled controller
     ContinuousInputs inputs;                          // of a continuous one
     double lost_at_edges;                             // J, so far
+    const RowPlan& plan;
+
+    bool needs(RowPart part) const { return (plan.parts & part) != 0; }
 };
 
 // `theta` is the place of t within the step.
@@ -72,7 +99,7 @@ Row make_row(const RowContext& context, double t, const FullState& y, double the
 // Eight rows of the dense output of a step, computed together: value[column][row], with the same bits as one by one.
 constexpr int rows_per_block = 8;
 
-struct RowBlock {
+struct RowBlock {  // the columns of the plan, and energy_residual
     alignas(64) double value[column_count][rows_per_block];
     int first_link_behind_wall;  // the first row with link_behind_wall, or `rows_per_block`
 };

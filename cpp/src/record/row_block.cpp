@@ -16,7 +16,10 @@ ARM3R_INLINE void fill_block(const RowContext& context, const double* t, RowBloc
         for (std::size_t i = 0; i < context.dense.size; ++i) y[i] = context.dense.component(i, theta);
         RowValues<Group> sampled;
         fill_row(context, at, y, theta, sampled);
-        for (std::size_t i = 0; i < column_count; ++i) sampled.value[i].store(rows.value[i] + first);
+        const auto store = [&](std::size_t i) ARM3R_INLINE_LAMBDA { sampled.value[i].store(rows.value[i] + first); };
+        for (const std::size_t column : context.plan.columns) store(column);
+        for (const std::size_t column : context.plan.hidden) store(column);
+        store(ColumnIndex("energy_residual"));
         for (int i = N - 1; i >= 0; --i)
             if (sampled.link_behind_wall[i] > 0) rows.first_link_behind_wall = first + i;
     }

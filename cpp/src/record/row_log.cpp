@@ -20,22 +20,22 @@ double zero_or_nan(double value) { return 0.0 * value; }
 
 }  // namespace
 
-void RowLog::reserve() {
+void RowLog::reserve(const RowPlan& plan) {
     const double intervals = (setup_.stop - setup_.start) / setup_.log_every;
     std::size_t rows = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
     while (stands_before(rows, setup_.stop)) rows += 1;
-    run_.reserve(columns_of(setup_), rows + 1);  // and the end
+    run_.columns = plan.columns;
+    run_.hidden = plan.hidden;
+    run_.reserve(rows + 1);  // and the end
 }
 
 void RowLog::log(const RowContext& context, double t, const FullState& y, double theta) {
     const Row row = make_row(context, t, y, theta);
-    double* cell = run_.data.get() + run_.rows;
     double nothing = 0;
-    for (const std::size_t column : run_.columns) {
+    each_cell([&](std::size_t column, double* cell) {
         *cell = row.value[column];
         nothing += zero_or_nan(*cell);
-        cell += run_.capacity;
-    }
+    });
     if (nothing != 0) return end_at_bad_row(row, t);
     run_.rows += 1;
     include_residual(run_.energy_residual_max, row.value[ColumnIndex("energy_residual")]);
@@ -48,13 +48,11 @@ void RowLog::log_block(const RowContext& context) {
     for (int i = 0; i < rows_per_block; ++i) t[i] = time_of(run_.rows + i);
     RowBlock rows;
     make_row_block(context, t, rows);
-    double* cells = run_.data.get() + run_.rows;
     double nothing = 0;
-    for (const std::size_t column : run_.columns) {
+    each_cell([&](std::size_t column, double* cells) {
         std::copy_n(rows.value[column], rows_per_block, cells);
         for (const double value : rows.value[column]) nothing += zero_or_nan(value);
-        cells += run_.capacity;
-    }
+    });
     if (nothing != 0) return log_one_by_one(context, t);
     run_.rows += rows_per_block;
     for (const double residual : rows.value[ColumnIndex("energy_residual")])
@@ -73,8 +71,8 @@ void RowLog::log_one_by_one(const RowContext& context, std::span<const double> t
 
 void RowLog::end_at_bad_row(const Row& row, double t) {
     if (run_.outcome != ARM3R_RUN_OK) return;
-    const auto is_bad = [&](std::size_t column) { return !std::isfinite(row.value[column]); };
-    const std::size_t bad = *std::find_if(run_.columns.begin(), run_.columns.end(), is_bad);
+    const auto is_bad = [](double value) { return !std::isfinite(value); };
+    const auto bad = static_cast<std::size_t>(std::ranges::find_if(row.value, is_bad) - row.value.begin());
     run_.outcome = ARM3R_RUN_DIVERGED;
     run_.message = std::string(column_table[bad].name) + " is not a finite number at t = " + shortest(t) + " s";
 }

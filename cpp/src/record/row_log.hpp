@@ -11,7 +11,7 @@ public:
     RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {}
 
     // Allocates the memory of all rows; refuse_too_large() (size_limits.hpp) has checked that they are not too many.
-    void reserve();
+    void reserve(const RowPlan& plan);
 
     // Writes all rows before `until`, from the dense output of the step, while keep_going() holds.
     template <class KeepGoing>
@@ -37,6 +37,13 @@ private:
     bool stands_before(std::size_t row, double until) const {
         const double t = time_of(row);
         return t < until && (row == 0 || t < setup_.stop - 1e-9 * setup_.log_every);
+    }
+    // Visits the columns that are kept: the index of each, and its cell of the next row.
+    template <class Visit>
+    void each_cell(Visit visit) {
+        double* cell = run_.data.get() + run_.rows;
+        for (const auto* columns : {&run_.columns, &run_.hidden})
+            for (const std::size_t column : *columns) visit(column, cell), cell += run_.capacity;
     }
     void log_block(const RowContext& context);
     void log_one_by_one(const RowContext& context, std::span<const double> t);

@@ -77,12 +77,15 @@ ARM3R_INLINE T link_behind(const Plant<double>& plant, const WallState<T>& wall,
 // ---- state and reference of the controller
 
 template <class T>
-ARM3R_INLINE Vec3<T> torque_with_memory(const RowContext& context, RightHandSide<double, T>& rhs, const T& t,
-                                        const WallState<T>& wall, const Pose<T>& p, const State<T, full_size>& y,
-                                        const Vec3<T>& f_on_tip) {
+ARM3R_INLINE void set_inputs(const RowContext& context, RightHandSide<double, T>& rhs) {
     rhs.law_function = compiled_law<double, T>();
     rhs.contact = T(context.inputs.contact);
     rhs.force_phase = T(context.inputs.force_phase);
+}
+
+template <class T>
+ARM3R_INLINE Vec3<T> torque_with_memory(RightHandSide<double, T>& rhs, const T& t, const WallState<T>& wall,
+                                        const Pose<T>& p, const State<T, full_size>& y, const Vec3<T>& f_on_tip) {
     State<T, full_size> rates;
     return rhs.torque(t, wall, p, Vec3<T>(y[0], y[1], y[2]), Vec3<T>(y[3], y[4], y[5]), f_on_tip, y, rates);
 }
@@ -138,8 +141,8 @@ struct RowState {
     Indentation<T> in{T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
     ContactForce<T> force = no_contact<T>();
     T touches{0.0};
-    Vec3<T> felt, at_tip;  // N, on the tip: what the arm feels, and what a sensor there would
-    Vec3<T> tau;           // N m
+    Vec3<T> felt, at_tip;            // N, on the tip: what the arm feels, and what a sensor there would
+    Vec3<T> tau = zero_vector<T>();  // N m
 };
 
 template <class T>
@@ -164,17 +167,19 @@ template <class T>
 ARM3R_INLINE void write_motion(const RowContext& context, const T& row_time, const RowState<T>& now, const T& theta,
                                RowWriter<T>& write) {
     const Arm<double>& arm = context.plant.arm;
-    const TipSensor<T> sensor = tip_sensor(arm, now.q, now.qd);
     write.number("t", row_time);
     write.joints("q1", now.q);
     write.joints("qd1", now.qd);
-    write.joints("qdd1", forward_dynamics(arm, now.pose, now.qd, now.tau, now.felt));
     write.joints("tau1", now.tau);
-    write.joints("tau_g1", gravity_torque(arm, now.pose));
-    write.vector("tip_x", sensor.position);
-    write.vector("tip_vx", sensor.velocity);
-    write.vector("tip_jvx", times(jacobian(arm, now.pose), now.qd));
-    write.vector("tip_dvx", differentiated_tip(arm, context.dense, theta));
+    if (context.needs(acceleration)) write.joints("qdd1", forward_dynamics(arm, now.pose, now.qd, now.tau, now.felt));
+    if (context.needs(gravity_part)) write.joints("tau_g1", gravity_torque(arm, now.pose));
+    if (context.needs(transform_sensor)) {
+        const TipSensor<T> sensor = tip_sensor(arm, now.q, now.qd);
+        write.vector("tip_x", sensor.position);
+        write.vector("tip_vx", sensor.velocity);
+    }
+    if (context.needs(jacobian_velocity)) write.vector("tip_jvx", times(jacobian(arm, now.pose), now.qd));
+    if (context.needs(differentiated_position)) write.vector("tip_dvx", differentiated_tip(arm, context.dense, theta));
 }
 
 template <class T>
@@ -258,20 +263,23 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
     row.link_behind_wall = T(0.0);
     find_contact(context, now, row.link_behind_wall);
     RightHandSide<double, T> rhs(plant);
-    now.tau = has_memory(plant) ? torque_with_memory(context, rhs, now.t, now.wall, now.pose, y, now.at_tip)
-                                : torque_without_memory(plant, now.q, now.pose);
+    if (has_memory(plant)) set_inputs(context, rhs);
+    if (context.needs(applied_torque))
+        now.tau = has_memory(plant) ? torque_with_memory(rhs, now.t, now.wall, now.pose, y, now.at_tip)
+                                    : torque_without_memory(plant, now.q, now.pose);
 
     RowWriter<T> write(row, context.simscape);
     write_motion(context, row_time, now, theta, write);
     write_contact(now, write);
     write_energy(context, now, y, write);
-    if (context.controller.type != ControllerType::none || plant.observer.on || plant.has_wall) {
+    if (context.needs(law_signals)) {
         const Measurement<T> sensed =
             measurement_of(context, rhs, now.t, now.wall, now.pose, now.q, now.qd, now.at_tip, y);
         write_law(context, sensed, now.force, write);
-        write_observer(context, rhs, now, y, write);
-        write_memory(context, now, y, write);
     }
+    if (context.needs(observer_signals)) write_observer(context, rhs, now, y, write);
+    if (context.needs(memory_signals)) write_memory(context, now, y, write);
+    if (!context.needs(losses)) return;
     const auto [joints, in_contact, friction, edges] = dissipated_parts(plant, y, context.lost_at_edges);
     write.number("energy_dissipated_joints", joints);
     write.number("energy_dissipated_contact", in_contact);

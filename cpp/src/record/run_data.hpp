@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "arm3r/arm3r.h"
 #include "base/column_memory.hpp"
 #include "control/user_law.hpp"
+#include "schema/columns.hpp"
 
 namespace arm3r {
 
@@ -54,6 +56,11 @@ struct Metrics {
     double stiff_steps = 0;                                              // accepted steps of the stiff method
 };
 
+// What the end of a run tells beside its metrics, in the arm's convention.
+struct EndValues {
+    std::array<double, 3> qdd, tau, f_on_wall;  // rad/s^2, N m, N
+};
+
 struct Run : Metrics, RowTable {
     std::string message;  // why, when the outcome is not ok; "" else
     std::vector<Event> events;
@@ -63,7 +70,9 @@ struct Run : Metrics, RowTable {
     std::array<double, 3> torque_limit{};  // N m; may be inf
     double energy_residual_max = 0;        // J, over steps and rows
     double elapsed_s = 0;                  // wall clock
-    bool has_user_law = false;             // the scenario does not determine what the law does
+    bool has_wall = false;
+    bool has_user_law = false;        // the scenario does not determine what the law does
+    std::optional<EndValues> at_end;  // none where the motion is not finite, or there are no rows
     // Observations in the rows; s, and < 0: never.
     double link_behind_wall_since = -1;  // of a link other than at its tip
     double out_of_reach_since = -1;      // of the point that an inner joint loop follows
@@ -77,7 +86,8 @@ struct RunOptions {
     double time_limit = 0;                           // s; 0: none
     const std::atomic<bool>* should_stop = nullptr;  // as stop, for threads of our own
     UserLaw user_law = {};
-    bool rows = true;  // false: no rows, no warnings, the metrics alone
+    bool rows = true;     // false: no rows, no warnings, the metrics alone
+    ColumnSet kept = {};  // columns that are kept beside those of the log, where the run has them
 };
 
 }  // namespace arm3r

@@ -252,11 +252,13 @@ struct Measured {
     std::string reason;
 };
 
-std::span<const double> column_of(const Run& run, const std::string& name) {
-    for (std::size_t i = 0; i < run.columns.size(); ++i)
-        if (column_table[run.columns[i]].name == name) return run.column(i);
-    throw Error(ARM3R_E_INTERNAL, "a check names the column " + name + ", which the run lacks");
+std::optional<std::size_t> index_of(std::string_view name) {
+    const auto found = std::ranges::find(column_table, name, &Column::name);
+    if (found == column_table.end()) return {};
+    return static_cast<std::size_t>(found - column_table.begin());
 }
+
+std::span<const double> column_of(const Run& run, const std::string& name) { return run.find(*index_of(name)); }
 
 double reduce(const std::string& of, const std::vector<double>& values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -376,6 +378,16 @@ std::vector<Check> read_checks(const Node& list, std::span<const double> params,
     for (std::size_t i = 0; i < list.children.size(); ++i)
         checks.push_back(CheckReader(list.children[i], item("checks", i), params, columns, file, problems).read());
     return checks;
+}
+
+ColumnSet columns_in(const std::vector<Check>& checks) {
+    ColumnSet columns;
+    for (const Check& check : checks) {
+        if (check.subject != Check::column) continue;
+        for (const std::string* name : {&check.what, &check.minus})
+            if (const auto index = index_of(*name)) columns.set(*index);
+    }
+    return columns;
 }
 
 std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, std::span<const double> params) {

@@ -50,6 +50,9 @@ std::vector<Check> read_checks(const Node& list, std::span<const double> params,
                                const std::string& file, std::vector<Problem>& problems);
 
 // `params`: those of the run. On part of a run, only the rows and events that exist can be judged.
+// The columns that the checks read.
+ColumnSet columns_in(const std::vector<Check>& checks);
+
 std::vector<CheckResult> evaluate(const std::vector<Check>& checks, const Run& run, std::span<const double> params);
 
 }  // namespace arm3r

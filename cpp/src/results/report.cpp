@@ -89,27 +89,11 @@ std::string vector_text(const std::array<double, 3>& v) {
     return "(" + rounded(v[0], 7) + ", " + rounded(v[1], 7) + ", " + rounded(v[2], 7) + ")";
 }
 
-std::span<const double> column(const Run& run, std::string_view name) {
-    for (std::size_t i = 0; i < run.columns.size(); ++i)
-        if (column_table[run.columns[i]].name == name) return run.column(i);
-    return {};
-}
-
-double last(const Run& run, std::string_view name) {
-    const std::span<const double> values = column(run, name);
-    return values.empty() ? NAN : values.back();
-}
-
 // The time span of the run; the start is left out if it is 0 s.
 std::string span_text(const Run& run) {
-    const std::span<const double> t = column(run, "t");
+    const std::span<const double> t = run.find(ColumnIndex("t"));
     const bool starts_at_zero = t.empty() || t.front() == 0;
     return (starts_at_zero ? "" : "from " + rounded(t.front(), 9) + " to ") + rounded(run.t_end, 9) + " s";
-}
-
-bool has_wall(const Run& run) {
-    return std::any_of(run.columns.begin(), run.columns.end(),
-                       [](std::size_t i) { return column_table[i].need == Need::wall; });
 }
 
 std::string event_lines(const Run& run) {
@@ -123,14 +107,13 @@ std::string event_lines(const Run& run) {
     }
     if (run.events.size() > most)
         out += line("", "... and " + std::to_string(run.events.size() - most) + " more events");
-    if (run.events.empty() && has_wall(run)) out += line("contact", "none");
+    if (run.events.empty() && run.has_wall) out += line("contact", "none");
     return out;
 }
 
 std::string force_line(const Run& run) {
-    if (!has_wall(run)) return {};
-    const std::array<double, 3> force = {last(run, "f_on_wall_x"), last(run, "f_on_wall_y"), last(run, "f_on_wall_z")};
-    return line("force on wall", vector_text(force) + " N at " + rounded(run.t_end, 9) + " s, peak " +
+    if (!run.has_wall || !run.at_end) return {};
+    return line("force on wall", vector_text(run.at_end->f_on_wall) + " N at " + rounded(run.t_end, 9) + " s, peak " +
                                      rounded(run.peak_force, 10) + " N");
 }
 

@@ -1,6 +1,7 @@
 #include "run/run_recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/callback.hpp"
 #include "base/number_text.hpp"
@@ -14,6 +15,8 @@ namespace {
 
 const Setup& small_enough(const Setup& setup, bool rows) {
     refuse_too_large(setup, rows);
+    if (std::vector<Problem> problems = missing_columns(setup); rows && !problems.empty())
+        throw Error(ARM3R_E_SCENARIO, std::move(problems));
     return setup;
 }
 
@@ -24,7 +27,9 @@ RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
     run_.t_end = setup_.start;
     run_.has_user_law = setup_.controller().type == ControllerType::user;
     if (!options.rows) return;
-    row_log().reserve();
+    plan_ = make_row_plan(setup_, options.kept);
+    row_log().reserve(plan_);
+    run_.has_wall = setup_.plant.has_wall;
     run_.method = word_of(setup_.solver.method);
     run_.torque_limit = without_negative_zero(setup_.plant.arm.torque_limit);
     run_.events.reserve(static_cast<std::size_t>(max_events));
@@ -101,6 +106,18 @@ void RunRecorder::explain(const FullState& y) {
     else if (is(ARM3R_RUN_ENERGY)) run_.message += std::string("; ") + accuracy_advice(setup_.solver);
 }
 
+// From a row at the end, whatever the log has.
+std::optional<EndValues> RunRecorder::end_values(const FullState& y, double theta) const {
+    const bool is_finite = std::ranges::all_of(y, [](double value) { return std::isfinite(value); });
+    if (!is_finite || std::max({std::abs(y[0]), std::abs(y[1]), std::abs(y[2])}) > sincos_limit) return {};
+    const RowPlan plan = plan_of_end();
+    const Row row = make_row(row_context(plan), run_.t_end, y, theta);
+    const auto three = [&](ColumnIndex first) {
+        return std::array{row.value[first], row.value[first + 1], row.value[first + 2]};
+    };
+    return EndValues{three("qdd1"), three("tau1"), three("f_on_wall_x")};
+}
+
 Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& totals) {
     if (is_running()) {
         log_until(run_.t_end);
@@ -111,6 +128,7 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
         }
     }
     explain(y);
+    if (options_.rows) run_.at_end = end_values(y, theta);
     if (run_.link_behind_wall_since >= 0)
         run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
                                 shortest(run_.link_behind_wall_since) + " s on; only the tip feels the wall");

@@ -78,13 +78,24 @@ protected:
 
 private:
     RowLog row_log() { return {setup_, run_}; }
-    RowContext row_context() const {
-        return {setup_.plant, setup_.simscape,        energy_at_start_,           mode_,
-                dense_,       setup_.controller(),    setup_.digital.sampling.on, controller_state_,
-                inputs_,      contacts_.lost_at_edges};
+    std::optional<EndValues> end_values(const FullState& y, double theta) const;
+    RowContext row_context() const { return row_context(plan_); }
+    RowContext row_context(const RowPlan& plan) const {
+        return {setup_.plant,
+                setup_.simscape,
+                energy_at_start_,
+                mode_,
+                dense_,
+                setup_.controller(),
+                setup_.digital.sampling.on,
+                controller_state_,
+                inputs_,
+                contacts_.lost_at_edges,
+                plan};
     }
     void explain(const FullState& y);
     void record(Event::Type type, double t, const FullState& y);
+    RowPlan plan_;
     TorqueOscillation oscillation_;
     double energy_at_start_ = 0;
     unsigned polls_ = 0;

@@ -65,6 +65,9 @@ std::string list_schema(const Key& key, const std::string& number) {
 std::string value_schema(const Key& key, const Params& params) {
     if (key.kind == Kind::flag) return R"({"type": "boolean"})";
     if (key.kind == Kind::choice) return object({member("enum", json_words(key.choices))});
+    if (key.kind == Kind::column)
+        return R"({"type": "array", "items": {"$ref": "#/definitions/column of a run"}, "minItems": 1, )"
+               R"("uniqueItems": true})";
     const std::string number = number_schema(key), list = list_schema(key, number);
     switch (key.form) {
         case Form::vector_or_word: return R"({"anyOf": [)" + list + R"(, {"const": )" + json_string(key.word) + "}]}";

@@ -46,6 +46,7 @@ std::string range_text(const Key& key) {
     if (key.kind == Kind::choice) return listed(key.choices, ", ");
     if (key.kind == Kind::flag) return "true, false";
     if (key.kind == Kind::section) return "a map";
+    if (key.kind == Kind::column) return "[columns](columns.md)";
     std::string out = (key.bounds.open_low ? "> " : "") + yaml_number(key.bounds.low) + " to " +
                       (key.bounds.open_high ? "< " : "") + yaml_number(key.bounds.high);
     if (key.allow_infinity) out += ", inf";
@@ -152,6 +153,13 @@ not deeper than 0.1 m.
 The rows of a run stand at t_k = start + k*log_every while t_k < stop - 1e-9*log_every, then exactly
 at stop; so start and stop always are rows. Events add none. A row at an instant at which something
 jumps shows what holds after it.
+
+`time.log_columns` chooses the columns of the log; `t` is always the first, and the others keep the
+order of [columns](columns.md), however they are listed. Each has the bits that it has in the full
+log, and what no chosen column needs is not computed. Summary, events, checks and warnings stay as
+they are: what checks, messages and `trust` read is kept beside the log. Only `hash` and `columns`
+of the summary tell of the columns that are logged. A row is judged by what is logged: a number in
+it that is not finite ends the run.
 
 ## A start other than 0
 

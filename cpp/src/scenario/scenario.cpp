@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 
 #include "base/number_text.hpp"
@@ -37,6 +36,7 @@ std::string expected(const Key& key, std::span<const double> params) {
         case Kind::choice: return "one of " + listed(key.choices);
         case Kind::section: return "a map";
         case Kind::integer: return "a whole number" + unit;
+        case Kind::column: return "a list of 1 to " + std::to_string(key.size) + " names of columns";
         default: break;
     }
     switch (key.form) {
@@ -346,9 +346,39 @@ private:
     void read_list(const Key& key, const Node& node) {
         if (key.form == Form::list) std::fill_n(at(key), key.size, unset);
         for (std::size_t i = 0; i < node.children.size(); ++i)
-            if (node.children[i].type != Node::unset)
+            if (key.kind == Kind::column) read_column(key, node, i);
+            else if (node.children[i].type != Node::unset)
                 read_number_into(key, node.children[i], item(key.path, i), at(key)[static_cast<long>(i)]);
         set_origin(key, node);
+    }
+
+    void read_column(const Key& key, const Node& list, std::size_t i) {
+        const Node& node = list.children[i];
+        const std::string path = item(key.path, i);
+        const auto word = std::find(key.choices.begin(), key.choices.end(), node.text);
+        if (node.type != Node::scalar || word == key.choices.end())
+            return problem(node.mark, {"scenario.unknown_word", path, "there is no such column", node_text(node),
+                                       "names that `arm3r columns` lists", meant_column(key, node.text)});
+        const auto is_same = [&](const Node& other) { return other.type == Node::scalar && other.text == node.text; };
+        if (std::find_if(list.children.begin(), list.children.begin() + static_cast<std::ptrdiff_t>(i), is_same) !=
+            list.children.begin() + static_cast<std::ptrdiff_t>(i))
+            return problem(node.mark, {"scenario.column", path, "this column stands in the list twice", node.text, "",
+                                       "take one of the two out"});
+        at(key)[static_cast<long>(i)] = static_cast<double>(word - key.choices.begin());
+    }
+
+    // "q" is most likely meant as q1, q2, q3.
+    static std::string meant_column(const Key& key, const std::string& text) {
+        const auto has = [&](const std::string& name) {
+            return std::find(key.choices.begin(), key.choices.end(), name) != key.choices.end();
+        };
+        for (const char* ends : {"123", "xyz"})
+            for (const char* joint : {"", "_"}) {
+                Words three;
+                for (const char* end = ends; *end; ++end) three.push_back(text + joint + *end);
+                if (std::all_of(three.begin(), three.end(), has)) return "write " + listed(three);
+            }
+        return did_you_mean(text, key.choices);
     }
 
     bool read_number_into(const Key& key, const Node& node, const std::string& path, double& value) {
@@ -373,6 +403,17 @@ private:
         if (keeps_rules_) result_.setup = *validation.setup;
         for (const Problem& rule : validation.problems)
             if (!already_refused(rule.path)) problem(place(rule.path), rule);
+        if (keeps_rules_ && unknown_choices_.empty()) add_missing_columns();
+    }
+
+    void add_missing_columns() {
+        for (Problem& missing : missing_columns(result_.setup)) {
+            const Node& list = *find(root_, parse_path(missing.path));
+            const auto is_it = [&](const Node& node) { return node.text == missing.got; };
+            const auto found = std::find_if(list.children.begin(), list.children.end(), is_it);
+            missing.path = item(missing.path, static_cast<std::size_t>(found - list.children.begin()));
+            problem(found->mark, missing);
+        }
     }
 
     void add_warnings() {
@@ -380,12 +421,10 @@ private:
         if (const auto warning = default_gravity_warning(result_.setup)) result_.warnings.push_back(*warning);
     }
 
-    // The columns of the run; all columns if they cannot be known because something else is wrong.
+    // The columns that checks can name; all columns if they cannot be known because something else is wrong.
     std::vector<std::size_t> columns() const {
-        if (keeps_rules_ && unknown_choices_.empty()) return columns_of(result_.setup);
-        std::vector<std::size_t> all(column_table.size());
-        std::iota(all.begin(), all.end(), 0);
-        return all;
+        const bool is_known = keeps_rules_ && unknown_choices_.empty();
+        return in_order(is_known ? possible_columns(result_.setup) : ColumnSet().set());
     }
 
     bool already_refused(std::string_view path) const {
@@ -487,7 +526,7 @@ private:
 
     static std::string text_of(const Key& key, double value) {
         if (std::isnan(value)) return {};
-        if (key.kind == Kind::choice) return key.choices[static_cast<std::size_t>(value)];
+        if (key.kind == Kind::choice || key.kind == Kind::column) return key.choices[static_cast<std::size_t>(value)];
         if (key.kind == Kind::flag) return value != 0 ? "true" : "false";
         return key.kind == Kind::integer ? std::to_string(static_cast<long long>(value)) : shortest(value);
     }

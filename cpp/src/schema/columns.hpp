@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <string_view>
 
@@ -113,6 +114,8 @@ inline constexpr std::array column_table = std::to_array<Column>({
 });
 
 inline constexpr std::size_t column_count = column_table.size();
+
+using ColumnSet = std::bitset<column_count>;
 
 // The place of a column in a row; a name that does not exist is an error of the compiler.
 struct ColumnIndex {

@@ -9,6 +9,7 @@
 
 #include "arm3r/model/scalar_motion.hpp"
 #include "schema/choice_words.hpp"
+#include "schema/columns.hpp"
 #include "schema/stiffness_presets.hpp"
 #include "schema/suggest.hpp"
 
@@ -774,6 +775,15 @@ void connect(std::vector<Key>& keys) {
     }
 }
 
+Key log_columns() {
+    Key key = list_of(1, column_count,
+                      number("time.log_columns", {unset}, Source::ours, {0, double(column_count - 1)}, "",
+                             "Names of the columns of the log; t is always one. The rest is not computed, and nothing "
+                             "but the log changes."));
+    for (const Column& column : column_table) key.choices.emplace_back(column.name);
+    return of_kind(Kind::column, derived("all that the run has", key));
+}
+
 std::vector<Key> make_schema() {
     std::vector<Key> keys;
     keys.push_back(choice(
@@ -805,6 +815,7 @@ std::vector<Key> make_schema() {
     keys.push_back(number("time.start", {0}, Source::ours, an_instant, "s",
                           "Start of the run: rows, samples and fixed steps count from it, and `initial` holds there. "
                           "wall.point stays the place at t = 0, and no other key is shifted."));
+    keys.push_back(log_columns());
     connect(keys);
     return keys;
 }
@@ -837,7 +848,7 @@ const Key& known_key(std::string_view path) {
 }
 
 const char* kind_name(Kind kind) {
-    constexpr const char* names[] = {"number", "angle", "integer", "flag", "choice", "section"};
+    constexpr const char* names[] = {"number", "angle", "integer", "flag", "choice", "section", "column"};
     return names[static_cast<std::size_t>(kind)];
 }
 

@@ -20,6 +20,7 @@ enum class Kind {
     flag,     // true | false
     choice,   // one word of `choices`
     section,  // a map that may be absent; the parameter is 1 where it is present (only `wall`)
+    column,   // the name of a column of a run; one word of `choices`
 };
 
 const char* kind_name(Kind kind);

@@ -193,6 +193,14 @@ Solver make_solver(std::span<const double> params) {
             .max_steps = at<"solver.max_steps">(params)};
 }
 
+ColumnSet logged_columns(std::span<const double> params) {
+    ColumnSet logged;
+    for (std::size_t i = 0; i < column_count && !std::isnan(at<"time.log_columns">(params, i)); ++i)
+        logged.set(static_cast<std::size_t>(at<"time.log_columns">(params, i)));
+    if (logged.none()) return logged.set();
+    return logged.set(ColumnIndex("t"));
+}
+
 }  // namespace
 
 const std::vector<Replacement>& model_numbers() {
@@ -273,6 +281,7 @@ Setup make_setup(std::span<const double> params) {
     setup.solver = make_solver(params);
     setup.stop = at<"time.stop">(params);
     setup.log_every = at<"time.log_every">(params);
+    setup.logged = logged_columns(params);
     if (at<"push">(params) != 0) setup.plant.external_force = make_external_force(params);
     if (at<"estimator">(params) != 0) setup.estimation = make_estimation(params);
     wire_sampling(params, setup);

@@ -7,6 +7,7 @@
 
 #include "arm3r/plant.hpp"
 #include "base/problem_list.hpp"
+#include "schema/columns.hpp"
 #include "schema/solver_method.hpp"
 
 namespace arm3r {
@@ -31,6 +32,7 @@ struct Setup {
     Vec3<double> q, qd;  // at the start
     Solver solver;
     double start, stop, log_every;  // s
+    ColumnSet logged;               // the columns of the log, as far as the run has them; t is always one
 
     const Controller<double>& controller() const { return digital.sampling.on ? digital.controller : plant.controller; }
     bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }

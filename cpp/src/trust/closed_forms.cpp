@@ -183,27 +183,17 @@ void add_contacts(const Setup& setup, const Run& run, double tolerance, std::vec
 
 // ---- at rest on the wall (9.5)
 
-// The last row of three columns, in the slide convention; NaN where the run does not have them.
-Vec3<double> last(const Setup& setup, const Run& run, std::string_view name) {
-    Vec3<double> v(NAN, NAN, NAN);
-    for (std::size_t i = 0; i < run.columns.size(); ++i) {
-        const std::string_view found = column_table[run.columns[i]].name;
-        if (found.size() == name.size() + 1 && found.starts_with(name) && run.rows > 0 && found.back() >= '1' &&
-            found.back() <= '3')
-            v[found.back() - '1'] = run.column(i)[run.rows - 1];
-    }
-    return slide(setup, v);
-}
-
 void add_steady_force(const Setup& setup, const Run& run, double tolerance, std::vector<ClosedForm>& forms) {
-    if (run.events.back().type != Event::make || setup.plant.external_force.on) return;
+    if (!run.at_end || run.events.back().type != Event::make || setup.plant.external_force.on) return;
     const Arm<double>& arm = setup.plant.arm;
     const Vec3<double> q = slide(setup, Vec3<double>(run.q.data())), qd = slide(setup, Vec3<double>(run.qd.data()));
     const Meeting end = meeting_at(setup.plant, run.t_end, q, qd);
     const Pose<double> p = pose(q);
     const Vec3<double> carried = times(inverse_jacobian(arm, p), end.n);  // f_n = carried . (J^T f)
-    const Vec3<double> moving = plus(times(mass_matrix(arm, p), last(setup, run, "qdd")), velocity_product(arm, p, qd));
-    const Vec3<double> holding = minus(plus(gravity_torque(arm, p), friction_torque(arm, qd)), last(setup, run, "tau"));
+    const Vec3<double> moving = plus(times(mass_matrix(arm, p), slide(setup, Vec3<double>(run.at_end->qdd.data()))),
+                                     velocity_product(arm, p, qd));
+    const Vec3<double> holding = minus(plus(gravity_torque(arm, p), friction_torque(arm, qd)),
+                                       slide(setup, Vec3<double>(run.at_end->tau.data())));
     const double form = dot(carried, holding), allowed = std::abs(dot(carried, moving));
     if (allowed < 0.01 * form) forms.push_back({"final_force", "N", run.final_force, form, allowed + tolerance * form});
 }

@@ -49,12 +49,6 @@ Setup changed(Setup setup, double change) {
     return setup;
 }
 
-std::span<const double> column(const Run& run, std::string_view name) {
-    const auto place = std::ranges::find_if(run.columns, [&](std::size_t i) { return column_table[i].name == name; });
-    if (place == run.columns.end()) return {};
-    return run.column(static_cast<std::size_t>(place - run.columns.begin()));
-}
-
 bool is_cut_short(const Run& run) { return run.outcome == ARM3R_RUN_STOPPED || run.outcome == ARM3R_RUN_BUDGET; }
 
 // The joint angles and rates of a run's rows.
@@ -62,9 +56,8 @@ struct Trajectory {
     std::span<const double> t;
     std::array<std::span<const double>, 6> y;
 
-    explicit Trajectory(const Run& run) : t(column(run, "t")) {
-        const std::array names{"q1", "q2", "q3", "qd1", "qd2", "qd3"};
-        std::ranges::transform(names, y.begin(), [&](const char* name) { return column(run, name); });
+    explicit Trajectory(const Run& run) : t(run.find(ColumnIndex("t"))) {
+        for (std::size_t i = 0; i < y.size(); ++i) y[i] = run.find(ColumnIndex("q1") + i);
     }
 
     // How many rows stand at the same times as those of another run; the last one of a run that failed does not.
@@ -87,8 +80,16 @@ struct Trajectory {
 
 }  // namespace
 
+ColumnSet states_in_log() {
+    ColumnSet states;
+    for (std::size_t i = ColumnIndex("t"); i <= ColumnIndex("qd3"); ++i) states.set(i);
+    return states;
+}
+
 std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunOptions& options) {
-    const Setup exact = refined(setup, exact_run), more_exact = refined(setup, more_exact_run);
+    Setup states = setup;
+    states.logged = states_in_log();
+    const Setup exact = refined(states, exact_run), more_exact = refined(states, more_exact_run);
     if (is_cut_short(run) || has_too_many_steps(more_exact)) return {};
     const double change = change_of_start(exact.solver);
     const Run runs[] = {simulate(exact, options), simulate(more_exact, options),

@@ -19,6 +19,9 @@ struct Horizon {
 
 // Simulates the setup three times more, more exactly. Not with a law of the user's. Nothing where one of these runs is cut
 // short by the caller or a limit, or the run does not log its joint angles and rates.
+// The columns that horizon_of() reads of a run.
+ColumnSet states_in_log();
+
 std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunOptions& options);
 
 }  // namespace arm3r

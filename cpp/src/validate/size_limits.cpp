@@ -57,7 +57,7 @@ void refuse_too_large(const Setup& setup, bool rows) {
                       .hint = "take a larger step, or raise solver.max_steps"});
 }
 
-std::vector<std::size_t> columns_of(const Setup& setup) {
+ColumnSet possible_columns(const Setup& setup) {
     const Plant<double>& plant = setup.plant;
     const Controller<double>& controller = setup.controller();
     const bool has_path = tracks_path(controller.type);
@@ -75,10 +75,32 @@ std::vector<std::size_t> columns_of(const Setup& setup) {
             default: return plant.arm.has_torque_limit && controller.type != ControllerType::none;
         }
     };
-    std::vector<std::size_t> columns;
-    for (std::size_t i = 0; i < column_table.size(); ++i)
-        if (is_there(column_table[i].need)) columns.push_back(i);
+    ColumnSet columns;
+    for (std::size_t i = 0; i < column_count; ++i) columns[i] = is_there(column_table[i].need);
     return columns;
+}
+
+std::vector<std::size_t> columns_of(const Setup& setup) { return in_order(possible_columns(setup) & setup.logged); }
+
+std::vector<Problem> missing_columns(const Setup& setup) {
+    std::vector<Problem> problems;
+    if (setup.logged.all()) return problems;
+    for (const std::size_t column : in_order(setup.logged & ~possible_columns(setup))) {
+        const Need need = column_table[column].need;
+        problems.push_back({.code = "scenario.column",
+                            .path = "time.log_columns",
+                            .message = "this run has no such column; it is there " + std::string(need_text(need)),
+                            .got = std::string(column_table[column].name),
+                            .hint = std::string(need_hint(need)) + ", or take the name out of time.log_columns"});
+    }
+    return problems;
+}
+
+std::vector<std::size_t> in_order(const ColumnSet& columns) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < column_count; ++i)
+        if (columns[i]) order.push_back(i);
+    return order;
 }
 
 }  // namespace arm3r

@@ -80,7 +80,8 @@ void check_number(const Key& key, double value, std::size_t item, std::size_t co
         });
     };
     if (!within(key, value)) broken("scenario.range", "out of range");
-    else if (key.kind == Kind::integer && value != std::floor(value)) broken("scenario.type", "not a whole number");
+    else if ((key.kind == Kind::integer || key.kind == Kind::column) && value != std::floor(value))
+        broken("scenario.type", "not a whole number");
 }
 
 void check_numbers(const Key& key, std::span<const double> params, ProblemList& problem_list) {

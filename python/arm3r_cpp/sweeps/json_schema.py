@@ -59,7 +59,7 @@ def _map(properties: Schema, required: list[str]) -> Schema:
 
 
 def _axis() -> Schema:
-    varied = [name for name, indices in places().items() if param_key(indices[0]).kind != "section"]
+    varied = [name for name, indices in places().items() if param_key(indices[0]).kind not in ("section", "column")]
     properties = {
         "key": {"enum": varied},
         **{rule: {"description": text, **_rule(rule)} for rule, text in RULES.items()},

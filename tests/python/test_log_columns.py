@@ -1,0 +1,156 @@
+"""time.log_columns: the columns chosen have the bits of the full log, and nothing else changes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from conftest import Cli
+from random_scenarios import IN_JOINTS, LAWS, random_scenario, sample_seed, yaml_of
+
+OWN = {"hash", "columns", "scenario", "elapsed_s"}
+"""What of a summary is told of the log, or of the clock."""
+
+
+def rest_of(summary: dict[str, Any]) -> str:
+    return repr({key: value for key, value in summary.items() if key not in OWN})
+
+
+def outcome_of(scenario: arm3r.Scenario, **options: Any) -> arm3r.Run:
+    try:
+        return scenario.run(**options)
+    except arm3r.Arm3rError as error:
+        assert error.run is not None
+        return error.run
+
+
+def compare(scenario: arm3r.Scenario, names: list[str], **options: Any) -> None:
+    """The run of a scenario, beside the same with these columns in its log."""
+    full = outcome_of(scenario, **options)
+    chosen = scenario.copy()
+    chosen["time.log_columns"] = names
+    run = outcome_of(chosen, **options)
+    assert run.columns == [name for name in full.columns if name == "t" or name in names]
+    for name in run.columns:
+        assert np.array_equal(run[name].view(np.uint64), full[name].view(np.uint64)), name
+    assert rest_of(run.summary) == rest_of(full.summary)
+    assert [check["value"] for check in run.checks] == [check["value"] for check in full.checks]
+
+
+def some_of(rng: np.random.Generator, columns: list[str]) -> list[str]:
+    count = int(rng.choice([1, 2, 3, 6, len(columns) // 2]))
+    return [str(name) for name in rng.permutation(columns)[:count]]
+
+
+@pytest.mark.filterwarnings("ignore::arm3r_cpp.ScenarioWarning")
+@pytest.mark.parametrize("law", LAWS)
+def test_random_subsets_have_the_bits_of_the_full_log(law: str) -> None:
+    seed = sample_seed()
+    print(f"ARM3R_SEED={seed}")
+    rng = np.random.default_rng([seed, LAWS.index(law)])
+    for sampled in (False, True):
+        scenario = arm3r.Scenario(yaml_of(random_scenario(rng, law=law, sampled=sampled, longest=0.6)))
+        scenario["checks"] = [{"column": "qdd2", "minus": "energy_kinetic", "of": "max_abs", "below": 1e300}]
+        for method in ("dopri5", "rk4", "taylor", "rodas4", "auto"):
+            changed = scenario.copy()
+            changed["solver"] = {"method": method}
+            try:
+                columns = outcome_of(changed).columns
+            except (arm3r.ScenarioError, AssertionError):
+                continue  # the method does not know this law
+            compare(changed, some_of(rng, columns))
+
+
+@pytest.mark.filterwarnings("ignore::arm3r_cpp.ScenarioWarning")
+def test_every_column_alone_and_all_but_one() -> None:
+    scenario = arm3r.Scenario.example("force_control/hybrid_biased_sensor")
+    scenario["time.stop"] = 0.3
+    scenario["checks"] = []
+    columns = scenario.run().columns
+    for name in columns:
+        compare(scenario, [name])
+        compare(scenario, [other for other in columns if other != name])
+
+
+def test_checks_and_trust_keep_the_columns_that_they_read() -> None:
+    scenario = arm3r.Scenario.example("moving_wall")
+    compare(scenario, ["depth"])
+    compare(scenario, ["tau2"], trust=True)
+    scenario["time.log_columns"] = ["q1"]
+    run = scenario.run(trust=True)
+    assert run.passed and run.trust is not None and run.columns == ["t", "q1"]
+
+
+def test_a_law_of_your_own_and_a_simulation_choose_columns() -> None:
+    scenario = arm3r.Scenario("format: 1\ntime: {stop: 0.1}\n")
+    compare(scenario, ["tau3", "qdd1"], controller=lambda t, state: state.tau_g - state.qd)
+    scenario["time.log_columns"] = ["tau3"]
+    simulation = arm3r.Simulation(scenario)
+    simulation.step([1.0, 2.0, 3.0])
+    assert simulation.run.columns == ["t", "tau3"]
+
+
+def test_a_bad_end_is_explained_alike() -> None:
+    """The message names the pose before it, though the log has no angles."""
+    text = (
+        "format: 1\narm: {convention: slide}\ninitial: {q: [0.2, -0.5, 1.1]}\ntime: {stop: 3}\n"
+        "controller: {type: resolved_acceleration, position_gain: 400, velocity_gain: 40}\n"
+        "reference: {type: minimum_jerk, tip: [2.2, 0.1, 0.1], duration: 0.5}\n"
+    )
+    full, chosen = arm3r.Scenario(text), arm3r.Scenario(text)
+    chosen["time.log_columns"] = ["tau1"]
+    ends = [outcome_of(scenario) for scenario in (full, chosen)]
+    assert ends[0].outcome == ends[1].outcome != "ok"
+    assert "singular pose" in ends[0].summary["message"]
+    assert rest_of(ends[0].summary) == rest_of(ends[1].summary)
+
+
+def test_a_batch_has_the_same_bits_whatever_is_logged() -> None:
+    scenario = arm3r.Scenario.example("moving_wall")
+    chosen = scenario.copy()
+    chosen["time.log_columns"] = ["q1"]
+    tables = [s.batch({"wall.contact.stiffness": [100.0, 1e3, 1e4]}) for s in (scenario, chosen)]
+    for name in tables[0]:
+        assert np.array_equal(tables[0][name], tables[1][name], equal_nan=True), name
+    with pytest.raises(arm3r.UsageError, match="chooses columns of a log"):
+        scenario.batch({"time.log_columns[0]": [1.0, 2.0]})
+
+
+@pytest.mark.parametrize(
+    ("value", "place", "words"),
+    [
+        ("[]", "2:32", "a list of 1 to"),
+        ("q1", "2:32", "got q1"),
+        ("[q2, q2]", "2:37", "time.log_columns[1]: this column stands in the list twice, got q2"),
+        ("[q]", "2:33", "write q1, q2, q3"),
+        ("[t, tip]", "2:36", "write tip_x, tip_y, tip_z"),
+        ("[f_on_wal_x]", "2:33", "did you mean f_on_wall_x?"),
+        ("[q1, force]", "2:37", "only with a wall, got force; add `wall: {}`"),
+        ("[1]", "2:33", "there is no such column, got 1"),
+    ],
+)
+def test_a_wrong_list_is_refused_with_its_place(value: str, place: str, words: str) -> None:
+    with pytest.raises(arm3r.ScenarioError) as refused:
+        arm3r.Scenario(f"format: 1\ntime: {{stop: 0.1, log_columns: {value}}}\n", file="a.yaml").validate()
+    assert f"a.yaml:{place}: error" in str(refused.value) and words in str(refused.value)
+
+
+def test_a_law_in_joints_has_no_path_of_the_tip() -> None:
+    scenario = arm3r.Scenario(f"format: 1\ncontroller: {{type: {IN_JOINTS[0]}}}\nreference: {{type: hold}}\n")
+    scenario["time.log_columns"] = ["tip_ref_x"]
+    with pytest.raises(arm3r.ScenarioError, match="follows a path of the tip"):
+        scenario.run()
+
+
+def test_files_and_tables_have_the_columns_chosen(cli: Cli, tmp_path: Any) -> None:
+    path = tmp_path / "run.csv"
+    cli("run", "scenarios/moving_wall.yaml", "--set", "time.log_columns=[q1, f_on_wall_x]", "-o", str(path))
+    assert path.read_text().startswith("t,q1,f_on_wall_x\n")
+    run = arm3r.Run.load(path)
+    assert run.columns == ["t", "q1", "f_on_wall_x"] and run.passed
+    run.to_npz(tmp_path / "run.npz")
+    assert arm3r.Run.load(tmp_path / "run.npz").columns == run.columns
+    with pytest.raises(KeyError, match=r"the log of this run does not have 'tau1'.*time\.log_columns"):
+        run["tau1"]
