@@ -19,7 +19,7 @@ CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
-.PHONY: run test gates page docs bench format lint clean
+.PHONY: run test gates page docs dist bench format lint clean
 
 run: $(VENV)/installed
 	mkdir -p out
@@ -44,6 +44,10 @@ page: build/page/arm3r.wasm
 
 docs: $(VENV)/docs
 	$(BIN)/python docs/site/build.py
+
+# What a release publishes, into dist/: docs/releasing.md.
+dist: docs
+	SKBUILD_BUILD_DIR=$(BUILD) $(BIN)/python cmake/dist.py $(wildcard build/wheels/*.whl)
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
