@@ -83,9 +83,11 @@ $(VENV)/tools: pyproject.toml
 	@touch $@
 
 # An extra of the installed package.
-$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/bench: $(VENV)/%: pyproject.toml | $(VENV)/installed
+$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench: $(VENV)/%: pyproject.toml | $(VENV)/installed
 	$(PIP) 'arm3r_cpp[$*]'
 	@touch $@
+
+page: $(VENV)/page # node and npm come with it
 
 .PHONY: $(BUILD)/tests
 $(BUILD)/tests: $(VENV)/installed $(VENV)/test

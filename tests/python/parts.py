@@ -47,11 +47,11 @@ def have_node() -> bool:
 PARTS = {
     "page": Part(
         lambda: (PAGE / "index.html").is_file() and have_chromium() and have_modules("playwright"),
-        "`make page`, the system's package chromium, and `pip install playwright`",
+        "`make page`, and the system's package chromium",
     ),
     "wasm": Part(
         lambda: (PAGE / "arm3r.wasm").is_file() and have_node(),
-        f"`make page`, and node of version {LEAST_NODE} or later",
+        f"`make page`; it brings node, of which another one must have version {LEAST_NODE} or later",
     ),
     "notebooks": Part(
         lambda: have_modules("nbclient", "nbformat", "ipykernel"),

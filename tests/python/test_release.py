@@ -103,7 +103,8 @@ def packages(clone: Path) -> dict[str, str]:
     quick = "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DARM3R_LANES=1 -DARM3R_PCH=OFF"
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = {**os.environ, "SOURCE_DATE_EPOCH": "1700000000", "CMAKE_ARGS": quick, "PATH": path}
-    subprocess.run([sys.executable, "-c", calls], cwd=clone, check=True, env=environment, stdout=subprocess.DEVNULL)
+    done = subprocess.run([sys.executable, "-c", calls], cwd=clone, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in (clone / "dist").iterdir()}
 
 
