@@ -43,11 +43,11 @@ double extremum(const LinearImpact& of) {
 }
 
 // The integral of |sin b s|/b from 0 to t, and the integral of that; for b t up to 2 pi, and beyond it infinite.
-struct Gains {
+struct SineIntegrals {
     double once, twice;
 };
 
-Gains gains(double b, double t) {
+SineIntegrals sine_integrals(double b, double t) {
     using std::numbers::pi;
     const double angle = b * t, b_2 = b * b;
     const auto [sine, cosine] = sincos(angle);
@@ -93,8 +93,8 @@ public:
     }
 
 private:
-    double by_acceleration(double t) const { return impact_.k * gains(b(), t).once + impact_.c * t; }
-    double by_rate(double t) const { return impact_.k * gains(b(), t).twice + impact_.c * t * t / 2; }
+    double by_acceleration(double t) const { return impact_.k * sine_integrals(b(), t).once + impact_.c * t; }
+    double by_rate(double t) const { return impact_.k * sine_integrals(b(), t).twice + impact_.c * t * t / 2; }
     double b() const { return force_swing(impact_).b; }
 
     LinearImpact impact_;
