@@ -37,8 +37,9 @@ gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests
 	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(PYTEST) -m gate
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
 
-# The live page, into build/page: needs node with npm, and Emscripten.
+# The live page, into build/page: needs node with npm.
 page: build/page/arm3r.wasm
+	$(BIN)/python cmake/core_licenses.py build/yaml_cpp/yaml-cpp > build/page/core_licenses.txt
 	npm --prefix docs/live ci --no-audit --no-fund
 	node docs/live/build.mjs
 

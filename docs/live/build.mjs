@@ -1,7 +1,7 @@
 /**
  * The one build step of the page: bundles src/ with esbuild and writes build/page/.
  *
- * In:  build/page/arm3r.wasm, the scenarios with their pictures, and node_modules (npm ci).
+ * In:  build/page/arm3r.wasm with core_licenses.txt, the scenarios with their pictures, and node_modules (npm ci).
  * Out: index.html with page.js, page.css, worker.js, examples.json and pictures/, to be served by any static server;
  *      live.html, all of it in one file that opens from disk; licenses.txt, of all that is bundled.
  */
@@ -18,12 +18,15 @@ const OUT = join(ROOT, "build", "page");
 const MOST = 4e6; // bytes of live.html
 
 const wasm = join(OUT, "arm3r.wasm");
-if (!existsSync(wasm)) throw new Error(`${wasm} is not there: \`make page\` compiles it first`);
+const coreLicenses = join(OUT, "core_licenses.txt");
+for (const file of [wasm, coreLicenses]) {
+  if (!existsSync(file)) throw new Error(`${file} is not there: \`make page\` makes it first`);
+}
 
 const page = await bundle("src/main.js");
 const worker = await bundle("src/simulate/worker.js");
 const examples = shipped();
-const licenses = licenseTexts([...page.inputs, ...worker.inputs]);
+const licenses = [licenseTexts([...page.inputs, ...worker.inputs]), readFileSync(coreLicenses, "utf8")].join(separator());
 const version = /^version = "([^"]+)"/m.exec(readFileSync(join(ROOT, "pyproject.toml"), "utf8"))[1];
 writeServed();
 writeSelfContained();
@@ -123,5 +126,9 @@ function licenseTexts(inputs) {
     const file = readdirSync(join(HERE, folder)).find((one) => /^licen[cs]e/i.test(one));
     if (!file || !statSync(join(HERE, folder, file)).isFile()) throw new Error(`${name} has no licence file`);
     return `${name} ${number} (${license})\n\n${readFileSync(join(HERE, folder, file), "utf8").trim()}\n`;
-  }).join(`\n${"-".repeat(78)}\n\n`); // prettier-ignore
+  }).join(separator()); // prettier-ignore
+}
+
+function separator() {
+  return `\n${"-".repeat(78)}\n\n`;
 }

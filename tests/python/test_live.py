@@ -169,6 +169,17 @@ def test_show_opens_a_file_in_the_browser(folder: Path, monkeypatch: pytest.Monk
     file.unlink()
 
 
+def test_show_puts_the_page_into_a_cell_of_a_notebook(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from arm3r_cpp.plot import run_figure
+    from IPython import display
+
+    shown: list[Any] = []
+    monkeypatch.setattr(run_figure, "has_notebook", lambda: True)
+    monkeypatch.setattr(display, "display", shown.append)
+    arm3r.show(short_run(), height=400)
+    assert "height: 400px" in shown[0]._repr_html_()
+
+
 def test_show_takes_a_run_or_a_scenario(folder: Path) -> None:
     with pytest.raises(arm3r.UsageError, match=r"show: a run or a scenario is needed.* got str"):
         arm3r.show("moving_wall")

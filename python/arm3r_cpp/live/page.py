@@ -44,6 +44,6 @@ def check() -> None:
 def _file(name: str) -> Path:
     path = FOLDER / name
     if not path.is_file():
-        how = "install a wheel that has it, or run `make page` (node, Emscripten) and then `make run` in a clone"
+        how = "install a wheel that has it, or run `make page` (which needs node) and then `make run` in a clone"
         raise UsageError(f"the live page is not part of this installation: {how}", code="usage")
     return path

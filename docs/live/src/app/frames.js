@@ -8,8 +8,15 @@ let asked = false;
 /** Do a job in one of the next frames. A job that waits under the same name is replaced. */
 export function later(name, job) {
   jobs.set(name, job);
-  if (!asked) requestAnimationFrame(work);
+  ask();
+}
+
+/** Ask for a frame; the page says that it is drawing until all is done. */
+function ask() {
+  if (asked) return;
   asked = true;
+  document.body.dataset.drawing = "";
+  requestAnimationFrame(work);
 }
 
 function work() {
@@ -20,8 +27,6 @@ function work() {
     job();
     if (performance.now() - start > BUDGET) break;
   }
-  if (jobs.size > 0 && !asked) {
-    asked = true;
-    requestAnimationFrame(work);
-  }
+  if (jobs.size > 0) ask();
+  else if (!asked) delete document.body.dataset.drawing;
 }

@@ -11,8 +11,8 @@ export function shown(value, digits = 4) {
 
 function plain(value, digits) {
   const size = Math.abs(value);
-  const before = size >= 1 ? Math.floor(Math.log10(size)) + 1 : 1;
-  return value.toFixed(Math.max(0, digits - before));
+  const before = size === 0 ? 1 : Math.floor(Math.log10(size)) + 1; // digits before the point; zeros behind it count as less
+  return value.toFixed(Math.min(digits + 1, Math.max(0, digits - before)));
 }
 
 /** Rounded to significant digits: a number, such as a slider gives it. */

@@ -30,7 +30,7 @@ export class Slider {
 
   /** Show the scenario's value, in SI units and radians. renewed: the range is laid around it again. */
   show(value, renewed) {
-    const own = rounded(this.angle ? value / DEGREE : value, 7);
+    const own = rounded(this.angle ? value / DEGREE : value, 6);
     if (own === this.value && this.range && !renewed) return;
     this.value = own;
     const outside = !this.range || own < this.range.low * (1 - 1e-9) - 1e-12 || own > this.range.high * (1 + 1e-9) + 1e-12;

@@ -27,7 +27,7 @@ export class Menu {
 
   #card(example) {
     const picture = example.picture
-      ? make("img", { src: example.picture, alt: "", loading: "lazy", width: 96, height: 72 })
+      ? make("img", { src: example.picture, alt: "", loading: "lazy" })
       : make("span", { className: "no-picture" });
     const card = make("button", { type: "button", className: "card" }, picture,
       make("span", {}, make("b", {}, example.name.split("/").at(-1).replaceAll("_", " ")), make("small", {}, example.summary))); // prettier-ignore

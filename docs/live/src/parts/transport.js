@@ -58,6 +58,12 @@ export class Transport {
     this.store.set({ speed: speeds[Math.min(speeds.length - 1, Math.max(0, now + places))] });
   }
 
+  /** The speed at which a run of this length, s, can be watched: a short one is slowed down. */
+  #watchable(length) {
+    const speeds = [...at("speed").options].map((option) => Number(option.value));
+    return speeds.filter((speed) => speed <= Math.min(1, length / 3)).at(-1) ?? speeds[0];
+  }
+
   #inside(time, start, end) {
     return Math.min(end, Math.max(start, time));
   }
@@ -69,7 +75,8 @@ export class Transport {
 
   #fit() {
     const [start, end] = this.span;
-    this.store.set({ time: this.rewind ? start : this.#inside(this.store.get("time"), start, end) });
+    if (this.rewind) this.store.set({ time: start, speed: this.#watchable(end - start) });
+    else this.store.set({ time: this.#inside(this.store.get("time"), start, end) });
     this.rewind = false;
   }
 

@@ -116,7 +116,7 @@ export class Plot {
     const edges = this.hasBand ? series.flatMap((one) => [0, 1].map(() => ({ stroke: `${one.stroke}00`, width: 0, points: { show: false } }))) : [];
     const first = 1 + series.length;
     return {
-      width, height: HEIGHT, padding: [6, 10, 0, 0], legend: { show: false }, pxAlign: false,
+      width, height: HEIGHT, padding: [6, 16, 0, 0], legend: { show: false }, pxAlign: false,
       cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false },
       scales: { x: { time: false }, y: { range: (_, low, high) => this.#range(low, high) } },
       axes: [{ ...axis, size: 22, space: 60 }, { ...axis, size: AXIS, space: 26, values: (_, ticks) => ticks.map((tick) => shownTick(tick)) }],

@@ -26,8 +26,8 @@ export class Plate {
     const [a, b] = sides ?? [2 * INFINITE * size, 2 * INFINITE * size];
     this.lines.visible = Boolean(sides);
     this.object.position.set(...point);
-    const basis = new Matrix4().makeBasis(...[e1, e2, normal].map((axis) => new Vector3(...axis)));
+    const basis = new Matrix4().makeBasis(...[e2, e1, normal].map((axis) => new Vector3(...axis)));
     this.object.quaternion.setFromRotationMatrix(basis);
-    this.object.scale.set(a, b, 0.015 * size);
+    this.object.scale.set(b, a, 0.015 * size); // e2, e1 and the normal are right-handed in this order
   }
 }

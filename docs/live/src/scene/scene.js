@@ -76,8 +76,9 @@ export class Scene {
     const { link2, link3, base_height: height } = run.resolved.arm;
     const size = link2.length + link3.length;
     const floor = floorOf(run, size, height);
-    if (size !== this.size || floor !== this.floor) this.view.frame(size, floor);
-    Object.assign(this, { run, size, floor });
+    const opened = this.store.get("opened"); // the view stays while the same scenario is changed
+    if (opened !== this.opened || size !== this.size) this.view.frame(pointsOf(run, size, floor), size);
+    Object.assign(this, { run, size, floor, opened });
     this.parts.trace.show(run, size);
     this.parts.forces.show(run);
     this.#showVirtualWall(run.resolved.controller);
@@ -137,9 +138,21 @@ export class Scene {
   }
 }
 
-/** Height of the floor: below all that the tip and the elbow do, in steps of half the reach. */
+/** What is to be seen: the base with its axes, and the arm at some times of the run. */
+function pointsOf(run, size, floor) {
+  const { t } = run.columns;
+  const points = [[0, 0, floor], [0, -0.4 * size, floor]];
+  for (let k = 0; k <= 20; k += 1) {
+    const pose = poseAt(run, t[0] + (k / 20) * (t[t.length - 1] - t[0]));
+    points.push(pose.shoulder, pose.elbow, pose.tip);
+  }
+  return points;
+}
+
+/** Height of the floor: that of the base, or below all that the tip does, in steps of half the reach. */
 function floorOf({ columns }, size, height) {
   let lowest = Math.min(0, height);
   for (const z of columns.tip_z) lowest = Math.min(lowest, z);
+  if (height > 0.1 * size && lowest >= 0) return 0;
   return -Math.max(1, Math.ceil((-lowest / size) * 2 - 1e-6)) * 0.5 * size;
 }

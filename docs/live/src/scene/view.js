@@ -1,5 +1,5 @@
 /** From where the scene is seen: turned by mouse, touch and buttons. */
-import { PerspectiveCamera, Vector3 } from "three";
+import { Box3, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 /** Directions from which the buttons look, base axes. */
@@ -9,6 +9,8 @@ export const VIEWS = {
   front: [1, 0, 0.02],
   top: [0, -0.001, 1],
 };
+
+const MARGIN = 0.95; // of the ball around what is seen: the points lie inside, seldom on it
 
 export class View {
   constructor(element, changed) {
@@ -21,12 +23,13 @@ export class View {
     this.distance = 1;
   }
 
-  /** Look at what the arm of this size can reach. */
-  frame(size, floor) {
+  /** Look at these points. size: of the arm, m. */
+  frame(points, size) {
     this.camera.near = 0.01 * size;
     this.camera.far = 60 * size;
-    this.target.set(0.45 * size, 0, 0.3 * floor);
-    this.span = size;
+    const box = new Box3().setFromPoints(points.map((point) => new Vector3(...point)));
+    box.getCenter(this.target);
+    this.span = Math.max(0.5 * size, MARGIN * box.getSize(new Vector3()).length() * 0.5);
     this.look(this.name ?? "whole");
   }
 
@@ -34,8 +37,8 @@ export class View {
   look(name) {
     this.name = name;
     const [x, y, z] = VIEWS[name];
-    const wide = Math.max(1, 1.25 / this.camera.aspect);
-    this.distance = 2.15 * this.span * wide;
+    const half = (this.camera.fov / 2) * (Math.PI / 180);
+    this.distance = this.span / Math.sin(Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect)));
     this.camera.position.copy(this.target).add(new Vector3(x, y, z).normalize().multiplyScalar(this.distance));
     this.controls.target.copy(this.target);
     this.camera.updateProjectionMatrix();

@@ -10,6 +10,7 @@ export class Simulation {
   #store;
   #runner;
   #waiting = 0;
+  #changed = false;
   #promises = new Map(); // of the questions whose answer is waited for, by kind
 
   constructor(store) {
@@ -47,9 +48,16 @@ export class Simulation {
   }
 
   #ask() {
-    if (!this.#runner || this.#store.get("run")?.text === this.#store.get("text")) return;
+    if (!this.#runner || this.#isRecorded()) return;
+    this.#changed = true;
     this.#store.set({ busy: true });
     this.#runner.ask({ kind: "run", ...this.#scenario() });
+  }
+
+  /** Whether the run that the page was given is shown, and nothing has been changed since. */
+  #isRecorded() {
+    const run = this.#store.get("run");
+    return !this.#changed && Boolean(run?.recorded) && run.text === this.#store.get("text");
   }
 
   #askForBand() {
