@@ -55,15 +55,16 @@ def scenario_data(scenario: str | None) -> dict[str, Any] | None:
         UsageError: it is neither, or cannot be read.
     """
     from .._files import regular
-    from ..examples import path_of, text_of
+    from ..examples import path_of
     from ..live import page_data
 
     if scenario is None:
         return None
     path = Path(scenario)
-    is_example = not path.exists() and path.suffix not in (".yaml", ".yml")
+    if not path.exists() and path.suffix not in (".yaml", ".yml"):
+        path = path_of(scenario)
     try:
-        text = text_of(path_of(scenario)) if is_example else regular(path).read_text(encoding="utf-8")
+        text = regular(path).read_text(encoding="utf-8")
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}", code="file.scenario") from error
     except UnicodeDecodeError as error:
