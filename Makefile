@@ -43,6 +43,18 @@ page: build/page/arm3r.wasm
 	npm --prefix docs/live ci --no-audit --no-fund
 	node docs/live/build.mjs
 
+# The core in WebAssembly, by the clang of the Python package ziglang.
+build/page/arm3r.wasm: $(shell find cpp cmake -type f) CMakeLists.txt docs/live/core/core.js $(VENV)/wasm
+	$(BIN)/python cmake/yaml_cpp_source.py build/yaml_cpp
+	$(BIN)/cmake -S . -B build/wasm -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/wasm_toolchain.cmake \
+	  -DARM3R_ZIG=$$($(BIN)/python -c "import ziglang; print(ziglang.__path__[0])")/zig \
+	  -DARM3R_YAML_SOURCE=$(abspath build/yaml_cpp/yaml-cpp) \
+	  -DARM3R_TAYLOR_KERNELS=$(abspath $(BUILD)/taylor/taylor_kernels.hpp) \
+	  -DCMAKE_PREFIX_PATH=$$($(BIN)/python -c "import sysconfig; print(sysconfig.get_path('purelib'))") > /dev/null
+	$(BIN)/cmake --build build/wasm
+	mkdir -p $(@D)
+	cp build/wasm/arm3r.wasm $@
+
 docs: $(VENV)/docs
 	$(BIN)/python docs/site/build.py
 
@@ -84,7 +96,7 @@ $(VENV)/tools: pyproject.toml
 	@touch $@
 
 # An extra of the installed package.
-$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench: $(VENV)/%: pyproject.toml | $(VENV)/installed
+$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench $(VENV)/wasm: $(VENV)/%: pyproject.toml | $(VENV)/installed
 	$(PIP) 'arm3r_cpp[$*]'
 	@touch $@
 

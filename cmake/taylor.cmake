@@ -1,5 +1,12 @@
 # The Taylor kernels: printed by a program of ours, compiled into the core.
 
+set(ARM3R_TAYLOR_KERNELS "" CACHE FILEPATH "taylor_kernels.hpp of another build: where derive_taylor cannot run, being compiled for another system")
+if(ARM3R_TAYLOR_KERNELS)
+  get_filename_component(_folder ${ARM3R_TAYLOR_KERNELS} DIRECTORY)
+  target_include_directories(arm3r_core PRIVATE ${_folder})
+  return()
+endif()
+
 add_executable(derive_taylor cpp/src/integrate/derive_taylor.cpp)
 target_include_directories(derive_taylor PRIVATE cpp/include cpp/src)
 target_link_libraries(derive_taylor PRIVATE arm3r_flags Eigen3::Eigen)

@@ -94,6 +94,18 @@ def lecture_run(moving_wall: Path) -> arm3r.Run:
     return arm3r.Scenario.load(moving_wall).run()
 
 
+@pytest.fixture(scope="session")
+def bits(root: Path, package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """tests/c/bits.c as a program, linked with the installed library."""
+    folder = tmp_path_factory.mktemp("bits")
+    program = folder / "bits"
+    library = package / "lib"
+    command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", root / "tests/c/bits.c", "-o", program]
+    command += [f"-I{package / 'include'}", f"-L{library}", "-larm3r", f"-Wl,-rpath,{library}", "-lm"]
+    subprocess.run(command, check=True)
+    return program
+
+
 @pytest.fixture
 def written(tmp_path: Path) -> Callable[[str, str], Path]:
     """written(name, text): a file with this text, in a folder of the test."""

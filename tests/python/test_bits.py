@@ -26,18 +26,6 @@ RUNS = 5
 
 
 @pytest.fixture(scope="module")
-def bits(root: Path, package: Path, scripts: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The program."""
-    folder = tmp_path_factory.mktemp("bits")
-    program = folder / "bits"
-    library = package / "lib"
-    command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", root / "tests/c/bits.c", "-o", program]
-    command += [f"-I{package / 'include'}", f"-L{library}", "-larm3r", f"-Wl,-rpath,{library}", "-lm"]
-    subprocess.run(command, check=True)
-    return program
-
-
-@pytest.fixture(scope="module")
 def printed(bits: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
     """Its output, of two scenarios."""
     folder = tmp_path_factory.mktemp("scenarios")

@@ -31,6 +31,15 @@ struct FpControl {
     }
 };
 
+#elif defined(__wasm__)
+
+// WebAssembly has no other environment.
+struct FpControl {
+    static FpControl current() { return {}; }
+    void load() const {}
+    bool is_default() const { return true; }
+};
+
 #else
 
 struct FpControl {

@@ -1,4 +1,4 @@
-// The platform on Linux, macOS and WebAssembly.
+// The platform on Linux and macOS.
 
 #include <fcntl.h>
 #include <sys/mman.h>

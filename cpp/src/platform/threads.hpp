@@ -5,7 +5,7 @@
 
 namespace arm3r::platform {
 
-#if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)
+#ifdef __wasm__
 constexpr bool has_threads = false;
 #else
 constexpr bool has_threads = true;
