@@ -11,7 +11,6 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -208,13 +207,19 @@ def writable(array: Floats) -> Any:
     return readable(array)
 
 
-class _Column:
-    """Memory of a run, as numpy takes it: read-only, and alive as long as any view of it."""
+class _Block:
+    """Memory of a run, as numpy takes it: read-only, kept alive by any view of it. A column of the run is a row."""
 
-    def __init__(self, run: Any, data: Any, rows: int) -> None:
+    def __init__(self, run: Any, data: Any, shape: tuple[int, int], stride: int) -> None:
         self._run = run
         address = int(ffi.cast("uintptr_t", data))
-        self.__array_interface__ = {"version": 3, "typestr": "=f8", "shape": (rows,), "data": (address, True)}
+        self.__array_interface__ = {
+            "version": 3,
+            "typestr": "=f8",
+            "shape": shape,
+            "strides": (8 * stride, 8),
+            "data": (address, True),
+        }
 
 
 # ---- runs -----------------------------------------------------------------------------------------------------------
@@ -323,10 +328,12 @@ def _run_options(time_limit: float | None) -> Any:
     return options
 
 
-@cache
-def column_names() -> tuple[str, ...]:
-    """Of every column that a run can have."""
-    return tuple(line.split()[0] for line in string(lib.arm3r_columns_text()).splitlines())
+_units: dict[str, str] = {}  # of the columns that some run had, by name
+
+
+def is_column(name: str) -> bool:
+    """Whether some run can have a column of this name."""
+    return any(line.split()[0] == name for line in string(lib.arm3r_columns_text()).splitlines())
 
 
 def outcome(run: Any) -> str:
@@ -501,18 +508,24 @@ def is_over(simulation: Any) -> bool:
     return bool(out[0])
 
 
+def _column_unit(run: Any, index: int) -> str:
+    name, unit, data = ffi.new("const char **"), ffi.new("const char **"), ffi.new("const double **")
+    call(lib.arm3r_run_column, run, index, name, unit, data)
+    return string(unit[0])
+
+
 def columns(run: Any) -> tuple[dict[str, Floats], dict[str, str]]:
     """Values and units of a run's columns, by name; the values are views of the run's own memory."""
-    rows, count = ffi.new("size_t *"), ffi.new("size_t *")
+    rows, count, stride = ffi.new("size_t *"), ffi.new("size_t *"), ffi.new("size_t *")
     call(lib.arm3r_run_shape, run, rows, count)
-    name, unit, data = ffi.new("const char **"), ffi.new("const char **"), ffi.new("const double **")
-    values, units = {}, {}
-    for index in range(count[0]):
-        call(lib.arm3r_run_column, run, index, name, unit, data)
-        key = string(name[0])
-        values[key] = np.asarray(_Column(run, data[0], rows[0]))
-        units[key] = string(unit[0])
-    return values, units
+    data, text = ffi.new("const double **"), ffi.new("const char **")
+    call(lib.arm3r_run_block, run, data, stride, text)
+    names = string(text[0]).split(",")
+    for index, name in enumerate(names):
+        if name not in _units:
+            _units[name] = _column_unit(run, index)
+    block = np.asarray(_Block(run, data[0], (count[0], rows[0]), stride[0]))
+    return dict(zip(names, block, strict=True)), {name: _units[name] for name in names}
 
 
 version = string(lib.arm3r_version())

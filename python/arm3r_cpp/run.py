@@ -104,7 +104,7 @@ class Run:
             return self._columns[name]
         if parts := self._three(name):
             return np.stack([self._columns[part] for part in parts], axis=-1)
-        if name in _native.column_names():
+        if _native.is_column(name):
             raise KeyError(
                 f"the log of this run does not have {name!r}: {self._why_not()}; there are {', '.join(self)}"
             )

@@ -76,8 +76,12 @@ def _numbers(path: Path, file: TextIO, names: Sequence[str]) -> Iterator[float]:
 def _read_npz(path: Path) -> RunData:
     try:
         with path.open("rb") as stream, np.load(stream) as file:
-            names, text, report = (file[key].tolist() for key in ("columns", "summary", "report"))
-            columns = dict(zip(names, np.require(file["data"], np.float64, ["C"]), strict=True))
+            if "summary.json" in file:
+                text, report = file["summary.json"].decode(), ""
+                columns = {name: file[name] for name in file.files if name != "summary.json"}
+            else:  # as to_npz wrote it before, and still writes a run that was loaded
+                names, text, report = (file[key].tolist() for key in ("columns", "summary", "report"))
+                columns = dict(zip(names, np.require(file["data"], np.float64, ["C"]), strict=True))
     except OSError:
         raise
     except Exception as error:  # what numpy and zipfile raise for a damaged file is not a closed list

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from typing import Any
 
 import arm3r_cpp as arm3r
@@ -150,7 +151,35 @@ def test_files_and_tables_have_the_columns_chosen(cli: Cli, tmp_path: Any) -> No
     assert path.read_text().startswith("t,q1,f_on_wall_x\n")
     run = arm3r.Run.load(path)
     assert run.columns == ["t", "q1", "f_on_wall_x"] and run.passed
-    run.to_npz(tmp_path / "run.npz")
-    assert arm3r.Run.load(tmp_path / "run.npz").columns == run.columns
+    run.to_npz(tmp_path / "again.npz")
+    assert arm3r.Run.load(tmp_path / "again.npz").columns == run.columns
     with pytest.raises(KeyError, match=r"the log of this run does not have 'tau1'.*time\.log_columns"):
         run["tau1"]
+
+
+def test_npz_by_the_library_has_an_array_for_each_column(cli: Cli, tmp_path: Any) -> None:
+    paths = [tmp_path / "one.npz", tmp_path / "two.npz"]
+    scenario = arm3r.Scenario.example("moving_wall")
+    scenario["time.stop"] = 0.5
+    scenario["checks"] = []
+    text = tmp_path / "short.yaml"
+    text.write_text(scenario.to_yaml())
+    for path in paths:
+        cli("run", str(text), "-o", str(path))
+    expected = scenario.run()
+    with np.load(paths[0]) as file, zipfile.ZipFile(paths[0]) as archive, zipfile.ZipFile(paths[1]) as other:
+        assert archive.testzip() is None  # every checksum is right
+        assert file.files == [*expected.columns, "summary.json"]
+        for name in expected.columns:
+            assert np.array_equal(file[name].view(np.uint64), expected[name].view(np.uint64)), name
+            assert archive.read(f"{name}.npy") == other.read(f"{name}.npy")
+        assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        assert {info.compress_type for info in archive.infolist()} == {zipfile.ZIP_STORED}
+        assert archive.read("summary.json") == (tmp_path / "one.json").read_bytes()
+    loaded = arm3r.Run.load(paths[0])
+    assert loaded.columns == expected.columns and loaded.summary["hash"] == expected.summary["hash"]
+    data = bytearray(paths[0].read_bytes())
+    data[200] ^= 1
+    paths[0].write_bytes(data)
+    with pytest.raises(arm3r.UsageError, match=r"one\.npz: not "):
+        arm3r.Run.load(paths[0])

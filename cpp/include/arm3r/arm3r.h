@@ -323,10 +323,14 @@ ARM3R_API int32_t arm3r_run_report(const arm3r_run *run, const char **text);    
 /* Warnings of the scenario and of what the run showed, one sentence a line; "" if there are none. */
 ARM3R_API int32_t arm3r_run_warnings(const arm3r_run *run, const char **text);
 ARM3R_API int32_t arm3r_run_checks(const arm3r_run *run, size_t *count, size_t *failed);
+/* All columns at once: column i is (*data)[i*stride], `rows` doubles, alive until the run is freed; names: one after the other,
+ * commas between them. */
+ARM3R_API int32_t arm3r_run_block(const arm3r_run *run, const double **data, size_t *stride, const char **names);
 /* CSV in pieces: the sink returns 0 to go on, anything else ends the call with ARM3R_E_OUTPUT. */
 typedef int32_t (*arm3r_sink)(void *user, const char *data, size_t size);
 ARM3R_API int32_t arm3r_run_csv(const arm3r_run *run, arm3r_sink sink, void *user /* Nullable */);
-/* Write PATH and, beside it, the summary with the suffix .json: each whole or not at all. */
+/* Write PATH and, beside it, the summary with the suffix .json: each whole or not at all. PATH is CSV; where it ends in .npz it
+ * is what numpy.load reads: an array for each column under its name, and the summary as summary.json. */
 ARM3R_API int32_t arm3r_run_save(const arm3r_run *run, const char *path, size_t path_size);
 /* Fail with ARM3R_E_OUTPUT if arm3r_run_save could not write there: to be asked before a long run. */
 ARM3R_API int32_t arm3r_output_probe(const char *path, size_t path_size);

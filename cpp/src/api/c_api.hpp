@@ -123,7 +123,7 @@ struct arm3r_run {
 namespace arm3r {
 
 // Sets what a run keeps of its scenario: name, text, warnings, checks, setup.
-void describe(arm3r_run& handle, const Resolved& resolved);
+void describe(arm3r_run& handle, const Resolved& resolved, const char* yaml);
 
 // Sets the run of a setup, and its horizon where the options ask for it. kept: columns beside those of the log.
 void run_in(arm3r_run& handle, const Setup& setup, const arm3r_run_options* options, const ColumnSet& kept = {});
@@ -138,6 +138,7 @@ struct arm3r_scenario {
     arm3r::Texts texts;
 
     const arm3r::Resolved& resolved() const;  // made once after each change
+    const char* yaml() const;                 // likewise
     void changed();
 
 private:

@@ -56,7 +56,7 @@ int32_t arm3r_scenario_control(const arm3r_scenario* scenario, arm3r_law law, vo
         auto handle = std::make_unique<arm3r_run>();
         handle->run = with_locations(scenario->scenario,
                                      [&] { return run_with_law(resolved.params, resolved.setup, law, user, chosen); });
-        describe(*handle, resolved);
+        describe(*handle, resolved, scenario->yaml());
         *run = handle.release();
     });
 }
@@ -150,7 +150,7 @@ int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation
         need(simulation, "simulation");
         auto handle = std::make_unique<arm3r_simulation>();
         handle->resolved = std::make_shared<Resolved>(scenario->resolved());
-        handle->yaml = std::make_shared<std::string>(to_yaml(handle->resolved->tree, false));
+        handle->yaml = std::make_shared<std::string>(scenario->yaml());
         with_locations(scenario->scenario, [&] {
             refuse_other_controllers(handle->resolved->params);
             const Setup& setup = handle->resolved->setup;
@@ -219,7 +219,7 @@ int32_t arm3r_simulation_run(const arm3r_simulation* simulation, arm3r_run** run
         need(run, "run");
         auto handle = std::make_unique<arm3r_run>();
         handle->run = simulation->run->snapshot();
-        describe(*handle, *simulation->resolved);
+        describe(*handle, *simulation->resolved, simulation->yaml->c_str());
         *run = handle.release();
     });
 }

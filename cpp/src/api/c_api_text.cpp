@@ -13,9 +13,11 @@
 #include "files/output_file.hpp"
 #include "files/yaml_json.hpp"
 #include "results/csv.hpp"
+#include "results/npz.hpp"
 #include "results/report.hpp"
 #include "scenario/json_schema.hpp"
 #include "scenario/reference_docs.hpp"
+#include "schema/columns.hpp"
 #include "schema/schema.hpp"
 #include "schema/suggest.hpp"
 #include "setup/setup.hpp"
@@ -45,13 +47,15 @@ const char* summary_of(const arm3r_run& run) {
 
 // The hash of the summary takes about as long as the text of the rows: another thread computes it, if there can be one.
 void save(const arm3r_run& run, const std::string& path) {
-    OutputFile csv(path), summary(summary_path(path));
+    OutputFile rows(path), summary(summary_path(path));
     std::future<const char*> summary_text = std::async([&] { return summary_of(run); });
-    write_csv(run.run, [&](std::string_view piece) { return csv.write(piece), true; });
-    summary.write(summary_text.get());
-    csv.close();
+    if (path.ends_with(".npz"))
+        write_npz(run.run, summary_text.get(), [&](std::string_view piece) { rows.write(piece); });
+    else write_csv(run.run, [&](std::string_view piece) { return rows.write(piece), true; });
+    summary.write(summary_of(run));
+    rows.close();
     summary.close();
-    csv.publish();
+    rows.publish();
     summary.publish();
 }
 
@@ -75,9 +79,9 @@ const char* made_once() noexcept {
 
 }  // namespace
 
-void arm3r::describe(arm3r_run& handle, const Resolved& resolved) {
+void arm3r::describe(arm3r_run& handle, const Resolved& resolved, const char* yaml) {
     handle.name = resolved.name;
-    handle.scenario = to_yaml(resolved.tree, false);
+    handle.scenario = yaml;
     handle.run.warnings.insert(handle.run.warnings.begin(), resolved.warnings.begin(), resolved.warnings.end());
     handle.setup = resolved.setup;
     handle.checks = evaluate(resolved.checks, handle.run, resolved.params);
@@ -87,6 +91,11 @@ const Resolved& arm3r_scenario::resolved() const {
     const std::lock_guard lock(mutex_);
     if (!resolved_) resolved_ = resolve(scenario);
     return *resolved_;
+}
+
+const char* arm3r_scenario::yaml() const {
+    const Resolved& resolved = this->resolved();
+    return texts.get("yaml", [&] { return to_yaml(resolved.tree, false); });
 }
 
 void arm3r_scenario::changed() {
@@ -184,8 +193,8 @@ int32_t arm3r_scenario_yaml(const arm3r_scenario* scenario, int32_t annotate, co
         need(scenario, "scenario");
         need(yaml, "yaml");
         const Resolved& resolved = scenario->resolved();
-        *yaml =
-            scenario->texts.get(annotate ? "annotated" : "yaml", [&] { return to_yaml(resolved.tree, annotate != 0); });
+        *yaml = annotate ? scenario->texts.get("annotated", [&] { return to_yaml(resolved.tree, true); })
+                         : scenario->yaml();
     });
 }
 
@@ -224,7 +233,7 @@ int32_t arm3r_scenario_run(const arm3r_scenario* scenario, const arm3r_run_optio
         auto handle = std::make_unique<arm3r_run>();
         with_locations(scenario->scenario,
                        [&] { run_in(*handle, resolved.setup, options, columns_in(resolved.checks)); });
-        describe(*handle, resolved);
+        describe(*handle, resolved, scenario->yaml());
         *run = handle.release();
     });
 }
@@ -278,6 +287,22 @@ int32_t arm3r_run_checks(const arm3r_run* run, size_t* count, size_t* failed) {
         *count = run->checks.size();
         *failed = 0;
         for (const CheckResult& check : run->checks) *failed += !check.passed;
+    });
+}
+
+int32_t arm3r_run_block(const arm3r_run* run, const double** data, size_t* stride, const char** names) {
+    return guard([&] {
+        need(run, "run");
+        need(data, "data");
+        need(stride, "stride");
+        need(names, "names");
+        *data = run->run.data.get();
+        *stride = run->run.capacity;
+        *names = run->texts.get("names", [&] {
+            std::vector<std::string> all;
+            for (const std::size_t column : run->run.columns) all.emplace_back(column_table[column].name);
+            return listed(all, ",");
+        });
     });
 }
 

@@ -47,7 +47,7 @@ constexpr std::string_view no_call = "-";  // as `calls` of an option of the pro
 
 constexpr Option options[] = {
     {"--output", "-o", "OUT", "run",
-     "write OUT and, beside it, the summary as .json; - is standard output; for several files a directory, which is "
+     "write OUT (.csv, or .npz for numpy) and, beside it, the summary as .json; - is standard output; for several files a directory, which is "
      "made"},
     {"--set", "", "PATH=VALUE", "run check",
      "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
