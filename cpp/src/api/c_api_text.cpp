@@ -12,6 +12,7 @@
 #include "files/input_file.hpp"
 #include "files/output_file.hpp"
 #include "files/yaml_json.hpp"
+#include "platform/threads.hpp"
 #include "results/csv.hpp"
 #include "results/npz.hpp"
 #include "results/report.hpp"
@@ -48,7 +49,9 @@ const char* summary_of(const arm3r_run& run) {
 // The hash of the summary takes about as long as the text of the rows: another thread computes it, if there can be one.
 void save(const arm3r_run& run, const std::string& path) {
     OutputFile rows(path), summary(summary_path(path));
-    std::future<const char*> summary_text = std::async([&] { return summary_of(run); });
+    constexpr auto when_asked = std::launch::deferred;
+    constexpr auto policy = platform::has_threads ? std::launch::async | when_asked : when_asked;
+    std::future<const char*> summary_text = std::async(policy, [&] { return summary_of(run); });
     if (path.ends_with(".npz"))
         write_npz(run.run, summary_text.get(), [&](std::string_view piece) { rows.write(piece); });
     else write_csv(run.run, [&](std::string_view piece) { return rows.write(piece), true; });
