@@ -273,6 +273,7 @@ def test_hashes_of_all_scenarios_are_the_native_ones(bits: Path, tmp_path: Path)
     print(compare(bits, files, 100, tmp_path))
 
 
+@pytest.mark.gate
 def test_the_module_is_small() -> None:
     """As servers send it: compressed with brotli."""
     script = "console.log(zlib.brotliCompressSync(fs.readFileSync(process.argv[1])).length)"
