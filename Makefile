@@ -59,7 +59,7 @@ docs: $(VENV)/docs
 	$(BIN)/python docs/site/build.py
 
 # What a release publishes, into dist/: docs/releasing.md.
-dist: docs
+dist: page docs
 	SKBUILD_BUILD_DIR=$(BUILD) $(BIN)/python cmake/dist.py $(wildcard build/wheels/*.whl)
 
 bench: $(VENV)/test $(VENV)/bench
