@@ -42,7 +42,7 @@ def live_link(live: str, text: str) -> str:
 def card(index: ModuleType, path: Path, live: str) -> str:
     name = path.relative_to(index.SCENARIOS).as_posix()
     picture = f"/docs/{index.picture_of(path).relative_to(DOCS).as_posix()}"
-    link = f" · [live]({live_link(live, path.read_text())})" if live else ""
+    link = f' · <a href="{live_link(live, path.read_text())}">live</a>' if live else ""
     return (
         f"::::{{container}} scenario\n"
         f"![{index.alternative_text(path)}]({picture})\n\n"
