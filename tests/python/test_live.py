@@ -103,6 +103,12 @@ def test_infinity_and_nan_are_json_in_the_page() -> None:
     json.loads(page.as_json(page_data.of_run(run)))
 
 
+def test_a_run_without_all_columns_is_refused(folder: Path, tmp_path: Path) -> None:
+    with pytest.raises(arm3r.UsageError, match=r"run it without time\.log_columns"):
+        short_run(**{"time.log_columns": ["q1"]}).to_html(tmp_path / "run.html")
+    assert not (tmp_path / "run.html").exists()
+
+
 def test_a_partial_run_is_written_too(folder: Path, tmp_path: Path) -> None:
     scenario = arm3r.Scenario.example("moving_wall")
     scenario.update({"solver.max_steps": 2, "checks": []})

@@ -25,16 +25,19 @@ def of_run(run: Run) -> dict[str, Any]:
     """All rows and columns, to the last bit, with the scenario they came from.
 
     Raises:
-        UsageError: the run's summary holds no scenario.
+        UsageError: the run's summary holds no scenario, or its log has not all columns.
     """
     text = run.summary.get("scenario")
     if not text:
         why = "the run's summary holds no scenario, so that its arm is not known; run it again"
         raise UsageError(why, code="usage")
+    scenario = Scenario(text)
+    if scenario["time.log_columns"]:
+        raise UsageError("the page draws all columns: run it without time.log_columns", code="usage")
     matrix = np.stack([run[name] for name in run.columns]).astype("<f8").tobytes()
     data = {
         **of_text(text, run.summary["name"]),
-        "resolved": _resolved(Scenario(text)),
+        "resolved": _resolved(scenario),
         "columns": run.columns,
         "units": run.units,
         "matrix": b64encode(gzip.compress(matrix, 6, mtime=0)).decode(),

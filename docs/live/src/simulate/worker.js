@@ -8,6 +8,7 @@
 import { load } from "../../core/core.js";
 import { changed, removing, setting } from "../scenario/edit.js";
 
+const ALL_COLUMNS = { "time.log_columns": "null" }; // what is drawn, whatever the log is to have
 const MOST_ROUNDS = 8; // of taking out keys that belong to the choice before
 const BAND_ROUNDS = [40, 200]; // runs of a band that are shown before all are there
 const BAND_ROWS = 201;
@@ -26,7 +27,8 @@ const answers = {
     post({ kind: "read", id, text, problems, warnings, resolved });
     if (!resolved) return;
     const start = performance.now();
-    const { columns, units, events, summary, checks, report } = core.run(text, { name });
+    const { events, summary, checks, report, ...own } = core.run(text, { name });
+    const { columns, units } = resolved.time.log_columns ? core.run(text, { name, set: ALL_COLUMNS }) : own;
     const run = { columns, units, events, summary, checks, report, resolved, name: summary.name };
     run.milliseconds = performance.now() - start;
     post({ kind: "run", id, text, run }, Object.values(columns).map((column) => column.buffer));
