@@ -137,6 +137,31 @@ def test_mistakes_differ_clearly_from_what_is_right_and_from_each_other(task: Fu
             assert np.abs(one - other).max() > 1e4 * THRESHOLD * scale
 
 
+def at_one_state(values: Any) -> Any:
+    return lambda **given: values(**{name: np.asarray(one, float)[None] for name, one in given.items()})[0]
+
+
+@pytest.mark.parametrize("task", [task for task in FUNCTIONS if task.loop], ids=lambda task: task.name)
+def test_the_loop_tells_what_is_right_from_each_mistake(task: FunctionTask) -> None:
+    """No word hangs on a number near its threshold: right is right, and no mistake is unclear."""
+    assert task.loop
+    assert task.loop.judged(at_one_state(task.right)) == (RIGHT, "")
+    for mistake in task.mistakes:
+        word, off = task.loop.judged(at_one_state(mistake.values))
+        assert word == WRONG and off.startswith("in the loop "), mistake.sentence
+
+
+def test_a_law_that_forgets_itself_is_wrong_in_the_loop(tmp_path: Path) -> None:
+    file = tmp_path / "observer.py"
+    file.write_text(
+        "CALLS = []\n\n\ndef momentum_rate(tau, c, g, r):\n    CALLS.append(1)\n"
+        "    return (tau + c - g + r) * (len(CALLS) < 500)\n"
+    )
+    mark = judge_file(TASKS["observer"], file)
+    assert (mark.word, mark.found) == (WRONG, "right at single states, and not in the loop")
+    assert mark.message.startswith("in the loop the output while nothing pushes is off by")
+
+
 @pytest.mark.parametrize("task", [task for task in FUNCTIONS if task.kind], ids=lambda task: task.name)
 def test_what_is_right_is_what_verify_takes_for_right(task: FunctionTask) -> None:
     states = task.samples()

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import builtins
 import re
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .._native import Floats
-from ..errors import UsageError
+from ..errors import BudgetError, ControllerError, UsageError
 from ..scenario import Scenario
 from ..verify.comparison import scales
 from ..verify.formula import Formula, from_file
@@ -43,16 +45,45 @@ def judge_function(task: FunctionTask, path: Path, *, forbid_own_package: bool =
         program = formula.program
         states = task.samples()
         values, again = _values(task, formula, states), _values(task, formula, states)
+        mark = _mark(task, values, again, states)
+        return _in_the_loop(task, formula, mark) if task.loop and mark.word != UNCLEAR else mark
     except (UsageError, ProgramError) as error:
         return _failed(error, path)
+    except BudgetError as error:
+        return Mark(UNCLEAR, "takes too long in the loop", message=one_line(str(error), 400))
     finally:
         if isinstance(program, PythonProcess):
             program.close()
+
+
+def _mark(task: FunctionTask, values: Floats, again: Floats, states: dict[str, Floats]) -> Mark:
+    """The mark for the values of a function, and for those of a second call."""
     if not np.array_equal(values, again, equal_nan=True):
         return Mark(WRONG, "gives different numbers when it is called again with the same ones")
     if not np.isfinite(values).all():
         return Mark(WRONG, "returns NaN or infinity instead of numbers")
     return _compared(task, values, states)
+
+
+def _in_the_loop(task: FunctionTask, formula: Formula, mark: Mark) -> Mark:
+    """The mark with what the function does in a loop. That of wrong values stays, and the loop shows their effect."""
+
+    def function(**inputs: Any) -> Floats:
+        values = _values(task, formula, {name: np.asarray(value, float)[None] for name, value in inputs.items()})
+        if not np.isfinite(values).all():
+            raise ProgramError("returns NaN or infinity in the loop")
+        return values[0]
+
+    assert task.loop
+    try:
+        word, off = task.loop.judged(function)
+    except ControllerError as error:
+        if mark.word == RIGHT:
+            return Mark(WRONG, "right at single states, and fails in the loop", message=one_line(str(error), 400))
+        return mark
+    if mark.word == RIGHT and word != RIGHT:
+        return Mark(word, "right at single states, and not in the loop", message=one_line(off, 400))
+    return replace(mark, message=one_line(off, 400)) if off else mark
 
 
 def formula_of(task: FunctionTask, path: Path, sandbox: type[PythonProcess]) -> Formula:
@@ -121,9 +152,14 @@ def _values(task: FunctionTask, formula: Formula, states: dict[str, Floats]) -> 
     return flat
 
 
+@cache
+def _truth(scenario: str) -> ThreeR:
+    return ThreeR(Scenario(scenario))
+
+
 def _by_name(task: FunctionTask, formula: Formula, states: dict[str, Floats]) -> Floats:
     """Joint angles, rates and the arm's numbers, each as the argument of its name."""
-    kind, truth = KINDS[task.kind], ThreeR(Scenario(task.scenario))
+    kind, truth = KINDS[task.kind], _truth(task.scenario)
     names = [name for name in formula.arguments if not ((slot := slot_of(name)) and slot[0] in kind.inputs)]
     own = truth.values_of_quantities
     parameters = {name: what for name, what in quantities_of(names).items() if what in own}

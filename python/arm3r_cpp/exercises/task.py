@@ -11,6 +11,7 @@ import numpy as np
 from .._native import Floats
 from ..run import Run
 from .arms import SCENARIO
+from .loop import Loop
 
 _SAMPLES = 40
 
@@ -66,6 +67,8 @@ class FunctionTask(Task):
     """A kind of `verify`: arguments are then found by their names. Without it they are taken by position."""
     scenario: str = SCENARIO
     """The arm, and where the kind is controller the law."""
+    loop: Loop | None = None
+    """What the function does in a loop, where the task is about one."""
 
     def samples(self) -> dict[str, Floats]:
         """The states at which values are compared."""

@@ -1,8 +1,13 @@
 """Hybrid position and force control: which directions are controlled how."""
 
+from typing import Any
+
 import numpy as np
 
 from ...._native import Floats
+from ....scenario import Scenario
+from ...arms import SCENARIO
+from ...loop import RATE, Function, Goal, Loop
 from ...task import FunctionTask, Input, Mistake
 
 K, D, K_F = 500.0, 100.0, 0.5
@@ -24,6 +29,36 @@ def command(
     """The diagonals of the selections, and factors."""
     push = (feedforward * f_d + sign * K_F * (f_d - f))[:, None] * FORCE
     return position * (K * (x_d - x) - D * v) + force * push
+
+
+LARGEST = 24.4889  # N, of the right law: it comes from the first contact
+LOOP = f"""\
+{SCENARIO}
+initial: {{q: [0, -0.6, 1.0]}}
+wall:
+  point: [1.2149, 0, 0]
+  size: infinite
+  motion: {{type: fixed}}
+  contact: {{law: kelvin_voigt, stiffness: 2000, damping: 60}}
+  acts_on_arm: true
+time: {{stop: 3, log_every: 0.01}}
+"""
+GOAL = np.array([1.25, 0.1, 0.25])  # beyond the wall
+
+
+def in_the_loop(function: Function) -> list[float]:
+    """The largest force; in the last half second of three its error, and the distance from the goal along the wall."""
+
+    def law(t: float, state: Any) -> Floats:
+        pressing = float(state.f_on_tip @ state.wall_normal)
+        force = function(x=state.tip, v=state.tip_velocity, x_d=GOAL, f=pressing, f_d=20.0)
+        torque: Floats = state.tau_g + state.jacobian.T @ force
+        return torque
+
+    run = Scenario(LOOP)._quiet().run(controller=law, rate=RATE, time_limit=60)
+    late, pressing = run.t >= 2.5, run["f_on_wall_x"]
+    along = np.hypot(run["tip_y"] - GOAL[1], run["tip_z"] - GOAL[2])
+    return [float(pressing.max()), float(np.abs(pressing[late] - 20).max()), float(along[late].max())]
 
 
 TASK = FunctionTask(
@@ -66,6 +101,14 @@ def command(x, v, x_d, f, f_d):
     ),
     entries=("F_x", "F_y", "F_z"),
     right=command,
+    loop=Loop(
+        in_the_loop,
+        (
+            Goal("the largest force", "N", LARGEST, 0.1),
+            Goal("the force after 2.5 s", "N", 0.0, 0.05),
+            Goal("the distance along the wall after 2.5 s", "m", 0.0, 1e-3),
+        ),
+    ),
     mistakes=(
         Mistake(
             "the selections are swapped: due is force along the normal, position across it",

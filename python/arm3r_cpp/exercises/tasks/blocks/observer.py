@@ -1,11 +1,47 @@
 """The momentum observer: what changes the momentum of the arm."""
 
+from typing import Any
+
+import numpy as np
+
 from ...._native import Floats
+from ....scenario import Scenario
+from ...arms import SCENARIO, lab_arm
+from ...loop import Function, Goal, Loop
 from ...task import FunctionTask, Input, Mistake
 
 
 def rate(tau: Floats, c: Floats, g: Floats, r: Floats, *, of_c: float = 1, of_g: float = -1, of_r: float = 1) -> Floats:
     return tau + of_c * c + of_g * g + of_r * r
+
+
+K_O, RATE, FORCE = 20.0, 1000.0, np.array([3.0, -5.0, 4.0])
+LOOP = f"""\
+{SCENARIO}
+initial: {{q: [0.3, -0.6, 1.0], qd: [2, 1, -2]}}
+push: {{force: {FORCE.tolist()}, start: 1}}
+time: {{stop: 2, log_every: 0.01}}
+"""
+
+
+def in_the_loop(function: Function) -> list[float]:
+    """The largest output while nothing pushes the swinging arm; how far it is from J^T f after a second of pushing."""
+    arm, total, free, error = lab_arm(), None, 0.0, 0.0
+
+    def law(t: float, state: Any) -> Floats:
+        nonlocal total, free, error
+        momentum = arm.mass_matrix(state.q) @ state.qd
+        total = momentum if total is None else total
+        output = K_O * (momentum - total)
+        torque: Floats = state.tau_g - (20 * state.qd if t > 1 else 0.0)
+        of_rates = arm.coriolis_matrix(state.q, state.qd).T @ state.qd
+        total = total + function(tau=torque, c=of_rates, g=state.tau_g, r=output) / RATE
+        free = max(free, float(np.abs(output).max())) if t <= 1 else free
+        error = float(np.abs(output - state.jacobian.T @ FORCE).max())
+        return torque
+
+    Scenario(LOOP)._quiet().run(controller=law, rate=RATE, time_limit=60)
+    return [free, error]
 
 
 TASK = FunctionTask(
@@ -33,6 +69,13 @@ s_dot = tau + c + r;
     inputs=tuple(Input(name, -10, 10) for name in ("tau", "c", "g", "r")),
     entries=("s1", "s2", "s3"),
     right=rate,
+    loop=Loop(
+        in_the_loop,
+        (
+            Goal("the output while nothing pushes", "N m", 0.0, 0.05),
+            Goal("the error of the output under a push", "N m", 0.0, 2.0),
+        ),
+    ),
     mistakes=(
         Mistake("the gravity torque is missing", lambda **given: rate(**given, of_g=0)),
         Mistake("the gravity torque has the wrong sign: it takes momentum away", lambda **given: rate(**given, of_g=1)),

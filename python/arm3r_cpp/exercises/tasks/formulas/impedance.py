@@ -1,7 +1,11 @@
 """A spring and a damper at the tip, with the error the wrong way round."""
 
+import numpy as np
+
 from ...._native import Floats
+from ....scenario import Scenario
 from ...arms import NUMBERS, SCENARIO, lab_arm, times, transposed
+from ...loop import RATE, Function, Goal, Loop
 from ...task import FunctionTask, Input, Mistake
 
 K, D, X_D = 300.0, 40.0, (0.9, 0.2, 0.3)
@@ -17,6 +21,14 @@ def torque(q: Floats, qd: Floats, *, spring: float = 1, damper: float = 1, weigh
     jacobian = arm.jacobian(q)
     force = spring * K * (X_D - arm.tip_position(q)) - damper * D * times(jacobian, qd)
     return weight * arm.gravity_torque(q) + times(transposed(jacobian), force)
+
+
+def in_the_loop(function: Function) -> list[float]:
+    """The largest distance from x_d in the last half second of three."""
+    scenario = Scenario(f"{SCENARIO}initial: {{q: [0.3, -0.6, 1.0]}}\ntime: {{stop: 3, log_every: 0.01}}\n")._quiet()
+    run = scenario.run(controller=lambda t, state: function(q=state.q, qd=state.qd), rate=RATE, time_limit=60)
+    tip = np.stack([run[f"tip_{axis}"] for axis in "xyz"], axis=1)
+    return [float(np.linalg.norm(tip - X_D, axis=1)[run.t >= 2.5].max())]
 
 
 TASK = FunctionTask(
@@ -62,6 +74,7 @@ def controller(q, qd):
     inputs=(Input("q", -3, 3), Input("qd", -2, 2)),
     entries=("t1", "t2", "t3"),
     right=torque,
+    loop=Loop(in_the_loop, (Goal("the distance of the tip from x_d after 2.5 s", "m", 0.0, 1e-3),)),
     mistakes=(
         Mistake(
             "the error has the wrong sign: the spring pushes away from x_d", lambda q, qd: torque(q, qd, spring=-1)
