@@ -151,11 +151,10 @@ def test_the_loop_tells_what_is_right_from_each_mistake(task: FunctionTask) -> N
         assert word == WRONG and off.startswith("in the loop "), mistake.sentence
 
 
-def test_a_law_that_forgets_itself_is_wrong_in_the_loop(tmp_path: Path) -> None:
+def test_a_law_that_is_right_at_the_compared_states_alone_is_wrong_in_the_loop(tmp_path: Path) -> None:
     file = tmp_path / "observer.py"
     file.write_text(
-        "CALLS = []\n\n\ndef momentum_rate(tau, c, g, r):\n    CALLS.append(1)\n"
-        "    return (tau + c - g + r) * (len(CALLS) < 500)\n"
+        "import numpy as np\n\n\ndef momentum_rate(tau, c, g, r):\n    return np.clip(tau, -10, 10) + c - g + r\n"
     )
     mark = judge_file(TASKS["observer"], file)
     assert (mark.word, mark.found) == (WRONG, "right at single states, and not in the loop")
