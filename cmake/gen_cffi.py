@@ -1,4 +1,8 @@
-"""Write the C source of the Python extension: python gen_cffi.py CDEF OUTPUT."""
+"""Write what Python calls the library by, from the public header.
+
+python gen_cffi.py CDEF OUTPUT.c           the source of the extension
+python gen_cffi.py CDEF OUTPUT.py LIBRARY  a module that loads LIBRARY, a path seen from it: it needs no compiler
+"""
 
 import sys
 from pathlib import Path
@@ -11,9 +15,21 @@ extern "Python" int32_t arm3r_python_batch_progress(void *user, int64_t runs_don
 extern "Python" int32_t arm3r_python_law(void *user, const arm3r_law_state *state, double *tau);
 extern "Python" int32_t arm3r_python_batch_law(void *user, const arm3r_law_state *state, double *tau);
 """
+LOADED = """
+from pathlib import Path as _Path
 
-cdef, output = sys.argv[1:]
+lib = ffi.dlopen(str(_Path(__file__).parent / {library!r}))
+"""
+
+cdef, output, *library = sys.argv[1:]
 ffi = cffi.FFI()
-ffi.cdef(Path(cdef).read_text() + CALLED_FROM_C)
-ffi.set_source("arm3r_cpp._arm3r", '#include "arm3r/arm3r.h"')
-ffi.emit_c_code(output)
+if library:
+    ffi.cdef(Path(cdef).read_text())
+    ffi.set_source("arm3r_cpp._arm3r", None)
+    ffi.emit_python_code(output)
+    with open(output, "a") as module:
+        module.write(LOADED.format(library=library[0]))
+else:
+    ffi.cdef(Path(cdef).read_text() + CALLED_FROM_C)
+    ffi.set_source("arm3r_cpp._arm3r", '#include "arm3r/arm3r.h"')
+    ffi.emit_c_code(output)

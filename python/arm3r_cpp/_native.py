@@ -298,7 +298,19 @@ def _keep(kind: type[BaseException], raised: BaseException, traceback: Any) -> N
     _here.call.stop[0] = 1
 
 
-@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+def _called_by_the_library(kind: str) -> Callable[[Callable[..., int]], Any]:
+    """Makes a function of Python one of the C type `kind`: compiled with the extension, or without one, here."""
+
+    def make(function: Callable[..., int]) -> Any:
+        if not hasattr(lib, function.__name__):
+            return ffi.callback(kind, function, error=-1, onerror=_keep)
+        ffi.def_extern(error=-1, onerror=_keep)(function)
+        return getattr(lib, function.__name__)
+
+    return make
+
+
+@_called_by_the_library("arm3r_progress")
 def arm3r_python_progress(user: Any, t: float, stop: float, steps: int) -> int:
     # Entering a Python function is what lets signal handlers run: this is how Ctrl-C ends a run.
     progress = _here.call.progress
@@ -323,7 +335,7 @@ def _run_options(time_limit: float | None) -> Any:
     options = ffi.new("arm3r_run_options *")
     options.struct_size = ffi.sizeof("arm3r_run_options")
     options.stop = _interpreter.stop_flag()
-    options.progress = lib.arm3r_python_progress
+    options.progress = arm3r_python_progress
     options.time_limit = 0.0 if time_limit is None else time_limit
     return options
 
@@ -356,13 +368,13 @@ def outcome_name(number: int) -> str:
     return string(lib.arm3r_outcome_name(number))
 
 
-@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+@_called_by_the_library("arm3r_batch_progress")
 def arm3r_python_batch_progress(user: Any, runs_done: int, runs: int) -> int:
     progress = _here.call.progress
     return int(progress is not None and bool(progress(runs_done, runs)))
 
 
-@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+@_called_by_the_library("arm3r_law")
 def arm3r_python_batch_law(user: Any, state: Any, tau: Any) -> int:
     call = _here.call
     call.stop[0] |= _interpreter.stop[0]
@@ -390,7 +402,7 @@ def batch(
     options = ffi.new("arm3r_batch_options *")
     options.struct_size = ffi.sizeof("arm3r_batch_options")
     options.stop = here.stop if callable(law) else _interpreter.stop_flag()
-    options.progress = lib.arm3r_python_batch_progress
+    options.progress = arm3r_python_batch_progress
     options.threads = threads or 0
     with here:
         if law is None:
@@ -404,7 +416,7 @@ def _batch_law(law: Any) -> Any:
     struct = ffi.new("arm3r_batch_law *")
     struct.struct_size = ffi.sizeof("arm3r_batch_law")
     if callable(law):
-        struct.function, struct.user_stride = lib.arm3r_python_batch_law, 1  # `user` is the number of the run
+        struct.function, struct.user_stride = arm3r_python_batch_law, 1  # `user` is the number of the run
     else:
         struct.function = ffi.cast("arm3r_law", int(law.address))
         struct.user = ffi.cast("void *", int(law.user))
@@ -478,7 +490,7 @@ def state_index() -> dict[str, int]:
     return {name: field.offset // 8 for name, field in fields if name != "struct_size"}
 
 
-@ffi.def_extern(error=-1, onerror=_keep)  # type: ignore[untyped-decorator]
+@_called_by_the_library("arm3r_law")
 def arm3r_python_law(user: Any, state: Any, tau: Any) -> int:
     return _here.call.law(state, tau)
 
@@ -488,7 +500,7 @@ def control(
 ) -> tuple[Any, BaseException | None]:
     """A run with a law, called as law(state, tau) or, with an `address`, in machine code; and what it raised."""
     native = hasattr(law, "address")
-    given = ffi.cast("arm3r_law", int(law.address)) if native else lib.arm3r_python_law
+    given = ffi.cast("arm3r_law", int(law.address)) if native else arm3r_python_law
     user = ffi.cast("void *", int(law.user)) if native else ffi.NULL
     here = _InProgress(progress, law)
     with here:

@@ -32,6 +32,9 @@ namespace {
 constexpr std::size_t any_size = SIZE_MAX;     // the reader has its own limit, and its own words for it
 constexpr std::size_t enough = (1 << 20) + 1;  // of a text that is longer than the reader takes
 
+// What arm3r_yaml_json and arm3r_output_summary returned last: it stays until this thread asks again.
+thread_local std::string last_json, last_summary;
+
 Results results_of(const arm3r_run& run) {
     return {run.run, run.name, run.scenario, run.checks, run.setup, run.horizon};
 }
@@ -246,9 +249,8 @@ int32_t arm3r_yaml_json(const char* text, size_t text_size, const char* file, si
         need(text, "text");
         need(json, "json");
         const std::string name = text_in(file, file_size, "file");
-        thread_local std::string last;
-        last = yaml_json(std::string(text, std::min(text_size, enough)), name);
-        *json = last.c_str();
+        last_json = yaml_json(std::string(text, std::min(text_size, enough)), name);
+        *json = last_json.c_str();
     });
 }
 
@@ -333,9 +335,8 @@ int32_t arm3r_output_probe(const char* path, size_t path_size) {
 int32_t arm3r_output_summary(const char* path, size_t path_size, const char** summary) {
     return guard([&] {
         need(summary, "summary");
-        thread_local std::string last;
-        last = summary_path(text_in(path, path_size, "path"));
-        *summary = last.c_str();
+        last_summary = summary_path(text_in(path, path_size, "path"));
+        *summary = last_summary.c_str();
     });
 }
 

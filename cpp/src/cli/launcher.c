@@ -7,6 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#endif
+
 enum { exit_usage = 2, levels_up = 2 };
 
 /* Where a package lies below the folder in which bin/ is. */
@@ -15,6 +19,17 @@ static const char* const places[] = {"lib*/python3*/site-packages", "lib*/python
 /* Replaces a path by that of the folder `levels` above. */
 static void go_up(char* path, int levels) {
     for (char* slash; levels > 0 && (slash = strrchr(path, '/')); --levels) *slash = '\0';
+}
+
+/* Writes the path of this program, "" where it is not known. */
+static void find_program(char* path, size_t size) {
+#ifdef __APPLE__
+    uint32_t room = (uint32_t)size;
+    if (_NSGetExecutablePath(path, &room) != 0) path[0] = '\0';
+#else
+    const ssize_t length = readlink("/proc/self/exe", path, size - 1);
+    path[length > 0 ? length : 0] = '\0';
+#endif
 }
 
 static void become_executable(const char* prefix, char** words) {
@@ -31,7 +46,7 @@ static void become_executable(const char* prefix, char** words) {
 int main(int count, char** words) {
     char path[PATH_MAX] = "";
     (void)count;
-    if (readlink("/proc/self/exe", path, sizeof path - 1) < 0) path[0] = '\0';
+    find_program(path, sizeof path);
     go_up(path, levels_up);
     become_executable(path, words);
     fprintf(stderr, "arm3r: error[usage]: no package arm3r_cpp is installed below %s; install it again with pip\n",
