@@ -19,6 +19,7 @@ from page_runner import MARK, blocks_of
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
 # Changes of the sources ("diff", "cpp") are made by test_adding_a_controller.py.
 LANGUAGES = {"python", "sh", "console", "yaml", "csv", "c", "matlab", "octave", "diff", "cpp"}
+RUN_BY_NODE = {"docs/webassembly.md": "js"}  # by test_wasm.py
 NEEDS_A_CLONE = re.compile(r"\b(make|cmake|g\+\+|gcc|git|apt|sudo|clang-format)\b|(benchmarks|tests|cpp)/")
 
 
@@ -73,7 +74,7 @@ def test_marked_blocks_run_in_a_clone(page: Path, clone: Path) -> None:
 def test_every_block_is_of_a_language_that_is_run_and_marked_where_it_must_be(page: Path) -> None:
     text = page.read_text()
     blocks = blocks_of(text)
-    assert {block.language for block in blocks} <= LANGUAGES
+    assert {block.language for block in blocks} <= LANGUAGES | {RUN_BY_NODE.get(is_shown(page), "sh")}
     assert text.count(MARK) == sum(block.is_marked for block in blocks) + text.count(f"`{MARK}`")
     for block in blocks:
         needs_a_clone = block.language in ("c", "cpp", "diff") or (
