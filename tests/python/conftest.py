@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import signal
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import arm3r_cpp as arm3r
 import pytest
@@ -24,6 +26,15 @@ PACKAGE = Path(arm3r.__file__).parent
 def scenario_files() -> list[Path]:
     """Every scenario of the repository; sweeps are files of another kind."""
     return sorted(path for path in (ROOT / "scenarios").rglob("*.yaml") if path.parent.name != "sweeps")
+
+
+def script(path: str) -> ModuleType:
+    """A Python file of the repository that no package holds, as a module."""
+    spec = importlib.util.spec_from_file_location(Path(path).stem, ROOT / path)
+    assert spec and spec.loader
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 Cli = Callable[..., "subprocess.CompletedProcess[str]"]

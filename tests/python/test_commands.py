@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import pty
 import re
@@ -16,7 +15,7 @@ import arm3r_cpp as arm3r
 import pytest
 from arm3r_cpp import _progress_bar, examples
 from arm3r_cpp.sweeps.runner import sweep
-from conftest import ROOT
+from conftest import ROOT, script
 
 SCENARIO = "format: 1\nwall: {point: [1.8, 0, 0]}\ntime: {stop: 2}\n"
 FAILING = SCENARIO + "checks: [{summary: peak_force, equals: -1, name: never}]\n"
@@ -226,9 +225,7 @@ def test_a_bar_waits_a_second(capsys: pytest.CaptureFixture[str], monkeypatch: p
 
 
 def test_the_build_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    spec = importlib.util.spec_from_file_location("install_package", ROOT / "cmake/install_package.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = script("cmake/install_package.py")
     monkeypatch.setenv("CMAKE_BUILD_PARALLEL_LEVEL", "2")
     printed = [
         "Processing .\n",
@@ -241,3 +238,20 @@ def test_the_build_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     assert lines[0].startswith(f"Compiling arm3r: about {module.CPU_MINUTES // 2} min the first time, 2 jobs at once")
     assert lines[1:] == ["[1/136] a.dir/b.cpp.o", "[2/136] Linking CXX x"] and output == printed
     assert "cmake/install_package.py" in (ROOT / "Makefile").read_text()
+
+
+def test_the_package_is_installed_by_any_pip_of_python_3_10(monkeypatch: pytest.MonkeyPatch) -> None:
+    """pip 22.0, of Ubuntu 22.04, knows neither -C nor --config-settings."""
+    module = script("cmake/install_package.py")
+    called: dict[str, Any] = {}
+
+    def popen(command: list[str], **options: Any) -> Any:
+        called.update(command=command, **options)
+        return real([sys.executable, "-c", ""], stdout=subprocess.PIPE, text=True)
+
+    real = subprocess.Popen
+    monkeypatch.setattr(module.subprocess, "Popen", popen)
+    assert module.main("folder") == 0
+    options = [word for word in called["command"][3:] if word.startswith("-")]
+    assert options == ["--disable-pip-version-check", "--no-build-isolation", "-v"]
+    assert called["env"]["SKBUILD_CMAKE_DEFINE"] == "ARM3R_LANES=native"
