@@ -58,9 +58,9 @@ build/page/arm3r.wasm: $(shell find cpp cmake -type f) CMakeLists.txt docs/live/
 docs: $(VENV)/docs
 	$(BIN)/python docs/site/build.py
 
-# What a release publishes, into dist/: docs/releasing.md.
+# What a release publishes, into dist/: docs/releasing.md. Not compiled in $(BUILD), which is for this processor alone.
 dist: page docs
-	SKBUILD_BUILD_DIR=$(BUILD) $(BIN)/python cmake/dist.py $(wildcard build/wheels/*.whl)
+	$(BIN)/python cmake/dist.py $(wildcard build/wheels/*.whl)
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
 from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, script
 
 NOTEBOOKS = sorted((ROOT / "docs/notebooks").glob("*.ipynb"))
 NUMBER_IN_CODE = re.compile(r"`(-?\d[^`]*)`")
@@ -42,9 +41,7 @@ def test_there_are_five_and_each_leads_to_another() -> None:
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=is_shown)
 def test_a_notebook_is_stored_without_outputs(path: Path) -> None:
-    spec = importlib.util.spec_from_file_location("strip_notebooks", ROOT / "cmake/strip_notebooks.py")
-    strip_notebooks = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(strip_notebooks)
+    strip_notebooks = script("cmake/strip_notebooks.py")
     assert path.read_text() == strip_notebooks.stripped(path.read_text()), f"python cmake/strip_notebooks.py {path}"
 
 

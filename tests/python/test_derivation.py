@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from types import ModuleType
 from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import script
 from page_runner import blocks_of
 from random_scenarios import sample_seed
 
@@ -21,10 +19,7 @@ ARMS = 20
 @pytest.fixture(scope="module")
 def derivation() -> ModuleType:
     """docs/derivation.py"""
-    spec = importlib.util.spec_from_file_location("derivation", ROOT / "docs/derivation.py")
-    module = sys.modules["derivation"] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return script("docs/derivation.py")
 
 
 def random_numbers(rng: np.random.Generator) -> dict[str, float]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import re
 from pathlib import Path
 
 import pytest
+from conftest import script
 
 
 @pytest.mark.parametrize(
@@ -69,9 +69,7 @@ def test_texts_use_the_words_of_the_field(root: Path) -> None:
 
 def test_prose_is_wrapped(root: Path) -> None:
     """`python cmake/wrap_markdown.py FILE...` wraps it."""
-    spec = importlib.util.spec_from_file_location("wrap_markdown", root / "cmake/wrap_markdown.py")
-    wrap_markdown = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(wrap_markdown)
+    wrap_markdown = script("cmake/wrap_markdown.py")
     pages = [*root.glob("*.md"), *root.glob("docs/*.md"), *root.glob("cpp/**/*.md")]
     found = {page.name: wrap_markdown.too_long(page.read_text()) for page in pages if page.name != "CHANGELOG.md"}
     assert {name: lines for name, lines in found.items() if lines} == {}

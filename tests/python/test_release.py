@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.util
 import os
 import re
 import subprocess
@@ -14,7 +13,7 @@ from types import ModuleType
 
 import pytest
 import yaml
-from conftest import ROOT
+from conftest import ROOT, script
 
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
 TARGETS = set(re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split())
@@ -23,10 +22,7 @@ TARGETS = set(re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.
 @pytest.fixture(scope="module")
 def dist() -> ModuleType:
     """cmake/dist.py"""
-    spec = importlib.util.spec_from_file_location("dist", ROOT / "cmake/dist.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return script("cmake/dist.py")
 
 
 # ---- workflows ------------------------------------------------------------------------------------------------------
@@ -94,6 +90,13 @@ def test_an_archive_and_its_sums_depend_on_the_contents_alone(dist: ModuleType, 
     assert subprocess.run(check, cwd=tmp_path / "one", capture_output=True).returncode == 0
     (tmp_path / "one/site/a").write_text("changed")
     assert subprocess.run(check, cwd=tmp_path / "one", capture_output=True).returncode == 1
+
+
+def test_wheels_that_are_published_are_not_those_of_this_processor_alone() -> None:
+    recipe = subprocess.run(["make", "--dry-run", "dist"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    [line] = [line for line in recipe.splitlines() if "cmake/dist.py" in line]
+    assert "build/ctest" not in line and "native" not in line
+    assert "ARM3R_LANES" not in (ROOT / "cmake/dist.py").read_text()
 
 
 def packages(clone: Path) -> dict[str, str]:

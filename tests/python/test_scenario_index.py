@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
 from pathlib import Path
 from types import ModuleType
 
 import arm3r_cpp as arm3r
 import pytest
-from conftest import ROOT, scenario_files
+from conftest import scenario_files, script
 
 ABOUT_THE_CONVENTION = {"slide_convention"}
 MOST_BYTES = 10_000
@@ -18,10 +17,7 @@ MOST_BYTES = 10_000
 @pytest.fixture(scope="module")
 def index() -> ModuleType:
     """docs/scenario_index.py"""
-    spec = importlib.util.spec_from_file_location("scenario_index", ROOT / "docs/scenario_index.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return script("docs/scenario_index.py")
 
 
 def test_the_page_has_every_scenario_and_sweep_and_no_other(index: ModuleType) -> None:
