@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import re
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -28,7 +27,7 @@ from .program.nodes import Edit, Node, ProcessEnded, ProgramError, line_and_colu
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
-_MENDING_TIME = 3.0  # s, for a formula that fails
+_MENDING_TIME = 3.0  # s of computing, for a formula that fails
 REPAIR_TIME = 10.0  # s of computing, for the edits of all that a formula may mean
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
@@ -167,10 +166,10 @@ def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
 
 def _mend_failure(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None) -> None:
     """The edit that makes a formula right which raises, or returns no numbers."""
-    deadline = time.monotonic() + _MENDING_TIME
+    budget = Budget(formula.program, _MENDING_TIME)
 
     def in_time(done: int, count: int) -> None:
-        if time.monotonic() > deadline:
+        if budget.is_over():
             raise ProcessEnded("takes too long")
         if progress:
             progress(done, count)
