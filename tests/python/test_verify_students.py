@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import random
 from collections import Counter
@@ -155,7 +156,9 @@ def false_sentence(path: Path, text: str, verdict: Any, found: Floats, wrong: se
     formula = from_text(text, str(path), None)
     theirs = formula.parameters(KINDS[kind], 3)
     named = {**NUMBERS[arm], **{name: number_of(arm, quantity) for name, quantity in theirs.items()}}
-    written = {**named, **{name: value for name, value in formula.numbers().items() if name in theirs}}
+    # a symbol of a sentence has the size that the text gives it, and the sign of the arm's own number
+    sizes = {name: abs(value) for name, value in formula.numbers().items() if name in theirs}
+    written = {**named, **{name: math.copysign(size, named[name]) for name, size in sizes.items()}}
     for one in verdict.findings:
         place = tuple(number - 1 for number in one.entry)
         for sentence, due_values, numbers in ((one.reads, found, written), (one.due, right, named)):
