@@ -12,6 +12,7 @@ from .control.law_state import LawState
 from .errors import (
     Arm3rError,
     BudgetError,
+    ColumnError,
     ControllerError,
     IncompatibleError,
     InternalError,
@@ -58,6 +59,7 @@ __all__ = [
     "Batch",
     "BudgetError",
     "ClosedForm",
+    "ColumnError",
     "ControllerError",
     "Convergence",
     "Event",

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from ._native import nearest_word
+from .errors import ColumnError
 
 
 def place(file: object, line: int = 0, column: int = 0) -> str:
@@ -42,11 +43,11 @@ def in_columns(rows: Sequence[Sequence[str]], *, right: bool = False) -> list[st
     return ["  ".join(map(pad, row, widths)).rstrip() for row in rows]
 
 
-def no_column(name: object, names: Iterable[str]) -> KeyError:
+def no_column(name: object, names: Iterable[str]) -> ColumnError:
     """The error for a column that a table does not have."""
     names = list(names)
     hint = did_you_mean(str(name), names) or f"there are {', '.join(names)}"
-    return KeyError(f"no column {name!r}; {hint}")
+    return ColumnError(f"no column {name!r}; {hint}", code="usage")
 
 
 def warn_user(message: str, category: type[Warning]) -> None:

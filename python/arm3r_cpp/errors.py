@@ -39,6 +39,12 @@ class UsageError(Arm3rError, ValueError):
     """An argument is not usable: out of range, out of reach, or a file that cannot be read."""
 
 
+class ColumnError(UsageError, KeyError):
+    """A run or a table has no column of this name."""
+
+    __str__ = Exception.__str__  # KeyError's would quote the message
+
+
 class ScenarioError(Arm3rError, ValueError):
     """The scenario is not valid; `problems` lists every place."""
 

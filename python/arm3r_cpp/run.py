@@ -15,7 +15,7 @@ from . import _native
 from ._files import replacing
 from ._messages import no_column
 from ._native import Floats, lib
-from .errors import UsageError
+from .errors import ColumnError, UsageError
 from .run_file import read, with_numbers
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class Run:
         """A column as (rows,); or three at once, such as "q", "tau_g", "tip", "f_on_tip", as a new (rows, 3).
 
         Raises:
-            KeyError: there is no such column; the message names the nearest one.
+            ColumnError: there is no such column; the message names the nearest one. It is a KeyError, too.
             TypeError: it is not a name.
         """
         if not isinstance(name, str):
@@ -104,17 +104,22 @@ class Run:
             return self._columns[name]
         if parts := self._three(name):
             return np.stack([self._columns[part] for part in parts], axis=-1)
-        if _native.is_column(name):
-            raise KeyError(
-                f"the log of this run does not have {name!r}: {self._why_not()}; there are {', '.join(self)}"
-            )
+        for meant in ([name], *self._triples(name)):
+            if all(_native.is_column(one) for one in meant):
+                message = f"the log of this run does not have {name!r}: {self._why_not(meant)}"
+                raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
         raise no_column(name, self._columns)
 
-    def _why_not(self) -> str:
-        """Why a column of other runs is none of this one's."""
-        if "log_columns:" in (self.summary["scenario"] or ""):
-            return "add it to time.log_columns"
+    def _why_not(self, meant: list[str]) -> str:
+        """Why columns of other runs are none of this one's."""
+        if self.has_chosen_columns:
+            return f"add {', '.join(meant)} to time.log_columns, or leave that out"
         return "`arm3r columns` says what a run needs for it"
+
+    @property
+    def has_chosen_columns(self) -> bool:
+        """Whether the scenario chose the columns of the log (`time.log_columns`)."""
+        return "log_columns:" in (self.summary.get("scenario") or "")
 
     def __contains__(self, name: object) -> bool:
         """Whether run[name] is there."""
@@ -126,8 +131,12 @@ class Run:
 
     def _three(self, name: str) -> list[str]:
         """The columns that a name stands for, such as "q" for q1, q2, q3; else none."""
-        triples = ([name + joint + end for end in ends] for ends in ("123", "xyz") for joint in ("", "_"))
+        triples = self._triples(name)
         return next((parts for parts in triples if all(part in self._columns for part in parts)), [])
+
+    @staticmethod
+    def _triples(name: str) -> list[list[str]]:
+        return [[name + joint + end for end in ends] for ends in ("123", "xyz") for joint in ("", "_")]
 
     def __len__(self) -> int:
         """How many rows there are."""

@@ -82,4 +82,4 @@ def test_a_column_that_there_is_not() -> None:
         run["tip_c"]
     assert did_you_mean("peak_forc", ["outcome", "peak_force"]) == "did you mean peak_force?"
     assert did_you_mean("xyz", ["outcome", "peak_force"]) == ""
-    assert str(no_column("xyz", ["outcome", "t"])) == "\"no column 'xyz'; there are outcome, t\""
+    assert str(no_column("xyz", ["outcome", "t"])) == "no column 'xyz'; there are outcome, t"

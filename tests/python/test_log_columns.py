@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import zipfile
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
@@ -183,3 +185,47 @@ def test_npz_by_the_library_has_an_array_for_each_column(cli: Cli, tmp_path: Any
     paths[0].write_bytes(data)
     with pytest.raises(arm3r.UsageError, match=r"one\.npz: not "):
         arm3r.Run.load(paths[0])
+
+
+def uses_of(run: arm3r.Run, folder: Path) -> dict[str, Callable[[], object]]:
+    """Everything that reads columns of a run by name."""
+    return {
+        "overview": lambda: arm3r.plot.overview(run),
+        "force": lambda: arm3r.plot.force(run),
+        "lecture": lambda: arm3r.plot.lecture(run),
+        "animate": lambda: arm3r.plot.animate(run, folder / "run.gif", fps=5, speed=2),
+        "to_html": lambda: run.to_html(folder / "run.html"),
+        "q": lambda: run["q"],
+        "tip": lambda: run["tip"],
+        "energy_kinetic": lambda: run["energy_kinetic"],
+    }
+
+
+@pytest.mark.parametrize("which", ("moving_wall", "force_control/hybrid_biased_sensor", "05_free_fall"))
+def test_what_reads_a_run_has_its_columns_or_says_which_are_missing(which: str, tmp_path: Path) -> None:
+    seed = sample_seed()
+    print(f"ARM3R_SEED={seed}")
+    rng = np.random.default_rng(seed)
+    scenario = arm3r.Scenario.example(which)
+    scenario["time.stop"] = 0.1
+    scenario["checks"] = []
+    columns = scenario.run().columns[1:]
+    whole = [["q1", "q2", "q3"], ["tip_x", "tip_y", "tip_z"], ["qd1"]]
+    for names in whole + [some_of(rng, columns) for _ in range(6)]:
+        scenario["time.log_columns"] = names
+        for use, read in uses_of(scenario.run(), tmp_path).items():
+            try:
+                read()
+            except arm3r.UsageError as error:
+                refused = str(error)
+                assert "column" in refused, (use, names)
+                assert refused == error.args[0], (use, names)
+
+
+def test_a_column_that_was_not_chosen_is_named_with_the_mend() -> None:
+    scenario = arm3r.Scenario.example("moving_wall")
+    scenario["time.log_columns"] = ["q2"]
+    with pytest.raises(
+        arm3r.ColumnError, match=r"add q1, q2, q3 to time.log_columns, or leave that out; there are t, q2"
+    ):
+        scenario.run()["q"]

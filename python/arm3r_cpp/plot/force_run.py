@@ -52,7 +52,8 @@ class ForceRun:
         """
         missing = [column for column in NEEDED if column not in self.run]
         if missing:
-            raise UsageError(f"{self.name}: no column {missing[0]}; use a run as arm3r writes it", code="usage")
+            why = "log all columns" if self.run.has_chosen_columns else "use a run as arm3r writes it"
+            raise UsageError(f"{self.name}: no column {missing[0]}; {why}", code="usage")
         if not self.has_force:
             has_wall = "depth" in self.run
             near = "its summary holds no scenario to tell the normal" if has_wall else "the run has no wall"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..errors import UsageError
 from .force_figure import (
     draw_force,
     draw_joint_error,
@@ -96,6 +97,9 @@ def figure_of(
     run: ForceRun, panels: Named, names: Sequence[str], size: Size, *, names_contact: bool = False
 ) -> RunFigure:
     """names_contact: whether the legend of the first panel says when there is contact."""
+    if not names:
+        there = ", ".join(run.run)
+        raise UsageError(f"{run.name}: no panel can be drawn of {there}; log more (time.log_columns)", code="usage")
     over_time, below, _ = chosen(panels, names, below=BELOW)
     if over_time and names_contact:
         over_time[0] = over_time[0]._replace(draw=partial(explained, run.run, over_time[0]))
@@ -130,8 +134,8 @@ def draw_angles(run: Run, ax: Axes, room: float) -> None:
 
 
 def tip_panels(run: Run, *, height: float) -> list[Panel]:
-    """One for each coordinate, so that a motion of a millimetre is seen; none where a column is missing."""
-    return [Panel(height, partial(draw_tip, run, c)) for c in XYZ] if "tip" in run else []
+    """One for each coordinate, so that a motion of a millimetre is seen."""
+    return [Panel(height, partial(draw_tip, run, c)) for c in XYZ]
 
 
 def moving_tip_panels(run: Run) -> list[Panel]:
