@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import math
 import os
 import random
 import signal
@@ -155,3 +157,42 @@ def test_a_symbol_of_a_library(tmp_path: Path) -> None:
     assert (verdict.findings[0].reads, verdict.findings[0].due) == ("q1", "0")
     with pytest.raises(arm3r.UsageError, match="name the function"):
         verify.gravity(tmp_path / "arm.so")
+
+
+# ---- functions in memory --------------------------------------------------------------------------------------------
+
+
+def ends_the_process(number: float) -> float:
+    if number == 0:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    return 1.0
+
+
+def hangs(number: float) -> float:
+    while number == 0:
+        pass
+    return 1.0
+
+
+def gravity_that_may_crash(q1: float, q2: float, q3: float) -> list[float]:
+    a2, a3, m2, m3, g = 1.0, 1.0, 0.785, 0.785, 9.80665
+    t3 = -m3 * g * a3 * math.cos(q2 + q3) * ends_the_process(2)
+    return [0, t3 - (m2 / 2 + m3) * g * a2 * math.cos(q2), t3]
+
+
+def gravity_that_may_hang(q1: float, q2: float, q3: float) -> list[float]:
+    a2, a3, m2, m3, g = 1.0, 1.0, 0.785, 0.785, 9.80665
+    t3 = -m3 * g * a3 * math.cos(q2 + q3) * hangs(2)
+    return [0, t3 - (m2 / 2 + m3) * g * a2 * math.cos(q2), t3]
+
+
+@pytest.mark.parametrize("function", [gravity_that_may_crash, gravity_that_may_hang])
+def test_no_edit_of_a_function_in_memory_runs_in_this_process(function: Any, monkeypatch: Any) -> None:
+    """An edit of `2` to `0` ends the process or hangs; the edit that mends the formula is found all the same."""
+    monkeypatch.setattr("arm3r_cpp.verify.program.python_process.EDIT_TIME", 0.3)
+    before = state()
+    verdict = verify.gravity(function)
+    assert {(one.old, one.new) for one in verdict.findings} == {("m3", "m3/2")}, str(verdict)
+    del verdict
+    gc.collect()
+    assert state() == before

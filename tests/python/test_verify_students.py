@@ -207,6 +207,21 @@ def test_single_mistakes_of_students(tmp_path: Path) -> None:
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
 
 
+@pytest.mark.parametrize(
+    ("wrong", "new"),
+    [
+        ("(m2*lc2 + m3*a2 + g)*cos(q[1])", "(m2*lc2 + m3*a2) * g"),
+        ("m2*lc2*(m3*a2)*g*cos(q[1])", "(m2*lc2 + m3*a2)"),
+        ("(m2*lc2 + m3*a2)*g/cos(q[1])", "*"),
+    ],
+)
+def test_an_exchanged_operator_is_put_back_with_its_brackets(wrong: str, new: str, tmp_path: Path) -> None:
+    path = FOLDER / "unequal" / "gravity_negative_g.py"
+    text = path.read_text().replace("(m2*lc2 + m3*a2)*g*cos(q[1])", wrong)
+    result, words = outcome(path, text, tmp_path)
+    assert result == "named" and f" {new} is due" in words, words
+
+
 @pytest.mark.gate
 @pytest.mark.parametrize("part", range(10))
 def test_many_mistakes_of_students(part: int, tmp_path: Path) -> None:

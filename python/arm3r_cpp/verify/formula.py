@@ -19,9 +19,10 @@ from .names import quantities_of, slots_of
 from .program.c_symbol import text_of
 from .program.matlab_program import MatlabProgram
 from .program.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
+from .program.python_in_memory import PythonInMemory
 from .program.python_nodes import PythonText
 from .program.python_process import PythonProcess
-from .program.python_program import PythonProgram, _numbers
+from .program.python_program import _numbers
 from .samples import Samples, columns
 
 
@@ -71,11 +72,13 @@ class Formula:
 
     def edited(self, edit: Edit) -> Formula | None:
         """The formula of a file with an edit of its text."""
-        if self.text is None or not isinstance(self.program, (MatlabProgram, PythonProgram, PythonProcess)):
+        program = self.program
+        if self.text is None or not isinstance(program, (MatlabProgram, PythonInMemory, PythonProcess)):
             return None
-        if isinstance(self.program, PythonProgram) and self.program.given is not None:
+        if isinstance(program, PythonInMemory) and program.has_surroundings:
             return None
-        return from_text(edit.apply(self.text), self.file, self.name, sandbox=type(self.program))
+        sandbox = type(program) if isinstance(program, PythonProcess) else PythonProcess
+        return from_text(edit.apply(self.text), self.file, self.name, sandbox=sandbox)
 
     @property
     def order(self) -> list[int] | None:
@@ -159,7 +162,7 @@ def _with_text(formula: Formula, function: Any, source: PythonText) -> None:
     outside = {**closure.globals, **closure.nonlocals}
     formula.global_numbers = {name: float(value) for name, value in outside.items() if type(value) in (int, float)}
     namespace = {**getattr(function, "__globals__", {}), **outside}
-    formula.program = PythonProgram(source.text, formula.name, "<formula>", namespace)
+    formula.program = PythonInMemory(source.text, formula.name, "<formula>", namespace)
 
 
 def _from_sympy(expression: Any) -> Formula:
@@ -224,7 +227,7 @@ def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None
     if name not in source.functions:
         raise UsageError(f"{file}: there is no function {name}; it has {', '.join(source.functions) or 'none'}")
     arguments, defaults = source.arguments(name)
-    program_of = sandbox or PythonProgram
+    program_of = sandbox or PythonInMemory
     return Formula(
         file,
         name,

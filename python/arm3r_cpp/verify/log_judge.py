@@ -135,10 +135,10 @@ def _finding(kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floa
         return None
     due[np.abs(due) < 1e-9 * np.abs(due).max(initial=1e-9)] = 0.0
     due = np.where(np.abs(due - np.round(due * 24) / 24) < 1e-9, np.round(due * 24) / 24, due)
-    snapped, right_words = fitted.snapped(due), fitted.words(due, SHORT)
-    reads = right_words if snapped is None else fitted.words(snapped, SHORT)
-    if snapped is None or reads == right_words or _is_off(fitted, snapped, right):
-        return Finding(entry, f"{name} is wrong, with a coefficient that has no simple name.", None, right_words)
+    read, right_words = fitted.read(due), fitted.words(due, due, SHORT)
+    if _is_off(fitted, read, right):
+        return Finding(entry, f"{name} is wrong, with terms that are too small to be told apart.", None, right_words)
+    reads = fitted.words(read, due, SHORT)
     return Finding(entry, f"{name} reads {reads}; {right_words} is due.", reads, right_words)
 
 

@@ -26,6 +26,21 @@ def value(sentence: str, q: Floats, parameters: dict[str, float]) -> float:
     return total
 
 
+_MEASURED = re.compile(r"\(([\d.]+) \+- ([\d.]+)\)")
+
+
+def interval(sentence: str, q: Floats, parameters: dict[str, float]) -> tuple[float, float]:
+    """The value of "(0.499 +- 0.002) a2 C2 - a3 S23", and by how much it may be another."""
+    numbers = _MEASURED.findall(sentence)
+
+    def at(changed: int) -> float:
+        texts = iter([str(float(value) + (place == changed) * float(allowed))
+                      for place, (value, allowed) in enumerate(numbers)])  # fmt: skip
+        return value(_MEASURED.sub(lambda _: next(texts), sentence), q, parameters)
+
+    return at(-1), sum(abs(at(place) - at(-1)) for place in range(len(numbers)))
+
+
 def _closed(sentence: str) -> str:
     """Without blanks inside brackets, and with words for the signs there."""
     return re.sub(

@@ -37,8 +37,8 @@ class Editor:
             :14
         ]
         self.products = list(dict.fromkeys(self._of(one) for one in self._terms() if one.kind != "number"))[:24]
-        self.waves = [name for name in self.names if re.fullmatch(r"[csCS]_?\d{1,3}", name)][:8]
-        """Names such as c2, s23, which stand for a cosine or a sine."""
+        self.waves = [name for name in self.names if re.fullmatch(r"[csCS](_?\d{1,3}|[a-z]{0,2})", name)][:8]
+        """Names such as c2, s23, ca, which stand for a cosine or a sine."""
         self.power = "**" if language == "python" else "^"
 
     def _of(self, node: Node) -> str:
@@ -144,6 +144,7 @@ class Editor:
                 yield Edit(
                     node.at, node.at + len(node.word), word, 1 if word in _ADDITIVE and node.word in _ADDITIVE else 2
                 )
+        yield from self._exchanged(node, parent)
         yield self._at(node, self._of(left), 3, parent)
         yield self._at(node, self._of(right) if node.word != "-" else f"-{self._of(right)}", 3, parent)
         if node.word == "@":
@@ -155,6 +156,17 @@ class Editor:
         if node.word in _ADDITIVE and left.kind == "binary" and left.word in _MULTIPLICATIVE:
             inner = f"{self._of(left.parts[0])}{left.word}({self._of(left.parts[1])} {node.word} {self._of(right)})"
             yield self._at(node, inner, 5, None if parent.kind != "binary" else parent)
+
+    def _exchanged(self, node: Node, parent: Node) -> Iterator[Edit]:
+        """a + b + c as (a + b)*c, and a*b*c as (a + b)*c: another operator between the same parts."""
+        for word in (*_ADDITIVE, "*", "/") if node.word in (*_ADDITIVE, *_MULTIPLICATIVE) else ():
+            is_sum = word in _ADDITIVE
+            tight = [not is_sum and one.kind == "binary" and one.word in _ADDITIVE for one in node.parts]
+            left, right = (f"({self._of(one)})" if is_tight else self._of(one)
+                           for one, is_tight in zip(node.parts, tight, strict=True))  # fmt: skip
+            if any(tight) or (is_sum and node.word not in _ADDITIVE and parent.kind in ("binary", "unary")):
+                whole = f"{left} {word} {right}"
+                yield Edit(node.start, node.end, f"({whole})" if is_sum else whole, 2)
 
     def _regrouped(self, node: Node, left: Node, right: Node) -> Iterator[Edit]:
         """(a + b)*c as a + b*c, and a - b + c as a - (b + c)."""

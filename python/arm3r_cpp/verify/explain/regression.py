@@ -14,8 +14,7 @@ from .terms import Term, sum_words
 
 SIGNIFICANT = 6.0  # standard deviations: with a thousand coefficients, chance exceeds it once in a million times
 _FLOOR = 1e-12  # of the scale: numbers of a log are not more exact
-_SIMPLE = {**dict.fromkeys((1, 2, 3, 4), 4.0), **dict.fromkeys((5, 6, 8, 10, 12), 2.5)}
-"""Denominators: by how many standard deviations a coefficient may differ from such a number."""
+_EXACT = 1e-6  # of a coefficient: without noise, a fraction as near as this is no chance
 _MONOMIALS = {
     "jacobian": (("length2",), ("length3",)),
     "kinematics": (("length2",), ("length3",), ("height",)),
@@ -38,32 +37,31 @@ class Fit:
         """By how many standard deviations each coefficient differs from what is due."""
         return np.abs(self.values - due) / self.deviations
 
-    def snapped(self, due: Floats) -> Floats | None:
-        """Each coefficient as what is due or as a simple number, as far as the noise lets one tell; None for others."""
-        found = due.copy()
-        for place in np.flatnonzero(self.differs(due) > SIGNIFICANT):
-            value, deviation = float(self.values[place]), float(self.deviations[place])
-            if abs(value) <= SIGNIFICANT * deviation:
-                found[place] = 0.0
-                continue
-            simple = (
-                round(value * denominator) / denominator
-                for denominator, within in _SIMPLE.items()
-                if abs(round(value * denominator) / denominator - value) <= within * deviation
-            )
-            nearest = next((one for one in simple if one), None)
-            if nearest is None:
-                return None
-            found[place] = nearest
-        return found
+    def read(self, due: Floats) -> Floats:
+        """Each coefficient as what is due, or as zero, where the noise allows it; else as measured."""
+        allowed = SIGNIFICANT * self.deviations
+        found = np.where(np.abs(self.values) <= allowed, 0.0, self.values)
+        return np.where(np.abs(self.values - due) <= allowed, due, found)
 
-    def words(self, coefficients: Floats, shown: Mapping[str, str]) -> str:
-        """The coefficients as a sum of terms."""
+    def words(self, coefficients: Floats, due: Floats, shown: Mapping[str, str]) -> str:
+        """The coefficients as a sum of terms; those that are not due with what the noise allows."""
         terms = []
-        for (names, waves), number in zip(self.columns, coefficients, strict=True):
+        for place, number in enumerate(coefficients):
             if number:
-                terms.append(Term(float(number), tuple((shown[name], 1) for name in names), waves))
+                names, waves = self.columns[place]
+                exact, allowed = float(number), SIGNIFICANT * float(self.deviations[place])
+                is_measured = number != due[place]
+                if is_measured and allowed < _EXACT * abs(number):
+                    exact, is_measured = _simple(exact, allowed), False
+                powers = tuple((shown[name], 1) for name in names)
+                terms.append(Term(exact, powers, waves, allowed=allowed if is_measured else 0.0))
         return sum_words(terms)
+
+
+def _simple(number: float, allowed: float) -> float:
+    """A fraction of small numbers where one is as near as is allowed."""
+    near = (round(number * denominator) / denominator for denominator in range(1, 13))
+    return next((one for one in near if abs(one - number) <= allowed), number)
 
 
 def columns_of(

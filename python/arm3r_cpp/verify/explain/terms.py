@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -27,12 +28,14 @@ class Term:
     waves: tuple[Wave, ...]
     rates: str = ""
     """The product of rates or accelerations that it stands before."""
+    allowed: float = 0.0
+    """By how much the number may be another, where it was measured."""
 
     def __str__(self) -> str:
         """With its sign in front: "+ 1/2 m2 g a2 C2"."""
         words = [name if power == 1 else f"{name}^{power}" for name, power in self.powers if power > 0]
         words += [*(str(wave) for wave in self.waves), *self.rates.split()]
-        size = number_words(abs(self.number))
+        size = measured_words(abs(self.number), self.allowed) if self.allowed else number_words(abs(self.number))
         text = " ".join(words if size == "1" and words else [size, *words])
         text += "".join(f"/{name}" * -power for name, power in self.powers if power < 0)
         return f"{'-' if self.number < 0 else '+'} {text}"
@@ -43,6 +46,13 @@ def number_words(number: float) -> str:
     if fraction and abs(float(fraction) / number - 1) < 1e-7:
         return str(fraction)
     return f"{number:.9g}"
+
+
+def measured_words(number: float, allowed: float) -> str:
+    """ "(0.4993 +- 0.0021)": the digits that count."""
+    digits = max(1 - math.floor(math.log10(allowed)), 0)
+    step = 10.0**-digits
+    return f"({number:.{digits}f} +- {math.ceil(allowed / step) * step:.{digits}f})"
 
 
 def is_simple_number(number: float) -> bool:

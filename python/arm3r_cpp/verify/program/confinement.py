@@ -18,6 +18,7 @@ _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS = 1, 36, 38
 EVERYTHING = ("network", "files", "processes")
 MEMORY = 2 << 30  # bytes of address space
 PROCESSOR_TIME = 100  # s
+_OWN_MEMORY = "/proc/self/statm"
 
 
 class _MountAttributes(ctypes.Structure):
@@ -30,15 +31,24 @@ def _libc() -> ctypes.CDLL | None:
 
 def limit_resources() -> None:
     """No file is written, no core is dumped, and memory and time are bounded; nothing of this can be taken back."""
-    limits = {
-        resource.RLIMIT_AS: MEMORY,
-        resource.RLIMIT_CPU: PROCESSOR_TIME,
-        resource.RLIMIT_FSIZE: 0,
-        resource.RLIMIT_CORE: 0,
-        resource.RLIMIT_NOFILE: 64,
-        resource.RLIMIT_NPROC: _threads_of_this_user() + 64,
-    }
-    for what, value in limits.items():
+    more = {resource.RLIMIT_AS: MEMORY, resource.RLIMIT_NOFILE: 64, resource.RLIMIT_NPROC: _threads_of_this_user() + 64}
+    _limit(more)
+
+
+def limit_copy() -> None:
+    """The same for a copy of a process, which keeps what that has: its memory and its files."""
+    _limit({resource.RLIMIT_AS: _memory_in_use() + MEMORY} if os.path.exists(_OWN_MEMORY) else {})
+
+
+def _memory_in_use() -> int:
+    """Bytes of address space."""
+    with open(_OWN_MEMORY) as file:
+        return int(file.read().split()[0]) * resource.getpagesize()
+
+
+def _limit(more: dict[int, int]) -> None:
+    limits = {resource.RLIMIT_CPU: PROCESSOR_TIME, resource.RLIMIT_FSIZE: 0, resource.RLIMIT_CORE: 0}
+    for what, value in {**limits, **more}.items():
         hard = resource.getrlimit(what)[1]
         value = value if hard == resource.RLIM_INFINITY else min(value, hard)
         resource.setrlimit(what, (value, value))

@@ -12,7 +12,7 @@ import sys
 import time
 import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import IO, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,18 @@ _MOST_BYTES = 64 << 20  # of an answer
 STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s
 
 
+class Process(Protocol):
+    """A process that reads requests from `stdin`."""
+
+    @property
+    def pid(self) -> int: ...
+
+    @property
+    def stdin(self) -> IO[bytes] | None: ...
+
+    def wait(self) -> Any: ...
+
+
 class PythonProcess:
     """A function of a Python file; its process starts with the first evaluation."""
 
@@ -37,11 +49,15 @@ class PythonProcess:
     def __init__(self, text: str, function: str, file: str) -> None:
         self.text, self.function, self.file = text, function, file
         self.unbarred: list[str] = []
-        self.seconds = 0.0
-        """How long it has computed, as it says."""
-        self._process: subprocess.Popen[bytes] | None = None
+        self._seconds = [0.0]
+        self._process: Process | None = None
         self._answers = -1
         self._hung = 0
+
+    @property
+    def seconds(self) -> float:
+        """How long its processes have computed, as they say."""
+        return sum(self._seconds)
 
     def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats:
         """A row of numbers for each row of the table, in the shape that the function returns.
@@ -57,7 +73,7 @@ class PythonProcess:
         self._send(head, np.ascontiguousarray(table).tobytes())
         head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
         if isinstance(seconds := head.get("seconds"), float):
-            self.seconds = seconds
+            self._seconds[-1] = seconds
         if "error" in head:
             line = head.get("line")
             raise ProgramError(str(head["error"])[:300], line if isinstance(line, int) else None)
@@ -79,7 +95,7 @@ class PythonProcess:
             "PYTHONDONTWRITEBYTECODE": "1",
             "HOME": "/",
         }
-        self._process = subprocess.Popen(
+        process = subprocess.Popen(
             [sys.executable, "-I", "-c", _START, str(writing)],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
@@ -90,8 +106,8 @@ class PythonProcess:
             cwd="/",
         )
         os.close(writing)
-        self._answers = answers
-        self._end = weakref.finalize(self, _end_process, self._process, answers)
+        self._process, self._answers = process, answers
+        self._end = weakref.finalize(self, end_process, self._process, answers)
         folder = os.path.dirname(os.path.abspath(self.file)) if os.path.isfile(self.file) else ""
         self._send(
             {
@@ -151,9 +167,11 @@ class PythonProcess:
         if self._process is not None:
             self._end()
             self._process = None
+            self._seconds.append(0.0)
 
 
-def _end_process(process: subprocess.Popen[bytes], answers: int) -> None:
+def end_process(process: Process, answers: int) -> None:
+    """End a process, and all that it started."""
     for _ in range(20):  # a process may start others while they are ended
         started = _descendants(process.pid)
         for descendant in started:
@@ -161,8 +179,9 @@ def _end_process(process: subprocess.Popen[bytes], answers: int) -> None:
                 os.kill(descendant, signal.SIGKILL)
         if not started:
             break
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
+    for end in (os.killpg, os.kill):  # a process that has just started may not lead its group yet
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            end(process.pid, signal.SIGKILL)
     process.wait()
     with contextlib.suppress(OSError):
         os.close(answers)
