@@ -9,8 +9,9 @@ import os
 import re
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -343,9 +344,11 @@ def _run_options(time_limit: float | None) -> Any:
 _units: dict[str, str] = {}  # of the columns that some run had, by name
 
 
-def is_column(name: str) -> bool:
-    """Whether some run can have a column of this name."""
-    return any(line.split()[0] == name for line in string(lib.arm3r_columns_text()).splitlines())
+@cache
+def column_places() -> dict[str, int]:
+    """Every column that some run can have, and its place in arm3r_columns_text."""
+    lines = string(lib.arm3r_columns_text()).splitlines()
+    return {line.split()[0]: place for place, line in enumerate(lines)}
 
 
 def outcome(run: Any) -> str:
@@ -389,27 +392,54 @@ def batch(
     threads: int | None,
     progress: BatchProgress | None,
     law: Any = None,
+    rows: tuple[Sequence[str], Floats] | None = None,
 ) -> tuple[Floats, BaseException | None]:
     """The table of (varied, runs) values in the places of the varied numbers, (columns, runs); and what a law raised.
 
     law: None, in machine code (NativeLaw), or called as law(run, state, tau). If it raises, no other run is begun.
+    rows: names of columns, and the array (runs, columns, rows) that is to be filled with them.
     """
-    runs = values.shape[1]
-    results = np.empty((lib.arm3r_summary_count(), runs))
-    places = ffi.new("size_t[]", varied or 1)
-    given = [readable(params), params.size, places, len(varied), readable(values), runs]
+    results = np.empty((lib.arm3r_summary_count(), values.shape[1]))
+    given = _variation(params, varied, values)
     here = _InProgress(progress, law)
     options = ffi.new("arm3r_batch_options *")
     options.struct_size = ffi.sizeof("arm3r_batch_options")
     options.stop = here.stop if callable(law) else _interpreter.stop_flag()
     options.progress = arm3r_python_batch_progress
     options.threads = threads or 0
+    memory, _kept = _batch_rows(*rows) if rows else (ffi.NULL, None)
+    options.rows = memory
     with here:
         if law is None:
             call(lib.arm3r_batch_run, *given, options, writable(results))
         else:
             call(lib.arm3r_batch_control, *given, _batch_law(law), options, writable(results))
     return results, here.raised
+
+
+def batch_row_count(params: Floats, varied: list[int], values: Floats, columns: Sequence[str]) -> int:
+    """The most rows that a run of the batch can have. ScenarioError: no run has one of the columns."""
+    count = ffi.new("size_t *")
+    call(lib.arm3r_batch_row_count, *_variation(params, varied, values), _places(columns), len(columns), count)
+    return int(count[0])
+
+
+def _variation(params: Floats, varied: list[int], values: Floats) -> list[Any]:
+    places = ffi.new("size_t[]", varied or 1)
+    return [readable(params), params.size, places, len(varied), readable(values), values.shape[1]]
+
+
+def _places(columns: Sequence[str]) -> Any:
+    return ffi.new("size_t[]", [column_places()[name] for name in columns] or 1)
+
+
+def _batch_rows(columns: Sequence[str], block: Floats) -> tuple[Any, Any]:
+    """An arm3r_batch_rows, and what must live as long as it does."""
+    rows, places = ffi.new("arm3r_batch_rows *"), _places(columns)
+    rows.struct_size = ffi.sizeof("arm3r_batch_rows")
+    rows.columns, rows.column_count, rows.row_count = places, len(columns), block.shape[2]
+    rows.data = writable(block)
+    return rows, places
 
 
 def _batch_law(law: Any) -> Any:

@@ -18,6 +18,8 @@ from .control.batch_law import BatchLaw, MakeLaw
 from .control.law import Law, NativeLaw
 from .errors import BudgetError, ScenarioError, UsageError
 from .params import param_index, param_key, param_name, places
+from .rows.batch_rows import BatchRows
+from .rows.names import columns_asked_for
 from .run import Run
 from .scenario import Scenario
 
@@ -81,9 +83,11 @@ class Batch:
         columns: Mapping[str, Floats],
         shape: tuple[int, ...],
         law: BatchLaw | None = None,
+        rows: BatchRows | None = None,
     ) -> None:
         """`Scenario.batch` makes batches."""
         self._scenario, self._axes, self._columns, self._law = scenario, axes, dict(columns), law
+        self._rows = rows
         self.axes = {axis.key: axis.values if axis.values.shape[-1] > 1 else axis.values[..., 0] for axis in axes}
         self.shape = shape
         self.units = _native.summary_columns()
@@ -92,7 +96,7 @@ class Batch:
             array.flags.writeable = False
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Batch, (self._scenario, self._axes, self._columns, self.shape)
+        return Batch, (self._scenario, self._axes, self._columns, self.shape, None, self._rows)
 
     def __getitem__(self, name: str) -> Floats:
         """A column.
@@ -154,6 +158,17 @@ class Batch:
         return tables.batch_to_xarray(self)
 
     @property
+    def rows(self) -> BatchRows:
+        """The columns over time that the batch was asked for, of all its runs.
+
+        Raises:
+            UsageError: it was not asked for any.
+        """
+        if self._rows is None:
+            raise UsageError('this batch has no rows; ask for them: scenario.batch(..., columns=["q1"])', code="usage")
+        return self._rows
+
+    @property
     def outcomes(self) -> NDArray[np.str_]:
         """How every run ended, in words: "ok", "diverged", ..., "invalid" where its numbers are not valid."""
         numbers, which = np.unique(self["outcome"], return_inverse=True)
@@ -201,6 +216,7 @@ def run_batch(
     controller: Law | NativeLaw | Block | str | os.PathLike[str] | None = None,
     make_controller: MakeLaw | None = None,
     rate: float | None = None,
+    columns: Sequence[str] | None = None,
 ) -> Batch:
     """What `Scenario.batch` does."""
     if not isinstance(values, Mapping):
@@ -210,6 +226,7 @@ def run_batch(
     has_law = controller is not None or make_controller is not None
     if rate is not None and not has_law:
         raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
+    asked = [] if columns is None else columns_asked_for(columns)
     mine = scenario._for_law(rate) if has_law else scenario
     mine.validate()
     base = mine.copy()
@@ -229,31 +246,48 @@ def run_batch(
     law = BatchLaw(law, make_controller, shape, scenario._file) if has_law else None
     _check_room(runs, len(varied) + len(names))
     numbers = _numbers(axes, shape)
+    groups = [
+        _Group(group, _params(base, axes, shape, group), np.ascontiguousarray(numbers[:, group]))
+        for group in (law.groups(_groups(axes, shape)) if law else _groups(axes, shape))
+    ]
+    memory = _room_for_rows(runs, asked, _most_rows(groups, varied, asked))
     done = 0
 
     def report(runs_done: int, _: int) -> Any:
         return progress and progress(done + runs_done, runs)
 
-    def table_of(group: Any) -> Floats:
-        params, values = _params(base, axes, shape, group), np.ascontiguousarray(numbers[:, group])
-        if params is not None and law:
-            return law.table(group, params, varied, values, threads=threads, progress=report)
-        if params is not None:
-            return _native.batch(params, varied, values, threads=threads, progress=report)[0]
-        table = np.full((len(names), values.shape[1]), np.nan)
-        table[names.index("outcome")] = lib.ARM3R_RUN_INVALID
-        return table
+    def table_of(group: _Group, rows: Floats) -> Floats:
+        if group.params is None:
+            rows.fill(np.nan)
+            table = np.full((len(names), group.values.shape[1]), np.nan)
+            table[names.index("outcome")] = lib.ARM3R_RUN_INVALID
+            return table
+        given = group.params, varied, group.values
+        options: Any = {"threads": threads, "progress": report, "rows": (asked, rows) if asked else None}
+        return law.table(group.runs, *given, **options) if law else _native.batch(*given, **options)[0]
 
-    groups = law.groups(_groups(axes, shape)) if law else _groups(axes, shape)
     if len(groups) == 1:
-        table = table_of(groups[0])
+        table = table_of(groups[0], memory)
     else:
         table = np.empty((len(names), runs))
         for group in groups:
-            table[:, group] = table_of(group)
-            done += len(group)
-    columns = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
-    return Batch(base, axes, columns, shape, law)
+            rows = memory[group.runs]
+            table[:, group.runs] = table_of(group, rows)
+            memory[group.runs] = rows
+            done += len(group.runs)
+    summaries = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
+    return Batch(base, axes, summaries, shape, law, BatchRows(asked, memory, shape) if asked else None)
+
+
+class _Group(NamedTuple):
+    """Runs that are one call of the library."""
+
+    runs: Any
+    """their numbers, as an array or a slice"""
+    params: Floats | None
+    """of any valid one of them; None: there is none"""
+    values: Floats
+    """(varied, runs)"""
 
 
 def _block_of(controller: Any) -> Block | None:
@@ -284,7 +318,7 @@ def axis_of(base: Scenario, key: str, value: Any) -> Axis:
     if kind == "section":
         raise UsageError(f"{key}: a section cannot vary; name a key in it, such as {_below(key)}", code="usage")
     if kind == "column":
-        raise UsageError(f"{key}: it chooses columns of a log, which the runs of a batch do not have", code="usage")
+        raise UsageError(f"{key}: it chooses columns of a log; `columns` chooses those of a batch", code="usage")
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -350,10 +384,46 @@ def _check_room(runs: int, numbers: int) -> None:
     try:
         np.empty((numbers, runs))
     except (MemoryError, ValueError) as error:
-        gigabytes = 8e-9 * numbers * runs
-        raise BudgetError(
-            f"{runs} runs are a table of {gigabytes:.3g} GB, more than there is memory; a sweep keeps it in a folder",
-            code="budget.memory",
+        what = f"{runs} runs are a table of {8e-9 * numbers * runs:.3g} GB"
+        raise _no_room(f"{what}, more than there is memory; a sweep keeps it in a folder") from error
+
+
+def _no_room(message: str) -> BudgetError:
+    return BudgetError(message, code="budget.memory")
+
+
+# ---- rows -----------------------------------------------------------------------------------------------------------
+
+
+def _most_rows(groups: Sequence[_Group], varied: list[int], columns: Sequence[str]) -> int:
+    """The most rows of any run. ScenarioError: no run of any group has one of the columns."""
+    counts, refusals = [0], []
+    valid = [(group.params, varied, group.values) for group in groups if group.params is not None] if columns else []
+    for given in valid:
+        try:
+            counts.append(_native.batch_row_count(*given, columns))
+        except ScenarioError as error:
+            refusals.append(error)
+            there = [name for name in columns if name not in _missing(error)]
+            counts.append(_native.batch_row_count(*given, there))
+    if refusals and len(refusals) == len(valid) and set.intersection(*map(_missing, refusals)):
+        raise min(refusals, key=lambda error: len(error.problems))
+    return max(counts)
+
+
+def _missing(error: ScenarioError) -> set[str]:
+    """The columns that no run of a group has."""
+    return {problem["got"] for problem in error.problems}
+
+
+def _room_for_rows(runs: int, columns: Sequence[str], rows: int) -> Floats:
+    """Memory for the rows of all runs: (runs, columns, rows). BudgetError: there is not so much."""
+    try:
+        return np.empty((runs, len(columns), rows))
+    except (MemoryError, ValueError) as error:
+        size = f"{len(columns)} columns of {rows} rows for {runs} runs are {8e-9 * runs * len(columns) * rows:.3g} GB"
+        raise _no_room(
+            f"{size}, more than there is memory; choose fewer columns, a longer time.log_every, or fewer runs at a time"
         ) from error
 
 

@@ -16,6 +16,7 @@ from ._files import replacing
 from ._messages import no_column
 from ._native import Floats, lib
 from .errors import ColumnError, UsageError
+from .rows.names import completions, three_of, triples
 from .run_file import read, with_numbers
 
 if TYPE_CHECKING:
@@ -102,10 +103,10 @@ class Run:
             raise TypeError(f"a column's name is needed, such as run['q1'], got {name!r}; rows are run['q1'][0]")
         if name in self._columns:
             return self._columns[name]
-        if parts := self._three(name):
+        if parts := three_of(name, self._columns):
             return np.stack([self._columns[part] for part in parts], axis=-1)
-        for meant in ([name], *self._triples(name)):
-            if all(_native.is_column(one) for one in meant):
+        for meant in ([name], *triples(name)):
+            if all(one in _native.column_places() for one in meant):
                 message = f"the log of this run does not have {name!r}: {self._why_not(meant)}"
                 raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
         raise no_column(name, self._columns)
@@ -123,20 +124,11 @@ class Run:
 
     def __contains__(self, name: object) -> bool:
         """Whether run[name] is there."""
-        return name in self._columns or (isinstance(name, str) and bool(self._three(name)))
+        return name in self._columns or (isinstance(name, str) and bool(three_of(name, self._columns)))
 
     def __iter__(self) -> Iterator[str]:
         """The columns' names, in order."""
         return iter(self._columns)
-
-    def _three(self, name: str) -> list[str]:
-        """The columns that a name stands for, such as "q" for q1, q2, q3; else none."""
-        triples = self._triples(name)
-        return next((parts for parts in triples if all(part in self._columns for part in parts)), [])
-
-    @staticmethod
-    def _triples(name: str) -> list[list[str]]:
-        return [[name + joint + end for end in ends] for ends in ("123", "xyz") for joint in ("", "_")]
 
     def __len__(self) -> int:
         """How many rows there are."""
@@ -157,8 +149,7 @@ class Run:
         return pages.of_run(self)
 
     def _ipython_key_completions_(self) -> list[str]:
-        triples = {name[:-1].removesuffix("_") for name in self._columns}
-        return [*self._columns, *sorted(name for name in triples if self._three(name))]
+        return completions(self._columns)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Run, (self._columns, self.units, self.summary, self._text())

@@ -6,7 +6,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -361,11 +361,12 @@ class Scenario:
         controller: Law | NativeLaw | str | os.PathLike[str] | None = None,
         make_controller: MakeLaw | None = None,
         rate: float | None = None,
+        columns: Sequence[str] | None = None,
     ) -> Batch:
-        """Many runs at once: a table of their summaries, without rows. Ctrl-C ends it at once with KeyboardInterrupt.
+        """Many runs at once: a table of their summaries. Ctrl-C ends it at once with KeyboardInterrupt.
 
-        >>> batch = scenario.batch({"wall.contact.stiffness": np.geomspace(1e2, 1e6, 1000)})
-        >>> batch["peak_force"]
+        >>> batch = scenario.batch({"wall.contact.stiffness": np.geomspace(1e2, 1e6, 1000)}, columns=["q", "force"])
+        >>> batch["peak_force"], batch.rows["force"][7]
 
         A run that fails is one row; one whose values are not valid has the outcome `invalid`, and NaN.
 
@@ -384,6 +385,10 @@ class Scenario:
                 gains of its own; it returns the law of this run. index: as for a column, so a tuple where the batch has
                 several dimensions.
             rate: of the samples of these laws, Hz, as in `run`.
+            columns: of the rows that are wanted beside the summaries, at the instants that the scenario logs, whatever
+                time.log_columns chooses: names, or names of three such as "q". They are `batch.rows`, and take 8 bytes
+                for each run, column and row. None: no rows. With rows each run takes as long as it does alone, on its
+                thread.
 
         Raises:
             ControllerError: a law in Python raised, or returned no torque: `error.index` is its run, and no other one
@@ -391,8 +396,9 @@ class Scenario:
                 the outcome `controller`.
             UsageError: a key that there is not, a number that varies twice, or arrays of shapes that do not fit.
             TypeError: not numbers.
-            BudgetError: there is no memory for the table.
-            ScenarioError: the scenario itself is not valid, or a word is none of its key's.
+            BudgetError: there is no memory for the table or the rows.
+            ScenarioError: the scenario itself is not valid, a word is none of its key's, or no run has one of the
+                columns.
         """
         from .batch import run_batch  # it stands above this module
 
@@ -406,6 +412,7 @@ class Scenario:
                 controller=controller,
                 make_controller=make_controller,
                 rate=rate,
+                columns=columns,
             )
 
 

@@ -221,6 +221,18 @@ ARM3R_API int32_t arm3r_params_control(const double *params, size_t count, arm3r
 
 /* ---- numbers: many runs -------------------------------------------------------------------------------------------- */
 
+/* Memory for the rows of the runs of a batch: chosen columns at the instants that each run logs, with the same bits as in the
+ * log of that run alone. */
+typedef struct arm3r_batch_rows {
+    size_t struct_size;             /* sizeof(arm3r_batch_rows) */
+    const size_t *columns;          /* places in arm3r_columns_text, whatever time.log_columns chooses */
+    size_t column_count;
+    size_t row_count;               /* of each run at most: arm3r_batch_row_count says how many are needed */
+    double *data;                   /* row k of column j of run i: data[(i*column_count + j)*row_count + k]. NaN after the last row
+                                       of a run, which may end early, and where a run has no such column */
+    int64_t reserved[4];            /* 0 */
+} arm3r_batch_rows;
+
 /* Called at most every 20 ms, from the calling thread. Answers as arm3r_progress. */
 typedef int32_t (*arm3r_batch_progress)(void *user, int64_t runs_done, int64_t runs);
 
@@ -231,7 +243,8 @@ typedef struct arm3r_batch_options {
     void *user;                     /* Nullable: handed to progress */
     int32_t threads;                /* 0: as many as the CPUs that this process may use */
     int32_t lanes;                  /* runs that a thread computes in parallel, at most: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
-    int64_t reserved[4];            /* 0 */
+    const arm3r_batch_rows *rows;   /* Nullable: no rows. With them each run is computed by itself, not in lanes */
+    int64_t reserved[3];            /* 0 */
 } arm3r_batch_options;
 
 ARM3R_API size_t arm3r_summary_count(void); /* columns of a batch's table */
@@ -241,6 +254,11 @@ ARM3R_API int32_t arm3r_summary_column(size_t index, const char **name, const ch
  * of a run of its own. ARM3R_OK whatever the outcomes. Numbers that stand for a choice, a flag or a section cannot vary. */
 ARM3R_API int32_t arm3r_batch_run(const double *params, size_t count, const size_t *varied, size_t varied_count, const double *values, size_t runs,
                                   const arm3r_batch_options *options /* Nullable */, double *results);
+
+/* The most rows that one of these runs can have; runs that are not valid have none. ARM3R_E_SCENARIO: none of the valid ones
+ * has one of these columns. ARM3R_E_SIZE_CAP: a run has too many rows. */
+ARM3R_API int32_t arm3r_batch_row_count(const double *params, size_t count, const size_t *varied, size_t varied_count, const double *values, size_t runs,
+                                        const size_t *columns, size_t column_count, size_t *row_count);
 
 /* A law of your own for the runs of a batch. */
 typedef struct arm3r_batch_law {

@@ -1,11 +1,13 @@
 // Many runs through the C interface.
 
 #include <limits>
+#include <optional>
 
 #include "api/c_api.hpp"
 #include "batch/batch.hpp"
 #include "batch/simulation.hpp"
 #include "record/metrics.hpp"
+#include "schema/columns.hpp"
 #include "schema/param_access.hpp"
 #include "schema/schema.hpp"
 
@@ -13,7 +15,30 @@ using namespace arm3r;
 
 namespace {
 
-BatchOptions batch_options_in(const arm3r_batch_options* given) {
+constexpr std::size_t most_doubles = std::numeric_limits<std::size_t>::max() / sizeof(double);
+
+// Throws Error ARM3R_E_SIZE: no array holds so many numbers for each run.
+void check_size(std::size_t runs, std::size_t width) {
+    if (runs > 0 && width > most_doubles / runs)
+        throw Error(ARM3R_E_SIZE, "runs is " + std::to_string(runs) + ": no array is as long");
+}
+
+std::span<const std::size_t> columns_in(const std::size_t* columns, std::size_t count) {
+    need(columns, "columns");
+    for (std::size_t i = 0; i < count; ++i) check_index(columns[i], column_count, "column");
+    return {columns, count};
+}
+
+std::optional<BatchRows> rows_in(const arm3r_batch_rows* given, std::size_t runs) {
+    if (!given) return {};
+    const arm3r_batch_rows rows = struct_in(given, "arm3r_batch_rows");
+    check_pointer(rows.data, "rows.data");
+    check_size(rows.column_count, rows.row_count);
+    check_size(runs, rows.column_count * rows.row_count);
+    return BatchRows{columns_in(rows.columns, rows.column_count), rows.row_count, rows.data};
+}
+
+BatchOptions batch_options_in(const arm3r_batch_options* given, std::size_t runs) {
     if (!given) return {};
     const char* const name = "arm3r_batch_options";
     const arm3r_batch_options options = struct_in(given, name);
@@ -24,7 +49,7 @@ BatchOptions batch_options_in(const arm3r_batch_options* given) {
     if (options.threads < 0) refuse("threads", options.threads, "0 or more");
     if (options.lanes < 0 || options.lanes > 8 || (options.lanes & (options.lanes - 1)))
         refuse("lanes", options.lanes, "0, 1, 2, 4 or 8");
-    return {options.stop, options.progress, options.user, options.threads, options.lanes};
+    return {options.stop, options.progress, options.user, options.threads, options.lanes, rows_in(options.rows, runs)};
 }
 
 BatchLaw batch_law_in(const arm3r_batch_law& given) {
@@ -40,10 +65,7 @@ Variation variation_in(const double* params, std::size_t count, const std::size_
                        const double* values, std::size_t runs) {
     need(varied, "varied");
     check_pointer(values, "values");
-    const std::size_t most = std::numeric_limits<std::size_t>::max() / sizeof(double);
-    for (const std::size_t width : {varied_count, summary_table().size()})
-        if (runs > 0 && width > most / runs)
-            throw Error(ARM3R_E_SIZE, "runs is " + std::to_string(runs) + ": no array is as long");
+    for (const std::size_t width : {varied_count, summary_table().size()}) check_size(runs, width);
     return {params_in(params, count), {varied, varied_count}, {values, varied_count * runs}, runs};
 }
 
@@ -70,7 +92,7 @@ int32_t arm3r_batch_run(const double* params, size_t count, const size_t* varied
         const Variation variation = variation_in(params, count, varied, varied_count, values, runs);
         check_pointer(results, "results");
         if (is<"controller.type", "user">(variation.params)) refuse_missing_law();
-        run_batch(variation, batch_options_in(options), results);
+        run_batch(variation, batch_options_in(options, runs), results);
     });
 }
 
@@ -82,8 +104,19 @@ int32_t arm3r_batch_control(const double* params, size_t count, const size_t* va
         check_pointer(results, "results");
         need(law, "law");
         refuse_other_controllers(variation.params);
-        BatchOptions chosen = batch_options_in(options);
+        BatchOptions chosen = batch_options_in(options, runs);
         chosen.law = batch_law_in(*law);
         run_batch(variation, chosen, results);
+    });
+}
+
+int32_t arm3r_batch_row_count(const double* params, size_t count, const size_t* varied, size_t varied_count,
+                              const double* values, size_t runs, const size_t* columns, size_t column_count,
+                              size_t* row_count) {
+    return guard([&] {
+        const Variation variation = variation_in(params, count, varied, varied_count, values, runs);
+        need(row_count, "row_count");
+        check_variation(variation);
+        *row_count = most_rows(variation, columns_in(columns, column_count));
     });
 }

@@ -14,32 +14,14 @@
 #include "base/error.hpp"
 #include "batch/worker.hpp"
 #include "platform/threads.hpp"
-#include "schema/schema.hpp"
 #include "validate/validate.hpp"
 
 namespace arm3r {
 namespace {
 
-constexpr std::size_t min_runs_per_thread = 64;
+constexpr std::size_t min_runs_per_thread = 64, min_runs_with_rows = 4;
 constexpr std::chrono::milliseconds poll_interval{5}, report_interval{20};
 using Clock = std::chrono::steady_clock;
-
-void check_variation(const Variation& variation) {
-    std::vector<bool> seen(param_count());
-    for (const std::size_t number : variation.varied) {
-        if (number >= param_count())
-            throw Error(ARM3R_E_INDEX, "varied: there is no number " + std::to_string(number) + "; there are " +
-                                           std::to_string(param_count()));
-        if (seen[number]) throw Error(ARM3R_E_INDEX, "varied: " + param_name(number) + " is named twice");
-        seen[number] = true;
-        const Key& key = key_at(number);
-        if (key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section)
-            throw Error(ARM3R_E_INDEX, "varied: " + key.path + " is no number but a choice; make a batch for each");
-        if (key.kind == Kind::column)
-            throw Error(ARM3R_E_INDEX,
-                        "varied: " + key.path + " chooses columns of a log, which a batch does not have");
-    }
-}
 
 // Asks the threads to stop before they are joined, also if the calling thread leaves by an exception or is ended in a
 // callback.
@@ -51,9 +33,14 @@ struct StopGuard {
 class Batch {
 public:
     Batch(const Variation& variation, const BatchOptions& options, double* results)
-        : options_(options), job_{variation,   Checker(variation.params, variation.varied),
-                                  results,     options.lanes ? widest(LaneTypes{}, options.lanes) : max_lanes(),
-                                  options.law, poll_of_this_thread()} {}
+        : options_(options),
+          job_{variation,
+               Checker(variation.params, variation.varied),
+               results,
+               options.lanes ? widest(LaneTypes{}, options.lanes) : max_lanes(),
+               options.rows,
+               options.law,
+               poll_of_this_thread()} {}
 
     void run() {
         if (job_.poll) BatchWorker(job_).run();
@@ -72,7 +59,9 @@ private:
     void run_in_threads() {
         const std::size_t runs = job_.variation.runs;
         const std::size_t wanted = options_.threads > 0 ? options_.threads : platform::allowed_cpus();
-        const std::size_t runs_per_thread = options_.law.function ? 1 : min_runs_per_thread;
+        const std::size_t runs_per_thread = options_.law.function ? 1
+                                            : options_.rows       ? min_runs_with_rows
+                                                                  : min_runs_per_thread;
         const std::size_t count = std::clamp<std::size_t>(runs / runs_per_thread, 1, wanted);
         std::vector<std::jthread> threads;
         const StopGuard stop_guard{job_.stop};
@@ -147,7 +136,6 @@ private:
 
 void run_batch(const Variation& variation, const BatchOptions& options, double* results) {
     check_variation(variation);
-    refuse_unknown_choices(variation.params);
     if (options.lanes > 0 && !has_registers_for(options.lanes))
         throw Error(ARM3R_E_VALUE,
                     "lanes: this processor, or this build, has no registers for " + std::to_string(options.lanes));

@@ -2,19 +2,12 @@
 // Many runs that differ in numbers, on several threads. Each row of the table has the same bits as the run alone.
 
 #include <cstdint>
-#include <span>
+#include <optional>
 
 #include "arm3r/arm3r.h"
+#include "batch/batch_rows.hpp"
 
 namespace arm3r {
-
-// Run i has `params`, but values[j*runs + i] in the place of number varied[j].
-struct Variation {
-    std::span<const double> params;
-    std::span<const std::size_t> varied;
-    std::span<const double> values;
-    std::size_t runs;
-};
 
 // A law of the user's for every run, as arm3r_batch_law describes it.
 struct BatchLaw {
@@ -30,6 +23,7 @@ struct BatchOptions {
     void* user = nullptr;
     int threads = 0;  // 0: as many as the CPUs that this process may use
     int lanes = 0;    // 1, 2, 4 or 8; 0: as is fastest
+    std::optional<BatchRows> rows = {};
     BatchLaw law = {};
 };
 

@@ -8,13 +8,17 @@
 #include "batch/law_adapter.hpp"
 #include "batch/simulation.hpp"
 #include "record/metrics.hpp"
-#include "run/adaptive_run.hpp"
 #include "validate/size_limits.hpp"
 
 namespace arm3r {
 namespace {
 
-constexpr std::size_t runs_at_a_time = 256, max_deferred = 1024;
+constexpr std::size_t runs_at_a_time = 256, runs_with_rows = 4, max_deferred = 1024;
+
+std::size_t fetched_at_once(const BatchJob& job) {
+    if (job.law.function) return 1;
+    return job.rows ? runs_with_rows : runs_at_a_time;
+}
 
 auto lane_group_of(const Setup& first) {
     if (first.solver.method == SolverMethod::taylor) return run_lanes_taylor;
@@ -36,8 +40,8 @@ void BatchWorker::run() {
 void BatchWorker::run_group(const Setup& first, std::size_t run) {
     if (job_.law.function) {
         run_with_law(first, run);
-    } else if (!first.solver.runs_in_lanes()) {
-        store(run, run_adaptively(first, {.should_stop = &job_.stop, .rows = false}));
+    } else if (job_.rows || !first.solver.runs_in_lanes()) {
+        run_alone(first, {}, run);
     } else {
         lane_group_of(first)(job_.lanes, *this, first, run);
         retry_.insert(retry_.end(), deferred_.begin(), deferred_.end());
@@ -52,10 +56,18 @@ void BatchWorker::run_with_law(const Setup& setup, std::size_t run) {
     const auto first_user = reinterpret_cast<std::uintptr_t>(job_.law.user);
     void* const user = reinterpret_cast<void*>(first_user + run * job_.law.user_stride);
     LawAdapter law(job_.law.function, user, setup);
-    RunOptions options{.should_stop = &job_.stop, .user_law = law.user_law(), .rows = false};
+    RunOptions options{.user_law = law.user_law()};
     if (job_.poll) options.progress = poll_during_run, options.user = &job_;
-    store(run, simulate(setup, options));
+    run_alone(setup, options, run);
     if (job_.poll) job_.poll();
+}
+
+void BatchWorker::run_alone(const Setup& setup, RunOptions options, std::size_t run) {
+    options.should_stop = &job_.stop;
+    options.rows = job_.rows.has_value();
+    const Run done = simulate(job_.rows ? job_.rows->with_columns(setup, run) : setup, options);
+    if (job_.rows) job_.rows->store(run, done);
+    store(run, done);
 }
 
 bool BatchWorker::next(const BatchKey& batch_key, Setup& setup, std::size_t& run) {
@@ -71,7 +83,7 @@ bool BatchWorker::fetch(std::size_t& run) {
     if (is_stopped()) return refuse_rest(), false;
     if (first_ == last_ && retry_.empty()) {
         const std::size_t runs = job_.variation.runs;
-        const std::size_t count = job_.law.function ? 1 : runs_at_a_time;
+        const std::size_t count = fetched_at_once(job_);
         first_ = std::min(runs, job_.next.fetch_add(count));
         last_ = std::min(runs, first_ + count);
     }
@@ -87,9 +99,7 @@ bool BatchWorker::fetch(std::size_t& run) {
 
 // Returns false if there is nothing to simulate; the row is then complete.
 bool BatchWorker::prepare(std::size_t run, Setup& setup) {
-    const Variation& variation = job_.variation;
-    for (std::size_t j = 0; j < variation.varied.size(); ++j)
-        params_[variation.varied[j]] = variation.values[j * variation.runs + run];
+    job_.variation.put(run, params_);
     const std::optional<Setup> valid = job_.check(params_);
     if (!valid) return refuse(run, run + 1, ARM3R_RUN_INVALID), false;
     setup = *valid;
@@ -126,6 +136,7 @@ void BatchWorker::refuse(std::size_t first, std::size_t last, arm3r_outcome why)
     fill(0, double(why));  // the outcome is the first column
     for (std::size_t column = 1; column < summary_table().size(); ++column)
         fill(column, std::numeric_limits<double>::quiet_NaN());
+    if (job_.rows) job_.rows->clear(first, last);
     job_.done.fetch_add(last - first, std::memory_order_relaxed);
 }
 

@@ -18,6 +18,7 @@ struct BatchJob {
     const Checker check;
     double* const results;
     const int lanes;  // as BatchOptions::lanes
+    const std::optional<BatchRows>& rows;
     const BatchLaw& law;
     const std::function<void()> poll;  // empty, or what the calling thread does during a run and after it
     std::atomic<std::size_t> next = 0, done = 0;
@@ -41,6 +42,7 @@ private:
     bool prepare(std::size_t run, Setup& setup);
     void run_group(const Setup& first, std::size_t run);
     void run_with_law(const Setup& setup, std::size_t run);
+    void run_alone(const Setup& setup, RunOptions options, std::size_t run);
     // The runs first to last - 1 were not started: their rows have no number but the outcome.
     void refuse(std::size_t first, std::size_t last, arm3r_outcome why);
     void refuse_rest();  // all runs that no worker has started

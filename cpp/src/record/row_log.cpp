@@ -20,13 +20,17 @@ double zero_or_nan(double value) { return 0.0 * value; }
 
 }  // namespace
 
-void RowLog::reserve(const RowPlan& plan) {
-    const double intervals = (setup_.stop - setup_.start) / setup_.log_every;
+std::size_t row_count(const Setup& setup) {
+    const double intervals = (setup.stop - setup.start) / setup.log_every;
     std::size_t rows = intervals < 2 ? 0 : static_cast<std::size_t>(intervals) - 1;
-    while (stands_before(rows, setup_.stop)) rows += 1;
+    while (stands_before(setup, rows, setup.stop)) rows += 1;
+    return rows + 1;  // and the end
+}
+
+void RowLog::reserve(const RowPlan& plan) {
     run_.columns = plan.columns;
     run_.hidden = plan.hidden;
-    run_.reserve(rows + 1);  // and the end
+    run_.reserve(row_count(setup_));
 }
 
 void RowLog::log(const RowContext& context, double t, const FullState& y, double theta) {

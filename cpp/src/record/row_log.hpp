@@ -6,6 +6,15 @@
 
 namespace arm3r {
 
+inline double time_of(const Setup& setup, std::size_t row) { return setup.start + double(row) * setup.log_every; }
+// The start and the end of the run always have a row, however long the interval is.
+inline bool stands_before(const Setup& setup, std::size_t row, double until) {
+    const double t = time_of(setup, row);
+    return t < until && (row == 0 || t < setup.stop - 1e-9 * setup.log_every);
+}
+// How many rows a run has that reaches its end.
+std::size_t row_count(const Setup& setup);
+
 class RowLog {
 public:
     RowLog(const Setup& setup, Run& run) : setup_(setup), run_(run) {}
@@ -32,12 +41,8 @@ public:
     double last_time() const { return run_.rows ? run_.data[run_.rows - 1] : setup_.start; }
 
 private:
-    double time_of(std::size_t row) const { return setup_.start + double(row) * setup_.log_every; }
-    // The start and the end of the run always have a row, however long the interval is.
-    bool stands_before(std::size_t row, double until) const {
-        const double t = time_of(row);
-        return t < until && (row == 0 || t < setup_.stop - 1e-9 * setup_.log_every);
-    }
+    double time_of(std::size_t row) const { return arm3r::time_of(setup_, row); }
+    bool stands_before(std::size_t row, double until) const { return arm3r::stands_before(setup_, row, until); }
     // Visits the columns that are kept: the index of each, and its cell of the next row.
     template <class Visit>
     void each_cell(Visit visit) {

@@ -27,7 +27,7 @@ std::string_view need_hint(Need need) {
         case Need::observer: return "add `observer: {}`";
         case Need::estimator: return "add `estimator: {}`";
         case Need::tank: return "choose controller.type energy_tank";
-        case Need::loss: return "give arm.joint_damping or arm.dry_friction, or a wall that acts on the arm and damps";
+        case Need::loss: return "give arm.damping or arm.friction, or a wall that acts on the arm and damps";
         default: return "give arm.torque_limit, and choose a controller.type";
     }
 }

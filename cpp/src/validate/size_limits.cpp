@@ -82,16 +82,16 @@ ColumnSet possible_columns(const Setup& setup) {
 
 std::vector<std::size_t> columns_of(const Setup& setup) { return in_order(possible_columns(setup) & setup.logged); }
 
-std::vector<Problem> missing_columns(const Setup& setup) {
+std::vector<Problem> missing_columns(const Setup& setup, const std::string& path) {
     std::vector<Problem> problems;
     if (setup.logged.all()) return problems;
     for (const std::size_t column : in_order(setup.logged & ~possible_columns(setup))) {
         const Need need = column_table[column].need;
         problems.push_back({.code = "scenario.column",
-                            .path = "time.log_columns",
+                            .path = path,
                             .message = "this run has no such column; it is there " + std::string(need_text(need)),
                             .got = std::string(column_table[column].name),
-                            .hint = std::string(need_hint(need)) + ", or take the name out of time.log_columns"});
+                            .hint = std::string(need_hint(need)) + ", or take the name out of " + path});
     }
     return problems;
 }

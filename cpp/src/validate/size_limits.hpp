@@ -14,9 +14,10 @@ bool has_too_many_steps(const Setup& setup);
 // Which columns of column_table a run can have.
 ColumnSet possible_columns(const Setup& setup);
 
-// Which of them stand in its log, in order; and a problem for each that is asked for and that the run cannot have.
+// Which of them stand in its log, in order; and a problem for each that is asked for, at `path`, and that the run
+// cannot have.
 std::vector<std::size_t> columns_of(const Setup& setup);
-std::vector<Problem> missing_columns(const Setup& setup);
+std::vector<Problem> missing_columns(const Setup& setup, const std::string& path = "time.log_columns");
 
 std::vector<std::size_t> in_order(const ColumnSet& columns);
 

@@ -1,0 +1,30 @@
+#include "batch/variation.hpp"
+
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "schema/schema.hpp"
+#include "validate/validate.hpp"
+
+namespace arm3r {
+
+void check_variation(const Variation& variation) {
+    std::vector<bool> seen(param_count());
+    for (const std::size_t number : variation.varied) {
+        if (number >= param_count())
+            throw Error(ARM3R_E_INDEX, "varied: there is no number " + std::to_string(number) + "; there are " +
+                                           std::to_string(param_count()));
+        if (seen[number]) throw Error(ARM3R_E_INDEX, "varied: " + param_name(number) + " is named twice");
+        seen[number] = true;
+        const Key& key = key_at(number);
+        if (key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section)
+            throw Error(ARM3R_E_INDEX, "varied: " + key.path + " is no number but a choice; make a batch for each");
+        if (key.kind == Kind::column)
+            throw Error(ARM3R_E_INDEX,
+                        "varied: " + key.path + " chooses columns of a log; arm3r_batch_rows chooses those of a batch");
+    }
+    refuse_unknown_choices(variation.params);
+}
+
+}  // namespace arm3r
