@@ -137,7 +137,7 @@ def _finding(kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floa
     due = np.where(np.abs(due - np.round(due * 24) / 24) < 1e-9, np.round(due * 24) / 24, due)
     read, right_words = fitted.read(due), fitted.words(due, due, SHORT)
     if _is_off(fitted, read, right):
-        return Finding(entry, f"{name} is wrong, with terms that are too small to be told apart.", None, right_words)
+        return Finding(entry, f"{name} is wrong, with terms that are smaller than the noise.", None, right_words)
     reads = fitted.words(read, due, SHORT)
     return Finding(entry, f"{name} reads {reads}; {right_words} is due.", reads, right_words)
 
