@@ -208,6 +208,38 @@ def test_single_mistakes_of_students(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("file", "right", "wrong", "words"),
+    [
+        # what is rounding beside what is due is zero
+        ("jacobian_modified_dh.py", "st*ca, ct*ca", "st*ca, ct*sa", "J(1,2) reads 0, due is -a2 C1 S2 - a3 C1 S23"),
+        # one mistake in a convention is likelier than two in the other
+        ("jacobian_lists.py", "q[1] + q[2]]", "q[2]]", "q[1]+q[2] is due"),
+        # what explains everything goes before edits that mend single entries
+        ("gravity_levers.py", "tau[j + 1] -=", "tau[j] -=", "t1, t2, t3: the entries stand in the order 2, 3, 1"),
+        # a name that is assigned and stands nowhere else
+        ("gravity_levers.m", "m*x", "m*lc", "x is due"),
+        ("jacobian_lists.py", "cos(th[k]) if k >= j", "cos(th[k]) if k > j", ">= is due"),
+        ("jacobian_while.py", "q[1:i+1]", "q[1:i]", "i+1 is due"),
+        ("jacobian_handles.m", "0.55*du(q2 + q3)]", "0.55*u(q2 + q3)]", "du is due"),
+        ("gravity_links_from_1.py", "m2*l1", "m1*l1", "due is m2 g0 l1 C2 + m1 g0 lc1 C2 + m2 g0 lc2 C23"),
+        ("kinematics_rotations.py", "trans(z=0.25)", "trans(z=0.5)", "0.25 is due"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_said_in_these_words(file: str, right: str, wrong: str, words: str, tmp_path: Path) -> None:
+    path = FOLDER / "unequal" / file
+    assert right in path.read_text()
+    result, verdict = outcome(path, path.read_text().replace(right, wrong), tmp_path)
+    assert result == "named" and words in verdict, verdict
+
+
+def test_a_method_is_judged_through_a_function(tmp_path: Path) -> None:
+    path = tmp_path / "robot.py"
+    path.write_text("class Robot:\n    def jacobian(self, q):\n        return q\n")
+    with pytest.raises(arm3r.UsageError, match="a method is judged by a function that calls it: def"):
+        verify.jacobian(path)
+
+
+@pytest.mark.parametrize(
     ("wrong", "new"),
     [
         ("(m2*lc2 + m3*a2 + g)*cos(q[1])", "(m2*lc2 + m3*a2) * g"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -15,7 +15,7 @@ import numpy as np
 from .._native import Floats
 from ..errors import UsageError
 from .kinds import KINDS, Kind
-from .names import quantities_of, slots_of
+from .names import quantities_of, slot_of, slots_of
 from .program.c_symbol import text_of
 from .program.matlab_program import MatlabProgram
 from .program.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
@@ -67,6 +67,8 @@ class Formula:
     comments: str = ""
     outputs: list[str] = field(default_factory=list)
     """The names of several outputs in their order, where they have names."""
+    optional: list[str] = field(default_factory=list)
+    """The arguments that have a default."""
     global_numbers: dict[str, float] = field(default_factory=dict)
     """Numbers outside of the text that a function in memory uses."""
 
@@ -97,12 +99,16 @@ class Formula:
 
     def parameters(self, kind: Kind, joints: int) -> dict[str, str]:
         """The parameters of the arm among arguments and constants, by the names of the formula."""
-        from .names import slot_of
+        known = quantities_of([name for name in self.arguments if not _is_state(name, kind)])
+        names = [*self._given(kind, known), *self.constants, *self.global_numbers]
+        return quantities_of([name for name in names if not _is_state(name, kind) and name != "self"])
 
-        states = {name for name in self.arguments if (slot := slot_of(name)) and slot[0] in kind.inputs}
-        own = {"self", *states}
-        names = [name for name in (*self.arguments, *self.constants, *self.global_numbers) if name not in own]
-        return quantities_of(names)
+    def _given(self, kind: Kind, parameters: Iterable[str]) -> list[str]:
+        """The arguments up to the first one that may be left out and is neither a state nor a parameter."""
+        left_out = [
+            name in self.optional and name not in parameters and not _is_state(name, kind) for name in self.arguments
+        ]
+        return self.arguments[: left_out.index(True)] if any(left_out) else self.arguments
 
     def bind(self, kind: Kind, joints: int, parameters: dict[str, str], known: list[str]) -> Call:
         """How the function is called; `known` are the quantities that stand in the table behind the joint vectors."""
@@ -112,21 +118,25 @@ class Formula:
         if self.arguments == ["*"]:
             return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {})
         slots: list[Any] = []
-        for vector, joint in slots_of(self.arguments, kind, joints, parameters):
+        arguments = self._given(kind, parameters)
+        for vector, joint in slots_of(arguments, kind, joints, parameters):
             if joint == -1:
                 slots.append(first + known.index(parameters[vector]))
             else:
                 place = columns(vector, joints)
                 slots.append(place if joint is None else place[joint])
-        lifted = {
-            name: first + known.index(quantity) for name, quantity in parameters.items() if name not in self.arguments
-        }
+        lifted = {name: first + known.index(quantity) for name, quantity in parameters.items() if name not in arguments}
         return Call(tuple(slots), lifted)
 
     def values(self, call: Call, samples: Samples, known: list[str], edit: Edit | None = None) -> Floats:
         """What the formula returns, a row for each arm and state, outputs in their order."""
         values = self.program.evaluate(call, samples.table(known), edit)
         return values[:, self.order] if self.order and values.ndim == 2 else values
+
+
+def _is_state(name: str, kind: Kind) -> bool:
+    slot = slot_of(name)
+    return slot is not None and slot[0] in kind.inputs
 
 
 def from_callable(function: Any) -> Formula:
@@ -136,17 +146,19 @@ def from_callable(function: Any) -> Formula:
     if not callable(function):
         raise UsageError(f"a function, a file or sympy expressions are needed, got {type(function).__name__}")
     name = getattr(function, "__name__", type(function).__name__)
+    optional: list[str] = []
     try:
         given = inspect.signature(function).parameters.values()
+        optional = [one.name for one in given if one.default is not one.empty]
         several = any(one.kind is one.VAR_POSITIONAL for one in given)
         arguments = ["*"] if several else [one.name for one in given if one.kind is not one.KEYWORD_ONLY]
     except (TypeError, ValueError):
         arguments = ["q"]
-    formula = Formula(name, name, CallableProgram(function), arguments)
+    formula = Formula(name, name, CallableProgram(function), arguments, optional=optional)
     try:
         text = textwrap.dedent(inspect.getsource(function))
         source = PythonText(text, name)
-        if name in source.functions and not source.functions[name].decorator_list:
+        if name in source.functions and not getattr(source.functions[name], "decorator_list", None):
             _with_text(formula, function, source)
     except (OSError, TypeError, UsageError):
         pass  # without a text there is no repair
@@ -240,6 +252,7 @@ def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None
         "python",
         source.comments(name),
         source.returned_names(name),
+        source.optional(name),
     )
 
 
@@ -253,7 +266,8 @@ def likely_function(source: PythonText, file: str) -> str:
     """The only function, the one named like a kind or like the file, or the last one."""
     names = list(source.functions)
     if not names:
-        raise UsageError(f"{file}: there is no function in this file")
+        hint = "; a method is judged by a function that calls it: def jacobian(q): return Robot().jacobian(q)"
+        raise UsageError(f"{file}: there is no function in this file{hint if source.has_classes else ''}")
     stem = Path(file).stem
     for wanted in (lambda name: name == stem, lambda name: kind_of_name(name) is not None):
         chosen = [name for name in names if wanted(name)]

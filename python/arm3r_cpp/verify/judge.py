@@ -53,7 +53,7 @@ def judge(
         verdicts = _verdicts(cases, progress, budget)
         if not verdicts[0][0].findings and (strict := _with_unused_numbers(cases[0], progress, budget)):
             verdicts = [strict]
-        verdict, case = min(verdicts, key=lambda one: (len(one[0].unexplained), _without_cause(one[0])))
+        verdict, case = min(verdicts, key=lambda one: _complexity(one[0]))
     except ProgramError as error:
         verdict = _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
         if not isinstance(error, ProcessEnded):
@@ -72,10 +72,10 @@ def judge(
 def _verdicts(
     cases: Sequence[Comparison], progress: Progress | None, budget: Budget
 ) -> list[tuple[Verdict, Comparison]]:
-    """The verdicts on a formula that may be meant in several ways, up to one that explains everything."""
+    """The verdicts on a formula that may be meant in several ways, up to one with one cause of everything."""
     verdicts: list[tuple[Verdict, Comparison]] = []
     for number, case in enumerate(cases):
-        if verdicts and (not _without_cause(verdicts[-1][0]) or budget.is_over()):
+        if verdicts and (_complexity(verdicts[-1][0]) <= (0, 0, 1) or budget.is_over()):
             break
         share = budget.share(len(cases) - number)  # edits that were tried once cost nothing again
         verdicts.append((_verdict(case, progress, share), case))
@@ -116,6 +116,12 @@ def _without_cause(verdict: Verdict) -> int:
     """The findings that neither an edit nor a mistake of the whole explains."""
     words = (" reads ", " has ", " explain it")
     return sum(one.old is None and any(word in one.cause for word in words) for one in verdict.findings)
+
+
+def _complexity(verdict: Verdict) -> tuple[int, int, int]:
+    """Of verdicts on a formula that may be meant in several ways, the simplest explanation is the likeliest."""
+    edits = {(one.line, one.column, one.new) for one in verdict.findings}
+    return len(verdict.unexplained), _without_cause(verdict), len(edits)
 
 
 def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Verdict:
@@ -232,7 +238,7 @@ def _explain(
     causes = _hypotheses(case)
     repairs = _repairs(case, wrong, progress, budget=budget)
     reads = read_entries(case, wrong)
-    chosen = cover(repairs, wrong)
+    chosen = cover([one for one in repairs if not causes or one.mended == wrong], wrong)
     if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
         chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)

@@ -85,11 +85,14 @@ def quantities_of(names: Iterable[str]) -> dict[str, str]:
     for found in parts.values():
         digits.setdefault(found[1], set()).add(int(found[2]))
     has_lengths = any(letter in digits for letter in ("a", "A", "L", "length", "len"))
+    from_1 = {letter for letter, found in digits.items() if found == {1, 2}}
+    if any(_LETTERS[letter] in ("com", "mass", "inertia") for letter in from_1):
+        from_1 |= {letter for letter, found in digits.items() if found <= {1, 2}}  # m1, m2 and l1: l1 is link 2's
     meaning = {name: "gravity" for name in names if _GRAVITY.fullmatch(name)}
     for name, found in parts.items():
         kind = "com" if found[3] or (found[1] == "l" and has_lengths) else _LETTERS[found[1]]
         number = int(found[2])
-        if kind in ("length", "com", "mass", "inertia") and digits[found[1]] == {1, 2}:
+        if kind in ("length", "com", "mass", "inertia") and found[1] in from_1:
             number += 1  # links 2 and 3 counted from 1
         if kind == "length" and number == 1:
             kind = "height"

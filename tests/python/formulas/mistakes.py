@@ -224,6 +224,103 @@ _SINGLE: dict[str, tuple[tuple[str, str], ...]] = {
         ("[0, z2, z3]", "[0, z3, z2]"),
     ),
     "lecture/mass_spatial.py": (("I + m*C @ C.T", "I - m*C @ C.T"), ("half*R[:, 0]", "a*R[:, 0]")),
+    "unequal/jacobian_tensor.py": (
+        ('np.array([p2 + p3, p2 + p3, p3])', 'np.array([p2 + p3, p2 + p3, p2])'),
+        ('R3 = R2 @ rot(1, q[2])', 'R3 = R1 @ rot(1, q[2])'),
+        ('(1 - np.cos(t)) * K @ K', '(1 + np.cos(t)) * K @ K'),
+    ),
+    "unequal/jacobian_lambda.py": (
+        ('[cos(q[0])*r(q), -sin(q[0])*h(q)', '[cos(q[0])*r(q), -cos(q[0])*h(q)'),
+    ),
+    "unequal/jacobian_while.py": (
+        ('z -= a[i-1]*s(pitch)', 'z -= a[i-1]*c(pitch)'),
+        ('sum(q[1:i+1])', 'sum(q[1:i])'),
+        ('s(q[0])*z, -x]', 's(q[0])*z, x]'),
+    ),
+    "unequal/jacobian_expm.py": (
+        ('[0.8, 0, 0.25]]', '[0.55, 0, 0.25]]'),
+        ('-np.cross(w, p)', 'np.cross(w, p)'),
+    ),
+    "unequal/jacobian_matrix.py": (
+        ('[0, -0.8*cos(q[1]) - 0.55*cos(b), -0.55*cos(b)]', '[0, -0.8*cos(q[1]) - 0.55*cos(b), -0.55*cos(q[1])]'),
+        ('return R*plane', 'return R.T*plane'),
+    ),
+    "unequal/jacobian_lists.py": (
+        ('if k >= j else 0 for k in range(2)] for j in range(2)]\n    reach',
+         'if k > j else 0 for k in range(2)] for j in range(2)]\n    reach'),
+        ('th = [q[1], q[1] + q[2]]', 'th = [q[1], q[2]]'),
+    ),
+    "unequal/jacobian_modified_dh.py": (
+        ('st*ca, ct*ca', 'st*ca, ct*sa'),
+        ('alpha=-np.pi/2', 'alpha=np.pi/4'),
+        ('dict(a=0.55, alpha=0, d=0)]', 'dict(a=0.8, alpha=0, d=0)]'),
+    ),
+    "unequal/gravity_levers.py": (
+        ('for k in range(j, i))', 'for k in range(i))'),
+        ('tau[j + 1] -=', 'tau[j] -='),
+        ('ARM[k].length', 'ARM[k].com'),
+    ),
+    "unequal/gravity_match.py": (
+        ('M[2]*LC[2] + M[3]*0.8', 'M[2]*LC[2] + M[2]*0.8'),
+        ('return 0.0', 'return g'),
+    ),
+    "unequal/gravity_virtual_work.py": (
+        ('p3 - 0.8*u(q[1])', 'p3'),
+        ('return -reduce', 'return reduce'),
+        ('((1.3, J2), (2.1, J3))', '((1.3, J3), (2.1, J2))'),
+    ),
+    "unequal/gravity_links_from_1.py": (
+        ('m1*lc1 + m2*l1', 'm1*lc1 + m1*l1'),
+        ('np.cos(th2) + g2', 'np.cos(th2) - g2'),
+    ),
+    "unequal/kinematics_quaternions.py": (
+        ('w*c - x*d + y*a + z*b', 'w*c + x*d + y*a + z*b'),
+        ('c = mul(b, turn(1, q[2]))', 'c = mul(a, turn(1, q[2]))'),
+    ),
+    "unequal/kinematics_polar.py": (
+        ('base - w.imag', 'base + w.real'),
+        ('fore*cmath.exp(1j*(theta2 + theta3))', 'fore*cmath.exp(1j*theta2 + theta3)'),
+    ),
+    "unequal/kinematics_rotations.py": (
+        ('T[2, [0, 2]] = -np.sin(t), np.cos(t)', 'T[2, [0, 2]] = np.sin(t), np.cos(t)'),
+        ('trans(x=0.8)', 'trans(z=0.8)'),
+        ('roty(q[2]), trans(0.55)', 'trans(0.55), roty(q[2])'),
+    ),
+    "unequal/mass_energy.py": (
+        ('wy = np.array([v[1], v[1] + v[2]])', 'wy = np.array([v[1], v[2]])'),
+        ('a*np.cos(t[0]) + lc[1]*np.cos(t[1])])\n    xd', 'a*np.cos(t[0]) - lc[1]*np.cos(t[1])])\n    xd'),
+    ),
+    "unequal/jacobian_cached.py": (
+        ('map(trig, (q1, q2, q2 + q3))', 'map(trig, (q1, q2, q3))'),
+        ('np.c_[J1, J2, J3]', 'np.c_[J1, J3, J2]'),
+    ),
+    "unequal/jacobian_handles.m": (
+        ('Rz(q1)*0.55*du(q2 + q3)]', 'Rz(q1)*0.55*u(q2 + q3)]'),
+        ('du = @(t) [-sin(t); 0; -cos(t)];', 'du = @(t) [-sin(t); 0; cos(t)];'),
+    ),
+    "unequal/gravity_levers.m": (
+        ('-g*(m*x)', '-g*(m*lc)'),
+        ('cos(phi(2))];', 'cos(phi(1))];'),
+    ),
+    "unequal/mass_rotations.m": (
+        ('cross(n,p3-e)', 'cross(n,p3)'),
+        ('Jw3 = [k n n]', 'Jw3 = [k n zeros(3,1)]'),
+        ("2.1*(Jv3'*Jv3)", "2.1*(Jv3*Jv3')"),
+    ),
+    "unequal/inverse_whole.m": (
+        ('+ C*s3*qd(2)^2', '+ C*s3*qd(3)^2'),
+        ('- 0.5*dM3*qd(1)^2', '- dM3*qd(1)^2'),
+        ('2*C*sin(2*q(2)+q(3))', '2*C*sin(q(2)+q(3))'),
+    ),
+    "unequal/coriolis_complex_step.py": (
+        ('- dM[i][j, k]', '+ dM[i][j, k]'),
+        ('+ dM[j][i, k]', '+ dM[j][k, i]/2'),
+        ('A + B + 2*C*c3', 'A + B + C*c3'),
+    ),
+    "unequal/kinematics_local.m": (
+        ('-sin(t) 0 cos(t)]; end', 'sin(t) 0 cos(t)]; end'),
+        ('roty3(q(3))*[0.55', 'roty3(q(2))*[0.55'),
+    ),
 }  # fmt: skip
 _PAIRS: dict[str, tuple[tuple[tuple[str, str], tuple[str, str]], ...]] = {
     "unequal/jacobian_block.py": (

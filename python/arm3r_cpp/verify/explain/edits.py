@@ -10,7 +10,8 @@ from ..program.nodes import Edit, Node
 
 _TRIGONOMETRIC = {"sin": "cos", "cos": "sin", "sind": "cosd", "cosd": "sind", "tan": "sin"}
 _ADDITIVE, _MULTIPLICATIVE = ("+", "-"), ("*", "/", ".*", "./")
-_MOST = 3500
+_COMPARISONS = ("<", "<=", ">", ">=", "==", "!=", "~=")
+_MOST = 8000
 
 
 class Editor:
@@ -29,7 +30,9 @@ class Editor:
         every = [inner for node in self.nodes for inner in node.walk()]
         named = ("name", "call") if language == "matlab" else ("name",)  # x(2) may be an element
         words = (one.word for one in every if one.kind in named and one.word not in _TRIGONOMETRIC)
-        self.names = list(dict.fromkeys(words))[:40]
+        used = list(dict.fromkeys(words))
+        self.unused = [name for name in _assigned(text) if name not in used][:4]
+        self.names = [*self.unused, *used][:40]
         self.trig = [
             one for one in every if one.kind == "call" and _last(one.word) in _TRIGONOMETRIC and len(one.parts) == 1
         ]
@@ -39,6 +42,10 @@ class Editor:
         self.products = list(dict.fromkeys(self._of(one) for one in self._terms() if one.kind != "number"))[:24]
         self.waves = [name for name in self.names if re.fullmatch(r"[csCS](_?\d{1,3}|[a-z]{0,2})", name)][:8]
         """Names such as c2, s23, ca, which stand for a cosine or a sine."""
+        self.called = {
+            one.word: len(one.parts) for one in every if one.kind == "call" and re.fullmatch(r"\w+", one.word)
+        }
+        """Functions, with the number of their arguments."""
         self.power = "**" if language == "python" else "^"
 
     def _of(self, node: Node) -> str:
@@ -84,6 +91,8 @@ class Editor:
                 yield from self._wrapped(node, parent)
             return
         yield from getattr(self, f"_{node.kind}", self._nothing)(node, parent)
+        if node.kind == "compare":
+            return
         is_value = parent.kind not in ("index", "part", "other") or parent.parts[:1] != (node,)
         if is_value and not (parent.kind == "index" and node.kind == "number"):
             yield from self._wrapped(node, parent)
@@ -106,8 +115,11 @@ class Editor:
             return  # the argument of a sine is edited with its call
         near = node.word.rstrip("0123456789")
         for name in dict.fromkeys([*self.names, *self.factors]):
-            likeness = 1 if name.rstrip("0123456789") == near else 2 if name[0] == near[:1] else 5
+            is_near = name.rstrip("0123456789") == near or name in self.unused
+            likeness = 1 if is_near else 2 if name[0] == near[:1] or _are_neighbours(name, node.word) else 5
             yield self._at(node, name, likeness)
+        if _is_counted(node, parent):
+            yield from (self._at(node, f"{node.word}{sign}1", 3) for sign in _ADDITIVE)
         if self.trig:
             prefix = self.trig[0].word[: -len(_last(self.trig[0].word))]
             if node.word in self.angles:
@@ -173,6 +185,22 @@ class Editor:
         first, second = left.parts
         yield self._at(node, f"{self._of(first)} {left.word} ({self._of(second)} {node.word} {self._of(right)})", 5)
 
+    def _compare(self, node: Node, parent: Node) -> Iterator[Edit]:
+        known = "~=" if self.language == "python" else "!="
+        yield from (Edit(node.at, node.at + len(node.word), word, 3) for word in _COMPARISONS
+                    if word not in (node.word, known))  # fmt: skip
+
+    def _index(self, node: Node, parent: Node) -> Iterator[Edit]:
+        """Another angle, and v[1] + v[2] for v[2]."""
+        text, base = self._of(node), self._of(node.parts[0]) if node.kind == "index" else node.word
+        if text in self.angles and not any(node in one.parts for one in self.trig):
+            yield from (self._at(node, angle, 3, parent) for angle in self.angles)
+        place = node.parts[-1]
+        if place.kind == "number" and place.word.isdigit():
+            for other in (int(place.word) - 1, int(place.word) + 1):
+                neighbour = f"{base}{text[place.start - node.start - 1]}{other}{text[place.end - node.start :]}"
+                yield self._at(node, f"{text}+{neighbour}", 5, parent)
+
     def _call(self, node: Node, parent: Node) -> Iterator[Edit]:
         last, inner = _last(node.word), [self._of(part) for part in node.parts]
         if last in _TRIGONOMETRIC and len(node.parts) == 1:
@@ -187,8 +215,13 @@ class Editor:
                 if angle != inner[0]:
                     yield Edit(node.parts[0].start, node.parts[0].end, f"{inner[0]}-{angle}", 2)
                     yield Edit(node.parts[0].start, node.parts[0].end, f"{angle}-{bracketed}", 3)
+        others = [one for one, count in self.called.items() if count == len(node.parts) and one != node.word]
+        if node.word in self.called and last not in _TRIGONOMETRIC:
+            yield from (Edit(node.at, node.at + len(node.word), one, 3) for one in others[:8])
         if len(node.parts) == 1:
             yield self._at(node, inner[0], 4, parent)
+            if self.language == "matlab" and last not in _TRIGONOMETRIC:
+                yield from self._index(node, parent)
         if len(node.parts) == 2:
             yield Edit(node.parts[0].start, node.parts[1].end, f"{inner[1]}, {inner[0]}", 2)
 
@@ -240,6 +273,25 @@ class Editor:
             yield Edit(node.end, node.end, ".T", 6)
         elif self.language == "matlab" and node.kind in ("name", "group", "call"):
             yield Edit(node.end, node.end, "'", 6)
+
+
+def _assigned(text: str) -> list[str]:
+    """The names on the left of assignments: one that is used nowhere may be the one that was meant."""
+    sides = re.findall(r"^[ \t]*([\w\[\](), ]+?)\s*=(?!=)", text, re.M)
+    return list(dict.fromkeys(re.findall(r"(?<![\w.\[(])[A-Za-z]\w*", " ".join(sides))))
+
+
+def _are_neighbours(name: str, other: str) -> bool:
+    """Whether two names are letters that follow each other: a and b."""
+    return len(name) == len(other) == 1 and abs(ord(name) - ord(other)) == 1
+
+
+def _is_counted(node: Node, parent: Node) -> bool:
+    """Whether a name counts elements: in an index, a slice or a range."""
+    if parent.kind == "index":
+        return node is not parent.parts[0]
+    is_slice = parent.kind == "other" and re.fullmatch(r"[^\n{]*:[^\n{]*", parent.word) is not None
+    return is_slice or parent.kind == "range" or (parent.kind == "call" and _last(parent.word) == "range")
 
 
 def _last(word: str) -> str:

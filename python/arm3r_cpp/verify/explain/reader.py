@@ -183,10 +183,10 @@ class _Reader:
         return read(lambda q: self._at(q, of_truth), truth.groups, truth.revolute, index, scale=scale)
 
     def _scale(self, index: int, of_truth: bool) -> float:
-        """The largest value of all parts of an entry."""
+        """The largest value of all parts of an entry; what a formula returns may be rounding beside what is due."""
         first = index - index % len(self.parts)
         here = [values[..., first : first + len(self.parts)] for (truth, _), values in self._sampled.items()
-                if truth == of_truth]  # fmt: skip
+                if truth or not of_truth]  # fmt: skip
         return max((float(np.abs(values).max()) for values in here), default=0.0) or 1.0
 
     def _candidates(self, part: Part, names: list[str], parameters: Parameters) -> list[tuple[int, ...]]:

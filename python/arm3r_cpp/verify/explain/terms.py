@@ -211,7 +211,7 @@ class Parameters:
     def _double(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
         if self.candidates:
             return self._summed(coefficient, limit)
-        return self.double(coefficient, limit) if self.is_determined and 0 < len(self.names) <= 6 else None
+        return self.double(coefficient, limit) if self.is_determined and 0 < len(self.names) <= 8 else None
 
     def _summed(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
         """Any sum of the candidates, by least squares, without those that are too small to be there."""

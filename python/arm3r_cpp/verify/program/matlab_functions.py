@@ -67,7 +67,7 @@ def check_size(rows: int, columns: int) -> None:
 
 
 def number(value: float) -> Floats:
-    return np.full((1, 1, 1), float(value))
+    return np.array([[[float(value)]]])
 
 
 def integer(value: Floats) -> int:
@@ -85,7 +85,8 @@ def stacked(parts: list[Floats], axis: int) -> Floats:
     if axis == 2:
         sizes = [max((one.shape[1] for one in parts), default=0), sum(one.shape[2] for one in parts)]
     check_size(*sizes)
-    return np.concatenate([np.broadcast_to(one, (count, *one.shape[1:])) for one in parts], axis=axis)
+    whole = [one if len(one) == count else np.broadcast_to(one, (count, *one.shape[1:])) for one in parts]
+    return np.concatenate(whole, axis=axis)
 
 
 def _filled(name: str, parts: list[Floats]) -> Floats:

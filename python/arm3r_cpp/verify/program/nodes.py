@@ -12,7 +12,7 @@ class Node:
     """A part of an expression or a statement; offsets count the characters of the text."""
 
     kind: str
-    """name, number, unary, binary, call, index, matrix, transpose, assign or other"""
+    """name, number, unary, binary, compare, call, index, matrix, transpose, assign or other"""
     start: int
     end: int
     parts: tuple[Node, ...] = ()

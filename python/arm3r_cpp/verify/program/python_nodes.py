@@ -14,6 +14,20 @@ _OPERATORS = {
     ast.FloorDiv: "//",
 }  # fmt: skip
 
+_COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+
+
+def _inner_expressions(node: ast.AST) -> list[ast.expr]:
+    """The expressions of a statement that are no value of it: of loops and conditions, indices, arguments by name."""
+    if isinstance(node, (ast.If, ast.While)):
+        return [node.test]
+    if isinstance(node, (ast.For, ast.comprehension)):
+        return [node.iter, *getattr(node, "ifs", ())]
+    if isinstance(node, ast.keyword):
+        return [node.value]
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AugAssign) else []
+    return [target.slice for target in targets if isinstance(target, ast.Subscript)]
+
 
 class PythonText:
     """A Python text that is parsed and not run."""
@@ -26,7 +40,12 @@ class PythonText:
             line = getattr(error, "lineno", None) or 1
             raise UsageError(f"{file}:{line}: this is not Python: {getattr(error, 'msg', error)}") from None
         self._place = PythonProgram(text, "").offset
-        self.functions = {node.name: node for node in self.tree.body if isinstance(node, ast.FunctionDef)}
+        self.functions: dict[str, ast.FunctionDef | ast.Lambda] = {}
+        for node in self.tree.body:
+            if isinstance(node, ast.FunctionDef):
+                self.functions[node.name] = node
+            self.functions |= {name.id: value for name, value in pairs(node) if isinstance(value, ast.Lambda)}
+        self.has_classes = any(isinstance(node, ast.ClassDef) for node in self.tree.body)
 
     def arguments(self, function: str) -> tuple[list[str], dict[str, float]]:
         """The names of a function's arguments, and the numbers that some of them have by default."""
@@ -38,10 +57,17 @@ class PythonText:
         numbers = {name: number_in(value) for name, value in defaults.items()}
         return names, {name: value for name, value in numbers.items() if value is not None}
 
+    def optional(self, function: str) -> list[str]:
+        """The names of the arguments that have a default."""
+        given = self.functions[function].args
+        names = [one.arg for one in (*given.posonlyargs, *given.args)]
+        return names[len(names) - len(given.defaults) :]
+
     def comments(self, function: str) -> str:
         """The docstring of a function and the text's comments."""
         words = [line.split("#", 1)[1] for line in self.text.splitlines() if "#" in line]
-        return " ".join([ast.get_docstring(self.functions[function]) or "", *words])
+        node = self.functions[function]
+        return " ".join([(ast.get_docstring(node) if isinstance(node, ast.FunctionDef) else None) or "", *words])
 
     def constants(self) -> list[Constant]:
         """The names that are assigned once, and a number."""
@@ -82,8 +108,7 @@ class PythonText:
                 if value is not None and not (isinstance(value, ast.Constant) and isinstance(value.value, str)):
                     start, end = self._span(statement)
                     found.append(Node("assign", start, end, (self._node(value),)))
-            elif isinstance(statement, (ast.For, ast.If, ast.comprehension)):
-                inner = statement.test if isinstance(statement, ast.If) else statement.iter
+            for inner in _inner_expressions(statement):
                 found.append(Node("assign", *self._span(inner), (self._node(inner),)))
         return found
 
@@ -105,6 +130,10 @@ class PythonText:
             word, sides = _OPERATORS[type(node.op)], (make(node.left), make(node.right))
             between = self.text[sides[0].end : sides[1].start]
             return Node("binary", start, end, sides, word, sides[0].end + max(between.find(word), 0))
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _COMPARISONS:
+            word, sides = _COMPARISONS[type(node.ops[0])], (make(node.left), make(node.comparators[0]))
+            between = self.text[sides[0].end : sides[1].start]
+            return Node("compare", start, end, sides, word, sides[0].end + max(between.find(word), 0))
         if isinstance(node, ast.Call):
             name = self._span(node.func)
             word = self.text[slice(*name)]
