@@ -34,7 +34,7 @@ test: $(VENV)/test $(BUILD)/tests
 	exit $$failed
 
 gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests
-	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} $(PYTEST) -m gate
+	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} ARM3R_SAMPLE=all $(PYTEST) -m "gate or sample"
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
 
 # The live page, into build/page: needs node with npm.

@@ -42,10 +42,11 @@ Matrix outer_product(const Vector& a, const Vector& b) { return {a.v * b.v.trans
 double distance(const Vector& a, const Vector& b) { return (a.v - b.v).cwiseAbs().maxCoeff(); }
 
 PseudoInverse pseudo_inverse(const Matrix& a) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(1e-9);
-    decomposition.compute(a.m);
-    return {{decomposition.pseudoInverse()}, int(decomposition.rank())};
+    const Eigen::JacobiSVD<Mat3<double>> svd(a.m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Vec3<double> values = svd.singularValues();
+    const auto large = values.array() > 1e-9 * values[0];
+    const Vec3<double> inverse = large.select(values.cwiseInverse(), 0.0);
+    return {{svd.matrixV() * inverse.asDiagonal() * svd.matrixU().transpose()}, int(large.count())};
 }
 
 }  // namespace evaluated

@@ -12,15 +12,19 @@ from pathlib import Path
 from types import ModuleType
 
 import arm3r_cpp as arm3r
+import parts
 import pytest
-from parts import pytest_configure as pytest_configure
-from parts import pytest_runtest_setup as pytest_runtest_setup
-from parts import pytest_terminal_summary as pytest_terminal_summary
+import sampling
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell that starts tests in the background ignores it
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(arm3r.__file__).parent
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.pluginmanager.register(parts)
+    config.pluginmanager.register(sampling)
 
 
 def scenario_files() -> list[Path]:

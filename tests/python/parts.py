@@ -94,7 +94,7 @@ def named_by(test: pytest.Item) -> list[str]:
     return checked(names, f"the mark of {test.nodeid}")
 
 
-# ---- the hooks of pytest, which conftest.py takes over ---------------------------------------------------------------
+# ---- the hooks of pytest, which conftest.py registers ----------------------------------------------------------------
 
 
 def pytest_configure() -> None:

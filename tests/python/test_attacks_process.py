@@ -61,6 +61,7 @@ def end_of(code: str, *arguments: object, seconds: float = 10.0) -> subprocess.C
     return done
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("code", ENDS.values(), ids=ENDS)
 def test_the_interpreter_ends_while_a_daemon_thread_runs(code: str, tmp_path: Path) -> None:
     done = end_of(code, tmp_path / "out")

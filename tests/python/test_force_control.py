@@ -121,6 +121,7 @@ def simulated(setting: str, until: float | None) -> Run:
     return run_of(varied(known, stop=until or known["stop"]), rtol=1e-8 if loose else 1e-10, atol=atol)
 
 
+@pytest.mark.sample(15)
 @in_both_conventions
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.setting)
 def test_the_whole_run_is_that_of_another_simulation(case: Case, convention: str) -> None:
@@ -640,6 +641,7 @@ TURNED = [
 ]
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", TURNED)
 def test_turned_by_37_degrees(name: str) -> None:
     angle, R = np.deg2rad(37), rotation(np.deg2rad(37))
@@ -652,6 +654,7 @@ def test_turned_by_37_degrees(name: str) -> None:
     assert other["f_on_tip"] == close(run["f_on_tip"] @ R.T, 1e-4 if name == "energy_balance" else 1e-6)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", [*TURNED, "hybrid_kinematic_instability", "hybrid_rotated"])
 def test_both_conventions_move_the_tip_alike(name: str) -> None:
     slide, simscape = run_named(name), run_named(name, convention="simscape")

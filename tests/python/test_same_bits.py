@@ -148,13 +148,10 @@ def cores_of_this_worker() -> int:
 CALLS = "-O0 -DARM3R_INLINE=inline -DARM3R_INLINE_LAMBDA="  # without inlining: compiled in a third of the time
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
-    ("flags", "lanes"),  # a run by itself has no lanes, so that the plain test can leave out most of their code
-    [
-        (CALLS, "1"),
-        pytest.param("-O0", "all", marks=pytest.mark.gate),
-        pytest.param("-O2", "all", marks=pytest.mark.gate),
-    ],
+    ("flags", "lanes"),
+    [(CALLS, "1"), ("-O0", "all"), ("-O2", "all")],
 )
 def test_other_optimisation_gives_the_same(
     root: Path, package: Path, scripts: Path, files: list[Path], expected: dict[str, str], tmp_path: Path,

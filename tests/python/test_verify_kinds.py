@@ -64,6 +64,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("function", MISTAKES)
 def test_dynamics_are_judged(function: str, written: Any) -> None:
     path = written("dynamics.py", DYNAMICS)

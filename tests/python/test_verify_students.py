@@ -109,6 +109,7 @@ def kind_of(path: Path) -> str:
     return path.name.split("_")[0]
 
 
+@pytest.mark.sample(25)
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_right_formulas_raise_no_alarm(path: Path) -> None:
     text = path.read_text()

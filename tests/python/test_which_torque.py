@@ -54,6 +54,7 @@ def pd(q_d: np.ndarray, s: Any) -> np.ndarray:
 # ---- the observer and the reactions ---------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("delay", DELAYS)
 @pytest.mark.parametrize("push", [0 * PUSH, PUSH])
 def test_the_observer_uses_the_torque_that_acts(delay: float, push: np.ndarray) -> None:
@@ -93,6 +94,7 @@ KEPT = {"joint_stiffness": KP.tolist(), "joint_damping": KD.tolist()}
 OF_REACTION = {"stop": KEPT, "float": {}, "reflex": {"reflex_gain": 1.5}, "retreat": {**KEPT, "retreat_gain": 0.4}}
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("delay", DELAYS)
 @pytest.mark.parametrize("reaction", list(OF_REACTION))
 def test_a_reaction_is_put_out_like_any_torque(delay: float, reaction: str) -> None:
