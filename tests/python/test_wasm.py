@@ -161,7 +161,7 @@ def test_warnings_and_errors_of_a_run() -> None:
     read, run, thrown = core(["read", degrees], ["run", SCENARIO], ["run", HOSTILE["an unknown key"]])
     assert len(read["warnings"]) > 0 and all(line.startswith("scenario.yaml: warning: ") for line in read["warnings"])
     assert run["warnings"] == arm3r.Scenario(SCENARIO).run().warnings
-    assert thrown["error"] == "ArmError" and thrown["problems"][0]["line"] == 4
+    assert thrown["error"] == "Arm3rError" and thrown["problems"][0]["line"] == 4
     assert thrown["problems"][0]["column"] == SCENARIO.splitlines()[3].index("stiffness") + 1
     assert "did you mean stiffness?" in thrown["message"]
 
@@ -173,11 +173,11 @@ def test_memory_that_is_not_there_is_an_error_and_no_trap() -> None:
         ["fill_memory", 2**28], ["run", SCENARIO, many], ["run", SCENARIO, {"columns": ["t"]}],
         ["fill_memory", 2**24, 2**20, 2**16, 2**12, 2**8, 16], ["read", SCENARIO], ["run", SCENARIO], ["is_dead"],
     )  # fmt: skip
-    assert run["error"] == "ArmError" and "not enough memory" in run["message"]
+    assert run["error"] == "Arm3rError" and "not enough memory" in run["message"]
     assert len(small["columns"]["t"]) == 31
     assert blocks > 100
     assert read["problems"][0]["rule"] == "memory" and "not enough memory" in read["problems"][0]["message"]
-    assert full["error"] == "ArmError" and "not enough memory" in full["message"]
+    assert full["error"] == "Arm3rError" and "not enough memory" in full["message"]
     assert dead is False
 
 

@@ -17,10 +17,10 @@ const BADF = 8; // of WASI: there is no such file
 const NOSYS = 52; // of WASI: there is no such function
 
 /** What the core refuses: `problems` as of Core.read, `code` and `status` as in arm3r.h. */
-export class ArmError extends Error {
+export class Arm3rError extends Error {
     constructor({ status, code, message, problems }) {
         super(message);
-        this.name = "ArmError";
+        this.name = "Arm3rError";
         Object.assign(this, { status, code, problems: (problems ?? []).map(problemOf) });
     }
 }
@@ -124,7 +124,7 @@ export class Core {
                 return { problems: [], warnings: this.#warnings(scenario), resolved: this.#resolved(scenario) };
             });
         } catch (error) {
-            if (!(error instanceof ArmError)) throw error;
+            if (!(error instanceof Arm3rError)) throw error;
             const problems = error.problems.length ? error.problems : [problemOf({ code: error.code, message: error.message })];
             return { problems, warnings: [], resolved: null };
         }
@@ -133,7 +133,7 @@ export class Core {
     /**
      * Runs a scenario. `columns`: which ones (default: all); `set`: {path: value} put into the text first, a number, or YAML
      * as text; `trust`: the summary also says up to when the motion is right; `timeLimit` in s.
-     * Throws ArmError with .problems for a bad scenario. A run that did not end well has its outcome in the summary.
+     * Throws Arm3rError with .problems for a bad scenario. A run that did not end well has its outcome in the summary.
      */
     run(text, { name = "scenario.yaml", columns, set = {}, trust = false, timeLimit = 0 } = {}) {
         return this.#withRun(text, { name, set, trust, timeLimit }, (run, scenario) => {
@@ -467,7 +467,7 @@ export class Core {
 
     #check(status) {
         if (status === OK) return;
-        throw new ArmError(JSON.parse(this.#text(this.#call("arm3r_error_json"))));
+        throw new Arm3rError(JSON.parse(this.#text(this.#call("arm3r_error_json"))));
     }
 
     // A function whose last parameter is where the handle goes.
@@ -485,7 +485,7 @@ export class Core {
 
     #withMemory(size, use) {
         const at = size < ADDRESSES ? this.#call("malloc", Math.max(size, 8)) >>> 0 : 0;
-        if (at === 0) throw new ArmError({ status: -402, code: "memory", message: "there is not enough memory" });
+        if (at === 0) throw new Arm3rError({ status: -402, code: "memory", message: "there is not enough memory" });
         try {
             return use(at);
         } finally {
@@ -532,14 +532,14 @@ function problemOf({ code, message, file, line, column, path, got, allowed, hint
 const yamlOf = (value) => (typeof value === "string" ? value : JSON.stringify(value));
 
 const notAColumn = (name) =>
-    new ArmError({ status: INDEX, code: "index", message: `there is no column ${name} in this run` });
+    new Arm3rError({ status: INDEX, code: "index", message: `there is no column ${name} in this run` });
 
 // What `make` gives, undefined where it fails with this status.
 function attempt(make, status) {
     try {
         return make();
     } catch (error) {
-        if (error instanceof ArmError && error.status === status) return undefined;
+        if (error instanceof Arm3rError && error.status === status) return undefined;
         throw error;
     }
 }
