@@ -49,14 +49,18 @@ const char* summary_of(const arm3r_run& run) {
     return run.texts.get("summary", [&] { return summary_json(results_of(run)); });
 }
 
-// The hash of the summary takes about as long as the text of the rows: another thread computes it, if there can be one.
+// Below this many numbers their hash is computed sooner than a thread is started.
+constexpr std::size_t worth_a_thread = 1 << 15;
+
+// The hash of the summary takes about as long as the rows: another thread computes it, if there can be one.
 void save(const arm3r_run& run, const std::string& path) {
     OutputFile rows(path), summary(summary_path(path));
-    constexpr auto when_asked = std::launch::deferred;
-    constexpr auto policy = platform::has_threads ? std::launch::async | when_asked : when_asked;
+    const bool is_long = run.run.rows * run.run.columns.size() > worth_a_thread;
+    const auto policy =
+        platform::has_threads && is_long ? std::launch::async | std::launch::deferred : std::launch::deferred;
     std::future<const char*> summary_text = std::async(policy, [&] { return summary_of(run); });
     if (path.ends_with(".npz"))
-        write_npz(run.run, summary_text.get(), [&](std::string_view piece) { rows.write(piece); });
+        write_npz(run.run, [&] { return summary_text.get(); }, [&](std::string_view piece) { rows.write(piece); });
     else write_csv(run.run, [&](std::string_view piece) { return rows.write(piece), true; });
     summary.write(summary_of(run));
     rows.close();

@@ -96,14 +96,17 @@ struct RowContext {
 // `theta` is the place of t within the step.
 Row make_row(const RowContext& context, double t, const FullState& y, double theta);
 
-// Eight rows of the dense output of a step, computed together: value[column][row], with the same bits as one by one.
+// Up to eight rows of the dense output of a step, computed together, with the same bits as one by one.
 constexpr int rows_per_block = 8;
 
-struct RowBlock {  // the columns of the plan, and energy_residual
-    alignas(64) double value[column_count][rows_per_block];
-    int first_link_behind_wall;  // the first row with link_behind_wall, or `rows_per_block`
+struct RowBlock {
+    int count;                                               // of rows
+    double t[rows_per_block];                                // s; after the last row its time is repeated
+    alignas(64) double value[column_count][rows_per_block];  // the columns of the plan, and energy_residual
+    int first_link_behind_wall;                              // the first row with link_behind_wall, or `count`
 };
 
-void make_row_block(const RowContext& context, const double* t, RowBlock& rows);
+// Sets the values of a block whose times are given.
+void fill_row_block(const RowContext& context, RowBlock& rows);
 
 }  // namespace arm3r

@@ -47,23 +47,25 @@ void RowLog::log(const RowContext& context, double t, const FullState& y, double
     if (follows_point(context.controller)) check_workspace(context, t, y);
 }
 
-void RowLog::log_block(const RowContext& context) {
-    double t[rows_per_block];
-    for (int i = 0; i < rows_per_block; ++i) t[i] = time_of(run_.rows + i);
+void RowLog::log_block(const RowContext& context, int count) {
     RowBlock rows;
-    make_row_block(context, t, rows);
+    rows.count = count;
+    for (int i = 0; i < rows_per_block; ++i)
+        rows.t[i] = time_of(run_.rows + static_cast<std::size_t>(std::min(i, count - 1)));
+    fill_row_block(context, rows);
     double nothing = 0;
     each_cell([&](std::size_t column, double* cells) {
-        std::copy_n(rows.value[column], rows_per_block, cells);
-        for (const double value : rows.value[column]) nothing += zero_or_nan(value);
+        const double* values = rows.value[column];
+        for (int i = 0; i < count; ++i) nothing += zero_or_nan(cells[i] = values[i]);
     });
-    if (nothing != 0) return log_one_by_one(context, t);
-    run_.rows += rows_per_block;
-    for (const double residual : rows.value[ColumnIndex("energy_residual")])
-        include_residual(run_.energy_residual_max, residual);
-    if (rows.first_link_behind_wall < rows_per_block) record_link_behind_wall(t[rows.first_link_behind_wall]);
+    const std::span<const double> times(rows.t, static_cast<std::size_t>(count));
+    if (nothing != 0) return log_one_by_one(context, times);
+    run_.rows += times.size();
+    for (int i = 0; i < count; ++i)
+        include_residual(run_.energy_residual_max, rows.value[ColumnIndex("energy_residual")][i]);
+    if (rows.first_link_behind_wall < count) record_link_behind_wall(rows.t[rows.first_link_behind_wall]);
     if (!follows_point(context.controller)) return;
-    for (const double at : t) check_workspace(context, at, context.dense((at - context.dense.t0) / context.dense.h));
+    for (const double t : times) check_workspace(context, t, context.dense((t - context.dense.t0) / context.dense.h));
 }
 
 void RowLog::log_one_by_one(const RowContext& context, std::span<const double> t) {

@@ -25,10 +25,9 @@ public:
     // Writes all rows before `until`, from the dense output of the step, while keep_going() holds.
     template <class KeepGoing>
     void log_until(double until, const RowContext& context, KeepGoing keep_going) {
-        while (stands_before(run_.rows + rows_per_block - 1, until) && keep_going()) log_block(context);
-        while (stands_before(run_.rows, until) && keep_going()) {
-            const double t = time_of(run_.rows), theta = (t - context.dense.t0) / context.dense.h;
-            log(context, t, context.dense(theta), theta);
+        for (int count = due_rows(until); count > 0 && keep_going(); count = due_rows(until)) {
+            if (count == 1) log_one_by_one(context, std::array{time_of(run_.rows)});
+            else log_block(context, count);
         }
     }
 
@@ -50,7 +49,13 @@ private:
         for (const auto* columns : {&run_.columns, &run_.hidden})
             for (const std::size_t column : *columns) visit(column, cell), cell += run_.capacity;
     }
-    void log_block(const RowContext& context);
+    // How many rows before `until` are not yet written, at most a block of them.
+    int due_rows(double until) const {
+        int count = 0;
+        while (count < rows_per_block && stands_before(run_.rows + static_cast<std::size_t>(count), until)) ++count;
+        return count;
+    }
+    void log_block(const RowContext& context, int count);
     void log_one_by_one(const RowContext& context, std::span<const double> t);
     void record_link_behind_wall(double t);
     void check_workspace(const RowContext& context, double t, const FullState& y);

@@ -120,7 +120,8 @@ std::string npy_head(std::size_t rows) {
 
 }  // namespace
 
-void write_npz(const Run& run, std::string_view summary, const std::function<void(std::string_view)>& sink) {
+void write_npz(const Run& run, const std::function<std::string_view()>& summary,
+               const std::function<void(std::string_view)>& sink) {
     static_assert(std::endian::native == std::endian::little);
     ZipWriter zip(sink);
     const std::string head = npy_head(run.rows);
@@ -129,7 +130,7 @@ void write_npz(const Run& run, std::string_view summary, const std::function<voi
         const std::string name = std::string(column_table[run.columns[i]].name) + ".npy";
         zip.add(name, head, {reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     }
-    zip.add("summary.json", summary, {});
+    zip.add("summary.json", summary(), {});
     zip.finish();
 }
 

@@ -10,6 +10,7 @@
 namespace arm3r {
 
 // In pieces, which the sink takes.
-void write_npz(const Run& run, std::string_view summary, const std::function<void(std::string_view)>& sink);
+void write_npz(const Run& run, const std::function<std::string_view()>& summary,
+               const std::function<void(std::string_view)>& sink);
 
 }  // namespace arm3r
