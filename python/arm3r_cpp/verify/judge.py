@@ -347,10 +347,13 @@ def _repairs(
     def evaluate(edit: Edit, everywhere: bool) -> Floats:
         return case.values(case.second, edit) if everywhere else case.first_values(edit)
 
+    def as_it_is(everywhere: bool) -> Floats:
+        return case.values(case.second if everywhere else case.first)
+
     def wrong_at(everywhere: bool) -> Callable[[Floats], frozenset[int]]:
         return lambda values: case.wrong(values, case.second if everywhere else case.first, due[everywhere])
 
-    statements = statements or influential(formula.nodes, formula.text, evaluate, case.values(case.first), wrong)
+    statements = statements or influential(formula.nodes, formula.text, evaluate, as_it_is, wrong)
     found = tried(editor.all(statements), evaluate, wrong_at(False), wrong_at(True), wrong, progress, budget)
     return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
 

@@ -80,7 +80,7 @@ def slot_of(name: str) -> tuple[str, int | None] | None:
 def quantities_of(names: Iterable[str]) -> dict[str, str]:
     """The arm's quantities that names such as a2, m3, g stand for."""
     names = list(names)
-    parts = {name: found for name in names if (found := _PARAMETER.fullmatch(name))}
+    parts = {name: found for name in names if (found := _PARAMETER.fullmatch(name.rpartition(".")[2]))}
     digits: dict[str, set[int]] = {}
     for found in parts.values():
         digits.setdefault(found[1], set()).add(int(found[2]))
@@ -88,7 +88,7 @@ def quantities_of(names: Iterable[str]) -> dict[str, str]:
     from_1 = {letter for letter, found in digits.items() if found == {1, 2}}
     if any(_LETTERS[letter] in ("com", "mass", "inertia") for letter in from_1):
         from_1 |= {letter for letter, found in digits.items() if found <= {1, 2}}  # m1, m2 and l1: l1 is link 2's
-    meaning = {name: "gravity" for name in names if _GRAVITY.fullmatch(name)}
+    meaning = {name: "gravity" for name in names if _GRAVITY.fullmatch(name.rpartition(".")[2])}
     for name, found in parts.items():
         kind = "com" if found[3] or (found[1] == "l" and has_lengths) else _LETTERS[found[1]]
         number = int(found[2])

@@ -321,6 +321,13 @@ _SINGLE: dict[str, tuple[tuple[str, str], ...]] = {
         ('-sin(t) 0 cos(t)]; end', 'sin(t) 0 cos(t)]; end'),
         ('roty3(q(3))*[0.55', 'roty3(q(2))*[0.55'),
     ),
+    "unequal/jacobian_structure.m": (("-p.a3*s1*s23", "-p.a2*s1*s23"), ("p.a2*s2 + p.a3*s23", "p.a2*s2 - p.a3*s23")),
+    "unequal/jacobian_conditions.m": (
+        ("max(j-1, 1):2", "j:2"),
+        ("q(2:k+1)", "q(1:k+1)"),
+        ("sin(q(1))*sin(t); cos(t)]", "sin(q(1))*sin(t); cos(q(1))]"),
+    ),
+    "unequal/gravity_by_cases.m": (("if sin(q(3)) >= 0", "if sin(q(3)) <= 0"), ("q(2) - inner", "q(2) + inner")),
 }  # fmt: skip
 _PAIRS: dict[str, tuple[tuple[tuple[str, str], tuple[str, str]], ...]] = {
     "unequal/jacobian_block.py": (

@@ -86,7 +86,7 @@ class Editor:
         return sorted(found, key=lambda edit: edit.rank)[:_MOST]
 
     def _of_node(self, node: Node, parent: Node) -> Iterator[Edit]:
-        if node.kind in ("other", "row", "all", "last", "range", "cell", "handle", "assign"):
+        if node.kind in ("other", "row", "all", "last", "range", "cell", "handle", "assign", "logic", "not"):
             if node.kind == "other" and parent.kind != "index" and not node.word.startswith(("np", "math")):
                 yield from self._wrapped(node, parent)
             return

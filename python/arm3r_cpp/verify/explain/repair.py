@@ -60,26 +60,39 @@ def tried(
 
 
 def influential(
-    nodes: Sequence[Node], text: str, evaluate: Evaluate, values: Floats, wrong: frozenset[int]
+    nodes: Sequence[Node], text: str, evaluate: Evaluate, values: Callable[[bool], Floats], wrong: frozenset[int]
 ) -> list[Node]:
-    """The statements that change a wrong entry when their values change."""
-    kept = []
-    places = sorted(wrong)
-    for node in nodes:
-        inner = node.parts[0]
-        try:
-            changed = evaluate(Edit(inner.start, inner.end, f"1.3*({text[inner.start : inner.end]})"), False)
-            if changed.shape == values.shape:
-                rows = len(values)
-                flat = changed.reshape(rows, -1)[:, places], values.reshape(rows, -1)[:, places]
-                if np.isfinite(flat[0]).all() and np.array_equal(*flat) and np.abs(flat[0]).max() > 0:
-                    zero = evaluate(Edit(inner.start, inner.end, f"1.3+({text[inner.start : inner.end]})"), False)
-                    if np.array_equal(zero.reshape(rows, -1)[:, places], flat[1]):
-                        continue
-        except (ProgramError, ValueError):
-            pass
-        kept.append(node)
-    return kept
+    """The statements that change a wrong entry when their values change; at the first samples, or at others.
+
+    Args:
+        values: of the formula as it is, at the first samples or with True at all of them.
+    """
+    unchanged = [values(False), values(True)]
+    return [
+        node
+        for node in nodes
+        if not all(
+            _is_idle(node.parts[0], text, evaluate, unchanged, everywhere, wrong) for everywhere in (False, True)
+        )
+    ]
+
+
+def _is_idle(
+    inner: Node, text: str, evaluate: Evaluate, unchanged: list[Floats], everywhere: bool, wrong: frozenset[int]
+) -> bool:
+    """Whether the wrong entries stay as they are when the value is another."""
+    rows, places, own = len(unchanged[everywhere]), sorted(wrong), text[inner.start : inner.end]
+    flat = unchanged[everywhere].reshape(rows, -1)[:, places]
+    if not np.isfinite(flat).all() or not np.abs(flat).max() > 0:
+        return False
+    try:
+        for change in (f"1.3*({own})", f"1.3+({own})"):
+            changed = evaluate(Edit(inner.start, inner.end, change), everywhere)
+            if not np.array_equal(changed.reshape(rows, -1)[:, places], flat):
+                return False
+    except (ProgramError, ValueError, IndexError):
+        return False
+    return True
 
 
 def _left(

@@ -44,13 +44,28 @@ ELEMENTWISE: dict[str, Callable[..., Any]] = {
     "cosd": lambda x: np.cos(np.deg2rad(x)),
     "tand": lambda x: np.tan(np.deg2rad(x)),
     "hypot": np.hypot,
+    "max": np.maximum,
+    "min": np.minimum,
+    "mod": np.mod,
+    "floor": np.floor,
 }
+_OF_TWO = ("atan2", "power", "hypot", "max", "min", "mod")
 OPERATORS: dict[str, Callable[..., Any]] = {
     "+": np.add,
     "-": np.subtract,
     ".*": np.multiply,
     "./": np.divide,
     ".^": _power,
+}
+COMPARISONS: dict[str, Callable[..., Any]] = {
+    "==": np.equal,
+    "~=": np.not_equal,
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+    **dict.fromkeys(("&&", "&"), np.logical_and),
+    **dict.fromkeys(("||", "|"), np.logical_or),
 }
 
 
@@ -194,6 +209,8 @@ _OTHERS: dict[str, Callable[[str, list[Any]], Any]] = {
     **dict.fromkeys(("numel", "length", "size"), _size),
     "cell": _cell,
     "pi": lambda name, parts: number(np.pi),
+    "true": lambda name, parts: number(1),
+    "false": lambda name, parts: number(0),
 }
 FUNCTIONS = (*ELEMENTWISE, *_OTHERS)
 
@@ -205,7 +222,7 @@ def result_of(name: str, parts: list[Any]) -> Any:
         ProgramError: the arguments are not what it takes.
     """
     if name in ELEMENTWISE:
-        return ELEMENTWISE[name](*counted(name, parts, 2 if name in ("atan2", "power", "hypot") else 1))
+        return ELEMENTWISE[name](*counted(name, parts, 2 if name in _OF_TWO else 1))
     if any(not isinstance(part, np.ndarray) for part in parts) and name not in ("numel", "length", "size"):
         raise ProgramError(f"{name} takes numbers")
     return _OTHERS[name](name, parts)

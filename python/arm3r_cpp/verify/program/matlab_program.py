@@ -11,13 +11,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import UsageError
-from .matlab_functions import FUNCTIONS, MAX_SIZE, OPERATORS, check_size, integer, number, result_of, stacked
+from .matlab_functions import (
+    COMPARISONS,
+    FUNCTIONS,
+    MAX_SIZE,
+    OPERATORS,
+    check_size,
+    integer,
+    number,
+    result_of,
+    stacked,
+)
 from .matlab_reader import Function, Statement, read, read_expression
 from .nodes import Call, Constant, Edit, Node, ProgramError, line_and_column
 
 Floats = NDArray[np.float64]
 _MAX_CALLS = 2000
 _MAX_STEPS = 20_000  # statements and turns of loops of one evaluation
+
+
+class _Divided(Exception):
+    """A condition holds at some states and not at others."""
 
 
 class Handle(NamedTuple):
@@ -29,7 +43,9 @@ class Handle(NamedTuple):
 
 
 class MatlabProgram:
-    """A MATLAB function file; a value is an array (states, rows, columns), a list for a cell array, or a `Handle`."""
+    """A MATLAB function file; a value is an array (states, rows, columns), a list for a cell array, a dict for a
+    structure, or a `Handle`.
+    """
 
     def __init__(self, text: str, file: str, function: str | None = None) -> None:
         self.text, self.file = text, file
@@ -67,7 +83,7 @@ class MatlabProgram:
         count.update(name for function in self.functions.values() for name in function.inputs)
         found = []
         for one in self.statements():
-            (name, index), value = one.targets[0], one.value
+            (name, index), value = one.targets[0] if one.targets else ("", None), one.value
             if (
                 one.body is None
                 and len(one.targets) == 1
@@ -88,15 +104,28 @@ class MatlabProgram:
         Raises:
             ProgramError: the function failed.
         """
-        self._calls = self._steps = 0
         self._replaced = self._edited(edit) if edit else None
+        try:
+            return self._evaluate(call, table)
+        except _Divided:
+            rows = [self._evaluate(call, row[None]) for row in table]
+        finally:
+            self._replaced = None
+        if len({row.shape for row in rows}) > 1:
+            raise ProgramError("returns arrays of different shapes at different states")
+        return np.concatenate(rows)
+
+    def _evaluate(self, call: Call, table: Floats) -> Floats:
+        """
+        Raises:
+            ProgramError: the function failed.
+            _Divided: a condition holds at some of the states.
+        """
+        self._calls = self._steps = 0
         self._known = {name: table[:, column].reshape(-1, 1, 1) for name, column in call.lifted.items()}
         inputs = [table[:, [slot] if isinstance(slot, int) else list(slot)][:, :, None] for slot in call.slots]
         with np.errstate(all="ignore"):
-            try:
-                outputs = self._run(self.functions[self.function], inputs)
-            finally:
-                self._replaced = None
+            outputs = self._run(self.functions[self.function], inputs)
         if not all(isinstance(one, np.ndarray) for one in outputs):
             raise ProgramError("returns a cell array or a function instead of numbers")
         outputs = [np.broadcast_to(one, (len(table), *one.shape[1:])) for one in outputs]
@@ -138,12 +167,14 @@ class MatlabProgram:
             raise ProgramError(
                 f"{function.name} takes {len(function.inputs)} arguments, got {len(inputs)}", function.line
             )
-        variables = dict(zip(function.inputs, inputs, strict=False))
+        variables: dict[str, Any] = {"nargin": number(len(inputs))}
+        for name, given in zip(function.inputs, inputs, strict=False):
+            _put_variable(variables, name, given)
         self._execute(function.body, variables)
         for name in function.outputs:
-            if name not in variables:
+            if name not in variables and not _fields(variables, name):
                 raise ProgramError(f"the output {name} is not assigned", function.line)
-        return [variables[name] for name in function.outputs]
+        return [variables[name] if name in variables else _fields(variables, name) for name in function.outputs]
 
     def _execute(self, statements: list[Statement], variables: dict[str, Any]) -> None:
         for statement in statements:
@@ -154,6 +185,10 @@ class MatlabProgram:
             if statement.body is None:
                 self._assign(statement, variables)
                 continue
+            if not statement.targets:
+                chosen = statement.body if self._holds(statement, variables) else statement.otherwise
+                self._execute(chosen, variables)
+                continue
             for value in self._turns(statement, variables):
                 self._steps += 1
                 variables[statement.targets[0][0]] = value
@@ -161,6 +196,15 @@ class MatlabProgram:
 
     def _value_of(self, statement: Statement) -> Node:
         return self._replaced[1] if self._replaced and self._replaced[0] is statement else statement.value
+
+    def _holds(self, statement: Statement, variables: dict[str, Any]) -> bool:
+        """Whether a condition holds: all of its elements, at all states."""
+        with self._at(statement):
+            array = self._array(self._value_of(statement), variables)
+        holds = np.logical_and.reduce(array.reshape(len(array), -1) != 0, axis=1) & (array.size > 0)
+        if holds.any() != holds.all():
+            raise _Divided
+        return bool(holds.all())
 
     def _turns(self, statement: Statement, variables: dict[str, Any]) -> Iterator[Floats]:
         """The values of a loop's variable: numbers of a range, or the columns of a matrix."""
@@ -194,7 +238,7 @@ class MatlabProgram:
                 elif name in self._known and self._is_number(statement.value):
                     variables[name] = self._known[name]
                 else:
-                    variables[name] = given
+                    _put_variable(variables, name, given)
 
     def _several(self, node: Node, variables: dict[str, Any]) -> list[Any]:
         if node.kind == "call" and node.word in self.functions:
@@ -212,12 +256,19 @@ class MatlabProgram:
         if node.kind == "number":
             return number(float(node.word.lower().replace("d", "e")))
         if node.kind in ("name", "last"):
-            return variables[node.word] if node.word in variables else self._call(node, variables)
+            if node.word in variables:
+                return variables[node.word]
+            return _fields(variables, node.word) or self._call(node, variables)
         if node.kind == "group":
             return self._value(node.parts[0], variables)
         if node.kind == "unary":
             inner = self._array(node.parts[0], variables)
             return -inner if node.word == "-" else inner
+        if node.kind in ("compare", "logic"):
+            left = self._array(node.parts[0], variables)
+            if (node.word == "&&" and not left.any()) or (node.word == "||" and left.all()):
+                return left  # the other side is not looked at
+            return np.asarray(COMPARISONS[node.word](left, self._array(node.parts[1], variables)), np.float64)
         if node.kind == "binary":
             return self._binary(node.word, *(self._array(part, variables) for part in node.parts))
         if node.kind == "transpose":
@@ -233,7 +284,9 @@ class MatlabProgram:
         return self._other_value(node, variables)
 
     def _other_value(self, node: Node, variables: dict[str, Any]) -> Any:
-        """Cell arrays, parts of their elements, and anonymous functions."""
+        """Cell arrays, parts of their elements, anonymous functions, and what does not hold."""
+        if node.kind == "not":
+            return np.asarray(self._array(node.parts[0], variables) == 0, np.float64)
         if node.kind == "cell":
             check_size(1, sum(len(row.parts) for row in node.parts))
             return [self._value(part, variables) for row in node.parts for part in row.parts]
@@ -363,6 +416,18 @@ class MatlabProgram:
         result = [*(cell or ()), *[None] * (place + 1 - len(cell or ()))]
         result[place] = given
         return result
+
+
+def _fields(variables: dict[str, Any], name: str) -> dict[str, Any]:
+    """The fields of a structure: p.a2 is a variable of this name."""
+    return {key[len(name) + 1 :]: value for key, value in variables.items() if key.startswith(f"{name}.")}
+
+
+def _put_variable(variables: dict[str, Any], name: str, value: Any) -> None:
+    if isinstance(value, dict):
+        variables.update({f"{name}.{key}": inner for key, inner in value.items()})
+    else:
+        variables[name] = value
 
 
 def _check_places(places: list[int], size: int) -> None:

@@ -1,12 +1,13 @@
 """Reads MATLAB function files in the style of the lecture and of students.
 
-Read are assignments, arithmetic, matrices, cell arrays, anonymous functions, `for` and local functions.
+Read are assignments, arithmetic, matrices, cell arrays, structures, anonymous functions, `for`, `if` and local
+functions.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -16,14 +17,12 @@ from .nodes import Node, line_and_column
 _TOKEN = re.compile(
     r"(?P<blank>[ \t]+|\.\.\.[^\n]*\n)|(?P<comment>%[^\n]*)|(?P<newline>\n)"
     r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)(?![A-Za-z_])"
-    r"|(?P<name>[A-Za-z]\w*)|(?P<operator>\.\*|\./|\.\^|\.'|[-+*/\\^'=(),;:\[\]{}@])"
+    r"|(?P<name>[A-Za-z]\w*(?:\.[A-Za-z]\w*)*)"  # p.a2 is the name of a field
+    r"|(?P<operator>\.\*|\./|\.\^|\.'|==|~=|<=|>=|&&|\|\||[-+*/\\^'=(),;:\[\]{}@<>&|~])"
 )
 _REFUSED = frozenset(
     [
         "while",
-        "if",
-        "else",
-        "elseif",
         "switch",
         "case",
         "otherwise",
@@ -43,12 +42,15 @@ _REFUSED = frozenset(
         "feval",
     ]
 )
-_KEYWORDS = frozenset([*_REFUSED, "for", "end", "function"])
-KNOWN = "known are assignments, arithmetic, matrices, cell arrays, anonymous functions, `for` and functions"
+_KEYWORDS = frozenset([*_REFUSED, "for", "if", "else", "elseif", "end", "function"])
+KNOWN = "known are assignments, arithmetic, matrices, cell arrays, structures, handles, `for`, `if` and functions"
 MAX_CHARACTERS = 200_000
 MAX_DEPTH = 150
 
 
+_COMPARISONS = ("==", "~=", "<", "<=", ">", ">=")
+_LOGIC = (("||",), ("&&",), ("|",), ("&",))
+"""From the loosest to the tightest."""
 _CLOSING = {"(": ")", "{": "}"}
 _CLOSING_OF_MATRIX = {"[": "]", "{": "}"}
 
@@ -66,7 +68,7 @@ class Token(NamedTuple):
 class Statement:
     """`targets = value`; a target is a name, with the node of its index where it has one.
 
-    With a body it is the loop `for target = value`.
+    With a body it is the loop `for target = value`, and without targets the condition `if value`.
     """
 
     targets: list[tuple[str, Node | None]]
@@ -74,11 +76,12 @@ class Statement:
     start: int
     end: int
     body: list[Statement] | None = None
+    otherwise: list[Statement] = field(default_factory=list)
 
     def walk(self) -> Iterator[Statement]:
         """The statement and those in its body."""
         yield self
-        for inner in self.body or ():
+        for inner in (*(self.body or ()), *self.otherwise):
             yield from inner.walk()
 
 
@@ -205,10 +208,10 @@ class _Reader:
         return function
 
     def statements(self) -> list[Statement]:
-        """Those up to `end`, the next function or the end of the file."""
+        """Those up to `end`, `else`, the next function or the end of the file."""
         found = []
         self.skip_separators()
-        while self.peek().text not in ("end", "function") and self.peek().kind != "end":
+        while self.peek().text not in ("end", "else", "elseif", "function") and self.peek().kind != "end":
             found.append(self.statement())
             self.skip_separators()
         return found
@@ -232,8 +235,13 @@ class _Reader:
         start = self.peek()
         if start.text in _REFUSED:
             raise self.refusal(f"`{start.text}` is not read; {KNOWN}")
-        if start.text == "for":
-            return self.loop()
+        if start.text in ("for", "if"):
+            self.depth += 1
+            if self.depth > MAX_DEPTH:
+                raise self.refusal(f"loops and conditions are nested more than {MAX_DEPTH} deep")
+            found = self.loop() if start.text == "for" else self.condition()
+            self.depth -= 1
+            return found
         targets: list[tuple[str, Node | None]] = []
         if start.text == "[":
             self.next()
@@ -264,26 +272,50 @@ class _Reader:
         value = self.expression()
         if has_brackets:
             self.expect(")")
-        self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise self.refusal(f"loops are nested more than {MAX_DEPTH} deep")
         body = self.statements()
-        self.depth -= 1
         end = self.expect("end")
         return Statement([(name, None)], value, start.start, end.end, body)
+
+    def condition(self) -> Statement:
+        """if a > 0, then `elseif`, which is a condition in the other branch, and `else`."""
+        start = self.next()
+        value = self.expression()
+        body, otherwise = self.statements(), []
+        if self.peek().text == "elseif":
+            self.depth += 1
+            if self.depth > MAX_DEPTH:
+                raise self.refusal(f"loops and conditions are nested more than {MAX_DEPTH} deep")
+            otherwise = [self.condition()]
+            self.depth -= 1
+            return Statement([], value, start.start, otherwise[0].end, body, otherwise)
+        if self.peek().text == "else":
+            self.next()
+            otherwise = self.statements()
+        end = self.expect("end")
+        return Statement([], value, start.start, end.end, body, otherwise)
 
     # ---- expressions -------------------------------------------------------------------------------------------------
 
     def expression(self) -> Node:
-        """Sums; colons between sums make a range, first:last or first:step:last."""
+        """Comparisons of ranges or sums, joined by `||`, `&&`, `|` and `&`."""
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise self.refusal(f"the expression is nested more than {MAX_DEPTH} deep")
+        found = self.logic(0)
+        self.depth -= 1
+        return found
+
+    def logic(self, level: int) -> Node:
+        if level == len(_LOGIC):
+            return self.chain(_COMPARISONS, self.range, "compare")
+        return self.chain(_LOGIC[level], lambda: self.logic(level + 1), "logic")
+
+    def range(self) -> Node:
+        """Sums; colons between sums make a range, first:last or first:step:last."""
         parts, colon = [self.sum()], self.peek()
         while self.peek().text == ":" and len(parts) < 3 and not self.ends_element():
             self.next()
             parts.append(self.sum())
-        self.depth -= 1
         if len(parts) == 1:
             return parts[0]
         return Node("range", parts[0].start, parts[-1].end, tuple(parts), ":", colon.start)
@@ -301,14 +333,16 @@ class _Reader:
             ".*",
             "./",
             ".^",
+            *_COMPARISONS,
+            *(word for words in _LOGIC for word in words),
         )
 
-    def chain(self, operators: tuple[str, ...], part: object) -> Node:
-        left: Node = part()  # type: ignore[operator]
+    def chain(self, operators: tuple[str, ...], part: Callable[[], Node], kind: str = "binary") -> Node:
+        left = part()
         while self.peek().text in operators and not self.ends_element():
             token = self.next()
-            right: Node = part()  # type: ignore[operator]
-            left = Node("binary", left.start, right.end, (left, right), token.text, token.start)
+            right = part()
+            left = Node(kind, left.start, right.end, (left, right), token.text, token.start)
         return left
 
     def sum(self) -> Node:
@@ -318,14 +352,15 @@ class _Reader:
         return self.chain(("*", "/", "\\", ".*", "./"), self.signed)
 
     def signed(self) -> Node:
-        if self.peek().text in ("+", "-"):
+        if self.peek().text in ("+", "-", "~"):
             token = self.next()
             self.depth += 1
             if self.depth > MAX_DEPTH:
                 raise self.refusal(f"the expression is nested more than {MAX_DEPTH} deep")
             inner = self.signed()
             self.depth -= 1
-            return Node("unary", token.start, inner.end, (inner,), token.text, token.start)
+            kind = "not" if token.text == "~" else "unary"
+            return Node(kind, token.start, inner.end, (inner,), token.text, token.start)
         return self.power()
 
     def power(self) -> Node:
