@@ -336,7 +336,7 @@ UNREADABLE = {
     "b.py": ("\n\ndef law(q, gain):\n    return q\n", "b.py:3: the argument gain is not known; a controller gets tick"),
     "c.py": ("def law(q:\n", "c.py:1: this is not Python"),
     "d.py": ("x = 1\n", "d.py: there is no function"),
-    "e.m": ("function tau = f(q)\n  if q(1) > 0\n", "e.m:2:"),
+    "e.m": ("function tau = f(q)\n  while q(1) > 0\n", "e.m:2:"),
     "g.m": ("function tau = f(state)\n  tau = state;\nend\n", "g.m:1: the argument state is not known"),
     "f.txt": ("", "f.txt: a controller is a function in a file named .m or .py"),
 }

@@ -208,6 +208,15 @@ def is_false(program: Program, text: str, verdict: Any, finding: Any) -> bool:
     return left is None or tuple(finding.entry) in left
 
 
+def test_an_edit_follows_a_length_that_is_not_used(written: Any) -> None:
+    """`a2` where `a3` is meant, which stands nowhere else: `1`, its number in the text, is not what is due."""
+    program = next(one for one in PROGRAMS if one.name == "MATLAB jacobian by transforms, simscape")
+    text = program.text.replace("turn(q(3), 0, a3)", "turn(q(3), 0, a2)")
+    verdict = arm3r.verify.jacobian(written("jacobian.m", text))
+    assert {(one.old, one.new) for one in verdict.findings} == {("a2", "a3")}, str(verdict)
+    assert not any("as `1`" in words for words in verdict.alternatives)
+
+
 def test_two_edits_are_shown_only_if_they_hold_together(tmp_path: Path) -> None:
     program = next(one for one in PROGRAMS if one.name == "jacobian by transforms, slide")
     text = program.text.replace("s*sa, a*c]", "s*sa, -a*c]").replace("J[:, 0] =", "J[:, -1] =")
@@ -379,6 +388,17 @@ HOSTILE = {
 }
 
 
+def test_a_line_that_fails_is_mended_first(written: Any) -> None:
+    """A power of a negative angle is complex; there are thousands of edits in the other lines."""
+    lines = [f"    x{n} = -sin(q1)*(a3*cos(q2+q3)+a2*cos(q2))*{n}" for n in range(40)]
+    text = (
+        "from math import cos, sin\n\n\ndef gravity(q1, q2, q3):\n    a2, a3, m2, m3, g = 1, 1, 0.785, 0.785, 9.80665\n"
+    )
+    text += "\n".join(lines) + "\n    t3 = -m3*g*a3/2*cos(q2**q3)\n    return [0, t3 - (m2/2 + m3)*g*a2*cos(q2), t3]\n"
+    (finding,) = arm3r.verify.gravity(written("gravity.py", text)).findings
+    assert (finding.line, finding.old, finding.new) == (46, "q2**q3", "q2+q3"), finding
+
+
 def test_the_search_for_an_edit_ends_in_time(written: Any, monkeypatch: Any) -> None:
     monkeypatch.setattr("arm3r_cpp.verify.judge.REPAIR_TIME", 0.0)
     text = "from math import cos\n\n\ndef gravity(q1, q2, q3):\n    return [0, cos(q2)/(2 + cos(q3)), 1]\n"
@@ -395,6 +415,7 @@ GROWING = {
         "takes more than 20000 steps",
     ),
     "range.m": ("function J = jacobian(q)\nfor i = 1:1e300\nJ = eye(3);\nend\nend\n", "a range has at most 20000"),
+    "infinity.m": ("function J = jacobian(q)\nk = 1/0;\nx = q(k);\nJ = x;\nend\n", "infinity to integer"),
     "cell.m": ("function J = jacobian(q)\nT = cell(1, 1e9);\nJ = eye(3);\nend\n", "of 1 x 1000000000 is too large"),
     "handle.m": ("function J = jacobian(q)\nf = @(f, x) f(f, x);\nJ = f(f, q);\nend\n", ""),
     "jacobian.py": ("a = 1 << 99999999999\n\n\ndef jacobian(q):\n    return [[a] * 3] * 3\n", "raises"),

@@ -223,6 +223,7 @@ def test_single_mistakes_of_students(tmp_path: Path) -> None:
         ("jacobian_while.py", "q[1:i+1]", "q[1:i]", "i+1 is due"),
         ("jacobian_handles.m", "0.55*du(q2 + q3)]", "0.55*u(q2 + q3)]", "du is due"),
         ("gravity_links_from_1.py", "m2*l1", "m1*l1", "due is m2 g0 l1 C2 + m1 g0 lc1 C2 + m2 g0 lc2 C23"),
+        ("jacobian_quaternion.py", "w1*w2 - v1", "w1*1 - v1", "w2 is due"),
         ("kinematics_rotations.py", "trans(z=0.25)", "trans(z=0.5)", "0.25 is due"),
     ],
 )  # fmt: skip

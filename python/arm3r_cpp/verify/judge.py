@@ -6,6 +6,7 @@ import contextlib
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -171,7 +172,7 @@ def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
 
 
 def _mend_failure(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None) -> None:
-    """The edit that makes a formula right which raises, or returns no numbers."""
+    """The edit that makes a formula right which raises, or returns no numbers: in the line that fails, or another."""
     budget = Budget(formula.program, _MENDING_TIME)
 
     def in_time(done: int, count: int) -> None:
@@ -185,9 +186,13 @@ def _mend_failure(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, pr
 
 
 def _mend_in_time(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress) -> None:
-    for case in ways(formula, kind, truth):
+    line, text = verdict.findings[0].line, formula.text or ""
+    failing = [one for one in formula.nodes if line_and_column(text, one.start)[0] == line]
+    for statements, case in product(
+        [failing, formula.nodes] if failing else [formula.nodes], ways(formula, kind, truth)
+    ):
         wrong = frozenset(range(int(np.prod(case.due(case.first).shape[1:]))))
-        for repair in _repairs(case, wrong, progress, formula.nodes):
+        for repair in _repairs(case, wrong, progress, statements):
             if repair.mended == wrong:
                 verdict.convention = case.convention
                 _put_edit(verdict.findings[0], case, repair.edit)

@@ -24,8 +24,10 @@ _DYNAMIC = ("mass", "coriolis", "inverse", "forward")
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
     """The comparisons in which fewest entries are wrong; where some are, all that may be meant, the likeliest first."""
     counted: list[tuple[int, Comparison]] = []
-    for parameters in _choices(formula, kind, truth):
-        counted += _counted(formula, kind, truth, parameters)
+    for parameters, is_doubtful in _choices(formula, kind, truth):
+        found = list(_counted(formula, kind, truth, parameters))
+        if not is_doubtful or min(count for count, _ in found) < min(count for count, _ in counted):
+            counted += found
         if any(count == 0 for count, _ in counted):
             break
     return _fewest(counted)
@@ -33,7 +35,7 @@ def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
 
 def doubted(formula: Formula, kind: Kind, truth: Any, case: Comparison) -> list[Comparison]:
     """For a formula that is right as long as numbers of it that it does not use keep their values: with others."""
-    parameters = next(_choices(formula, kind, truth))
+    parameters, _ = next(_choices(formula, kind, truth))
     if not set(case.parameters) < set(parameters):
         return []
     unused = _idle(Comparison(formula, truth, kind, parameters), set(parameters) - set(case.parameters))
@@ -64,18 +66,21 @@ def ways(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
     return [replace(base, convention=convention) for convention in truth.conventions]
 
 
-def _choices(formula: Formula, kind: Kind, truth: Any) -> Iterator[dict[str, str]]:
-    """The formula's names of quantities that may be varied: all of them, then without those that may mean others."""
+def _choices(formula: Formula, kind: Kind, truth: Any) -> Iterator[tuple[dict[str, str], bool]]:
+    """The formula's names of quantities that may be varied: all of them, then without those that may mean others.
+
+    The last choice, without those that are not used, is doubtful: it counts where fewer entries are wrong by it.
+    """
     own, every = truth.values_of_quantities, _parameters(formula, kind, truth)
     numbers = {name: value for name, value in formula.numbers().items() if name in every}
     every = {name: quantity for name, quantity in every.items() if not _is_opposite(numbers.get(name), own[quantity])}
-    yield every
+    yield every, False
     others = {name for name in every if name in numbers and not np.isclose(numbers[name], own[every[name]], rtol=1e-9)}
     if others:
-        yield {name: quantity for name, quantity in every.items() if name not in others}
+        yield {name: quantity for name, quantity in every.items() if name not in others}, False
     idle = _idle(Comparison(formula, truth, kind, every), set(numbers) & set(every))
     if idle:
-        yield {name: quantity for name, quantity in every.items() if name not in idle}
+        yield {name: quantity for name, quantity in every.items() if name not in idle}, True
 
 
 def _parameters(formula: Formula, kind: Kind, truth: Any) -> dict[str, str]:

@@ -140,7 +140,9 @@ class Editor:
             yield self._at(node, f"{new:.10g}", 2, parent if new < 0 else None)
         yield from (self._at(node, name, 6) for name in self.factors)
         if value == 1 and parent.kind != "index":
-            yield from (self._at(node, name, 4) for name in self.waves)
+            yield from (
+                self._at(node, name, 4 if name in self.waves else 5) for name in [*self.waves, *self.names[:16]]
+            )
         if value == 0 and parent.kind != "index":
             yield from (self._at(node, term, 4) for term in self.products)
 
@@ -277,8 +279,10 @@ class Editor:
 
 def _assigned(text: str) -> list[str]:
     """The names on the left of assignments: one that is used nowhere may be the one that was meant."""
-    sides = re.findall(r"^[ \t]*([\w\[\](), ]+?)\s*=(?!=)", text, re.M)
-    return list(dict.fromkeys(re.findall(r"(?<![\w.\[(])[A-Za-z]\w*", " ".join(sides))))
+    sides = re.findall(r"(?:^|;)[ \t]*([\w\[\](), ]+?)\s*=(?!=)", text, re.M)
+    return list(
+        dict.fromkeys(re.findall(r"(?<![\w.\[(])[A-Za-z]\w*", re.sub(r"\b(def|function)\b", "", " ".join(sides))))
+    )
 
 
 def _are_neighbours(name: str, other: str) -> bool:

@@ -79,6 +79,8 @@ class _Reader:
         return [self.case.truth.random_quantities(set(names), random) for _ in range(count)] if names else [{}]
 
     def _monomials(self, part: Part, names: list[str]) -> list[tuple[str, ...]]:
+        if self.kind == "gravity":
+            return monomials(names, is_torque=True)
         return monomials(names, is_torque=not part.words and self.kind == "inverse") if self.kind in _DYNAMICS else []
 
     def _at(self, q: Floats, of_truth: bool) -> Floats:

@@ -16,6 +16,7 @@ from .spectrum import Spectrum, Wave
 
 _RATIOS = (1, -1, 0.5, -0.5, 2, -2, 1.5, -1.5, 0.25, -0.25, 1 / 3, -1 / 3)  # of a number to a product of named ones
 _MANY = 5  # terms that two sums have in common: then only the others are said
+_FEW = 30  # monomials of which a sum of two is looked for before one of all
 _ORDER = "mgaLlrcIJ"  # of the letters in a term: masses, gravity, lengths
 
 
@@ -209,9 +210,9 @@ class Parameters:
         return np.sum([np.zeros(self.arms), *(number * self.monomial(powers) for number, powers in terms)], axis=0)
 
     def _double(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
-        if self.candidates:
-            return self._summed(coefficient, limit)
-        return self.double(coefficient, limit) if self.is_determined and 0 < len(self.names) <= 8 else None
+        is_short = self.is_determined and 0 < len(self.names) <= 8 and len(self.candidates) <= _FEW
+        found = self.double(coefficient, limit) if is_short else None
+        return found or (self._summed(coefficient, limit) if self.candidates else None)
 
     def _summed(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
         """Any sum of the candidates, by least squares, without those that are too small to be there."""

@@ -77,6 +77,7 @@ class MatlabProgram:
     def nodes(self) -> list[Node]:
         return [Node("assign", one.start, one.end, (one.value,)) for one in self.statements()]
 
+    @np.errstate(all="ignore")
     def constants(self) -> list[Constant]:
         """The names that are assigned once, and a number."""
         count = Counter(name for one in self.statements() for name, _ in one.targets)
@@ -224,7 +225,7 @@ class MatlabProgram:
             yield
         except ProgramError as error:
             raise ProgramError(str(error), error.line or line_and_column(self.text, statement.start)[0]) from None
-        except (ValueError, IndexError, np.linalg.LinAlgError, RecursionError) as error:
+        except (ValueError, IndexError, OverflowError, np.linalg.LinAlgError, RecursionError) as error:
             raise ProgramError(str(error).split("\n")[0], line_and_column(self.text, statement.start)[0]) from None
 
     def _assign(self, statement: Statement, variables: dict[str, Any]) -> None:

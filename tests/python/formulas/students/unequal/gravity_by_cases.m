@@ -1,8 +1,8 @@
 function tau = gravity(q)
-  % the lever by the law of cosines, where the elbow is bent to one side or the other
+  % the second mass by its distance from the shoulder; the elbow is bent to one side or the other
   a = 0.8; b = 0.21; g = 9.80665;
-  d = sqrt(a^2 + b^2 + 2*a*b*cos(q(3)));
-  inner = acos(min(max((a^2 + d^2 - b^2)/(2*a*d), -1), 1));
+  d = hypot(a + b*cos(q(3)), b*sin(q(3)));
+  inner = atan2(abs(b*sin(q(3))), a + b*cos(q(3)));
   if sin(q(3)) >= 0
     phi = q(2) + inner;
   else
