@@ -19,7 +19,7 @@ CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
-.PHONY: run test gates page docs dist bench format lint clean
+.PHONY: run test gates page docs wheels dist bench format lint clean
 
 run: $(VENV)/installed
 	mkdir -p out
@@ -33,13 +33,13 @@ test: $(VENV)/test $(BUILD)/tests
 	$(PYTEST) || failed=1; \
 	exit $$failed
 
-gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests
+gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests wheels
 	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} ARM3R_SAMPLE=all $(PYTEST) -m "gate or sample"
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
 
 # The live page, into build/page: needs node with npm.
 page: build/page/arm3r.wasm
-	$(BIN)/python cmake/core_licenses.py build/yaml_cpp/yaml-cpp > build/page/core_licenses.txt
+	$(BIN)/python cmake/core_licenses.py wasm build/yaml_cpp/yaml-cpp > build/page/core_licenses.txt
 	npm --prefix docs/live ci --no-audit --no-fund
 	node docs/live/build.mjs
 
@@ -58,9 +58,17 @@ build/page/arm3r.wasm: $(shell find cpp cmake -type f) CMakeLists.txt docs/live/
 docs: $(VENV)/docs
 	$(BIN)/python docs/site/build.py
 
-# What a release publishes, into dist/: docs/releasing.md. Not compiled in $(BUILD), which is for this processor alone.
+# Wheels for Linux, Windows and macOS, compiled here by the clang of the Python package ziglang; with the page, if it is built.
+wheels: build/wheels/built
+
+build/wheels/built: $(SOURCES) $(VENV)/wheels
+	$(BIN)/python cmake/wheels.py
+	@touch $@
+
+# What a release publishes, into dist/: docs/releasing.md.
 dist: page docs
-	$(BIN)/python cmake/dist.py $(wildcard build/wheels/*.whl)
+	$(MAKE) wheels
+	$(BIN)/python cmake/dist.py build/wheels/*.whl
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
@@ -96,7 +104,7 @@ $(VENV)/tools: pyproject.toml
 	@touch $@
 
 # An extra of the installed package.
-$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench $(VENV)/wasm: $(VENV)/%: pyproject.toml | $(VENV)/installed
+$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench $(VENV)/wasm $(VENV)/wheels: $(VENV)/%: pyproject.toml | $(VENV)/installed
 	$(PIP) 'arm3r_cpp[$*]'
 	@touch $@
 

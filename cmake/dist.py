@@ -1,7 +1,7 @@
-"""python cmake/dist.py [WHEEL...]: what a release publishes, into dist/, with SHA256SUMS.
+"""python cmake/dist.py WHEEL...: what a release publishes, into dist/, with SHA256SUMS.
 
-dist/python is what the package index gets: the source package, and the wheels that are named, or else the one of this
-machine. Beside it lie the site and the live page, as far as they are built. Times come from the last commit, so that
+dist/python is what the package index gets: the source package, and the wheels that are named. Beside it lie the site
+and the live page, as far as they are built. Times come from the last commit, so that
 the same commit gives the same bytes."""
 
 from __future__ import annotations
@@ -37,9 +37,8 @@ def packed(folder: Path, time: int) -> bytes:
     return gzip.compress(tar.getvalue(), mtime=0)
 
 
-def build(what: str) -> None:
-    """`sdist` or `wheel` of the sources, by the build backend of pyproject.toml."""
-    call = f"from scikit_build_core import build; build.build_{what}({str(PYTHON)!r})"
+def build_source_package() -> None:
+    call = f"from scikit_build_core import build; build.build_sdist({str(PYTHON)!r})"
     subprocess.run([sys.executable, "-c", call], cwd=ROOT, check=True, stdout=sys.stderr)
 
 
@@ -58,9 +57,7 @@ def main(wheels: list[str]) -> int:
     os.environ["SOURCE_DATE_EPOCH"] = str(time)
     shutil.rmtree(DIST, ignore_errors=True)
     PYTHON.mkdir(parents=True)
-    build("sdist")
-    if not wheels:
-        build("wheel")
+    build_source_package()
     for wheel in wheels:
         shutil.copy(wheel, PYTHON)
     if (site := ROOT / "build/site").is_dir():

@@ -14,6 +14,8 @@ install(DIRECTORY scenarios DESTINATION ${_data} FILES_MATCHING PATTERN "*.yaml"
 install(FILES docs/scenario.schema.json docs/sweep.schema.json DESTINATION ${_data}/docs)
 # The live page, where `make page` has built it.
 install(DIRECTORY build/page/ DESTINATION ${_data}/live OPTIONAL)
+set(ARM3R_LICENSES "" CACHE FILEPATH "The licences of what is compiled in, as cmake/core_licenses.py prints them")
+install(FILES ${ARM3R_LICENSES} DESTINATION ${_data})
 install(DIRECTORY cpp/include/arm3r DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} PATTERN README.md EXCLUDE)
 install(FILES ${ARM3R_YAML_LIBRARY} DESTINATION ${CMAKE_INSTALL_LIBDIR})
 

@@ -5,8 +5,8 @@ set(ARM3R_CFFI extension CACHE STRING "extension, or module")
 set_property(CACHE ARM3R_CFFI PROPERTY STRINGS extension module)
 if(ARM3R_CFFI STREQUAL "extension")
   find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module ${SKBUILD_SABI_COMPONENT})
-else()
-  find_package(Python 3.10 REQUIRED COMPONENTS Interpreter)
+else() # the Python of this machine writes the module; that of the other system is not needed
+  find_program(Python_EXECUTABLE NAMES python3 python REQUIRED)
 endif()
 
 set(_header ${CMAKE_CURRENT_SOURCE_DIR}/cpp/include/arm3r/arm3r.h)

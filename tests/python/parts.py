@@ -19,7 +19,9 @@ from pathlib import Path
 import pytest
 
 PAGE = Path(__file__).parents[2] / "build" / "page"
+WHEELS = Path(__file__).parents[2] / "build" / "wheels"
 LEAST_NODE = 20
+AARCH64_LIBRARIES = "/usr/aarch64-linux-gnu"  # of Debian's package libgcc-s1-arm64-cross
 
 
 @dataclass
@@ -58,6 +60,12 @@ PARTS = {
         "`pip install nbclient nbformat ipykernel`, which the extra `test` brings",
     ),
     "qemu": Part(lambda: shutil.which("qemu-x86_64") is not None, "the system's package qemu-user"),
+    "qemu-aarch64": Part(
+        lambda: shutil.which("qemu-aarch64") is not None and Path(AARCH64_LIBRARIES, "lib/libgcc_s.so.1").is_file(),
+        "the system's packages qemu-user and libgcc-s1-arm64-cross",
+    ),
+    "wine": Part(lambda: shutil.which("wine") is not None, "the system's package wine64"),
+    "wheels": Part(lambda: (WHEELS / "built").is_file() and have_modules("ziglang", "auditwheel"), "`make wheels`"),
     "site": Part(
         lambda: have_modules("sphinx", "myst_nb", "furo", "ziamath"),
         "`pip install 'arm3r_cpp[docs]'`, with Python 3.11 or later",

@@ -47,6 +47,7 @@ int32_t guard(Body&& body) {
     } catch (const std::exception& error) {
         return store_error(ARM3R_E_INTERNAL, error.what());
     } catch (...) {
+        if (platform::caught_thread_end()) platform::continue_thread_end();
         return store_error(ARM3R_E_INTERNAL, "an unknown exception");
     }
 }

@@ -27,6 +27,7 @@ auto call_back(Function* function, Arguments... arguments) {
     } catch (const std::exception& error) {
         refuse(std::string("an exception: ") + error.what());
     } catch (...) {
+        if (platform::caught_thread_end()) platform::continue_thread_end();
         refuse("an unknown exception");
     }
     return decltype(function(arguments...)){};

@@ -40,17 +40,34 @@ struct FpControl {
     bool is_default() const { return true; }
 };
 
-#else
+#elif defined(__aarch64__)
 
+// The control register: 0 is the standard environment.
 struct FpControl {
-    std::fenv_t environment = *FE_DFL_ENV;
+    std::uint64_t fpcr = 0;
 
     static FpControl current() {
         FpControl control;
+        asm volatile("mrs %0, fpcr" : "=r"(control.fpcr));
+        return control;
+    }
+    void load() const { asm volatile("msr fpcr, %0" : : "r"(fpcr)); }
+    bool is_default() const { return fpcr == 0; }
+};
+
+#else
+
+struct FpControl {
+    bool standard = true;
+    std::fenv_t environment{};  // where it is another one. FE_DFL_ENV may be no address that can be read
+
+    static FpControl current() {
+        FpControl control;
+        control.standard = false;
         std::fegetenv(&control.environment);
         return control;
     }
-    void load() const { std::fesetenv(&environment); }
+    void load() const { std::fesetenv(standard ? FE_DFL_ENV : &environment); }
     bool is_default() const { return false; }
 };
 

@@ -79,11 +79,17 @@ private:
         try {
             BatchWorker(job_).run();
         } catch (const platform::ThreadEnd&) {
-            fail(std::make_exception_ptr(Error(ARM3R_E_CALLBACK, "the law ended the thread that called it")));
+            fail_by_thread_end();
             throw;
         } catch (...) {
-            fail(std::current_exception());
+            if (!platform::caught_thread_end()) return fail(std::current_exception());
+            fail_by_thread_end();
+            platform::continue_thread_end();
         }
+    }
+
+    void fail_by_thread_end() {
+        fail(std::make_exception_ptr(Error(ARM3R_E_CALLBACK, "the law ended the thread that called it")));
     }
 
     void end_worker() {

@@ -94,10 +94,12 @@ ARM3R_INLINE Arm<Eight> broadcast_arm(const Arm<double>& from) {
 }
 
 template <class Formula>
-ARM3R_INLINE void each(const Model& model, std::size_t groups, const StateRows& rows, Formula formula) {
-    const Arm<Eight> arm = broadcast_arm(model.arm);
-    const Eight flip = model.simscape ? -1.0 : 1.0;
-    for (std::size_t i = 0; i < groups; ++i) formula(Group{rows, i, flip}, arm);
+void each(const Model& model, std::size_t groups, const StateRows& rows, Formula formula) {
+    run_at_widest([&]() ARM3R_INLINE_LAMBDA {
+        const Arm<Eight> arm = broadcast_arm(model.arm);
+        const Eight flip = model.simscape ? -1.0 : 1.0;
+        for (std::size_t i = 0; i < groups; ++i) formula(Group{rows, i, flip}, arm);
+    });
 }
 
 // The mass along a direction of any length; 0 where it has none.
@@ -114,27 +116,27 @@ namespace in_groups {
 using Parameters = const Arm<Eight>&;
 using Here = const Group&;
 
-ARM3R_WIDEST void tip_position(const Model& model, std::size_t groups, const StateRows& rows) {
+void tip_position(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::tip_position(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void elbow_position(const Model& model, std::size_t groups, const StateRows& rows) {
+void elbow_position(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::elbow_position(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void centres_of_mass(const Model& model, std::size_t groups, const StateRows& rows) {
+void centres_of_mass(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::centres_of_mass(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void jacobian(const Model& model, std::size_t groups, const StateRows& rows) {
+void jacobian(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store_in_joints(arm3r::jacobian(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void geometric_jacobian(const Model& model, std::size_t groups, const StateRows& rows) {
+void geometric_jacobian(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
         g.store_in_joints(arm3r::jacobian(arm, p));
@@ -142,50 +144,50 @@ ARM3R_WIDEST void geometric_jacobian(const Model& model, std::size_t groups, con
     });
 }
 
-ARM3R_WIDEST void jacobian_dot(const Model& model, std::size_t groups, const StateRows& rows) {
+void jacobian_dot(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         g.store_in_joints(arm3r::jacobian_dot(arm, g.pose(), g.joints(1)));
     });
 }
 
-ARM3R_WIDEST void mass_matrix(const Model& model, std::size_t groups, const StateRows& rows) {
+void mass_matrix(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store_joints(arm3r::mass_matrix(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void coriolis_matrix(const Model& model, std::size_t groups, const StateRows& rows) {
+void coriolis_matrix(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         g.store_joints(arm3r::coriolis_matrix(arm, g.pose(), g.joints(1)));
     });
 }
 
-ARM3R_WIDEST void velocity_product(const Model& model, std::size_t groups, const StateRows& rows) {
+void velocity_product(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         g.store_joints(arm3r::velocity_product(arm, g.pose(), g.joints(1)));
     });
 }
 
-ARM3R_WIDEST void gravity_torque(const Model& model, std::size_t groups, const StateRows& rows) {
+void gravity_torque(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store_joints(arm3r::gravity_torque(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void operational_space_inertia(const Model& model, std::size_t groups, const StateRows& rows) {
+void operational_space_inertia(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::operational_space_inertia(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void effective_mass(const Model& model, std::size_t groups, const StateRows& rows) {
+void effective_mass(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(mass_along(arm, g.pose(), g.vector(1))); });
 }
 
-ARM3R_WIDEST void manipulability(const Model& model, std::size_t groups, const StateRows& rows) {
+void manipulability(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::manipulability(arm, g.pose())); });
 }
 
-ARM3R_WIDEST void energy(const Model& model, std::size_t groups, const StateRows& rows) {
+void energy(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
         g.store(kinetic_energy(arm, p, g.joints(1)), 0);
@@ -193,19 +195,19 @@ ARM3R_WIDEST void energy(const Model& model, std::size_t groups, const StateRows
     });
 }
 
-ARM3R_WIDEST void forward_dynamics(const Model& model, std::size_t groups, const StateRows& rows) {
+void forward_dynamics(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         g.store_joints(arm3r::forward_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
     });
 }
 
-ARM3R_WIDEST void inverse_dynamics(const Model& model, std::size_t groups, const StateRows& rows) {
+void inverse_dynamics(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         g.store_joints(arm3r::inverse_dynamics(arm, g.pose(), g.joints(1), g.joints(2), g.vector(3)));
     });
 }
 
-ARM3R_WIDEST void tip_sensor(const Model& model, std::size_t groups, const StateRows& rows) {
+void tip_sensor(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const TipSensor<Eight> sensor = arm3r::tip_sensor(arm, g.joints(0), g.joints(1));
         g.store(sensor.position, 0);
@@ -213,7 +215,7 @@ ARM3R_WIDEST void tip_sensor(const Model& model, std::size_t groups, const State
     });
 }
 
-ARM3R_WIDEST void singularity(const Model& model, std::size_t groups, const StateRows& rows) {
+void singularity(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
         g.store(abs(Eight(sin_q3(p))), 0);
@@ -244,7 +246,7 @@ void evaluate(GroupFunction& function, const Model& model, std::size_t n, const 
 }
 
 // Without their sign, numbers are ordered like their bits, and NaN is above all.
-ARM3R_WIDEST bool all_within(const double* data, std::size_t count, double limit) {
+bool all_within(const double* data, std::size_t count, double limit) {
     const auto most = std::bit_cast<std::int64_t>(limit);
     std::int64_t room = 0;  // negative where any was beyond
     for (std::size_t i = 0; i < count; ++i) room |= most - (std::bit_cast<std::int64_t>(data[i]) & INT64_MAX);

@@ -18,6 +18,11 @@
 #ifdef __APPLE__
 #include <mach-o/dyld.h>
 #endif
+#if defined(__linux__) && defined(_LIBCPP_VERSION)
+#include <cxxabi.h>
+#include <unwind.h>
+extern "C" char** __cxa_get_globals();  // of the C++ ABI; LLVM's header has no line for it
+#endif
 
 #include "platform/files.hpp"
 #include "platform/memory.hpp"
@@ -61,6 +66,33 @@ int allowed_cpus() {
 #endif
     return std::max(1, allowed);
 }
+
+#if !defined(__linux__) || !defined(_LIBCPP_VERSION)
+bool caught_thread_end() { return false; }
+void continue_thread_end() { throw; }
+#else
+
+namespace {
+
+// LLVM's C++ library points to the header of the exception that is caught last; what the unwinder knows is its last member.
+_Unwind_Exception* caught_exception() {
+    constexpr std::size_t header = 128;
+    return reinterpret_cast<_Unwind_Exception*>(*__cxa_get_globals() + header) - 1;
+}
+
+}  // namespace
+
+// Of no type of C++, and with the mark that the C library gives it.
+bool caught_thread_end() { return !abi::__cxa_current_exception_type() && caught_exception()->exception_class == 0; }
+
+void continue_thread_end() {
+    _Unwind_Exception* end = caught_exception();
+    *__cxa_get_globals() = nullptr;  // it is caught no longer
+    _Unwind_Resume_or_Rethrow(end);
+    std::terminate();
+}
+
+#endif
 
 // ---- files
 

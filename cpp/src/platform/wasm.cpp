@@ -34,6 +34,10 @@ void advise_large_pages(void*, std::size_t) noexcept {}
 
 int allowed_cpus() { return 1; }
 
+bool caught_thread_end() { return false; }
+
+void continue_thread_end() { throw; }
+
 // ---- files
 
 FileKind kind_of(const std::string&) { return FileKind::missing; }

@@ -115,6 +115,10 @@ int allowed_cpus() {
     return std::max(1, __builtin_popcountll(own));
 }
 
+bool caught_thread_end() { return false; }
+
+void continue_thread_end() { throw; }
+
 // ---- files
 
 FileKind kind_of(const std::string& path) {

@@ -5,29 +5,26 @@
 #include <algorithm>
 
 #include "arm3r/numbers/lane_access.hpp"
+#include "arm3r/numbers/registers.hpp"
 
-// ARM3R_WIDEST: a function of packs that is compiled for several instruction sets; the widest one of the CPU is chosen
-// at run time, and all give the same bits. All functions that it calls are inlined. Functions with ARM3R_FOR_FOUR and
-// ARM3R_FOR_EIGHT may be called only if the processor has registers for packs of 4 or 8 (has_registers_for); without
-// such variants (ARM3R_WIDE_PACKS 0) packs have 2 lanes.
+// Functions with ARM3R_FOR_FOUR and ARM3R_FOR_EIGHT may be called only if the processor has registers for packs of 4 or 8
+// (has_registers_for); all functions that they call are inlined. Without such variants (ARM3R_WIDE_PACKS 0) packs have 2
+// lanes. ARM3R_WIDEST_SCALARS: g++ compiles the function for AVX2 as well, and the processor decides.
 //
 // ARM3R_LANES, where it is defined: the only width of packs that a batch has in this build (1: no packs), which compiles
 // faster. Otherwise a build has packs of 2, 4 and 8.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && \
-    !(defined(ARM3R_LANES) && ARM3R_LANES <= 2)
-#if !defined(ARM3R_LANES)
-#define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#elif ARM3R_LANES == 4
-#define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v3")))
+#if defined(__x86_64__) && defined(__GNUC__) && defined(__OPTIMIZE__) && !(defined(ARM3R_LANES) && ARM3R_LANES <= 2)
+#if defined(__clang__)  // by their names, because options of the command line win over an architecture
+#define ARM3R_WIDEST_SCALARS
+#define ARM3R_FOR_FOUR __attribute__((target("avx2,bmi,bmi2,fma")))
+#define ARM3R_FOR_EIGHT __attribute__((target("avx512f,avx512bw,avx512cd,avx512dq,avx512vl,bmi,bmi2,fma")))
 #else
-#define ARM3R_WIDEST __attribute__((target_clones("default", "arch=x86-64-v4")))
-#endif
 #define ARM3R_WIDEST_SCALARS __attribute__((target_clones("default", "arch=x86-64-v3")))
 #define ARM3R_FOR_FOUR __attribute__((target("arch=x86-64-v3")))
 #define ARM3R_FOR_EIGHT __attribute__((target("arch=x86-64-v4")))
+#endif
 #define ARM3R_WIDE_PACKS 1
 #else
-#define ARM3R_WIDEST
 #define ARM3R_WIDEST_SCALARS
 #define ARM3R_FOR_FOUR
 #define ARM3R_FOR_EIGHT
@@ -73,10 +70,10 @@ using RowTypes = TypeList<double ARM3R_ROW_PACKS(ARM3R_COMMA_BEFORE)>;
 // Whether this processor has registers for as many lanes, and this build instructions for them.
 inline bool has_registers_for(int lanes) {
 #if ARM3R_WIDE_PACKS
-    if (lanes == 8) return __builtin_cpu_supports("x86-64-v4");
-    if (lanes == 4) return __builtin_cpu_supports("x86-64-v3");
-#endif
+    return lanes <= register_width();
+#else
     return lanes <= 2;
+#endif
 }
 
 // The most lanes of a type in the list that this processor has registers for, at most `limit`.
@@ -126,6 +123,19 @@ struct Outlined<Pack<8>> {
         F{}(arguments...);
     }
 };
+
+// Calls f, compiled for each of the widths of this build, at the widest that the processor has registers for. All functions
+// that f calls are inlined.
+template <class F>
+void run_at_widest(F f) {
+#if ARM3R_WIDE_PACKS && !(defined(ARM3R_LANES) && ARM3R_LANES == 4)
+    if (has_registers_for(8)) return Outlined<Pack<8>>::run(f);
+#endif
+#if ARM3R_WIDE_PACKS && !(defined(ARM3R_LANES) && ARM3R_LANES == 8)
+    if (has_registers_for(4)) return Outlined<Pack<4>>::run(f);
+#endif
+    Outlined<double>::run(f);
+}
 
 // Calls f<T>() with the type of `lanes` lanes, compiled for its registers.
 template <class... T, class F>
