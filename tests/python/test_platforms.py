@@ -59,7 +59,7 @@ def check_bits(native: Path, name: str, printed: str, capsys: pytest.CaptureFixt
 def test_a_wheel_computes_the_bits_of_the_native_library(
     native: Path, folder: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    done = run(name, compile_bits(name, unpacked(name, folder)), *ARGUMENTS)
+    done = run(name, compile_bits(name, unpacked(name, folder)), *ARGUMENTS, timeout=3600)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("# ") and " Clang " in done.stdout.splitlines()[0]
     assert done.stdout.splitlines()[0].endswith("ARM3R_LANES=all")
