@@ -22,6 +22,7 @@ else()
     target_link_options(arm3r_unwinder PRIVATE LINKER:-soname,libgcc_s.so.1)
     target_link_libraries(arm3r PRIVATE $<TARGET_FILE:arm3r_unwinder>)
     add_dependencies(arm3r arm3r_unwinder)
+    target_link_options(arm3r PRIVATE LINKER:-z,nodelete) # zig's start files do not undo at dlclose what is done at exit
   endif()
 endif()
 set_target_properties(arm3r PROPERTIES INSTALL_RPATH "${ARM3R_ORIGIN}" INSTALL_NAME_DIR @rpath)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -114,6 +115,32 @@ def test_pip_takes_the_wheel_for_its_system(name: str, tmp_path: Path) -> None:
 NO_PYTHON = {"PATH": "/usr/bin:/bin"}  # what wine itself needs
 LAW = "def fcn(q1, q2, q3):\n    return [0.0, 0.0, 0.0]\n"
 
+LAW_IN_CPP = """
+#include <pthread.h>
+#include <stdexcept>
+struct arm3r_law_state;
+extern "C" int law(void *user, const arm3r_law_state *, double *) {
+    if (user == nullptr) throw std::runtime_error("no user");
+    pthread_exit(nullptr);
+}
+"""
+RUN_LAW = """
+import ctypes, os, threading, time
+import arm3r_cpp as a
+law = a.NativeLaw(ctypes.cast(ctypes.CDLL({library!r}).law, ctypes.c_void_p).value, {user})
+scenario = a.Scenario("format: 1\\ntime: {{stop: 1}}\\n")
+def run():
+    try:
+        scenario.run(controller=law)
+    except a.ControllerError:
+        print("the law threw", flush=True)
+        os._exit(0)
+threading.Thread(target=run, daemon=True).start()
+time.sleep(2)
+print("alive", flush=True)
+os._exit(0)
+"""
+
 
 def bare(folder: Path) -> dict[str, str]:
     """An environment in which no compiler is found."""
@@ -170,6 +197,36 @@ def test_a_controller_in_python_is_handed_over_to_the_python_beside_it(installed
     command = [installed / "bin/arm3r", "run", "s.yaml", "--controller", "law.py:fcn"]
     done = subprocess.run(command, cwd=tmp_path, env=bare(installed), capture_output=True, text=True)
     assert done.returncode == 0 and "law.py: fcn(q1, q2, q3)" in done.stdout, done.stdout + done.stderr
+
+
+MODULE = """
+import arm3r_cpp as a
+from arm3r_cpp import _arm3r
+assert _arm3r.__file__.endswith("_arm3r.py")
+print(a.Scenario.example("moving_wall").run().summary["hash"])
+a.Scenario("format: 1\\ntime: {stop: 0.1}\\n").run(controller=lambda t, state: state.tau_g, rate=100.0)
+"""
+
+
+def test_the_module_of_the_other_wheels_loads_the_library(installed: Path, tmp_path: Path) -> None:
+    """The module of aarch64 in the place of the extension of x86-64: both are made from one header."""
+    package = next(installed.glob("lib/python3*/site-packages/arm3r_cpp"))
+    shutil.copytree(package, tmp_path / "arm3r_cpp", ignore=shutil.ignore_patterns("_arm3r*.so"))
+    with zipfile.ZipFile(wheel("linux-aarch64")) as archive:
+        archive.extract("arm3r_cpp/_arm3r.py", tmp_path)
+    environment = {**bare(installed), "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run([installed / "bin/python", "-c", MODULE], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr  # at its end Python closes the library
+    assert done.stdout.strip() == arm3r.Scenario.example("moving_wall").run().summary["hash"]
+
+
+@pytest.mark.parametrize("user, printed", [(0, "the law threw\n"), (1, "alive\n")], ids=["throws", "ends_its_thread"])
+def test_a_law_of_another_compiler(installed: Path, tmp_path: Path, user: int, printed: str) -> None:
+    (tmp_path / "law.cpp").write_text(LAW_IN_CPP)
+    subprocess.run(["g++", "-shared", "-fPIC", "law.cpp", "-o", "law.so"], check=True, cwd=tmp_path)
+    code = RUN_LAW.format(library=str(tmp_path / "law.so"), user=user)
+    done = subprocess.run([installed / "bin/python", "-c", code], env=bare(installed), capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, printed), done.stderr
 
 
 @pytest.mark.parametrize("name", on("linux-x86_64", "linux-aarch64", "windows-x86_64"))
