@@ -111,10 +111,20 @@ class Pushes(Falls):
 
 def grid(q: np.ndarray, tol: float, times: np.ndarray) -> Any:
     """What runs one fall from q, (3,), and returns its states at `times`: (times, 6)."""
-    integrator, start = heyoka.taylor_adaptive(FALLING, at_rest(q), tol=tol, **TUNED), at_rest(q)
+    run = grids(q[np.newaxis], tol, times)
+    return lambda: run()[0]
+
+
+def grids(q: np.ndarray, tol: float, times: np.ndarray) -> Any:
+    """What runs falls from q, (runs, 3), one by one, and returns their states at `times`: (runs, times, 6)."""
+    starts = at_rest(q)
+    integrator = heyoka.taylor_adaptive(FALLING, starts[0].copy(), tol=tol, **TUNED)
+    states = np.empty((len(q), len(times), 6))
 
     def run() -> np.ndarray:
-        integrator.time, integrator.state[:] = 0.0, start
-        return integrator.propagate_grid(times)[-1]
+        for start, own in zip(starts, states, strict=True):
+            integrator.time, integrator.state[:] = 0.0, start
+            own[...] = integrator.propagate_grid(times)[-1]
+        return states
 
     return run

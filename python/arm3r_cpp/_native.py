@@ -341,9 +341,6 @@ def _run_options(time_limit: float | None) -> Any:
     return options
 
 
-_units: dict[str, str] = {}  # of the columns that some run had, by name
-
-
 @cache
 def column_places() -> dict[str, int]:
     """Every column that some run can have, and its place in arm3r_columns_text."""
@@ -467,7 +464,7 @@ def summary_columns() -> dict[str, str]:
 # ---- control laws of the user's own ---------------------------------------------------------------------------------
 
 
-_ndarray = np.ndarray  # found faster
+_ndarray, _float64 = np.ndarray, np.dtype(np.float64)  # found faster
 
 
 class NoTorque(Exception):
@@ -476,20 +473,19 @@ class NoTorque(Exception):
 
 def put_torque(torque: Any, out: Any) -> None:
     """Write three numbers where the library reads a torque. NoTorque: they are not. It looks itself at their values."""
-    if isinstance(torque, _ndarray):
-        if torque.shape != (3,) or torque.dtype.kind not in "fiu":
+    kind = type(torque)
+    if kind is _ndarray and torque.dtype is _float64:
+        torque = torque.tolist()
+    elif isinstance(torque, _ndarray):
+        if torque.dtype.kind not in "fiu":
             raise NoTorque
         torque = torque.tolist()
-    elif not isinstance(torque, (list, tuple)):
+    elif kind is not tuple and kind is not list and not isinstance(torque, (list, tuple)):
         raise NoTorque
     try:
-        out[0:3] = torque
+        out[0], out[1], out[2] = torque
     except (TypeError, ValueError, OverflowError):
         raise NoTorque from None
-
-
-def torque_memory() -> Any:
-    return ffi.new("double[3]")
 
 
 _STATE_ARRAYS = {
@@ -504,6 +500,12 @@ class StateMemory:
 
     def __init__(self, struct: Any) -> None:
         self.struct = struct
+
+    def copy(self) -> StateMemory:
+        """The same numbers in a memory of their own."""
+        struct = ffi.new("arm3r_law_state *")
+        ffi.memmove(struct, self.struct, ffi.sizeof("arm3r_law_state"))
+        return StateMemory(struct)
 
     def __getattr__(self, name: str) -> Floats:
         if name not in _STATE_ARRAYS:
@@ -538,16 +540,28 @@ def control(
     return run, here.raised
 
 
-def seen(simulation: Any) -> StateMemory:
-    state = ffi.new("arm3r_law_state *")
-    call(lib.arm3r_simulation_state, simulation, state)
-    return StateMemory(state)
+class SimulationView:
+    """What is seen of a simulation at its present sample. It is renewed in place.
 
+    Attributes:
+        memory: the state.
+        over: over[0] is not 0 when no sample is left.
+    """
 
-def is_over(simulation: Any) -> bool:
-    out = ffi.new("int32_t *")
-    call(lib.arm3r_simulation_is_over, simulation, out)
-    return bool(out[0])
+    def __init__(self, simulation: Any) -> None:
+        self._simulation = simulation
+        self._struct, self._tau = ffi.new("arm3r_law_state *"), ffi.new("double[3]")
+        self.memory, self.over = StateMemory(self._struct), ffi.new("int32_t *")
+        self.look()
+
+    def look(self) -> None:
+        call(lib.arm3r_simulation_state, self._simulation, self._struct)
+        call(lib.arm3r_simulation_is_over, self._simulation, self.over)
+
+    def advance(self, torque: Any) -> int:
+        """Apply a torque until the next sample; the status of the library. NoTorque: it is not three numbers."""
+        put_torque(torque, self._tau)
+        return lib.arm3r_simulation_advance(self._simulation, self._tau, self._struct, self.over)
 
 
 def _column_unit(run: Any, index: int) -> str:
@@ -556,18 +570,26 @@ def _column_unit(run: Any, index: int) -> str:
     return string(unit[0])
 
 
+_layouts: dict[bytes, tuple[list[str], dict[str, str]]] = {}  # by "t,q1,q2": the names, and the unit of each
+
+
+def _layout(run: Any, names: bytes) -> tuple[list[str], dict[str, str]]:
+    if names not in _layouts:
+        columns = names.decode().split(",")
+        _layouts[names] = columns, {name: _column_unit(run, index) for index, name in enumerate(columns)}
+    return _layouts[names]
+
+
 def columns(run: Any) -> tuple[dict[str, Floats], dict[str, str]]:
     """Values and units of a run's columns, by name; the values are views of the run's own memory."""
-    rows, count, stride = ffi.new("size_t *"), ffi.new("size_t *"), ffi.new("size_t *")
-    call(lib.arm3r_run_shape, run, rows, count)
+    sizes = ffi.new("size_t[3]")  # rows, columns, stride
     data, text = ffi.new("const double **"), ffi.new("const char **")
-    call(lib.arm3r_run_block, run, data, stride, text)
-    names = string(text[0]).split(",")
-    for index, name in enumerate(names):
-        if name not in _units:
-            _units[name] = _column_unit(run, index)
-    block = np.asarray(_Block(run, data[0], (count[0], rows[0]), stride[0]))
-    return dict(zip(names, block, strict=True)), {name: _units[name] for name in names}
+    call(lib.arm3r_run_shape, run, sizes, sizes + 1)
+    call(lib.arm3r_run_block, run, data, sizes + 2, text)
+    rows, count, stride = sizes
+    names, units = _layout(run, ffi.string(text[0]))
+    block = np.asarray(_Block(run, data[0], (count, rows), stride))
+    return dict(zip(names, block, strict=True)), dict(units)
 
 
 version = string(lib.arm3r_version())

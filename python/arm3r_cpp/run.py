@@ -104,7 +104,10 @@ class Run:
         if name in self._columns:
             return self._columns[name]
         if parts := three_of(name, self._columns):
-            return np.stack([self._columns[part] for part in parts], axis=-1)
+            three = np.empty((len(self), 3))
+            for i, part in enumerate(parts):
+                three[:, i] = self._columns[part]
+            return three
         for meant in ([name], *triples(name)):
             if all(one in _native.column_places() for one in meant):
                 message = f"the log of this run does not have {name!r}: {self._why_not(meant)}"

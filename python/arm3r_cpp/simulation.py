@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sys import getrefcount
 from typing import Any
 
 from . import _native
@@ -51,20 +52,22 @@ class Simulation:
 
     def _begin(self, handle: Any) -> None:
         self._handle = handle
-        self._tau = _native.torque_memory()
-        self._look()
+        self._view = _native.SimulationView(handle)
+        self._state = state_of(self._view.memory)
 
-    def _look(self) -> None:
-        self._state = state_of(_native.seen(self._handle))
-        self._is_over = _native.is_over(self._handle)
+    def _leave_state(self) -> None:
+        """A state that the caller has kept takes its numbers with it; any other shows the next sample."""
+        if getrefcount(self._state) > 2:  # held by this object and by the call
+            self._state._now = self._view.memory.copy()
+            self._state = state_of(self._view.memory)
 
     def __repr__(self) -> str:
-        return f"<Simulation {self._file}: t = {self.t:g} s{', over' if self._is_over else ''}>"
+        return f"<Simulation {self._file}: t = {self.t:g} s{', over' if self.is_over else ''}>"
 
     @property
     def t(self) -> float:
         """The time of the present sample, s."""
-        return self._state.t
+        return self._view.memory.struct.t
 
     @property
     def state(self) -> LawState:
@@ -74,7 +77,7 @@ class Simulation:
     @property
     def is_over(self) -> bool:
         """Whether there is no sample left."""
-        return self._is_over
+        return self._view.over[0] != 0
 
     def step(self, tau: Any) -> None:
         """Apply three torques, N m, from this sample to the next, within arm.torque_limit.
@@ -84,17 +87,16 @@ class Simulation:
             NumericalError, BudgetError: the run could not go on; `error.run` holds it as far as it came.
             UsageError: the simulation is over, or in use by another thread.
         """
+        self._leave_state()
         try:
-            _native.put_torque(tau, self._tau)
+            status = self._view.advance(tau)
         except _native.NoTorque:
             raise self._refusal(tau) from None
-        status = lib.arm3r_simulation_step(self._handle, self._tau)
         if status == lib.ARM3R_E_VALUE:
             raise self._refusal(tau)
         if status:
             raise _native.error(status)
-        self._look()
-        if self._is_over and (run := self.run).outcome != "ok":
+        if self._view.over[0] and (run := self.run).outcome != "ok":
             message = f"{self._file}: {run.outcome}: {run.summary['message']}"
             raise class_of_outcome(run.outcome)(message, code=f"run.{run.outcome}", run=run)
 
@@ -119,7 +121,8 @@ class Simulation:
             UsageError: it is of another scenario.
         """
         _native.call(lib.arm3r_simulation_restore, self._handle, snapshot._handle)
-        self._look()
+        self._leave_state()
+        self._view.look()
 
     def copy(self) -> Simulation:
         """An independent simulation at the same sample."""

@@ -401,6 +401,29 @@ def test_a_kept_state_is_over(scenario: arm3r.Scenario) -> None:
                 getattr(state, name)
 
 
+def test_a_state_of_a_simulation_stays_as_it_was(scenario: arm3r.Scenario) -> None:
+    """Kept by the caller or not, by name or within something else, and also across a snapshot."""
+    simulation, other = Simulation(scenario), Simulation(scenario)
+    kept, seen = [], []
+    start = simulation.snapshot()
+    for step in range(6):
+        state = simulation.state
+        assert simulation.state is state and state.t == simulation.t == other.t
+        if step % 2:
+            kept.append(state)
+            seen.append((state.tick, state.t, state.q, state.jacobian, state.contact))
+        del state
+        simulation.step(damp(simulation.t, simulation.state))
+        other.step(damp(other.t, other.state))
+    last = simulation.state
+    simulation.restore(start)
+    assert simulation.t == 0 and simulation.state.tick == 0 and last.tick == 6 and last.t == other.t
+    for state, (tick, t, q, jacobian, contact) in zip(kept, seen, strict=True):
+        assert (state.tick, state.t, state.contact) == (tick, t, contact)
+        assert np.array_equal(state.q, q) and np.array_equal(state.jacobian, jacobian)
+    assert [state.tick for state in kept] == [1, 3, 5]
+
+
 def test_arrays_are_copies(scenario: arm3r.Scenario) -> None:
     kept: list[Any] = []
 

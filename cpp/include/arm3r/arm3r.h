@@ -323,6 +323,8 @@ ARM3R_API int32_t arm3r_simulation_state(const arm3r_simulation *simulation, arm
 /* Apply three torques, N m, from this sample to the next. ARM3R_E_VALUE: not finite, beyond 1e12; nothing has happened.
  * ARM3R_E_OVER: there is no sample left. */
 ARM3R_API int32_t arm3r_simulation_step(arm3r_simulation *simulation, const double *tau);
+/* Both in one call: apply the torques, and write the state at the sample that follows and whether the simulation is over. */
+ARM3R_API int32_t arm3r_simulation_advance(arm3r_simulation *simulation, const double *tau, arm3r_law_state *state, int32_t *is_over);
 /* Copy a simulation in its present state, or restore the state of another one of the same scenario. It continues with the same bits. */
 ARM3R_API int32_t arm3r_simulation_copy(const arm3r_simulation *simulation, arm3r_simulation **copy);
 ARM3R_API int32_t arm3r_simulation_restore(arm3r_simulation *simulation, const arm3r_simulation *from);

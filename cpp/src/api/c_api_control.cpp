@@ -122,6 +122,16 @@ void check_torque(const double* tau) {
                                          .allowed = "finite, at most 1e12 N m either way"}});
 }
 
+void apply_until_next_sample(arm3r_simulation& simulation, const double* tau) {
+    check_pointer(tau, "tau");
+    check_torque(tau);
+    if (simulation.run->is_over())
+        throw Error(ARM3R_E_OVER, "the simulation is over at t = " + shortest(simulation.last.t) + " s");
+    CallersTorque caller{*simulation.view, simulation.last, simulation.view->torque(tau)};
+    simulation.run->set_user_law({CallersTorque::call, &caller});
+    simulation.run->advance();
+}
+
 std::unique_ptr<arm3r_simulation> copied(const arm3r_simulation& from) {
     auto copy = std::make_unique<arm3r_simulation>();
     copy->resolved = from.resolved;
@@ -183,13 +193,19 @@ int32_t arm3r_simulation_state(const arm3r_simulation* simulation, arm3r_law_sta
 int32_t arm3r_simulation_step(arm3r_simulation* simulation, const double* tau) {
     return guard([&] {
         const SimulationLock lock(simulation);
-        check_pointer(tau, "tau");
-        check_torque(tau);
-        if (simulation->run->is_over())
-            throw Error(ARM3R_E_OVER, "the simulation is over at t = " + shortest(simulation->last.t) + " s");
-        CallersTorque caller{*simulation->view, simulation->last, simulation->view->torque(tau)};
-        simulation->run->set_user_law({CallersTorque::call, &caller});
-        simulation->run->advance();
+        apply_until_next_sample(*simulation, tau);
+    });
+}
+
+int32_t arm3r_simulation_advance(arm3r_simulation* simulation, const double* tau, arm3r_law_state* state,
+                                 int32_t* is_over) {
+    return guard([&] {
+        const SimulationLock lock(simulation);
+        need(state, "state");
+        need(is_over, "is_over");
+        apply_until_next_sample(*simulation, tau);
+        *state = present_state(*simulation);
+        *is_over = simulation->run->is_over();
     });
 }
 

@@ -65,6 +65,7 @@ void BatchWorker::run_with_law(const Setup& setup, std::size_t run) {
 void BatchWorker::run_alone(const Setup& setup, RunOptions options, std::size_t run) {
     options.should_stop = &job_.stop;
     options.rows = job_.rows.has_value();
+    options.judges = false;
     const Run done = simulate(job_.rows ? job_.rows->with_columns(setup, run) : setup, options);
     if (job_.rows) job_.rows->store(run, done);
     store(run, done);

@@ -75,15 +75,13 @@ void SampledController<T>::add_noise(const Mask& due, Vec3<T>& f) const {
 template <class T>
 Vec3<T> SampledController<T>::delayed_force(const Mask& due, const Vec3<T>& f) {
     Vec3<T> seen = f;
-    constexpr std::size_t size = max_force_delay + 2;
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
         const double now = Lanes<T>::get(count_, lane), delay = Lanes<T>::get(digital_.sensors.force_delay, lane);
         const double position = std::max(0.0, now - delay), before = std::floor(position), share = position - before;
-        auto& ring = forces_[lane];
-        const auto at = [&](double sample) -> Vec3<double>& { return ring[std::size_t(sample) % size]; };
-        for (int i = 0; i < 3; ++i) at(now)[i] = Lanes<T>::get(f[i], lane);
-        const Vec3<double>&a = at(before), &b = at(std::min(now, before + 1));
+        Vec3<double>& latest = forces_[lane].to_write(now);
+        for (int i = 0; i < 3; ++i) latest[i] = Lanes<T>::get(f[i], lane);
+        const Vec3<double>&a = forces_[lane].at(before), &b = forces_[lane].at(std::min(now, before + 1));
         for (int i = 0; i < 3; ++i) Lanes<T>::set(seen[i], lane, a[i] + share * (b[i] - a[i]));
     }
     return seen;
@@ -95,14 +93,11 @@ template <class T>
 void SampledController<T>::enqueue(const Mask& due, const Vec3<T>& output, Vec3<T>& acting) {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
-        auto& ring = outputs_[lane];
         const double now = Lanes<T>::get(count_, lane), delay = Lanes<T>::get(digital_.sampling.delay, lane);
         const double whole = std::floor(delay), share = delay - whole;
-        const auto of = [&](double sample) -> Vec3<double>& {
-            return ring[std::size_t(std::max(0.0, sample)) % ring.size()];
-        };
-        for (int i = 0; i < 3; ++i) of(now)[i] = Lanes<T>::get(output[i], lane);
-        const Vec3<double>&before = of(now - whole - 1), &after = of(now - whole);
+        Vec3<double>& latest = outputs_[lane].to_write(now);
+        for (int i = 0; i < 3; ++i) latest[i] = Lanes<T>::get(output[i], lane);
+        const Vec3<double>&before = outputs_[lane].at(now - whole - 1), &after = outputs_[lane].at(now - whole);
         for (int i = 0; i < 3; ++i) {
             const double early = before[i] - after[i];
             Lanes<T>::set(early_torque_[i], lane, early);
@@ -118,7 +113,7 @@ void SampledController<T>::apply_queued(const Mask& due, Vec3<T>& acting) {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         if (!Lanes<T>::is(due, lane)) continue;
         const double done = Lanes<T>::get(outputs_done_, lane);
-        const Vec3<double>& tau = outputs_[lane][std::size_t(done) % outputs_[lane].size()];
+        const Vec3<double>& tau = outputs_[lane].at(done);
         for (int i = 0; i < 3; ++i) Lanes<T>::set(acting[i], lane, tau[i]);
         Lanes<T>::set(outputs_done_, lane, done + 1);
         Lanes<T>::set(next_output_, lane, due_time(lane, done + 1));
@@ -200,8 +195,7 @@ T SampledController<T>::pending_torque(const Mask& due, double still, Vec3<T>& a
         Lanes<T>::set(share, lane, still < whole ? 1.0 : Lanes<T>::get(early_share_, lane));
         const double now = Lanes<T>::get(count_, lane), sample = std::max(0.0, now - still - 1);
         if (now == 0) continue;  // the torque of this sample acts from the start
-        for (int i = 0; i < 3; ++i)
-            Lanes<T>::set(acting[i], lane, outputs_[lane][std::size_t(sample) % outputs_[lane].size()][i]);
+        for (int i = 0; i < 3; ++i) Lanes<T>::set(acting[i], lane, outputs_[lane].at(sample)[i]);
     }
     return share;
 }

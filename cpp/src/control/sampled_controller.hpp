@@ -4,6 +4,7 @@
 // (8.3): that of the law, the output of the controller after the limit, and the one that acts on the joints after the
 // delay. Slide convention.
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
@@ -51,6 +52,31 @@ struct ControllerState {
     T contact{0.0}, force_phase{0.0}, collision{0.0};
     std::array<T, law_memory> memory{};
     T stiffness{0.0}, wall_speed{0.0}, identifiable{0.0};  // N/m, m/s
+};
+
+// The latest values of a quantity, by the number of their sample. A copy takes those that were written, no more: most
+// controllers have no delay.
+template <std::size_t size>
+class DelayLine {
+public:
+    DelayLine() = default;
+    DelayLine(const DelayLine& other) { *this = other; }
+    DelayLine& operator=(const DelayLine& other) {
+        written_ = other.written_;
+        std::copy_n(other.values_.begin(), written_, values_.begin());
+        return *this;
+    }
+
+    const Vec3<double>& at(double sample) const { return values_[std::size_t(std::max(0.0, sample)) % size]; }
+    Vec3<double>& to_write(double sample) {
+        const std::size_t place = std::size_t(sample) % size;
+        written_ = std::max(written_, place + 1);
+        return values_[place];
+    }
+
+private:
+    std::size_t written_ = 0;
+    std::array<Vec3<double>, size> values_;
 };
 
 template <class T>
@@ -365,8 +391,8 @@ private:
     bool has_failed_ = false;
     int user_status_ = 0;         // what the user's law returned
     Vec3<double> user_torque_{};  // N m, slide: its torque
-    std::array<std::array<Vec3<double>, max_delay + 2>, Lanes<T>::count> outputs_;
-    std::array<std::array<Vec3<double>, max_force_delay + 2>, Lanes<T>::count> forces_;
+    std::array<DelayLine<max_delay + 2>, Lanes<T>::count> outputs_;
+    std::array<DelayLine<max_force_delay + 2>, Lanes<T>::count> forces_;
 };
 
 }  // namespace arm3r

@@ -52,9 +52,7 @@ public:
             h = select(theta_ < T(1.0), T(theta_ * h), h);
             t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
         }
-        State<T, state_size> y1;
-        for (std::size_t i = 0; i < state_size; ++i) y1[i] = value(series_, i, h);
-        this->accept(moved, t1, y1);
+        this->accept(moved, t1, state_after(h));
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->observe();
         if (crosses_) apply_changes(changed);
@@ -67,12 +65,16 @@ public:
     // The dense output of the last step.
     DenseOutput dense_output(int lane) const {
         DenseOutput dense;
+        fill_dense_output(lane, dense);
+        return dense;
+    }
+    void fill_dense_output(int lane, DenseOutput& dense) const {
         dense.t0 = Lanes<T>::get(t0_, lane);
         dense.h = this->h(lane);
         dense.order = order_;
+        dense.size = state_size;
         for (int i = 0; i <= order_; ++i)
             for (std::size_t j = 0; j < state_size; ++j) dense.c[i][j] = Lanes<T>::get(series_.c[i][j], lane);
-        return dense;
     }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
     // Whether a sample may have changed the torque at the end of the last step.
@@ -80,6 +82,15 @@ public:
 
 private:
     enum Signal : std::size_t { depth = state_size, across1, across2, work1 };
+
+    // As value() of each, all at once: their sums stay in registers.
+    ARM3R_INLINE State<T, state_size> state_after(const T& h) const {
+        State<T, state_size> sum;
+        for (std::size_t j = 0; j < state_size; ++j) sum[j] = series_.c[order_][j];
+        for (int i = order_ - 1; i >= 0; --i)
+            for (std::size_t j = 0; j < state_size; ++j) sum[j] = sum[j] * h + series_.c[i][j];
+        return sum;
+    }
 
     ARM3R_INLINE static T min_step(const T& t) {
         return 16 * std::numeric_limits<double>::epsilon() * max(abs(t), T(1e-3));

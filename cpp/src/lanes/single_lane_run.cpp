@@ -14,7 +14,7 @@ void fill_dense_output(LaneRk4<double, N>& lane_run, DenseOutput& dense) {
     dense.assign(hermite(lane_run.t0(0), lane_run.h(0), lane_run.y0(0), lane_run.f0(0), lane_run.y(0), lane_run.f1()));
 }
 
-void fill_dense_output(const LaneTaylor<double>& lane_run, DenseOutput& dense) { dense = lane_run.dense_output(0); }
+void fill_dense_output(const LaneTaylor<double>& lane_run, DenseOutput& dense) { lane_run.fill_dense_output(0, dense); }
 
 template <std::size_t N>
 double end_theta(const LaneRk4<double, N>&) {

@@ -30,11 +30,11 @@ constexpr unsigned parts_of(std::size_t column) {
     if (is_between("stiffness_estimate", "tank_energy")) return memory_signals;
     if (is_between("saturated", "saturated")) return applied_torque | memory_signals;
     if (is_between("energy_dissipated_joints", "energy_dissipated_edges")) return losses;
+    if (is_between("wall_x", "energy_residual")) return contact_and_energy;
     return 0;
 }
 
-RowPlan with_parts(std::vector<std::size_t> columns, std::vector<std::size_t> hidden) {
-    unsigned parts = 0;
+RowPlan with_parts(std::vector<std::size_t> columns, std::vector<std::size_t> hidden, unsigned parts) {
     for (const std::size_t column : columns) parts |= parts_of(column);
     for (const std::size_t column : hidden) parts |= parts_of(column);
     return {std::move(columns), std::move(hidden), parts};
@@ -43,17 +43,18 @@ RowPlan with_parts(std::vector<std::size_t> columns, std::vector<std::size_t> hi
 }  // namespace
 
 // A law that inverts the Jacobian keeps the angles: a bad end is explained by the poses before it.
-RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept) {
+RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept, bool is_judged) {
     ColumnSet hidden = kept;
     if (inverts_jacobian(setup.controller()))
         for (const ColumnIndex angle : {ColumnIndex("q1"), ColumnIndex("q2"), ColumnIndex("q3")}) hidden.set(angle);
-    return with_parts(columns_of(setup), in_order(hidden & possible_columns(setup) & ~setup.logged));
+    return with_parts(columns_of(setup), in_order(hidden & possible_columns(setup) & ~setup.logged),
+                      is_judged ? contact_and_energy : RowPart{});
 }
 
 RowPlan plan_of_end() { return {{}, {}, applied_torque | acceleration}; }
 
 Row make_row(const RowContext& context, double t, const FullState& y, double theta) {
-    RowValues<double> row;
+    RowValues<double> row{};
     fill_row(context, t, y, theta, row);
     return {row.value, row.link_behind_wall > 0};
 }

@@ -52,8 +52,8 @@ struct Row {
     bool link_behind_wall;  // the elbow, or a link that is not in contact itself, lies behind the plate
 };
 
-// What rows are computed from beside motion, contact and energy, which are known of each row: each is computed only if
-// a column needs it.
+// What rows are computed from beside time, angles and rates: each is computed only if a column needs it, and contact and
+// energy also for what a run says about its rows. Any other part comes with these two.
 enum RowPart : unsigned {
     applied_torque = 1,
     acceleration = 2,
@@ -65,6 +65,7 @@ enum RowPart : unsigned {
     observer_signals = 128,
     memory_signals = 256,
     losses = 512,
+    contact_and_energy = 1024,
 };
 
 // The columns of a log, those that are kept beside them, and the parts of a row that they need.
@@ -73,7 +74,8 @@ struct RowPlan {
     unsigned parts;
 };
 
-RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept);
+// is_judged: whether the run says something about its rows, such as the largest residual of their energies.
+RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept, bool is_judged = true);
 RowPlan plan_of_end();  // of what EndValues has (run_data.hpp); in memory it has no column
 
 // The data that all rows within a step share.

@@ -14,14 +14,12 @@ ARM3R_INLINE void fill_block(const RowContext& context, RowBlock& rows) {
     for (int first = (rows.count - 1) / N * N; first >= 0; first -= N) {
         const Group at = Group::load(rows.t + first);
         const Group theta = (at - context.dense.t0) / context.dense.h;
-        State<Group, full_size> y{};
-        for (std::size_t i = 0; i < context.dense.size; ++i) y[i] = context.dense.component(i, theta);
         RowValues<Group> sampled;
-        fill_row(context, at, y, theta, sampled);
+        fill_row(context, at, state_within(context.dense, theta), theta, sampled);
         const auto store = [&](std::size_t i) ARM3R_INLINE_LAMBDA { sampled.value[i].store(rows.value[i] + first); };
         for (const std::size_t column : context.plan.columns) store(column);
         for (const std::size_t column : context.plan.hidden) store(column);
-        store(ColumnIndex("energy_residual"));
+        if (context.needs(contact_and_energy)) store(ColumnIndex("energy_residual"));
         for (int i = N - 1; i >= 0; --i)
             if (sampled.link_behind_wall[i] > 0)
                 rows.first_link_behind_wall = std::min(rows.first_link_behind_wall, first + i);

@@ -4,6 +4,7 @@
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/pack.hpp"
 #include "control/compiled_laws.hpp"
+#include "integrate/dense_output.hpp"
 #include "record/row.hpp"
 
 namespace arm3r {
@@ -105,9 +106,28 @@ ARM3R_INLINE Measurement<T> measurement_of(const RowContext& context, const Righ
 
 template <class T>
 struct RowValues {
-    std::array<T, column_count> value{};
+    std::array<T, column_count> value;  // set where the plan has the column
     T link_behind_wall;
 };
+
+// The solution at an instant of a step, or at several in a pack, as DenseOutput::component has it; the sums of a power
+// series stay in registers.
+template <class T>
+ARM3R_INLINE State<T, full_size> state_within(const DenseOutput& dense, const T& theta) {
+    State<T, full_size> y;
+    for (std::size_t i = state_size; i < full_size; ++i) y[i] = T(0.0);
+    if (dense.order < 0 || dense.size != state_size) {
+        for (std::size_t i = 0; i < dense.size; ++i) y[i] = dense.component(i, theta);
+        return y;
+    }
+    const T seconds = theta * dense.h;
+    std::array<T, state_size> sum;
+    for (std::size_t i = 0; i < state_size; ++i) sum[i] = T(dense.c[dense.order][i]);
+    for (int k = dense.order - 1; k >= 0; --k)
+        for (std::size_t i = 0; i < state_size; ++i) sum[i] = sum[i] * seconds + dense.c[k][i];
+    for (std::size_t i = 0; i < state_size; ++i) y[i] = sum[i];
+    return y;
+}
 
 // Writes values into the columns of their names; vectors into three, of which the first is named. Joint vectors are in
 // the slide convention.
@@ -164,12 +184,8 @@ ARM3R_INLINE void find_contact(const RowContext& context, RowState<T>& now, T& l
 }
 
 template <class T>
-ARM3R_INLINE void write_motion(const RowContext& context, const T& row_time, const RowState<T>& now, const T& theta,
-                               RowWriter<T>& write) {
+ARM3R_INLINE void write_motion(const RowContext& context, const RowState<T>& now, const T& theta, RowWriter<T>& write) {
     const Arm<double>& arm = context.plant.arm;
-    write.number("t", row_time);
-    write.joints("q1", now.q);
-    write.joints("qd1", now.qd);
     write.joints("tau1", now.tau);
     if (context.needs(acceleration)) write.joints("qdd1", forward_dynamics(arm, now.pose, now.qd, now.tau, now.felt));
     if (context.needs(gravity_part)) write.joints("tau_g1", gravity_torque(arm, now.pose));
@@ -259,8 +275,13 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
     now.t = max(row_time, T(context.dense.t0));  // no row is before the start of its step
     now.q = {y[0], y[1], y[2]};
     now.qd = {y[3], y[4], y[5]};
-    now.pose = pose(now.q);
     row.link_behind_wall = T(0.0);
+    RowWriter<T> write(row, context.simscape);
+    write.number("t", row_time);
+    write.joints("q1", now.q);
+    write.joints("qd1", now.qd);
+    if (context.plan.parts == 0) return;
+    now.pose = pose(now.q);
     find_contact(context, now, row.link_behind_wall);
     RightHandSide<double, T> rhs(plant);
     if (has_memory(plant)) set_inputs(context, rhs);
@@ -268,8 +289,7 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
         now.tau = has_memory(plant) ? torque_with_memory(rhs, now.t, now.wall, now.pose, y, now.at_tip)
                                     : torque_without_memory(plant, now.q, now.pose);
 
-    RowWriter<T> write(row, context.simscape);
-    write_motion(context, row_time, now, theta, write);
+    write_motion(context, now, theta, write);
     write_contact(now, write);
     write_energy(context, now, y, write);
     if (context.needs(law_signals)) {

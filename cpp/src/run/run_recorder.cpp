@@ -27,7 +27,7 @@ RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
     run_.t_end = setup_.start;
     run_.has_user_law = setup_.controller().type == ControllerType::user;
     if (!options.rows) return;
-    plan_ = make_row_plan(setup_, options.kept);
+    plan_ = make_row_plan(setup_, options.kept, options.judges);
     row_log().reserve(plan_);
     run_.has_wall = setup_.plant.has_wall;
     run_.method = word_of(setup_.solver.method);

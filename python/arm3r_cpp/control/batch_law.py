@@ -118,4 +118,4 @@ class _Caller:
             self.run, self.adapter = run, None
             self.adapter = LawAdapter(self._law_of(run))
         assert self.adapter is not None
-        return self.adapter(struct, tau)
+        return self.adapter.call(struct, tau)

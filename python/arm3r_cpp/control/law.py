@@ -56,7 +56,8 @@ class LawAdapter:
         self.t = 0.0
         self.received: Any = None
 
-    def __call__(self, struct: Any, tau: Any) -> int:
+    def call(self, struct: Any, tau: Any) -> int:
+        """Write the law's torque for a state, both in the library's memory."""
         memory = self._memory
         if memory is None:
             memory = self._memory = _native.StateMemory(struct)
@@ -91,7 +92,7 @@ def run_with_law(
     limit = None if time_limit is None else TimeLimit(controller, time_limit)
     adapter = LawAdapter(limit or controller)
     with limit or nullcontext():
-        run, raised = _native.control(handle, adapter, progress=progress, time_limit=time_limit)
+        run, raised = _native.control(handle, adapter.call, progress=progress, time_limit=time_limit)
     if raised is not None and not isinstance(raised, (Exception, TimeLimitReached)):
         raise raised
     ended = Run._of(run)
