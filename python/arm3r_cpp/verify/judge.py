@@ -243,10 +243,12 @@ def _explain(
     causes = _hypotheses(case)
     repairs = _repairs(case, wrong, progress, budget=budget)
     reads = read_entries(case, wrong)
-    chosen = cover([one for one in repairs if not causes or one.mended == wrong], wrong)
+    chosen = cover(repairs, wrong)
     if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
         chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)
+    if causes and left:  # what explains everything goes before edits that do not
+        chosen, left = [], frozenset()
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):
         joint, chosen = chosen[0].edit, [*chosen, *more]
