@@ -87,7 +87,7 @@ lint: $(VENV)/dev
 	$(BIN)/clang-format --dry-run -Werror $(CODE)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
+	for system in linux darwin win32; do $(BIN)/mypy --platform $$system || exit 1; done
 
 clean:
 	rm -rf build out $(VENV)

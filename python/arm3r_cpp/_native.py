@@ -7,6 +7,7 @@ import json
 import math
 import os
 import re
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -244,7 +245,8 @@ class _Interpreter:
         self.stop = ffi.new("int32_t *")
         self.busy: set[_InProgress] = set()
         atexit.register(self.end)
-        os.register_at_fork(after_in_child=self.busy.clear)  # the child has one thread
+        if sys.platform != "win32":
+            os.register_at_fork(after_in_child=self.busy.clear)  # the child has one thread
 
     def end(self) -> None:
         """Stop the runs, and wait until their threads have seen it."""

@@ -58,9 +58,9 @@ def _call(module: str) -> int:
     try:
         return main(sys.argv[1:])
     except KeyboardInterrupt:
-        from .exit_codes import end_by_signal
+        from ..system.processes import end_by_interrupt
 
-        end_by_signal(signal.SIGINT)
+        end_by_interrupt()
 
 
 def _say(message: object, *_: object) -> None:

@@ -87,9 +87,10 @@ def check(options: argparse.Namespace, marks: list[str]) -> None:
 
 def mark(options: argparse.Namespace, _: list[str]) -> None:
     from .._files import check_folder, replacing
-    from ..exercises.folder import marks, notes, processors, runs_code, submissions
+    from ..exercises.folder import marks, notes, runs_code, submissions
     from ..exercises.table import csv_of, summary
     from ..exercises.tasks import TASKS
+    from ..system.cpus import usable_cpus
 
     tasks = [task_of(name) for name in options.task] if options.task else list(TASKS.values())
     found = submissions(options.folder, tasks)
@@ -101,7 +102,7 @@ def mark(options: argparse.Namespace, _: list[str]) -> None:
         ask_for_trust(options.trust_code)
     bar = Bar("mark", "files")
     try:
-        jobs = processors() if options.jobs is None else options.jobs
+        jobs = usable_cpus() if options.jobs is None else options.jobs
         rows = marks(found, jobs=jobs, forbid_own_package=options.forbid_import, progress=bar.draw)
     finally:
         bar.clear()

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import sys
 from collections.abc import Callable
-from typing import NoReturn
 
 from ..errors import (
     Arm3rError,
@@ -18,6 +15,7 @@ from ..errors import (
     ScenarioError,
     UsageError,
 )
+from ..system.processes import end_by_closed_pipe, end_by_interrupt
 
 FAILED_RUNS = 7
 FAILED_CHECK = 10
@@ -48,7 +46,7 @@ def attempt(program: str, work: Callable[[], None]) -> int:
         print(f"{program}: needs {error.name}, which is not installed: pip install {error.name}", file=sys.stderr)
         return exit_code(UsageError(str(error)))
     except KeyboardInterrupt:
-        end_by_signal(signal.SIGINT)
+        end_by_interrupt()
     return 0
 
 
@@ -63,12 +61,5 @@ def print_line(line: object) -> None:
     except OSError as error:
         sys.stdout = None  # else Python tries again when it ends
         if isinstance(error, BrokenPipeError):
-            end_by_signal(signal.SIGPIPE)
+            end_by_closed_pipe()
         raise OutputError(f"standard output cannot be written: {error.strerror}", code="output") from error
-
-
-def end_by_signal(number: signal.Signals) -> NoReturn:
-    """End the process by the signal itself, so that its caller sees the reason."""
-    signal.signal(number, signal.SIG_DFL)
-    os.kill(os.getpid(), number)
-    raise SystemExit(128 + number)

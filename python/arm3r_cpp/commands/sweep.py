@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 import warnings
 from collections.abc import Sequence
@@ -11,7 +10,8 @@ from typing import Any
 
 from .._progress_bar import Bar
 from ..errors import Arm3rError
-from .exit_codes import FAILED_RUNS, end_by_signal, exit_code, print_line
+from ..system.processes import end_by_interrupt
+from .exit_codes import FAILED_RUNS, exit_code, print_line
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -38,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         bar.clear()
         print(f"arm3r-sweep: interrupted; --resume goes on in {options.out}", file=sys.stderr)
-        end_by_signal(signal.SIGINT)
+        end_by_interrupt()
     return FAILED_RUNS if failed else 0
 
 

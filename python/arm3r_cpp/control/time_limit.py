@@ -8,6 +8,8 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+from ..system.processes import interrupt_main_thread
+
 
 class TimeLimitReached(BaseException):
     """Raised in a law when the time limit is used up. It is no Exception, so that a law that catches those ends too."""
@@ -56,7 +58,7 @@ class TimeLimit:
             self._fired = True
             in_main = self._thread == threading.main_thread().ident
             if in_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-                signal.pthread_kill(self._thread, signal.SIGINT)
+                interrupt_main_thread()
             else:
                 thread, error = ctypes.c_ulong(self._thread), ctypes.py_object(TimeLimitReached)
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(thread, error)

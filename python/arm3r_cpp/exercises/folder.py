@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -111,8 +110,3 @@ def _mark(one: Submission, forbid_own_package: bool) -> Mark:
     if one.files[0].is_symlink():
         return Mark(WRONG, "is a link; hand in the file itself")
     return judge_apart(one.task, one.files[0], forbid_own_package=forbid_own_package)
-
-
-def processors() -> int:
-    """Those that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

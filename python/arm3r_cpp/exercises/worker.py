@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import resource
-import signal
 import subprocess
 import sys
 from dataclasses import asdict, replace
@@ -15,9 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import Arm3rError, UsageError
+from ..system.processes import end_with_descendants
 from ..verify.program.confinement import end_with_parent
+from ..verify.program.limits import limit_judge
 from ..verify.program.nodes import Call, ProgramError
-from ..verify.program.python_process import PythonProcess, _descendants
+from ..verify.program.python_process import NEEDED_BY_WINDOWS, PythonProcess
 from .function_judge import reading
 from .judge import judge_file
 from .mark import RIGHT, UNCLEAR, Mark
@@ -26,7 +26,6 @@ from .tasks import TASKS
 
 _START = "from arm3r_cpp.exercises.worker import main; main()"
 MOST_SECONDS = 300.0  # a right answer takes less than three
-_MEMORY = 4 << 30  # bytes of address space
 
 
 def judge_apart(task: Task, path: Path, *, forbid_own_package: bool = False, with_reading: bool = False) -> Mark:
@@ -46,7 +45,13 @@ def judge_apart(task: Task, path: Path, *, forbid_own_package: bool = False, wit
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env={"PATH": os.defpath, "LANG": "C.UTF-8", "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"},
+        env={
+            **{name: os.environ[name] for name in NEEDED_BY_WINDOWS if name in os.environ},
+            "PATH": os.defpath,
+            "LANG": "C.UTF-8",
+            "OPENBLAS_NUM_THREADS": "1",
+            "PYTHONDONTWRITEBYTECODE": "1",
+        },
         start_new_session=True,
         cwd="/",
     )
@@ -80,10 +85,7 @@ def what_is_not_barred() -> list[str]:
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End the process, if it runs, and all that it started."""
     if process.poll() is None:
-        for descendant in _descendants(process.pid):
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(descendant, signal.SIGKILL)
-        process.kill()
+        end_with_descendants(process.pid)
         process.wait()
     for stream in (process.stdin, process.stdout):
         if stream:
@@ -93,9 +95,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def main() -> None:
     """A request as JSON on standard input; the mark as JSON on standard output."""
     end_with_parent()
-    limit(resource.RLIMIT_AS, _MEMORY)
-    limit(resource.RLIMIT_FSIZE, 0)
-    limit(resource.RLIMIT_CORE, 0)
+    limit_judge()
     request = json.load(sys.stdin)
     task, path = TASKS[request["task"]], Path(request["path"])
     mark = judge_file(task, path, forbid_own_package=request["forbid"])
@@ -103,9 +103,3 @@ def main() -> None:
         with contextlib.suppress(Arm3rError, ProgramError):
             mark = replace(mark, message=reading(task, path) or mark.message)
     sys.stdout.write(json.dumps(asdict(mark)))
-
-
-def limit(what: int, value: int) -> None:
-    hard = resource.getrlimit(what)[1]
-    value = value if hard == resource.RLIM_INFINITY else min(value, hard)
-    resource.setrlimit(what, (value, value))

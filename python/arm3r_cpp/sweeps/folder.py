@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import os
@@ -17,6 +16,7 @@ from typing import Any
 
 from .._files import regular, replacing, writing
 from ..errors import IncompatibleError, OutputError, UsageError
+from ..system.file_lock import try_lock
 
 NEEDED = {"table", "mode", "columns", "axes", "runs", "scenario", "version"}  # of the manifest, for readers
 MANIFEST, LEDGER, LOCK, SHARDS = "sweep.json", "ledger.jsonl", "lock", "shards"
@@ -185,12 +185,10 @@ def publish(path: Path, data: bytes) -> None:
 
 def _lock(lock: FileIO, path: Path) -> None:
     """Lock the folder until this process ends, in whatever way it ends."""
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
+    if not try_lock(lock):
         lock.seek(0)
         holder = lock.read().decode(errors="replace").strip()
-        raise OutputError(f"{path}: in use by pid {holder or '?'}", code="output.in_use") from None
+        raise OutputError(f"{path}: in use by pid {holder or '?'}", code="output.in_use")
     lock.seek(0)
     lock.truncate()
     lock.write(f"{os.getpid()}\n".encode())

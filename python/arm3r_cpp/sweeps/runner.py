@@ -17,6 +17,7 @@ from .. import _native
 from .._files import replacing
 from ..batch import AXIS_ERRORS, axis_of
 from ..errors import Arm3rError, UsageError
+from ..system.cpus import usable_cpus
 from .definition import Sweep
 from .folder import SweepFolder, sha256
 from .shard import ShardJob, ShardResult, columns_of, run_shard
@@ -236,7 +237,7 @@ def _submitting(executor: Executor | None, jobs: int | None, under_way: UnderWay
 
 
 def _allowed(jobs: int | None) -> int:
-    cpus = len(os.sched_getaffinity(0))
+    cpus = usable_cpus()
     threads = cpus if jobs is None else min(max(jobs, 1), cpus)
     if jobs not in (None, threads):
         warnings.warn(f"{jobs} jobs: this process may use {cpus} CPUs, so it is {threads}", stacklevel=2)

@@ -11,7 +11,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from .confinement import confine, end_with_parent, limit_resources
+from .confinement import confine, end_with_parent
+from .limits import limit_resources
 from .nodes import Call, Edit, ProgramError
 from .python_program import PythonProgram
 
@@ -19,8 +20,8 @@ HEAD = struct.Struct("<II")  # lengths of the JSON and of the numbers that follo
 
 
 def main() -> None:
-    """sys.argv: the descriptor that answers are written to. The first request describes the program."""
-    answers = os.fdopen(int(sys.argv[1]), "wb")
+    """Requests come from standard input, answers go to standard output. The first request describes the program."""
+    answers = os.fdopen(os.dup(1), "wb")
     requests = os.fdopen(os.dup(0), "rb")
     null = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2):

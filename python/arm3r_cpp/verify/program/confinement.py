@@ -1,10 +1,9 @@
-"""Confines the process that runs a user's file: limits of time, memory and files, and namespaces of its own."""
+"""Confines the process that runs a user's file, in namespaces of its own where the system has them."""
 
 from __future__ import annotations
 
 import ctypes
 import os
-import resource
 import signal
 import sys
 
@@ -16,60 +15,20 @@ _MS_PRIVATE, _MS_REC = 1 << 18, 1 << 14
 _SYS_MOUNT_SETATTR, _AT_FDCWD, _AT_RECURSIVE, _ATTR_RDONLY = 442, -100, 0x8000, 1
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS = 1, 36, 38
 EVERYTHING = ("network", "files", "processes")
-MEMORY = 2 << 30  # bytes of address space
-PROCESSOR_TIME = 100  # s
-_OWN_MEMORY = "/proc/self/statm"
 
 
 class _MountAttributes(ctypes.Structure):
     _fields_ = [(name, ctypes.c_uint64) for name in ("set", "clear", "propagation", "namespace")]
 
 
-def _libc() -> ctypes.CDLL | None:
-    return ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
-
-
-def limit_resources() -> None:
-    """No file is written, no core is dumped, and memory and time are bounded; nothing of this can be taken back."""
-    more = {resource.RLIMIT_AS: MEMORY, resource.RLIMIT_NOFILE: 64, resource.RLIMIT_NPROC: _threads_of_this_user() + 64}
-    _limit(more)
-
-
-def limit_copy() -> None:
-    """The same for a copy of a process, which keeps what that has: its memory and its files."""
-    _limit({resource.RLIMIT_AS: _memory_in_use() + MEMORY} if os.path.exists(_OWN_MEMORY) else {})
-
-
-def _memory_in_use() -> int:
-    """Bytes of address space."""
-    with open(_OWN_MEMORY) as file:
-        return int(file.read().split()[0]) * resource.getpagesize()
-
-
-def _limit(more: dict[int, int]) -> None:
-    limits = {resource.RLIMIT_CPU: PROCESSOR_TIME, resource.RLIMIT_FSIZE: 0, resource.RLIMIT_CORE: 0}
-    for what, value in {**limits, **more}.items():
-        hard = resource.getrlimit(what)[1]
-        value = value if hard == resource.RLIM_INFINITY else min(value, hard)
-        resource.setrlimit(what, (value, value))
-
-
-def _threads_of_this_user() -> int:
-    """Without a user namespace the kernel counts them all against RLIMIT_NPROC."""
-    count = 0
-    for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
-        try:
-            if name.isdigit() and os.stat(f"/proc/{name}").st_uid == os.getuid():
-                count += len(os.listdir(f"/proc/{name}/task"))
-        except OSError:
-            continue  # it has ended
-    return count
+def _libc() -> ctypes.CDLL:
+    return ctypes.CDLL(None, use_errno=True)
 
 
 def end_with_parent() -> None:
     """The kernel ends this process when its parent ends, and gives it the orphans of its descendants."""
-    libc = _libc()
-    if libc:
+    if sys.platform == "linux":
+        libc = _libc()
         libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
         libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
         libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
@@ -81,9 +40,9 @@ def confine() -> list[str]:
     The parent stays behind, and ends as the child. Where the system refuses namespaces, the process restricts itself.
     Returns what could not be barred, some of `EVERYTHING`.
     """
-    libc = _libc()
-    if not libc:
+    if sys.platform != "linux":
         return list(EVERYTHING)
+    libc = _libc()
     user, group = os.getuid(), os.getgid()
     everything = _NEWUSER | _NEWNS | _NEWPID | _NEWNET | _NEWIPC
     if libc.unshare(everything) != 0:

@@ -6,17 +6,19 @@ import contextlib
 import faulthandler
 import gc
 import os
+import sys
 import warnings
-import weakref
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...system.timed_pipe import SelectedPipe
 from .child import answer
-from .confinement import end_with_parent, limit_copy
+from .confinement import end_with_parent
+from .limits import limit_copy
 from .nodes import Call, Edit, ProgramError
-from .python_process import PythonProcess, end_process
+from .python_process import PythonProcess
 from .python_program import PythonProgram
 
 Floats = NDArray[np.float64]
@@ -53,7 +55,7 @@ class _Copy(PythonProcess):
         self._program = program
 
     def _start(self) -> None:
-        if not hasattr(os, "fork"):
+        if sys.platform == "win32":
             raise ProgramError("this system cannot copy a process, in which an edit would be tried")
         requests, writing = os.pipe()
         reading, answers = os.pipe()
@@ -66,8 +68,7 @@ class _Copy(PythonProcess):
             _serve(self._program, requests, answers)
         os.close(requests)
         os.close(answers)
-        self._process, self._answers = _Child(child, writing), reading
-        self._end = weakref.finalize(self, end_process, self._process, reading)
+        self._attach(_Child(child, writing), SelectedPipe(reading))
 
 
 class _Child:
@@ -84,7 +85,8 @@ class _Child:
 def _serve(program: PythonProgram, requests: int, answers: int) -> NoReturn:
     """Answer in the copy until the requests end; nothing that the parent has open is touched."""
     try:
-        os.setsid()
+        if sys.platform != "win32":
+            os.setsid()
         gc.freeze()  # what the parent made is not for the copy to end
         faulthandler.disable()
         null = os.open(os.devnull, os.O_RDWR)

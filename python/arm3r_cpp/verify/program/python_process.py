@@ -5,24 +5,25 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import select
-import signal
 import subprocess
 import sys
 import time
 import weakref
 from collections.abc import Callable
-from typing import IO, Any, Protocol
+from typing import IO, Any, NoReturn, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...system.processes import end_with_descendants
+from ...system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
 from .child import HEAD, send
 from .nodes import Call, Edit, ProcessEnded, ProgramError
 
 Floats = NDArray[np.float64]
 _START = "from arm3r_cpp.verify.program.child import main; main()"
 _MOST_BYTES = 64 << 20  # of an answer
+NEEDED_BY_WINDOWS = ("SYSTEMROOT",)  # of the environment
 STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s
 
 
@@ -51,7 +52,7 @@ class PythonProcess:
         self.unbarred: list[str] = []
         self._seconds = [0.0]
         self._process: Process | None = None
-        self._answers = -1
+        self._answers: SelectedPipe | PumpedPipe | None = None
         self._hung = 0
 
     @property
@@ -85,8 +86,8 @@ class PythonProcess:
         return np.frombuffer(body).reshape(shape)
 
     def _start(self) -> None:
-        answers, writing = os.pipe()
         environment = {
+            **{name: os.environ[name] for name in NEEDED_BY_WINDOWS if name in os.environ},
             "PATH": os.defpath,
             "LANG": "C.UTF-8",
             "OPENBLAS_NUM_THREADS": "1",
@@ -96,18 +97,18 @@ class PythonProcess:
             "HOME": "/",
         }
         process = subprocess.Popen(
-            [sys.executable, "-I", "-c", _START, str(writing)],
+            [sys.executable, "-I", "-c", _START],
             stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            pass_fds=(writing,),
             env=environment,
             start_new_session=True,
             cwd="/",
         )
-        os.close(writing)
-        self._process, self._answers = process, answers
-        self._end = weakref.finalize(self, end_process, self._process, answers)
+        assert process.stdout
+        answers = TimedPipe(os.dup(process.stdout.fileno()))
+        process.stdout.close()
+        self._attach(process, answers)
         folder = os.path.dirname(os.path.abspath(self.file)) if os.path.isfile(self.file) else ""
         self._send(
             {
@@ -123,6 +124,10 @@ class PythonProcess:
         self.unbarred = [str(one) for one in head.get("unbarred", [])]
         if self.unbarred and PythonProcess.report:
             PythonProcess.report(self.unbarred)
+
+    def _attach(self, process: Process, answers: SelectedPipe | PumpedPipe) -> None:
+        self._process, self._answers = process, answers
+        self._end = weakref.finalize(self, end_process, process, answers)
 
     def _send(self, head: dict[str, Any], body: bytes) -> None:
         assert self._process and self._process.stdin
@@ -146,19 +151,16 @@ class PythonProcess:
         return head, body
 
     def _read(self, count: int, deadline: float) -> bytes:
-        parts = b""
-        while len(parts) < count:
-            ready, _, _ = select.select([self._answers], [], [], max(deadline - time.monotonic(), 0))
-            if not ready:
-                self._hung += 1
-                self._fail("takes too long: it was stopped")
-            part = os.read(self._answers, count - len(parts))
-            if not part:
-                self._fail("ends its process")
-            parts += part
-        return parts
+        assert self._answers
+        try:
+            return self._answers.read(count, deadline)
+        except TimeoutError:
+            self._hung += 1
+            self._fail("takes too long: it was stopped")
+        except EOFError:
+            self._fail("ends its process")
 
-    def _fail(self, message: str) -> None:
+    def _fail(self, message: str) -> NoReturn:
         self.close()
         raise ProcessEnded(message)
 
@@ -170,34 +172,11 @@ class PythonProcess:
             self._seconds.append(0.0)
 
 
-def end_process(process: Process, answers: int) -> None:
+def end_process(process: Process, answers: SelectedPipe | PumpedPipe) -> None:
     """End a process, and all that it started."""
-    for _ in range(20):  # a process may start others while they are ended
-        started = _descendants(process.pid)
-        for descendant in started:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(descendant, signal.SIGKILL)
-        if not started:
-            break
-    for end in (os.killpg, os.kill):  # a process that has just started may not lead its group yet
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            end(process.pid, signal.SIGKILL)
+    end_with_descendants(process.pid)
     process.wait()
-    with contextlib.suppress(OSError):
-        os.close(answers)
+    answers.close()
     if process.stdin:
         with contextlib.suppress(OSError):
             process.stdin.close()
-
-
-def _descendants(ancestor: int) -> list[int]:
-    """The processes that a process started, directly or not; orphans among them became its children."""
-    parents = {}
-    for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
-        if name.isdigit():
-            with contextlib.suppress(OSError, ValueError, IndexError), open(f"/proc/{name}/stat") as file:
-                parents[int(name)] = int(file.read().rsplit(")", 1)[1].split()[1])
-    found = {ancestor}
-    while more := {child for child, parent in parents.items() if parent in found} - found:
-        found |= more
-    return sorted(found - {ancestor})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import errno
-import os
+import platform
 from collections.abc import Iterable
 
 _ARCHITECTURES = {"x86_64": (0, 0xC000003E), "aarch64": (1, 0xC00000B7)}
@@ -52,7 +52,7 @@ def refuse(libc: ctypes.CDLL, names: Iterable[str], *, new_processes: bool = Fal
     Args:
         new_processes: whether starting processes is refused, too; threads are not.
     """
-    machine = os.uname().machine
+    machine = platform.machine()
     if machine not in _ARCHITECTURES:
         return False
     column, architecture = _ARCHITECTURES[machine]

@@ -1,0 +1,72 @@
+"""The end of processes: of another one with all that it started, and of this one as by a signal."""
+
+from __future__ import annotations
+
+import _thread
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+from typing import NoReturn
+
+_ENDED_BY_CONTROL_C = 0xC000013A  # what Windows gives for STATUS_CONTROL_C_EXIT
+
+
+def end_by_interrupt() -> NoReturn:
+    """End this process as Ctrl-C does, so that its caller sees the reason."""
+    if sys.platform == "win32":
+        os._exit(_ENDED_BY_CONTROL_C)
+    end_by_signal(signal.SIGINT)
+
+
+def end_by_signal(number: signal.Signals) -> NoReturn:
+    """End this process by the signal itself."""
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+    raise SystemExit(128 + number)
+
+
+def interrupt_main_thread() -> None:
+    """As Ctrl-C; also while the main thread sleeps, but on Windows."""
+    if sys.platform == "win32":
+        _thread.interrupt_main()
+    else:
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+
+def end_by_closed_pipe() -> None:
+    """End this process as one whose reader is gone, where the system knows that."""
+    if sys.platform != "win32":
+        end_by_signal(signal.SIGPIPE)
+
+
+def end_with_descendants(pid: int) -> None:
+    """End a process, which leads a group of its own, and all that it started."""
+    if sys.platform == "win32":
+        subprocess.run(["taskkill", "/F", "/T", "/PID", str(pid)], capture_output=True, check=False)
+        return
+    for _ in range(20):  # a process may start others while they are ended
+        started = _descendants(pid)
+        for descendant in started:
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(descendant, signal.SIGKILL)
+        if not started:
+            break
+    for end in (os.killpg, os.kill):  # a process that has just started may not lead its group yet
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            end(pid, signal.SIGKILL)
+
+
+def _descendants(ancestor: int) -> list[int]:
+    """The processes that a process started, directly or not; orphans among them became its children."""
+    parents = {}
+    for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
+        if name.isdigit():
+            with contextlib.suppress(OSError, ValueError, IndexError), open(f"/proc/{name}/stat") as file:
+                parents[int(name)] = int(file.read().rsplit(")", 1)[1].split()[1])
+    found = {ancestor}
+    while more := {child for child, parent in parents.items() if parent in found} - found:
+        found |= more
+    return sorted(found - {ancestor})
