@@ -12,6 +12,8 @@ const OK = 0;
 const INDEX = -103; // ARM3R_E_INDEX
 const RUN_OPTIONS = 56; // sizeof(arm3r_run_options) in wasm32
 const EVENT = 88; // sizeof(arm3r_event)
+const BATCH_ROWS = 56; // sizeof(arm3r_batch_rows)
+const BATCH_OPTIONS = 56; // sizeof(arm3r_batch_options)
 const ADDRESSES = 2 ** 32; // bytes that a pointer can tell apart
 const BADF = 8; // of WASI: there is no such file
 const NOSYS = 52; // of WASI: there is no such function
@@ -186,14 +188,15 @@ export class Core {
      */
     batch(text, options = {}) {
         const { name = "scenario.yaml", set = {}, runs = 1000, seed = 1, within = {}, columns = [], rows = 201 } = options;
-        const { values = {},  levels = [0, 0.05, 0.25, 0.5, 0.75, 0.95, 1], progress } = options;
+        const { values = {}, levels = [0, 0.05, 0.25, 0.5, 0.75, 0.95, 1] } = options;
         return this.#withScenario(text, { name, set }, (scenario) => {
             const params = this.#params(scenario);
             const given = Object.entries(values).map(([name, list]) => ({ name, index: this.#indexOf(name), values: list }));
             const varied = [...given, ...this.#draw(params, within, runs, seed)];
-            const result = { count: runs, varied: {}, summary: this.#summary(params, varied, runs) };
+            const result = { count: runs, varied: {} };
             for (const { name, values } of varied) result.varied[name] = values;
-            if (columns.length) Object.assign(result, this.#band(params, varied, { runs, columns, rows, levels, progress }));
+            if (columns.length) Object.assign(result, this.#band(params, varied, { runs, columns, rows, levels }));
+            else result.summary = this.#summaries(params, varied, runs);
             return result;
         });
     }
@@ -381,24 +384,29 @@ export class Core {
         return varied;
     }
 
-    #summary(params, varied, runs) {
+    // options: the address of an arm3r_batch_options, or 0.
+    #summaries(params, varied, runs, options = 0) {
         const count = this.#call("arm3r_summary_count");
-        const table = new Float64Array(varied.length * runs);
-        varied.forEach(({ values }, j) => table.set(values, j * runs));
-        const indices = Uint32Array.from(varied, ({ index }) => index);
         return this.#withMemory(8 * count * runs, (results) => {
-            this.#withArray(params, (at) =>
-                this.#withArray(indices, (which) =>
-                    this.#withArray(table, (values) => {
-                        const many = [at, params.length, which, indices.length, values, runs, 0, results];
-                        this.#check(this.#call("arm3r_batch_run", ...many));
-                    }),
-                ),
-            );
+            this.#withRuns(params, varied, runs, (...many) => {
+                this.#check(this.#call("arm3r_batch_run", ...many, options, results));
+            });
             const summary = {};
             for (let i = 0; i < count; ++i) summary[this.#summaryName(i)] = this.#doubles(results + 8 * i * runs, runs);
             return summary;
         });
+    }
+
+    // What the functions of a batch take first: the numbers of all runs, and those that vary.
+    #withRuns(params, varied, runs, use) {
+        const table = new Float64Array(varied.length * runs);
+        varied.forEach(({ values }, j) => table.set(values, j * runs));
+        const indices = Uint32Array.from(varied, ({ index }) => index);
+        return this.#withArray(params, (at) =>
+            this.#withArray(indices, (which) =>
+                this.#withArray(table, (values) => use(at, params.length, which, indices.length, values, runs)),
+            ),
+        );
     }
 
     #summaryName(index) {
@@ -408,44 +416,41 @@ export class Core {
         });
     }
 
-    #band(params, varied, { runs, columns, rows, levels, progress }) {
+    #band(params, varied, { runs, columns, rows, levels }) {
         const [start, stop] = ["time.start", "time.stop"].map((name) => params[this.#indexOf(name)]);
         const numbers = params.slice();
         numbers[this.#indexOf("time.log_every")] = (stop - start) / (rows - 1);
-        const wanted = ["t", ...columns];
-        const samples = wanted.map(() => new Float64Array(rows * runs).fill(NaN)); // all runs of a row side by side
-        let places = null; // of the wanted columns in a run
-        for (let i = 0; i < runs; ++i) {
-            for (const { index, values } of varied) numbers[index] = values[i];
-            this.#withRunOf(numbers, (run) => {
-                places ??= this.#placesOf(run, wanted);
-                const logged = Math.min(rows, this.#shape(run)[0]);
-                places.forEach((place, which) => {
-                    const data = new Float64Array(this.#buffer(), this.#column(run, place)[2], logged);
-                    for (let row = 0; row < logged; ++row) samples[which][row * runs + i] = data[row];
-                });
+        const wanted = this.#placesOf(["t", ...columns]);
+        return this.#withArray(wanted, (places) => {
+            const room = this.#rowCount(numbers, varied, runs, [places, wanted.length]);
+            return this.#withMemory(8 * wanted.length * room * runs, (data) => {
+                const batchRows = words(BATCH_ROWS, [BATCH_ROWS, places, wanted.length, room, data]);
+                const summary = this.#withArray(batchRows, (at) =>
+                    this.#withArray(words(BATCH_OPTIONS, [BATCH_OPTIONS, 0, 0, 0, 0, 0, at]), (options) =>
+                        this.#summaries(numbers, varied, runs, options),
+                    ),
+                );
+                const samples = new Float64Array(this.#buffer(), data, wanted.length * room * runs);
+                const shape = { columns: wanted.length, rows: room };
+                const band = (column) => quantilesOf(samples, { column, ...shape }, levels);
+                const quantiles = Object.fromEntries(columns.map((name, i) => [name, band(i + 1)]));
+                return { summary, time: quantilesOf(samples, { column: 0, ...shape }, [1])[1], quantiles };
             });
-            progress?.(i + 1, runs);
-        }
-        const [time, ...values] = samples;
-        const quantiles = {};
-        columns.forEach((column, i) => (quantiles[column] = quantilesOf(values[i], rows, runs, levels)));
-        return { time: quantilesOf(time, rows, runs, [1])[1], quantiles };
+        });
     }
 
-    #withRunOf(numbers, use) {
-        const run = this.#withArray(numbers, (at) => this.#handle("arm3r_params_run", at, numbers.length, 0));
-        try {
-            return use(run);
-        } finally {
-            this.#call("arm3r_run_free", run);
-        }
+    #rowCount(params, varied, runs, columns) {
+        return this.#withMemory(4, (out) => {
+            this.#withRuns(params, varied, runs, (...many) => {
+                this.#check(this.#call("arm3r_batch_row_count", ...many, ...columns, out));
+            });
+            return new Uint32Array(this.#buffer(), out, 1)[0];
+        });
     }
 
-    #placesOf(run, columns) {
-        const [, count] = this.#shape(run);
-        const names = Array.from({ length: count }, (_, i) => this.#text(this.#column(run, i)[0]));
-        return columns.map((column) => {
+    #placesOf(columns) {
+        const names = this.columnsText().split("\n").map((line) => line.split(/\s/, 1)[0]);
+        return Uint32Array.from(columns, (column) => {
             if (!names.includes(column)) throw notAColumn(column);
             return names.indexOf(column);
         });
@@ -532,7 +537,7 @@ function problemOf({ code, message, file, line, column, path, got, allowed, hint
 const yamlOf = (value) => (typeof value === "string" ? value : JSON.stringify(value));
 
 const notAColumn = (name) =>
-    new Arm3rError({ status: INDEX, code: "index", message: `there is no column ${name} in this run` });
+    new Arm3rError({ status: INDEX, code: "index", message: `there is no column ${name}` });
 
 // What `make` gives, undefined where it fails with this status.
 function attempt(make, status) {
@@ -555,18 +560,51 @@ function randomNumbers(seed) {
     };
 }
 
-// Of each row the levels over all runs, linear between neighbours; NaN is not counted.
-function quantilesOf(samples, rows, runs, levels) {
+// A struct of `size` bytes whose first members are these, each of 32 bits; the others are 0.
+function words(size, members) {
+    const struct = new Uint32Array(size / 4);
+    struct.set(members);
+    return struct;
+}
+
+// Of each row of a column the levels over all runs, linear between neighbours; NaN is not counted. The samples lie run by
+// run, in each the columns one after the other.
+function quantilesOf(samples, { column, columns, rows }, levels) {
     const found = Object.fromEntries(levels.map((level) => [level, new Float64Array(rows).fill(NaN)]));
+    const values = new Float64Array(samples.length / (columns * rows));
+    const rising = [...levels].sort((a, b) => a - b);
     for (let row = 0; row < rows; ++row) {
-        const values = samples.slice(row * runs, (row + 1) * runs).filter((value) => !Number.isNaN(value)).sort();
-        if (values.length === 0) continue;
-        for (const level of levels) {
-            const place = level * (values.length - 1);
+        let count = 0;
+        for (let at = column * rows + row; at < samples.length; at += columns * rows)
+            if (!Number.isNaN(samples[at])) values[count++] = samples[at];
+        let settled = 0; // as many are where they belong
+        for (const level of count ? rising : []) {
+            const place = level * (count - 1);
             const below = Math.floor(place);
-            const above = Math.min(below + 1, values.length - 1);
+            const above = Math.min(below + 1, count - 1);
+            for (const at of [below, above]) settled = select(values, at, settled, count - 1);
             found[level][row] = values[below] + (place - below) * (values[above] - values[below]);
         }
     }
     return found;
+}
+
+// Puts the value that sorting would put at `place` there, with no larger one before it (Hoare 1961). Returns the place.
+function select(values, place, first, last) {
+    while (first < last) {
+        const pivot = values[(first + last) >> 1];
+        let [i, j] = [first, last];
+        while (i <= j) {
+            while (values[i] < pivot) ++i;
+            while (values[j] > pivot) --j;
+            if (i > j) break;
+            const value = values[i];
+            values[i++] = values[j];
+            values[j--] = value;
+        }
+        if (place <= j) last = j;
+        else if (place >= i) first = i;
+        else break;
+    }
+    return place;
 }
