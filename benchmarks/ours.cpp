@@ -87,20 +87,27 @@ void Stepper<Size>::advance(int steps) {
 template class Stepper<motion_size>;
 template class Stepper<state_size>;
 
-template <int N, std::size_t Size>
-ARM3R_INLINE void march_packs(const Plant<Pack<N>>& plant, State<Pack<N>, Size>& y, int steps) {
+template <Terms terms, int N, std::size_t Size>
+ARM3R_INLINE void march_packs_of(const Plant<Pack<N>>& plant, State<Pack<N>, Size>& y, int steps) {
     RightHandSide<Pack<N>, Pack<N>> rhs(plant);
     if (plant.acts_on_arm) rhs.force_mode = ContactForceMode::each_stage;
-    State<Pack<N>, Size> f;
+    State<Pack<N>, Size> f{};
     Pack<N> t(0.0), h(step);
     rhs.begin_step(y);
     rhs(t, y, f);
     for (int i = 0; i < steps; ++i) {
-        y = rk4_step(rhs, t, y, f, h);
+        constexpr std::size_t moving = terms == Terms::common ? std::min<std::size_t>(Size, common_moving) : Size;
+        y = rk4_step_of_first<moving>(rhs.template of_terms<terms>(), t, y, f, h);
         t += h;
         rhs.begin_step(y);
-        rhs(t, y, f);
+        rhs.template of_terms<terms>()(t, y, f);
     }
+}
+
+template <int N, std::size_t Size>
+ARM3R_INLINE void march_packs(const Plant<Pack<N>>& plant, State<Pack<N>, Size>& y, int steps) {
+    if (has_common_terms(plant)) march_packs_of<Terms::common>(plant, y, steps);
+    else march_packs_of<Terms::any>(plant, y, steps);
 }
 
 template <std::size_t Size>

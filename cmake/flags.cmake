@@ -23,7 +23,9 @@ set(_numeric -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Pairing scalars up lengthens the chain of a step by a tenth, and numbers that were written one by one have to be waited
   # for when they are read in pairs. What is to be computed side by side is written as packs.
-  list(APPEND _numeric -fno-tree-vectorize)
+  # Only a loop that is marked for it becomes one of vectors.
+  list(APPEND _numeric -fno-tree-vectorize -fopenmp-simd)
+  set(_marked_loops ARM3R_MARKED_LOOPS)
   set(_memory --param=ggc-min-expand=60) # g++ frees memory sooner: below 600 MB for each file of the library
 endif()
 add_library(arm3r_flags INTERFACE)
@@ -32,7 +34,8 @@ target_compile_features(arm3r_flags INTERFACE cxx_std_20)
 set(_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
 target_compile_options(arm3r_flags INTERFACE ${_numeric} ${_memory} -Wall -Wextra
                        "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:${_false_alarms}>")
-target_compile_definitions(arm3r_flags INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY ARM3R_VERSION="${PROJECT_VERSION}")
+target_compile_definitions(arm3r_flags INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY ARM3R_VERSION="${PROJECT_VERSION}"
+                           ${_marked_loops})
 
 # Results have the same bits for any lanes, and fewer widths compile faster. A build for one width runs on any processor:
 # on one that lacks the registers, runs go one by one.

@@ -264,6 +264,34 @@ BOOST_AUTO_TEST_CASE(the_equation_of_motion_takes_any_gravity) {
     }
 }
 
+// What a plant of common terms is computed by gives the numbers of the formulas for every plant.
+BOOST_AUTO_TEST_CASE(common_terms_are_the_terms_of_every_plant) {
+    Random random(19);
+    int pressed = 0;
+    for (const std::string controller : {"none", "gravity_compensation", "constant"}) {
+        for (int i = 0; i < 100; ++i) {
+            Params params;  // the lecture's wall, an arm of other numbers
+            randomise_link(params, "arm.link2", random), randomise_link(params, "arm.link3", random);
+            const Vec3<double> q = random.vector(-1, 1), qd = random.vector(-5, 5);
+            params.set("wall", 1).set("wall.acts_on_arm", i % 3 != 0).set("controller.torque", random.vector(-20, 20));
+            params.choose("controller.type", controller).set("arm.payload.mass", random.in(0, 2));
+            const Plant<double> plant = make_setup(params).plant;
+            BOOST_TEST_REQUIRE(has_common_terms(plant));
+            RightHandSide<double, double> rhs(plant);
+            rhs.force_mode = plant.acts_on_arm ? ContactForceMode::each_stage : ContactForceMode::none;
+            const State<double, state_size> y{q[0], q[1], q[2], qd[0], qd[1], qd[2]};
+            State<double, state_size> every{}, common{};
+            const double t = random.in(15, 40);
+            rhs.begin_step(y);
+            rhs(t, y, every);
+            rhs.of_terms<Terms::common>()(t, y, common);
+            for (std::size_t j = 0; j < state_size; ++j) BOOST_TEST(every[j] == common[j]);
+            pressed += every[work_of_wall] != 0;
+        }
+    }
+    BOOST_TEST(pressed > 10);
+}
+
 // ---- seen from the tip
 
 BOOST_AUTO_TEST_CASE(a_force_on_the_tip_accelerates_it_by_the_mobility) {

@@ -24,6 +24,7 @@ enum : std::size_t {
     state_size,
     quadrature_count = state_size - motion_size,
     quadrature_parts = state_size - dissipated_in_joints,  // the last of them, which are parts of another one
+    common_moving = dissipated,                            // what changes within a step of a plant of common terms
 };
 
 // A continuous controller with memory adds the memory of its law, that of its observer, and the filtered force.
@@ -80,6 +81,27 @@ bool can_lose_energy(const Plant<P>& plant) {
     return loses_in_joints || dissipates_in_contact(plant) || (plant.acts_on_arm && loses_at_wall);
 }
 
+// What code that computes a plant's terms knows of them when it is compiled. `common`: the plant has common terms only, so
+// that the code holds no others and asks for few.
+enum class Terms { any, common };
+
+// Whether gravity is vertical, the joints have no friction and the actuators no limit, nothing has a memory, and the wall,
+// where there is one, stands still or moves at one velocity and is a plain spring.
+template <class P>
+bool has_common_terms(const Plant<P>& plant) {
+    const auto is_common = [](const Arm<P>& arm) {
+        return arm.gravity_is_vertical && !arm.has_damping && !arm.has_dry_friction && !arm.has_torque_limit;
+    };
+    const Wall<P>& wall = plant.wall;
+    const bool moves_evenly = wall.motion == Motion::fixed || wall.motion == Motion::constant;
+    const bool has_common_wall = moves_evenly && is_plain_spring(wall, plant.contact);
+    const bool has_known_torque = plant.holds_torque || plant.controller.type == ControllerType::none ||
+                                  plant.controller.type == ControllerType::gravity_compensation;
+    return is_common(plant.arm) && is_common(plant.controller.model) && (!plant.has_wall || has_common_wall) &&
+           has_known_torque && plant.controller.algorithm == Algorithm::closed_form && !has_memory(plant) &&
+           !plant.external_force.on;
+}
+
 // The torque of a controller without gains, before and after the limit of the actuators.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> feedforward_torque(const Plant<P>& plant, const Vec3<T>& q, const Pose<T>& p) {
@@ -134,6 +156,15 @@ public:
         derivative(seen, wall, pose_near(y), y, dy);
     }
 
+    // The same for a plant of known terms; with common ones the contact is decided at each stage, if there is any.
+    template <Terms terms>
+    ARM3R_INLINE auto of_terms() const {
+        return [this](const T& t, const auto& y, auto& dy) ARM3R_INLINE_LAMBDA {
+            if constexpr (terms == Terms::common) this->common_derivative_at(t, y, dy);
+            else (*this)(t, y, dy);
+        };
+    }
+
     // The same with a known pose, and with a known wall if the wall is needed.
     template <std::size_t N>
     ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const State<T, N>& y,
@@ -181,6 +212,45 @@ public:
             dy[dissipated] = joint_loss + contact_loss;
             dy[dissipated_in_joints] = joint_loss;
             dy[dissipated_in_friction] = friction_loss;
+        }
+    }
+
+    // The same for a plant of common terms, whose contact is decided at each stage, if there is any. Nothing dissipates,
+    // and these components of dy are not set.
+    template <std::size_t N>
+    ARM3R_INLINE void common_derivative(const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
+                                        const State<T, N>& y, State<T, N>& dy, Vec3<T>& tau) const {
+        const Vec3<T> qd(y[3], y[4], y[5]);
+        const Arm<P>& arm = plant_.arm;
+        const bool compensates = plant_.controller.type == ControllerType::gravity_compensation;
+        Vec3<T> weight = vertical_weight(arm, p), drive = zero_vector<T>();
+        tau = zero_vector<T>();
+        if (plant_.holds_torque) {
+            drive = tau = broadcast<T>(plant_.held_torque);
+        } else if (compensates) {
+            const Vec3<T> assumed = vertical_weight(plant_.controller.model, p);
+            tau = {assumed[0], assumed[1] + assumed[2], assumed[2]};
+            weight = minus(weight, assumed);
+        }
+        T outer_power(0.0);
+        if (plant_.acts_on_arm) {
+            auto where = in.depth > T(0.0);
+            if (any(where)) {
+                if (plant_.wall.has_outline) where = where && inside_outline(plant_.wall, in) >= T(0.0);
+                const T depth = select(where, in.depth, T(0.0));
+                const Vec3<T> on_tip = plain_spring_force(plant_.wall, plant_.contact, depth).on_tip;
+                drive = plus(drive, tip_force_torque(arm, p, on_tip));
+                outer_power = dot(on_tip, wall.velocity);
+            }
+        }
+        const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive, weight);
+        for (int i = 0; i < 3; ++i) {
+            dy[i] = qd[i];
+            dy[3 + i] = qdd[i];
+        }
+        if constexpr (N >= state_size) {
+            dy[work_of_actuators] = dot(tau, qd);
+            dy[work_of_wall] = outer_power;
         }
     }
 
@@ -265,6 +335,23 @@ public:
     }
 
 private:
+    template <std::size_t N>
+    ARM3R_INLINE void common_derivative_at(const T& t, const State<T, N>& y, State<T, N>& dy) const {
+        const Pose<T> p = pose_near(y);
+        WallState<T> wall;  // left uninitialised if unused, as the indentation
+        Indentation<T> in;
+        if (plant_.acts_on_arm) {
+            wall = even_wall_at(plant_.wall, min(t, latest));
+            in = indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p));
+        }
+        Vec3<T> tau;
+        common_derivative(wall, p, in, y, dy, tau);
+    }
+
+    ARM3R_INLINE static Vec3<T> vertical_weight(const Arm<P>& arm, const Pose<T>& p) {
+        return link_weight(arm.lumped, arm.gravity, true, p);
+    }
+
     // Whether the actuators only compensate the weight of the controller's model. Both weights are then subtracted from
     // each other, so that equal ones leave no rounding error (3.8).
     ARM3R_INLINE bool compensates_weight() const {

@@ -15,7 +15,7 @@ class LaneRk4 : public LaneRun<T, N> {
     using Y = typename Base::Y;
 
 public:
-    explicit LaneRk4(const Setup& any_lane) : Base(any_lane) {
+    explicit LaneRk4(const Setup& any_lane) : Base(any_lane), has_common_terms_(has_common_terms(any_lane.plant)) {
         if (this->plant_.acts_on_arm || senses_wall(this->plant_)) this->rhs_.force_mode = ContactForceMode::each_stage;
     }
 
@@ -30,36 +30,9 @@ public:
     // changed(lane, change) is called before each change of contact.
     template <class Changed>
     ARM3R_INLINE void step(Changed changed) {
-        t0_ = this->t_;
-        if (Base::lanes == 1 || this->has_performance_) {
-            y0_ = this->y_;
-            f0_ = this->f_;
-        }
-        if (this->has_performance_) this->begin_segment();
-        before_ = this->in_;
-        const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
-        const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
-        const T t1 = select(is_last, this->stop_, aim);
-        this->h_ = select(is_last, T(this->stop_ - t0_), step_);
-        has_jump_ = any(next_jump_ <= t1);
-        if (has_jump_) apply_jumps(t1);
-        const Y y1 = stepped();
-        const Mask finite = Base::is_finite(y1), moved = finite && this->active_;
-        this->accept(moved, t1, y1);
-        this->evaluations_ = this->evaluations_ + 4.0;
-        if (any(!finite && this->active_)) stop_diverged_lanes(finite);
-        if constexpr (Base::lanes == 1) store_end();
-        if (has_jump_) this->rhs_.latest = T(infinite);
-        this->observe();
-        eventful_ = false;
-        if (this->plant_.has_wall) detect_contact(moved, changed);
-        this->update_energy_balance();
-        if (this->has_performance_)
-            this->plant_.holds_torque && !this->tracked_.motion() ? add_performance(trapezoid, moved)
-                                                                  : add_performance(simpson, moved);
-        this->check_lanes();
+        if (N == state_size && has_common_terms_) step_of<Terms::common>(changed);
+        else step_of<Terms::any>(changed);
     }
-
     // The start of the last step, and the derivatives at both ends: a single run needs them for its dense output.
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
     FullState y0(int lane) const { return Base::state_of(y0_, lane); }
@@ -78,9 +51,45 @@ public:
     }
 
 private:
+    template <Terms terms, class Changed>
+    ARM3R_INLINE void step_of(Changed& changed) {
+        t0_ = this->t_;
+        if (Base::lanes == 1 || this->has_performance_) {
+            y0_ = this->y_;
+            f0_ = this->f_;
+        }
+        if (this->has_performance_) this->begin_segment();
+        before_ = this->in_;
+        const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
+        const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
+        const T t1 = select(is_last, this->stop_, aim);
+        this->h_ = select(is_last, T(this->stop_ - t0_), step_);
+        has_jump_ = any(next_jump_ <= t1);
+        if (has_jump_) apply_jumps(t1);
+        const Y y1 = stepped<terms>();
+        const Mask finite = Base::is_finite(y1), moved = finite && this->active_;
+        this->accept(moved, t1, y1);
+        this->evaluations_ = this->evaluations_ + 4.0;
+        if (any(!finite && this->active_)) stop_diverged_lanes(finite);
+        if constexpr (Base::lanes == 1) store_end();
+        if (has_jump_) this->rhs_.latest = T(infinite);
+        this->template observe<terms>();
+        eventful_ = false;
+        if (this->plant_.has_wall) detect_contact<terms>(moved, changed);
+        this->update_energy_balance();
+        if (this->has_performance_)
+            this->plant_.holds_torque && !this->tracked_.motion() ? add_performance(trapezoid, moved)
+                                                                  : add_performance(simpson, moved);
+        this->check_lanes();
+    }
+
+    template <Terms terms>
     ARM3R_INLINE Y stepped() const {
-        if constexpr (N == state_size) return rk4_step(this->rhs_, t0_, this->y_, this->f_, this->h_);
-        else return rk4_step_in_a_loop(this->rhs_, t0_, this->y_, this->f_, this->h_);
+        const auto& [rhs, y, f0, h] = std::tie(this->rhs_, this->y_, this->f_, this->h_);
+        if constexpr (terms == Terms::common)
+            return rk4_step_of_first<common_moving>(rhs.template of_terms<terms>(), t0_, y, f0, h);
+        else if constexpr (N == state_size) return rk4_step(rhs, t0_, y, f0, h);
+        else return rk4_step_in_a_loop(rhs, t0_, y, f0, h);
     }
 
     // Applies the jumps up to the end of the step; a jump exactly at the end is left to the next step.
@@ -125,17 +134,18 @@ private:
         ARM3R_INLINE T mean() const { return 0.25 * ((first + fourth) + (second + third)); }
     };
 
-    template <class Changed>
+    template <Terms terms, class Changed>
     ARM3R_INLINE void detect_contact(const Mask& moved, Changed& changed) {
         const T &h = this->h_, o(0.0);
         const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
+        const bool is_elastic = terms == Terms::common || this->is_elastic_;
         Mask eventful = Base::select_mask(this->touching_ || this->embedded_, depth.low() <= o, depth.high() > o);
         if (this->any_touching_) {
-            if (this->is_elastic_)
+            if (is_elastic)
                 eventful = eventful || (this->touching_ && depth.high() > max(this->max_depth_, depth.fourth));
             if (this->plant_.wall.has_outline) eventful = eventful || (this->touching_ && is_near_edge());
             const Mask uneventful = this->touching_ && !eventful && moved;
-            if (this->is_elastic_) {
+            if (is_elastic) {
                 this->update_peak_where(uneventful, depth.fourth, this->t_, this->max_depth_);
                 this->depth_time_ = this->depth_time_ + select(uneventful, T(h * depth.mean()), o);
             } else {
@@ -267,6 +277,7 @@ private:
         this->sample_performance(t, p, wall, in, tau, qd, this->segment_.samples[1]);
     }
 
+    const bool has_common_terms_;
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};

@@ -128,6 +128,7 @@ protected:
     // ---- one instant
 
     // Evaluates pose, wall, indentation, derivative and energies at the present state.
+    template <Terms terms = Terms::any>
     ARM3R_INLINE void observe() {
         if (needs_derivative_) {
             rhs_.begin_step(y_);
@@ -136,21 +137,39 @@ protected:
             p_ = pose(Vec3<T>(y_[0], y_[1], y_[2]));
         }
         const Vec3<T> qd(y_[3], y_[4], y_[5]);
-        if (plant_.has_wall) {
-            wall_ = wall_at(plant_.wall, t_);
-            in_ = tip_indentation(plant_, wall_, p_, qd);
-        }
+        if (plant_.has_wall) locate_wall<terms>(qd);
         kinetic_ = kinetic_energy(plant_.arm, p_, qd);
         potential_ = potential_energy(plant_.arm, p_);
         if (is_controlled_ && any(is_due())) update_controller();
-        if (needs_derivative_) derive();
+        if (needs_derivative_) derive<terms>();
         else if (has_performance_) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
     }
     void observe_outlined();
 
+    // With common terms nothing else of wall and indentation is needed.
+    template <Terms terms>
+    ARM3R_INLINE void locate_wall(const Vec3<T>& qd) {
+        if constexpr (terms == Terms::common) {
+            const Wall<T>& plate = plant_.wall;
+            const WallState<T> now = even_wall_at(plate, t_);
+            wall_.position = now.position, wall_.velocity = now.velocity;
+            const Vec3<T> x = minus(tip_position(plant_.arm, p_), now.position);
+            const Vec3<T> v = minus(tip_velocity(plant_.arm, p_, qd), now.velocity);
+            in_.depth = plate.face_offset - dot(plate.n, x), in_.rate = -dot(plate.n, v);
+            if (!plate.has_outline) return;
+            in_.across1 = dot(plate.e1, x), in_.across2 = dot(plate.e2, x);
+            in_.slip1 = dot(plate.e1, v), in_.slip2 = dot(plate.e2, v);
+        } else {
+            wall_ = wall_at(plant_.wall, t_);
+            in_ = tip_indentation(plant_, wall_, p_, qd);
+        }
+    }
+
     // With a controller's memory the code is long, and is compiled once.
+    template <Terms terms = Terms::any>
     ARM3R_INLINE void derive() {
-        if constexpr (N == state_size) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
+        if constexpr (terms == Terms::common) rhs_.common_derivative(wall_, p_, in_, y_, f_, tau_);
+        else if constexpr (N == state_size) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
         else Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_); });
     }
 

@@ -77,18 +77,23 @@ bool is_plain_motion(const Wall<P>& wall) {
     return wall.motion != Motion::ramp && wall.motion != Motion::table && wall.rotation == Rotation::none;
 }
 
+// A plate that stands still or moves at one velocity.
 template <class P, class T>
-ARM3R_INLINE WallState<T> plain_wall_at(const Wall<P>& wall, const T& t) {
+ARM3R_INLINE WallState<T> even_wall_at(const Wall<P>& wall, const T& t) {
     WallState<T> state = no_wall<T>();
     state.position = broadcast<T>(wall.point);
-    if (wall.motion == Motion::constant) {
-        for (int i = 0; i < 3; ++i) {
-            state.position[i] = wall.point[i] + wall.velocity[i] * t;
-            state.velocity[i] = T(wall.velocity[i]);
-        }
-    } else if (wall.motion == Motion::sinusoid) {
-        move_along(wall.direction, scalar_motion(wall.sinusoid, t), state);
+    if (wall.motion != Motion::constant) return state;
+    for (int i = 0; i < 3; ++i) {
+        state.position[i] = wall.point[i] + wall.velocity[i] * t;
+        state.velocity[i] = T(wall.velocity[i]);
     }
+    return state;
+}
+
+template <class P, class T>
+ARM3R_INLINE WallState<T> plain_wall_at(const Wall<P>& wall, const T& t) {
+    WallState<T> state = even_wall_at(wall, t);
+    if (wall.motion == Motion::sinusoid) move_along(wall.direction, scalar_motion(wall.sinusoid, t), state);
     return state;
 }
 

@@ -64,7 +64,10 @@ struct PackMask {
         if constexpr (N == 2) {
             return (a.v[0] | a.v[1]) != 0;
         } else if constexpr (N == 8) {
-            typename Register<std::int8_t, 8>::type narrow = __builtin_convertvector(a.v, decltype(narrow));
+            // Ones that g++ 12 cannot see: it takes the conversion of a comparison's result apart.
+            std::int64_t ones = -1;
+            asm("" : "+r"(ones));
+            typename Register<std::int8_t, 8>::type narrow = __builtin_convertvector(a.v & ones, decltype(narrow));
             std::int64_t lanes;
             __builtin_memcpy(&lanes, &narrow, sizeof lanes);
             return lanes != 0;
@@ -180,10 +183,19 @@ struct Pack {
     ARM3R_INLINE friend Pack copysign(const Pack& magnitude, const Pack& sign) {
         return Pack((Vector)(((BitVector)magnitude.v & ~sign_bit) | ((BitVector)sign.v & sign_bit)));
     }
+    // g++ has no function for the roots of a vector, but takes them side by side in a loop that is marked for it.
     ARM3R_INLINE friend Pack sqrt(const Pack& x) {
-        Pack root;
-        for (int lane = 0; lane < N; ++lane) root.v[lane] = __builtin_sqrt(x.v[lane]);
-        return root;
+#if __has_builtin(__builtin_elementwise_sqrt)
+        return Pack(__builtin_elementwise_sqrt(x.v));
+#else
+        alignas(Vector) double root[N];
+        x.store(root);
+#if defined(ARM3R_MARKED_LOOPS)  // by a build with -fopenmp-simd
+#pragma omp simd simdlen(N)
+#endif
+        for (int lane = 0; lane < N; ++lane) root[lane] = __builtin_sqrt(root[lane]);
+        return load(root);
+#endif
     }
 
 private:

@@ -56,20 +56,26 @@ Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const S
     return dense;
 }
 
-// One step of the classical method (5.1). f0 is the derivative at (t, y), with f.begin_step(y) done.
-template <class T, std::size_t N, class F>
-ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
-    State<T, N> stage, k2, k3, k4, y1;
+// One step of the classical method (5.1). f0 is the derivative at (t, y), with f.begin_step(y) done. Components from
+// `Moving` on stay as they are; f need not set their rates.
+template <std::size_t Moving, class T, std::size_t N, class F>
+ARM3R_INLINE State<T, N> rk4_step_of_first(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0,
+                                           const T& h) {
+    State<T, N> stage = y, k2, k3, k4, y1 = y;
     const T half = 0.5 * h;
-    for (std::size_t i = 0; i < N; ++i) stage[i] = y[i] + half * f0[i];
+    for (std::size_t i = 0; i < Moving; ++i) stage[i] = y[i] + half * f0[i];
     f(t + half, stage, k2);
-    for (std::size_t i = 0; i < N; ++i) stage[i] = y[i] + half * k2[i];
+    for (std::size_t i = 0; i < Moving; ++i) stage[i] = y[i] + half * k2[i];
     f(t + half, stage, k3);
-    for (std::size_t i = 0; i < N; ++i) stage[i] = y[i] + h * k3[i];
+    for (std::size_t i = 0; i < Moving; ++i) stage[i] = y[i] + h * k3[i];
     f(t + h, stage, k4);
     const T sixth = h / 6.0;
-    for (std::size_t i = 0; i < N; ++i) y1[i] = y[i] + sixth * ((f0[i] + k4[i]) + 2.0 * (k2[i] + k3[i]));
+    for (std::size_t i = 0; i < Moving; ++i) y1[i] = y[i] + sixth * ((f0[i] + k4[i]) + 2.0 * (k2[i] + k3[i]));
     return y1;
+}
+template <class T, std::size_t N, class F>
+ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
+    return rk4_step_of_first<N>(f, t, y, f0, h);
 }
 
 // The same bits as rk4_step, with a single call of f in the code: for a long f.
