@@ -14,7 +14,7 @@ class LaneTaylor : public LaneRun<T> {
 public:
     explicit LaneTaylor(const Setup& any_lane)
         : Base(any_lane),
-          order_(order_of(any_lane.solver.tol)),
+          order_(batch_key_of(any_lane).order),
           free_kernel_(kernel_of(any_lane.plant, false)),
           pressed_kernel_(kernel_of(any_lane.plant, true)) {
         this->needs_derivative_ = false;
