@@ -36,8 +36,7 @@ class Platform:
         return f"cp310-abi3-{self.tag}" if self.extension else f"py3-none-{self.tag}"
 
     @property
-    def installed(self) -> Path:
-        """The folder of the build."""
+    def build_folder(self) -> Path:
         return ROOT / "build" / "cross" / self.name
 
 
@@ -81,7 +80,7 @@ def settings(target: Platform) -> dict[str, str]:
         "CMAKE_COMPILE_WARNING_AS_ERROR": "ON",
     }
     return {
-        "build-dir": str(target.installed),
+        "build-dir": str(target.build_folder),
         "wheel.tags": target.wheel_tag,
         **{f"cmake.define.{name}": str(value) for name, value in definitions.items()},
     }
