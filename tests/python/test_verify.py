@@ -217,6 +217,12 @@ def test_an_edit_follows_a_length_that_is_not_used(written: Any) -> None:
     assert not any("as `1`" in words for words in verdict.alternatives)
 
 
+def test_what_is_nan_tells_nothing_about_a_length(tmp_path: Path) -> None:
+    program = next(one for one in PROGRAMS if one.name == "jacobian by cross products, slide")
+    assert program.text.count("*u + a3*") == 1
+    assert judged(program, program.text.replace("*u + a3*", "*u ** a3*"), tmp_path) == "named"
+
+
 def test_two_edits_are_shown_only_if_they_hold_together(tmp_path: Path) -> None:
     program = next(one for one in PROGRAMS if one.name == "jacobian by transforms, slide")
     text = program.text.replace("s*sa, a*c]", "s*sa, -a*c]").replace("J[:, 0] =", "J[:, -1] =")

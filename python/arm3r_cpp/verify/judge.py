@@ -493,7 +493,7 @@ def _judge_constants(verdict: Verdict, case: Comparison) -> None:
                     line,
                     column,
                     old,
-                    f"{own!r}",
+                    f"{own:.12g}",
                 )
             )
 
