@@ -518,9 +518,7 @@ BOOST_AUTO_TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
 
 // ---- limits of loops
 
-static double max_real_part(const Eigen::MatrixXd& A) {
-    return eigenvalues(A).real().maxCoeff();
-}
+static double max_real_part(const Eigen::MatrixXd& A) { return eigenvalues(A).real().maxCoeff(); }
 
 // The value of c[n] s^n + ... + c[0].
 static Eigen::MatrixXd companion(const std::vector<double>& c) {
