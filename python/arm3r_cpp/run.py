@@ -16,7 +16,7 @@ from ._files import replacing
 from ._messages import no_column
 from ._native import Floats, lib
 from .errors import ColumnError, UsageError
-from .rows.names import completions, three_of, triples
+from .rows.names import columns_of, completions, three_of
 from .run_file import read, with_numbers
 
 if TYPE_CHECKING:
@@ -108,10 +108,9 @@ class Run:
             for i, part in enumerate(parts):
                 three[:, i] = self._columns[part]
             return three
-        for meant in ([name], *triples(name)):
-            if all(one in _native.column_places() for one in meant):
-                message = f"the log of this run does not have {name!r}: {self._why_not(meant)}"
-                raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
+        if meant := columns_of(name, _native.column_places()):
+            message = f"the log of this run does not have {name!r}: {self._why_not(meant)}"
+            raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
         raise no_column(name, self._columns)
 
     def _why_not(self, meant: list[str]) -> str:

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import Arm3rError, UsageError
-from ..system.processes import end_with_descendants
+from ..system.processes import bare_environment, end_with_descendants
 from ..verify.program.confinement import end_with_parent
 from ..verify.program.limits import limit_judge
 from ..verify.program.nodes import Call, ProgramError
-from ..verify.program.python_process import NEEDED_BY_WINDOWS, PythonProcess
+from ..verify.program.python_process import PythonProcess
 from .function_judge import reading
 from .judge import judge_file
 from .mark import RIGHT, UNCLEAR, Mark
@@ -45,13 +45,7 @@ def judge_apart(task: Task, path: Path, *, forbid_own_package: bool = False, wit
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env={
-            **{name: os.environ[name] for name in NEEDED_BY_WINDOWS if name in os.environ},
-            "PATH": os.defpath,
-            "LANG": "C.UTF-8",
-            "OPENBLAS_NUM_THREADS": "1",
-            "PYTHONDONTWRITEBYTECODE": "1",
-        },
+        env=bare_environment(),
         start_new_session=True,
         cwd="/",
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .._messages import no_column
 from .._native import Floats, column_places
 from ..errors import ColumnError
-from .names import completions, three_of, triples
+from .names import columns_of, completions, three_of
 
 
 class BatchRows:
@@ -50,10 +50,9 @@ class BatchRows:
             return column.reshape(*self.shape, column.shape[-1]) if self.shape else column[0]
         if parts := three_of(name, self.columns):
             return np.stack([self[part] for part in parts], axis=-1)
-        for meant in ([name], *triples(name)):
-            if all(one in column_places() for one in meant):
-                message = f"this batch was not asked for {name!r}: add it to columns"
-                raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
+        if columns_of(name, column_places()):
+            message = f"this batch was not asked for {name!r}: add it to columns"
+            raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
         raise no_column(name, self.columns)
 
     def __contains__(self, name: object) -> bool:

@@ -19,6 +19,11 @@ def three_of(name: str, columns: Container[str]) -> list[str]:
     return next((parts for parts in triples(name) if all(part in columns for part in parts)), [])
 
 
+def columns_of(name: str, columns: Container[str]) -> list[str]:
+    """The one column or the three that a name stands for, among these; else none."""
+    return [name] if name in columns else three_of(name, columns)
+
+
 def completions(columns: Iterable[str]) -> list[str]:
     """The columns, and the names that stand for three of them: what the Tab key offers."""
     names = list(columns)
@@ -40,7 +45,7 @@ def columns_asked_for(names: object) -> list[str]:
     for i, name in enumerate(names):
         if not isinstance(name, str):
             raise TypeError(f"columns[{i}]: a column's name is needed, got {name!r}")
-        found = [name] if name in places else three_of(name, places)
+        found = columns_of(name, places)
         if not found:
             hint = did_you_mean(name, places) or "`arm3r columns` lists them"
             raise UsageError(f"columns[{i}]: there is no column {name!r}; {hint}", code="usage")

@@ -11,7 +11,20 @@ import sys
 import threading
 from typing import NoReturn
 
+_NEEDED = ("SYSTEMROOT",)  # by programs on Windows
 _ENDED_BY_CONTROL_C = 0xC000013A  # what Windows gives for STATUS_CONTROL_C_EXIT
+
+
+def bare_environment() -> dict[str, str]:
+    """The environment of a process that runs a user's file: nothing of this one's, but what the system needs."""
+    needed = {name: os.environ[name] for name in _NEEDED if name in os.environ}
+    return {
+        **needed,
+        "PATH": os.defpath,
+        "LANG": "C.UTF-8",
+        "OPENBLAS_NUM_THREADS": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
 
 
 def end_by_interrupt() -> NoReturn:

@@ -15,7 +15,7 @@ from typing import IO, Any, NoReturn, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...system.processes import end_with_descendants
+from ...system.processes import bare_environment, end_with_descendants
 from ...system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
 from .child import HEAD, send
 from .nodes import Call, Edit, ProcessEnded, ProgramError
@@ -23,7 +23,6 @@ from .nodes import Call, Edit, ProcessEnded, ProgramError
 Floats = NDArray[np.float64]
 _START = "from arm3r_cpp.verify.program.child import main; main()"
 _MOST_BYTES = 64 << 20  # of an answer
-NEEDED_BY_WINDOWS = ("SYSTEMROOT",)  # of the environment
 STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s
 
 
@@ -87,13 +86,9 @@ class PythonProcess:
 
     def _start(self) -> None:
         environment = {
-            **{name: os.environ[name] for name in NEEDED_BY_WINDOWS if name in os.environ},
-            "PATH": os.defpath,
-            "LANG": "C.UTF-8",
-            "OPENBLAS_NUM_THREADS": "1",
+            **bare_environment(),
             "OMP_NUM_THREADS": "1",
             "MPLBACKEND": "Agg",
-            "PYTHONDONTWRITEBYTECODE": "1",
             "HOME": "/",
         }
         process = subprocess.Popen(
