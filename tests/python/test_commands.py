@@ -197,7 +197,7 @@ import arm3r_cpp as arm3r
 from arm3r_cpp import _progress_bar
 _progress_bar.DELAY = 0.0
 scenario = arm3r.Scenario.example("moving_wall")
-scenario["solver"] = {"method": "rk4", "step": 1e-3}
+scenario["solver"] = {"method": "rk4", "step": 5e-5}  # long enough for a first message, which comes after 20 ms
 scenario.batch({"wall.contact.stiffness": [1e3, 2e3, 3e3, 4e3] * 15}, threads=1)
 """
 
