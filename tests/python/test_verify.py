@@ -87,6 +87,39 @@ def test_equal_lengths_hide_nothing(written: Any) -> None:
     assert (finding.old, finding.new) == ("a2", "a3")
 
 
+RECURSION = """import numpy as np
+a2, a3 = (1.0, 1.0)
+m2, m3, g = (0.785, 0.785, 9.80665)
+
+
+def gravity_torque(q):
+    f3 = m3 * g
+    n3 = f3 * LINK3 * np.cos(q[1] + q[2])
+    n2 = n3 + f3 * a2 * np.cos(q[1]) + m2 * g * LINK2 * np.cos(q[1])
+    return [0, n2, n3]
+"""
+
+
+@pytest.mark.parametrize(
+    ("link2", "link3"), [("a2 / 2", "1 / 3"), ("1 / 3", "a3 / 2"), ("a2 / 2", "1 / 4 * a2"), ("a2 / 2", "g / 2")]
+)
+def test_a_length_that_is_lost_in_one_link_makes_no_right_term_wrong(written: Any, link2: str, link3: str) -> None:
+    """With two mistakes at one link: the other link's term shows that its centre of mass follows the length."""
+    verdict = arm3r.verify.gravity(written("g.py", RECURSION.replace("LINK2", link2).replace("LINK3", link3)))
+    due = {"t2": "m3 g a2 C2 + 1/2 m2 g a2 C2 + 1/2 m3 g a3 C23", "t3": "1/2 m3 g a3 C23"}
+    assert verdict.convention == "slide" and verdict.findings
+    for one in verdict.findings:
+        assert one.entry and one.due == due[f"t{one.entry[0]}"], str(verdict)
+    assert not any(one.old and ("m2" in one.old or "a2 / 2" in one.old) for one in verdict.findings), str(verdict)
+
+
+def test_a_centre_that_is_a_number_stays_one_beside_a_mistake(written: Any) -> None:
+    """Both centres of mass stand as numbers: only the mistake is said."""
+    text = RECURSION.replace("LINK2", "0.5").replace("LINK3", "0.5").replace("a2 * np.cos", "a2 * np.sin")
+    verdict = arm3r.verify.gravity(written("g.py", text))
+    assert {(one.old, one.new) for one in verdict.findings} == {("np.sin", "np.cos")}, str(verdict)
+
+
 def test_two_exchanged_names_hide_behind_no_equal_numbers(written: Any) -> None:
     """m3 for m2 and a3 for a2 in one entry: no single edit mends it, and the lecture's numbers are equal."""
     text = LECTURE_GRAVITY.replace("t2 = -(m2*g*(a2/2)*cos(q2) + m3*g*(a2*", "t2 = -(m3*g*(a2/2)*cos(q2) + m3*g*(a3*")

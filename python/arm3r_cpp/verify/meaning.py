@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 
+from .._native import Floats
 from ..errors import UsageError
-from .comparison import Comparison, scales
+from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
 from .kinds import Kind
 from .program.nodes import ProgramError
 from .samples import Samples
 from .truth.three_r import FOLLOWING
 
+_CHANGE = 1e-6  # of the largest: what changes less does not change
 _MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
 _DYNAMIC = ("mass", "coriolis", "inverse", "forward")
 
@@ -55,7 +57,7 @@ def _fewest(counted: list[tuple[int, Comparison]]) -> list[Comparison]:
     for case in best:
         errors[case.follows] = min(errors.get(case.follows, float("inf")), case.error)
     meanings: dict[Any, Comparison] = {}
-    for case in sorted(best, key=lambda case: (errors[case.follows], FOLLOWING.index(case.follows))):
+    for case in sorted(best, key=lambda case: (errors[case.follows], FOLLOWING.index(case.follows), case.error)):
         meanings.setdefault((tuple(case.parameters), case.due(case.second).tobytes()), case)
     return list(meanings.values())[:_MOST_MEANINGS]
 
@@ -119,14 +121,61 @@ def _counted(formula: Formula, kind: Kind, truth: Any, parameters: dict[str, str
     following = FOLLOWING if varied and (kind.name == "gravity" or kind.name in _DYNAMIC) else FOLLOWING[:1]
     first = truth.convention
     conventions = (first, *(one for one in truth.conventions if one != first))
+    refuted: dict[bool, set[tuple[str, ...]]] = {}
     for convention, follows, degrees in product(conventions, following, units):
         case = replace(base, convention=convention, follows=follows, rows=rows, degrees=degrees)
         result = case.values(case.second) if degrees else values
         due = case.due(case.second)
         wrong = case.wrong(result, case.second, due)
+        if wrong and follows != following[0]:
+            if degrees not in refuted:
+                refuted[degrees] = _refuted(replace(base, rows=rows, degrees=degrees), conventions, following)
+            if follows in refuted[degrees]:
+                continue
         error = float(np.median(np.abs(result - due) / scales(due)))
         case.error = float(f"{error:.6g}") if np.isfinite(error) else float("inf")
         yield len(wrong), case
+
+
+def _refuted(
+    case: Comparison, conventions: Sequence[str], following: Sequence[tuple[str, ...]]
+) -> set[tuple[str, ...]]:
+    """What cannot follow a length: a part of the formula changes as it is due in the likeliest meaning, and not in it.
+
+    A part is what changes of an entry with one length or mass, or only with both a length and a mass.
+    """
+    samples, changes = _one_by_one(case)
+    found = set()
+    values = changes(case.values(samples))
+    for convention in conventions:
+        due = [changes(replace(case, convention=convention, follows=one).due(samples)) for one in following]
+        scale = np.abs(due[0]).max(axis=1)
+        same = scale > _CHANGE * scale.max(axis=1, keepdims=True)
+        same &= np.abs(values - due[0]).max(axis=1) <= TOLERANCE * scale
+        for follows, other in zip(following[1:], due[1:], strict=True):
+            if (same & (np.abs(other - due[0]).max(axis=1) > _CHANGE * scale)).any():
+                found.add(follows)
+    return found
+
+
+def _one_by_one(case: Comparison) -> tuple[Samples, Callable[[Floats], Floats]]:
+    """Samples in which single quantities change, and what changes in them: (rows, ...) to (parts, states, entries)."""
+    lengths, masses = ([name for name in case.known if name.startswith(stem)] for stem in ("length", "mass"))
+    sets = [(), *((name,) for name in (*lengths, *masses)), *product(lengths, masses)]
+    arm = case.second.arms[0]
+    arms = [{**arm, **{name: 1.37 * arm[name] for name in names}} for names in sets]
+    place = {names: number for number, names in enumerate(sets)}
+
+    def changes(values: Floats) -> Floats:
+        each = values.reshape(len(sets), -1, int(np.prod(values.shape[1:])))
+        single = [each[place[one,]] - each[0] for one in (*lengths, *masses)]
+        double = [
+            each[place[one, other]] - each[place[one,]] - each[place[other,]] + each[0]
+            for one, other in product(lengths, masses)
+        ]
+        return np.stack([*single, *double])
+
+    return Samples(case.second.states, arms), changes
 
 
 def _units_of_angles(formula: Formula) -> tuple[bool, ...]:
