@@ -21,7 +21,7 @@ foreach(_line IN LISTS _lines)
   if(_count LESS _end)
     list(GET _lines ${_count} _next)
   endif()
-  string(REGEX MATCH "^ *" _next "${_next}")
+  string(REGEX REPLACE "[^ ].*" "" _next "${_next}")
   string(LENGTH "${_next}" _next_indent)
   list(APPEND _suites ${_name})
   if(NOT _next_indent GREATER _indent) # nothing below it: a case, not a suite

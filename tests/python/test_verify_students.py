@@ -266,8 +266,9 @@ def test_many_mistakes_of_students(part: int, tmp_path: Path) -> None:
 
 # ---- mistakes by hand -----------------------------------------------------------------------------------------------
 
-HARMLESS = 14
-"""So many of the mistakes change nothing: they make the other convention, or what stands there plays no part."""
+HARMLESS = 0.1
+"""At most this share of the mistakes changes nothing: they make the other convention, or what stands there plays no
+part. outcome() itself holds the values of such a text against the right ones."""
 
 
 def of_hand(mistakes: list[Mistakes], folder: Path) -> Counter[str]:
@@ -293,7 +294,7 @@ def test_some_mistakes_by_hand(tmp_path: Path) -> None:
 def test_mistakes_by_hand(tmp_path: Path) -> None:
     outcomes = of_hand(singles(), tmp_path)
     assert set(outcomes) <= {"named", "right", "unexplained"}
-    assert outcomes["right"] <= HARMLESS and outcomes["unexplained"] <= 0.01 * len(singles())
+    assert outcomes["right"] <= HARMLESS * len(singles()) and outcomes["unexplained"] <= 0.01 * len(singles())
 
 
 @pytest.mark.gate

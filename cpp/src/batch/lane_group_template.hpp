@@ -24,7 +24,8 @@ public:
         while (true) {
             while ((lane_run_.any_ended() || worker_.is_stopped()) && refill()) lane_run_.start_lanes();
             if (!lane_run_.any_running()) return;
-            lane_run_.step([](int, const ContactChange&) {});
+            if constexpr (Integrator::lanes == 1) lane_run_.step_alone();
+            else lane_run_.step();
         }
     }
 

@@ -22,7 +22,8 @@ struct ControlLaw {
     LawFunction<T, T> compiled_law() {                                                    \
         return Outlined<T>::call<ControlLaw, const Controller<T>&, const Measurement<T>&, \
                                  const std::array<T, law_memory>&, Command<T>&>;          \
-    }
+    }                                                                                     \
+    ARM3R_CALLED_BY_LAWS(, T, T)
 ARM3R_PACKS(ARM3R_COMPILED_LAW)
 
 }  // namespace arm3r

@@ -21,5 +21,6 @@ template <>
 LawFunction<double, double> compiled_law() {
     return of_double;
 }
+ARM3R_CALLED_BY_LAWS(, double, double)
 
 }  // namespace arm3r

@@ -21,5 +21,6 @@ template <>
 LawFunction<double, Dual<derivatives_per_pass>> compiled_law() {
     return of_dual;
 }
+ARM3R_CALLED_BY_LAWS(, double, Dual<derivatives_per_pass>)
 
 }  // namespace arm3r

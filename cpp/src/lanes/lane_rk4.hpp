@@ -27,11 +27,15 @@ public:
         Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
     }
 
-    // changed(lane, change) is called before each change of contact.
-    template <class Changed>
-    ARM3R_INLINE void step(Changed changed) {
-        if (N == state_size && has_common_terms_) step_of<Terms::common>(changed);
-        else step_of<Terms::any>(changed);
+    ARM3R_INLINE void step() {
+        if (N == state_size && has_common_terms_) step_of<Terms::common>();
+        else step_of<Terms::any>();
+    }
+    // step() as a function call: the long code is compiled once (single_lane_run.cpp).
+    void step_alone()
+        requires(Base::lanes == 1)
+    {
+        step();
     }
     // The start of the last step, and the derivatives at both ends: a single run needs them for its dense output.
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
@@ -51,8 +55,8 @@ public:
     }
 
 private:
-    template <Terms terms, class Changed>
-    ARM3R_INLINE void step_of(Changed& changed) {
+    template <Terms terms>
+    ARM3R_INLINE void step_of() {
         t0_ = this->t_;
         if (Base::lanes == 1 || this->has_performance_) {
             y0_ = this->y_;
@@ -75,7 +79,7 @@ private:
         if (has_jump_) this->rhs_.latest = T(infinite);
         this->template observe<terms>();
         eventful_ = false;
-        if (this->plant_.has_wall) detect_contact<terms>(moved, changed);
+        if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
         if (this->has_performance_)
             this->plant_.holds_torque && !this->tracked_.motion() ? add_performance(trapezoid, moved)
@@ -134,8 +138,8 @@ private:
         ARM3R_INLINE T mean() const { return 0.25 * ((first + fourth) + (second + third)); }
     };
 
-    template <Terms terms, class Changed>
-    ARM3R_INLINE void detect_contact(const Mask& moved, Changed& changed) {
+    template <Terms terms>
+    ARM3R_INLINE void detect_contact(const Mask& moved) {
         const T &h = this->h_, o(0.0);
         const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
         const bool is_elastic = terms == Terms::common || this->is_elastic_;
@@ -153,7 +157,7 @@ private:
             }
         }
         eventful_ = eventful && moved;
-        if (any(eventful_)) resolve_contacts(eventful_, changed);
+        if (any(eventful_)) resolve_contacts(eventful_);
     }
 
     // The force of a damped contact over the step; a lane in which it may have a maximum within the step is handled
@@ -186,11 +190,10 @@ private:
                max(across2.high(), T(-across2.low())) >= wall.half2;
     }
 
-    template <class Changed>
-    [[gnu::noinline]] void resolve_contacts(const Mask& eventful, Changed& changed) {
+    [[gnu::noinline]] void resolve_contacts(const Mask& eventful) {
         bool is_stale = false;
         for (int lane = 0; lane < Base::lanes; ++lane)
-            if (this->is_running(lane) && Lanes<T>::is(eventful, lane) && resolve_lane(lane, changed)) {
+            if (this->is_running(lane) && Lanes<T>::is(eventful, lane) && resolve_lane(lane)) {
                 Lanes<T>::set(this->evaluations_, lane, Lanes<T>::get(this->evaluations_, lane) + 1);
                 is_stale = true;
             }
@@ -208,8 +211,7 @@ private:
                 cubic(a.across2, a.slip2, b.across2, b.slip2)};
     }
 
-    template <class Changed>
-    bool resolve_lane(int lane, Changed& changed) {
+    bool resolve_lane(int lane) {
         const Wall<double>& wall = this->setup(lane).plant.wall;
         const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane);
         const double resolution = event_resolution(this->t(lane), h);
@@ -223,7 +225,7 @@ private:
             if (this->has_performance_) this->add_lane_performance(lane, simpson, dense, from, crossing->theta);
             from = crossing->theta;
             const ContactChange change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
-            changed(lane, change);
+            if (this->on_change_) this->on_change_(lane, change);
             this->change_mode(lane, change);
             is_stale = true;
             if (this->outcome(lane) != ARM3R_RUN_OK || from >= 1) break;
@@ -287,5 +289,8 @@ private:
     T assumed_before_{0.0}, latest_before_{infinite};
     Indentation<T> before_{};
 };
+
+extern template void LaneRk4<double, state_size>::step_alone();
+extern template void LaneRk4<double, full_size>::step_alone();
 
 }  // namespace arm3r

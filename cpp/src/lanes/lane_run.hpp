@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "contact/contact_change.hpp"
+#include "control/compiled_laws.hpp"
 #include "control/continuous_inputs.hpp"
 #include "control/sampled_controller.hpp"
 #include "record/contact_tally.hpp"
@@ -71,6 +73,8 @@ public:
         for (bool& is_new : is_new_) is_new = false;
     }
 
+    // What is called before each change of contact of a lane.
+    void set_observer(std::function<void(int lane, const ContactChange&)> changes) { on_change_ = std::move(changes); }
     // A user's law, for a run with a single lane.
     void set_user_law(const UserLaw& law) { sampled_.user = law; }
     std::string error_message() const { return sampled_.error_message(); }
@@ -380,6 +384,9 @@ private:
     std::array<bool, lanes> running_{}, is_new_{};
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;
+
+protected:
+    std::function<void(int, const ContactChange&)> on_change_;
     std::array<ContactTally, lanes> contacts_;
 };
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "arm3r/numbers/widths.hpp"
-#include "control/compiled_laws.hpp"
 #include "integrate/taylor.hpp"
 #include "lanes/lane_run.hpp"
 #include "record/metrics.hpp"
@@ -163,7 +162,9 @@ void LaneRun<T, N>::start_memory() {
     if constexpr (N == full_size) {
         for (int lane = 0; lane < lanes; ++lane)
             if (is_new_[lane]) update_inputs(lane);
-        const Y start = rhs_.with_initial_memory(y_, wall_, plant_output().measurement);
+        Y start;
+        Outlined<T>::run(
+            [&]() ARM3R_INLINE_LAMBDA { start = rhs_.with_initial_memory(y_, wall_, plant_output().measurement); });
         for (std::size_t i = law_at; i < full_size; ++i)
             for (int lane = 0; lane < lanes; ++lane)
                 if (is_new_[lane]) Lanes<T>::set(y_[i], lane, Lanes<T>::get(start[i], lane));

@@ -28,9 +28,7 @@ public:
         Lanes<T>::set(this->slack_, lane, setup.clock_rounding());
     }
 
-    // changed(lane, change) is called before each change of contact.
-    template <class Changed>
-    ARM3R_INLINE void step(Changed changed) {
+    ARM3R_INLINE void step() {
         t0_ = this->t_;
         if (this->has_performance_) this->begin_segment();
         const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
@@ -55,13 +53,19 @@ public:
         this->accept(moved, t1, state_after(h));
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->observe();
-        if (crosses_) apply_changes(changed);
+        if (crosses_) apply_changes();
         this->update_energy_balance();
         if (this->has_performance_)
             this->tracked_.motion() ? add_performance(lobatto, moved, h) : add_performance(trapezoid, moved, h);
         this->check_lanes();
     }
 
+    // step() as a function call: the long code is compiled once (single_lane_run.cpp).
+    void step_alone()
+        requires(Base::lanes == 1)
+    {
+        step();
+    }
     // The dense output of the last step.
     DenseOutput dense_output(int lane) const {
         DenseOutput dense;
@@ -211,14 +215,13 @@ private:
         return p;
     }
 
-    template <class Changed>
-    [[gnu::noinline]] void apply_changes(Changed& changed) {
+    [[gnu::noinline]] void apply_changes() {
         for (int lane = 0; lane < Base::lanes; ++lane) {
             auto& [is_due, change] = pending_changes_[lane];
             if (!is_due) continue;
             is_due = false;
             change.t = this->t(lane);
-            changed(lane, change);
+            if (this->on_change_) this->on_change_(lane, change);
             this->change_mode(lane, change);
         }
     }
@@ -272,5 +275,7 @@ private:
     std::array<PendingChange, Base::lanes> pending_changes_{};
     Expansion<T> series_;
 };
+
+extern template void LaneTaylor<double>::step_alone();
 
 }  // namespace arm3r

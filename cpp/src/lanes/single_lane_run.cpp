@@ -31,6 +31,10 @@ public:
 
     Run run() {
         lane_run_.set_user_law(options_.user_law);
+        lane_run_.set_observer([this](int, const ContactChange& change) {
+            update_dense_output();
+            record_contact_change(change, dense_(change.theta));
+        });
         lane_run_.load_lane(0, setup_);
         lane_run_.start_lanes();
         update_row_context();
@@ -45,10 +49,7 @@ public:
 private:
     void step() {
         has_dense_output_ = false;
-        lane_run_.step([&](int, const ContactChange& change) {
-            update_dense_output();
-            record_contact_change(change, dense_(change.theta));
-        });
+        lane_run_.step_alone();
         theta_ = end_theta(lane_run_);
         run_.t_end = lane_run_.t(0);
         run_.steps = lane_run_.steps(0);
@@ -102,6 +103,10 @@ private:
 };
 
 }  // namespace
+
+template void LaneRk4<double, state_size>::step_alone();
+template void LaneRk4<double, full_size>::step_alone();
+template void LaneTaylor<double>::step_alone();
 
 Run run_in_lane(const Setup& setup, const RunOptions& options) {
     if (setup.solver.method == SolverMethod::taylor) return SingleLaneRun<LaneTaylor<double>>(setup, options).run();

@@ -224,6 +224,13 @@ std::vector<double> with_model(std::span<const double> params) {
     return merged;
 }
 
+Setup::Setup() = default;
+Setup::Setup(const Setup&) = default;
+Setup::Setup(Setup&&) noexcept = default;
+Setup& Setup::operator=(const Setup&) = default;
+Setup& Setup::operator=(Setup&&) noexcept = default;
+Setup::~Setup() = default;
+
 Arm<double> make_arm(std::span<const double> params) {
     Arm<double> arm;
     arm.base_height = at<"arm.base_height">(params);

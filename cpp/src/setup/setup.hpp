@@ -38,6 +38,14 @@ struct Setup {
     bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }
     bool has_performance() const { return controller().type != ControllerType::none; }
 
+    // Copied in many files, compiled in one.
+    Setup();
+    Setup(const Setup&);
+    Setup(Setup&&) noexcept;
+    Setup& operator=(const Setup&);
+    Setup& operator=(Setup&&) noexcept;
+    ~Setup();
+
     // Instants that differ by less than this, s, are equal except for rounding.
     double clock_rounding() const;
 };
