@@ -96,7 +96,7 @@ def test_no_room_is_too_large(root: Path) -> None:
 
 def _declared_functions(path: Path) -> set[str]:
     """The names of the functions that a header declares for other files and does not define itself."""
-    text = re.sub(r"//[^\n]*|#[^\n]*", "", path.read_text())
+    text = re.sub(r"//[^\n]*|#(?:\\\n|[^\n])*", "", path.read_text())
     found: set[str] = set()
     around: list[bool] = []  # of each open pair of braces: whether it is a namespace
     start = 0
