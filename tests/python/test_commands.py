@@ -34,6 +34,27 @@ def command(scripts: Path, tmp_path: Path) -> Any:
     return call
 
 
+# ---- what a run prints ----------------------------------------------------------------------------------------------
+
+
+def test_a_tip_that_ends_beside_the_plate_is_reported(command: Any, tmp_path: Path) -> None:
+    """depth grows there, and nothing pushes: the report says why."""
+    text = """format: 1
+initial: {q: [0.1, 0.2, -0.3]}
+controller: {type: gravity_compensation}
+wall:
+  {point: [2.2, 0.9, 0.3], size: [0.4, 0.6], motion: {type: constant, velocity: [-0.2, 0, 0]}}
+time: {stop: 2}
+"""
+    (tmp_path / "beside.yaml").write_text(text)
+    tip = arm3r.Scenario.load(tmp_path / "beside.yaml").run()["tip"][-1]
+    depth, beside = tip[0] - (2.2 - 0.2 * 2), max(abs(tip[1] - 0.9) - 0.2, abs(tip[2] - 0.3) - 0.3)
+    printed = command("run", "beside.yaml").stdout
+    assert f"at the end the tip is {depth:.4g} m behind the face and {beside:.4g} m beside the plate" in printed
+    (tmp_path / "beside.yaml").write_text(text.replace("[0.4, 0.6]", "[4, 4]"))
+    assert "beside the plate" not in command("run", "beside.yaml").stdout
+
+
 # ---- help -----------------------------------------------------------------------------------------------------------
 
 

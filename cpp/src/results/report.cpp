@@ -108,6 +108,10 @@ std::string event_lines(const Run& run) {
     if (run.events.size() > most)
         out += line("", "... and " + std::to_string(run.events.size() - most) + " more events");
     if (run.events.empty() && run.has_wall) out += line("contact", "none");
+    if (run.at_end && run.at_end->depth > 0 && run.at_end->beside > 0)
+        out += line("", "at the end the tip is " + rounded(run.at_end->depth, 4) + " m behind the face and " +
+                            rounded(run.at_end->beside, 4) +
+                            " m beside the plate, which pushes nothing there; wall.size makes it larger");
     return out;
 }
 
