@@ -27,9 +27,7 @@ target_compile_definitions(arm3r_wasm PRIVATE ARM3R_BUILD_INFO="${ARM3R_BUILD_IN
 foreach(_target arm3r_wasm arm3r_core arm3r_platform arm3r_yaml cxx_with_exceptions)
   target_compile_options(${_target} PRIVATE -Os -ffunction-sections -fdata-sections)
 endforeach()
-set(_fast ${ARM3R_TEMPLATE_SOURCES})
-list(REMOVE_ITEM _fast cpp/src/schema/schema.cpp)
-set_source_files_properties(${_fast} PROPERTIES COMPILE_OPTIONS -O2)
+set_source_files_properties(${ARM3R_TEMPLATE_SOURCES} PROPERTIES COMPILE_OPTIONS -O2)
 
 # ---- the module: what core.js calls, and what that needs
 set(_binding ${PROJECT_SOURCE_DIR}/docs/live/core/core.js)
