@@ -90,4 +90,4 @@ def test_webassembly_computes_the_bits_of_the_native_library(native: Path, capsy
 def test_what_cannot_be_run_here_is_called_untested(name: str) -> None:
     assert re.search(rf"^\| {name} +\| not run +\| not run +\|", PAGE, re.M)
     install = (ROOT / "docs/install.md").read_text()
-    assert re.search(r"^\| macOS[^|]*\| [^|]*not tested", install, re.M)
+    assert re.search(r"^\| macOS.*\| [^|]*not tested", install, re.M)

@@ -46,8 +46,16 @@ def unpacked(name: str, folder: Path) -> Path:
     return place / "arm3r_cpp"
 
 
+@cache
+def start_wine() -> None:
+    """The first start makes wine's folder, and says so among the messages of the program."""
+    subprocess.run(["wine", "cmd", "/c", "exit"], env={**os.environ, **QUIET}, capture_output=True, timeout=600)
+
+
 def run(name: str, *command: object, **options: Any) -> subprocess.CompletedProcess[str]:
     """Runs a program of the platform `name`."""
+    if EMULATORS.get(name) == "wine":
+        start_wine()
     words = [*RUNNERS[name], *map(str, command)]
     environment = {**os.environ, **QUIET, **options.pop("env", {})}
     options = {"capture_output": True, "encoding": "utf-8", "timeout": 600, **options}

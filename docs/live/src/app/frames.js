@@ -1,6 +1,6 @@
 /** Work for the main thread, cut into jobs: each animation frame does as many of them as fit into its time. */
 
-const BUDGET = 2; // ms of a frame after which no further job begins
+const BUDGET = 0.5; // ms of a frame after which no further job begins
 
 const jobs = new Map();
 let asked = false;

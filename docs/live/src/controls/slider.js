@@ -1,5 +1,6 @@
 /** A number of the scenario as a slider, with the number beside it to be typed. */
 import { make } from "../app/dom.js";
+import { later } from "../app/frames.js";
 import { DEGREE, rounded, yaml } from "../app/numbers.js";
 import { isAngle, numberAt, position, rangeOf } from "./ranges.js";
 
@@ -40,10 +41,15 @@ export class Slider {
     this.input.setAttribute("aria-valuetext", `${own}${this.angle ? " degrees" : ` ${this.key.unit}`}`);
   }
 
+  /** The text changes in the next frame, once for all movements before it. */
   #move(change) {
-    const joined = this.moving;
-    this.moving = true;
-    this.#set(numberAt(this.range, Number(this.input.value)), change, joined);
+    if (!this.waiting) this.joined = this.moving;
+    this.moving = this.waiting = true;
+    const value = numberAt(this.range, Number(this.input.value));
+    later(`slider-${this.path}`, () => {
+      this.waiting = false;
+      this.#set(value, change, this.joined);
+    });
   }
 
   #type(change) {
