@@ -25,11 +25,15 @@ def git(*arguments: str) -> str:
     return subprocess.run(["git", *arguments], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
 
 
+LEFT_OUT = {".buildinfo", "__pycache__"}  # of Sphinx and Python, who write into them where the folder lies
+
+
 def packed(folder: Path, time: int) -> bytes:
     """A folder as .tar.gz: names in order, one time, nobody's files."""
+    files = [path for path in folder.rglob("*") if path.is_file() and not LEFT_OUT & set(path.parts)]
     tar = io.BytesIO()
     with tarfile.open(fileobj=tar, mode="w", format=tarfile.PAX_FORMAT) as archive:
-        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+        for path in sorted(files):
             member = tarfile.TarInfo(f"{folder.name}/{path.relative_to(folder).as_posix()}")
             member.size, member.mtime, member.mode = path.stat().st_size, time, 0o644
             with path.open("rb") as file:

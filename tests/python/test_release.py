@@ -80,6 +80,9 @@ def test_an_archive_and_its_sums_depend_on_the_contents_alone(dist: ModuleType, 
         for name in ("b", "a", "inner/c") if time == 1 else ("inner/c", "a", "b"):
             (parent / "site" / name).write_text(name)
             os.utime(parent / "site" / name, (time, time))
+        for name in (".buildinfo", "inner/__pycache__/c.pyc"):  # in these stands where they were made
+            (parent / "site" / name).parent.mkdir(exist_ok=True)
+            (parent / "site" / name).write_text(str(parent))
         archives.append(dist.packed(parent / "site", 1_700_000_000))
     assert archives[0] == archives[1] != dist.packed(tmp_path / "one/site", 1)
     (tmp_path / "one/site.tar.gz").write_bytes(archives[0])
