@@ -88,7 +88,7 @@ struct RunOptions {
     const std::atomic<bool>* should_stop = nullptr;  // as stop, for threads of our own
     UserLaw user_law = {};
     bool rows = true;     // false: no rows, no warnings, the metrics alone
-    bool judges = true;   // false: nothing is said about the rows
+    bool judges = true;   // false: no warnings, and nothing is said about the rows
     ColumnSet kept = {};  // columns that are kept beside those of the log, where the run has them
 };
 

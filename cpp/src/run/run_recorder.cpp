@@ -33,7 +33,7 @@ RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
     run_.method = word_of(setup_.solver.method);
     run_.torque_limit = without_negative_zero(setup_.plant.arm.torque_limit);
     run_.events.reserve(static_cast<std::size_t>(max_events));
-    run_.warnings = scenario_warnings(setup);
+    if (options.judges) run_.warnings = scenario_warnings(setup);
 }
 
 void RunRecorder::start_contact(ContactMode mode) {

@@ -434,7 +434,7 @@ export class Core {
                 const shape = { columns: wanted.length, rows: room };
                 const band = (column) => quantilesOf(samples, { column, ...shape }, levels);
                 const quantiles = Object.fromEntries(columns.map((name, i) => [name, band(i + 1)]));
-                return { summary, time: quantilesOf(samples, { column: 0, ...shape }, [1])[1], quantiles };
+                return { summary, time: largestOf(samples, { column: 0, ...shape }), quantiles };
             });
         });
     }
@@ -571,21 +571,43 @@ function words(size, members) {
 // run, in each the columns one after the other.
 function quantilesOf(samples, { column, columns, rows }, levels) {
     const found = Object.fromEntries(levels.map((level) => [level, new Float64Array(rows).fill(NaN)]));
-    const values = new Float64Array(samples.length / (columns * rows));
+    const together = 8; // rows: what lies side by side in memory is read at once
+    const values = Array.from({ length: together }, () => new Float64Array(samples.length / (columns * rows)));
+    const counts = new Int32Array(together);
     const rising = [...levels].sort((a, b) => a - b);
-    for (let row = 0; row < rows; ++row) {
-        let count = 0;
+    for (let row = 0; row < rows; row += together) {
+        counts.fill(0);
+        const most = Math.min(together, rows - row);
         for (let at = column * rows + row; at < samples.length; at += columns * rows)
-            if (!Number.isNaN(samples[at])) values[count++] = samples[at];
-        let settled = 0; // as many are where they belong
-        for (const level of count ? rising : []) {
-            const place = level * (count - 1);
-            const below = Math.floor(place);
-            const above = Math.min(below + 1, count - 1);
-            for (const at of [below, above]) settled = select(values, at, settled, count - 1);
-            found[level][row] = values[below] + (place - below) * (values[above] - values[below]);
-        }
+            for (let i = 0; i < most; ++i) {
+                const value = samples[at + i];
+                if (!Number.isNaN(value)) values[i][counts[i]++] = value;
+            }
+        for (let i = 0; i < most; ++i) if (counts[i] > 0) setQuantiles(values[i], counts[i], rising, found, row + i);
     }
+    return found;
+}
+
+// Sets the levels, in rising order, of a row whose first `count` values are given in any order.
+function setQuantiles(values, count, rising, found, row) {
+    let settled = 0; // as many are where they belong
+    for (const level of rising) {
+        const place = level * (count - 1);
+        settled = select(values, Math.floor(place), settled, count - 1);
+        let next = settled + 1 < count ? Infinity : values[settled]; // the least of those after it
+        for (let at = settled + 1; at < count; ++at) if (values[at] < next) next = values[at];
+        found[level][row] = values[settled] + (place - settled) * (next - values[settled]);
+    }
+}
+
+// Of each row of a column the largest over all runs; NaN is not counted.
+function largestOf(samples, { column, columns, rows }) {
+    const found = new Float64Array(rows).fill(NaN);
+    for (let first = column * rows; first < samples.length; first += columns * rows)
+        for (let row = 0; row < rows; ++row) {
+            const value = samples[first + row];
+            if (Number.isNaN(found[row]) || value > found[row]) found[row] = value;
+        }
     return found;
 }
 
