@@ -30,7 +30,9 @@ LEFT_OUT = {".buildinfo", "__pycache__"}  # of Sphinx and Python, who write into
 
 def packed(folder: Path, time: int) -> bytes:
     """A folder as .tar.gz: names in order, one time, nobody's files."""
-    files = [path for path in folder.rglob("*") if path.is_file() and not LEFT_OUT & set(path.parts)]
+    files = [
+        path for path in folder.rglob("*") if path.is_file() and not LEFT_OUT & set(path.relative_to(folder).parts)
+    ]
     tar = io.BytesIO()
     with tarfile.open(fileobj=tar, mode="w", format=tarfile.PAX_FORMAT) as archive:
         for path in sorted(files):

@@ -271,5 +271,5 @@ def test_one_name_is_one_type_to_the_linker(root: Path, tmp_path: Path, scripts:
     assert len(objects) > 90
     link = ["g++", "-O0", "-flto=4", "-Wodr", "-Werror=odr"]
     link += ["-Wl,--allow-multiple-definition", "-Wl,--unresolved-symbols=ignore-all"]
-    done = subprocess.run([*link, *objects, "-o", str(tmp_path / "all.so")], capture_output=True, text=True)
+    done = subprocess.run([*link, *objects, "-o", str(tmp_path / "all")], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -24,7 +24,7 @@ public:
         while (true) {
             while ((lane_run_.any_ended() || worker_.is_stopped()) && refill()) lane_run_.start_lanes();
             if (!lane_run_.any_running()) return;
-            if constexpr (Integrator::lanes == 1) lane_run_.step_alone();
+            if constexpr (Integrator::lanes == 1) lane_run_.step_outlined();
             else lane_run_.step();
         }
     }

@@ -32,7 +32,7 @@ public:
         else step_of<Terms::any>();
     }
     // step() as a function call: the long code is compiled once (single_lane_run.cpp).
-    void step_alone()
+    void step_outlined()
         requires(Base::lanes == 1)
     {
         step();
@@ -225,7 +225,6 @@ private:
             if (this->has_performance_) this->add_lane_performance(lane, simpson, dense, from, crossing->theta);
             from = crossing->theta;
             const ContactChange change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
-            if (this->on_change_) this->on_change_(lane, change);
             this->change_mode(lane, change);
             is_stale = true;
             if (this->outcome(lane) != ARM3R_RUN_OK || from >= 1) break;
@@ -290,7 +289,7 @@ private:
     Indentation<T> before_{};
 };
 
-extern template void LaneRk4<double, state_size>::step_alone();
-extern template void LaneRk4<double, full_size>::step_alone();
+extern template void LaneRk4<double, state_size>::step_outlined();
+extern template void LaneRk4<double, full_size>::step_outlined();
 
 }  // namespace arm3r

@@ -73,7 +73,7 @@ public:
         for (bool& is_new : is_new_) is_new = false;
     }
 
-    // What is called before each change of contact of a lane.
+    // Called before each change of contact of a lane.
     void set_observer(std::function<void(int lane, const ContactChange&)> changes) { on_change_ = std::move(changes); }
     // A user's law, for a run with a single lane.
     void set_user_law(const UserLaw& law) { sampled_.user = law; }
@@ -384,10 +384,8 @@ private:
     std::array<bool, lanes> running_{}, is_new_{};
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;
-
-protected:
-    std::function<void(int, const ContactChange&)> on_change_;
     std::array<ContactTally, lanes> contacts_;
+    std::function<void(int, const ContactChange&)> on_change_;
 };
 
 }  // namespace arm3r

@@ -254,6 +254,7 @@ void LaneRun<T, N>::update_peak(int lane, double value, double t, T& peak) {
 
 template <class T, std::size_t N>
 void LaneRun<T, N>::change_mode(int lane, const ContactChange& change) {
+    if (on_change_) on_change_(lane, change);
     const auto add = [lane](T& x, double more) { Lanes<T>::set(x, lane, Lanes<T>::get(x, lane) + more); };
     add(y_[work_of_wall], change.gained);
     add(y_[dissipated], change.lost);

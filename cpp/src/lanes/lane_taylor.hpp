@@ -61,7 +61,7 @@ public:
     }
 
     // step() as a function call: the long code is compiled once (single_lane_run.cpp).
-    void step_alone()
+    void step_outlined()
         requires(Base::lanes == 1)
     {
         step();
@@ -221,7 +221,6 @@ private:
             if (!is_due) continue;
             is_due = false;
             change.t = this->t(lane);
-            if (this->on_change_) this->on_change_(lane, change);
             this->change_mode(lane, change);
         }
     }
@@ -276,6 +275,6 @@ private:
     Expansion<T> series_;
 };
 
-extern template void LaneTaylor<double>::step_alone();
+extern template void LaneTaylor<double>::step_outlined();
 
 }  // namespace arm3r

@@ -49,7 +49,7 @@ public:
 private:
     void step() {
         has_dense_output_ = false;
-        lane_run_.step_alone();
+        lane_run_.step_outlined();
         theta_ = end_theta(lane_run_);
         run_.t_end = lane_run_.t(0);
         run_.steps = lane_run_.steps(0);
@@ -104,9 +104,9 @@ private:
 
 }  // namespace
 
-template void LaneRk4<double, state_size>::step_alone();
-template void LaneRk4<double, full_size>::step_alone();
-template void LaneTaylor<double>::step_alone();
+template void LaneRk4<double, state_size>::step_outlined();
+template void LaneRk4<double, full_size>::step_outlined();
+template void LaneTaylor<double>::step_outlined();
 
 Run run_in_lane(const Setup& setup, const RunOptions& options) {
     if (setup.solver.method == SolverMethod::taylor) return SingleLaneRun<LaneTaylor<double>>(setup, options).run();

@@ -59,7 +59,7 @@ struct Metrics {
 // What the end of a run tells beside its metrics, in the arm's convention.
 struct EndValues {
     std::array<double, 3> qdd, tau, f_on_wall;  // rad/s^2, N m, N
-    double depth, beside;                       // m: of the tip behind the plane of the plate, and beyond its edge
+    double depth, beside;                       // m: of the tip behind the face of the wall, and beside the plate
 };
 
 struct Run : Metrics, RowTable {

@@ -115,12 +115,15 @@ std::optional<EndValues> RunRecorder::end_values(const FullState& y, double thet
     const auto three = [&](ColumnIndex first) {
         return std::array{row.value[first], row.value[first + 1], row.value[first + 2]};
     };
-    Indentation<double> tip{};
-    if (setup_.plant.has_wall)
-        tip = tip_indentation(setup_.plant, wall_at(setup_.plant.wall, run_.t_end), pose(angles(y)),
-                              Vec3<double>(y[3], y[4], y[5]));
-    const double beside = setup_.plant.has_wall ? -inside_outline(setup_.plant.wall, tip) : 0;
-    return EndValues{three("qdd1"), three("tau1"), three("f_on_wall_x"), tip.depth, beside};
+    EndValues end{three("qdd1"), three("tau1"), three("f_on_wall_x"), 0, 0};
+    const Plant<double>& plant = setup_.plant;
+    if (plant.has_wall) {
+        const Indentation<double> tip =
+            tip_indentation(plant, wall_at(plant.wall, run_.t_end), pose(angles(y)), Vec3<double>(y[3], y[4], y[5]));
+        end.depth = tip.depth;
+        end.beside = -inside_outline(plant.wall, tip);
+    }
+    return end;
 }
 
 Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& totals) {

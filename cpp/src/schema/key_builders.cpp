@@ -16,7 +16,7 @@ Key number(std::string path, std::vector<double> fallback, Source source, Bounds
             .doc = std::move(doc)};
 }
 
-Key choice(std::string path, std::vector<std::string> words, Source source, std::string doc) {
+Key choice(std::string path, Words words, Source source, std::string doc) {
     return {.path = std::move(path),
             .kind = Kind::choice,
             .size = 1,
@@ -48,7 +48,7 @@ Key list_of(std::size_t min_size, std::size_t most, Key key) {
     return key;
 }
 
-Key where(std::string when_key, std::vector<std::string> when, Key key) {
+Key where(std::string when_key, Words when, Key key) {
     key.when_key = std::move(when_key);
     key.when = std::move(when);
     return key;
@@ -76,12 +76,10 @@ Key flag(std::string path, bool fallback, std::string doc) {
 
 Key for_laws(Words which, Key key) { return where("controller.type", std::move(which), std::move(key)); }
 
-// A key that exists for these laws only.
 void append_for_laws(std::vector<Key>& keys, const Words& which, std::vector<Key> some) {
     for (Key& key : some) keys.push_back(key.when_key.empty() ? for_laws(which, std::move(key)) : std::move(key));
 }
 
-// A key with a default of its own for some laws.
 Key but(std::map<std::string, std::vector<double>> fallback_for, Key key) {
     key.fallback_for = std::move(fallback_for);
     return key;

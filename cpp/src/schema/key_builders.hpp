@@ -48,6 +48,8 @@ Words laws_that(Holds holds) {
         if (holds(law)) words.emplace_back(law.word);
     return words;
 }
-inline const Words of_force = laws_that([](const LawProperties& law) { return law.takes_force; });
+inline Words of_force() {
+    return laws_that([](const LawProperties& law) { return law.takes_force; });
+}
 
 }  // namespace arm3r

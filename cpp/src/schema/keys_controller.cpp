@@ -10,10 +10,18 @@
 namespace arm3r {
 namespace {
 
-const Words with_a_torque = laws_that([](const LawProperties& law) { return law.type != ControllerType::none; });
-const Words with_a_model = laws_that([](const LawProperties& law) { return law.has_model; });
-const Words controlling_force = laws_that([](const LawProperties& law) { return law.controls_force; });
-const Words integrating_force = laws_that([](const LawProperties& law) { return law.integrates_force; });
+Words with_a_torque() {
+    return laws_that([](const LawProperties& law) { return law.type != ControllerType::none; });
+}
+Words with_a_model() {
+    return laws_that([](const LawProperties& law) { return law.has_model; });
+}
+Words controlling_force() {
+    return laws_that([](const LawProperties& law) { return law.controls_force; });
+}
+Words integrating_force() {
+    return laws_that([](const LawProperties& law) { return law.integrates_force; });
+}
 
 // A gain per axis, or one for all three.
 Key gain(const std::string& name, double fallback, std::string unit, std::string doc) {
@@ -35,7 +43,7 @@ void append_model(std::vector<Key>& keys) {
         key.source = Source::ours;
         key.required = false;
         key.unset = "as the plant";
-        if (key.when_key.empty()) key = for_laws(with_a_model, key);
+        if (key.when_key.empty()) key = for_laws(with_a_model(), key);
         keys.push_back(std::move(key));
     }
 }
@@ -102,19 +110,19 @@ void append_force_loop(std::vector<Key>& keys) {
                  choice("controller.force_term", words_of<ForceTerm>(), Source::ours,
                         "What becomes of the contact force: cancelled as measured, or the reference fed forward.")));
     keys.push_back(
-        for_laws(integrating_force, one_gain("force_mass", 1, {1e-6, 1e9}, "kg", "Apparent mass along the normal.")));
+        for_laws(integrating_force(), one_gain("force_mass", 1, {1e-6, 1e9}, "kg", "Apparent mass along the normal.")));
     keys.push_back(for_laws({"operational_space", "hybrid"},
                             one_gain("force_damping", 70, not_negative, "N s/m", "Damping along the normal.")));
-    keys.push_back(for_laws(integrating_force,
+    keys.push_back(for_laws(integrating_force(),
                             one_gain("force_gain", 0.5, not_negative, "", "Proportional gain of the force error.")));
     keys.push_back(
-        for_laws(integrating_force, but({{"parallel", {6}}}, one_gain("force_integral_gain", 5, not_negative, "1/s",
-                                                                      "Gain of the integral of the force error."))));
-    keys.push_back(for_laws(integrating_force,
+        for_laws(integrating_force(), but({{"parallel", {6}}}, one_gain("force_integral_gain", 5, not_negative, "1/s",
+                                                                        "Gain of the integral of the force error."))));
+    keys.push_back(for_laws(integrating_force(),
                             or_infinite(one_gain("integral_limit", infinite, not_negative, "N s",
                                                  "Limit of the integral of the force error, in both directions."))));
     keys.push_back(for_laws(
-        integrating_force,
+        integrating_force(),
         choice(
             "controller.anti_windup", words_of<AntiWindup>(), Source::ours,
             "How the integral of the force error behaves while a torque is at its limit: it continues, waits, or runs back.")));
@@ -123,7 +131,7 @@ void append_force_loop(std::vector<Key>& keys) {
               one_gain("tracking_time", 0.1, {1e-6, 1e6}, "s",
                        "Time constant with which back-calculation returns the integral of the force error.")));
     keys.push_back(for_laws(
-        controlling_force,
+        controlling_force(),
         choice(
             "controller.switching", words_of<Switching>(), Source::ours,
             "When force is controlled: while there is contact, from the first contact on, or from the start; else the tip keeps to the reference in all directions.")));
@@ -188,7 +196,7 @@ void append_controller(std::vector<Key>& keys) {
         for_laws({"constant"}, needed(number("controller.torque", {unset, unset, unset}, Source::ours, {-1e12, 1e12},
                                              "N m", "The constant torque, in the arm's convention."))));
     keys.push_back(for_laws(
-        with_a_model,
+        with_a_model(),
         with_form(
             Form::number_or_vector,
             number(
@@ -213,7 +221,7 @@ void append_controller(std::vector<Key>& keys) {
                  flag("controller.ideal_cancellation", false,
                       "The force that is cancelled is the true one; only the force error suffers from the sensor.")));
     keys.push_back(for_laws(
-        with_a_torque,
+        with_a_torque(),
         choice("controller.saturation", words_of<Saturation>(), Source::ours,
                "At arm.torque_limit: each joint for itself, or all by one factor, which keeps the direction.")));
     append_model(keys);

@@ -8,8 +8,9 @@
 namespace arm3r {
 namespace {
 
-const Words with_a_sensor =
-    laws_that([](const LawProperties& law) { return law.has_model || law.type == ControllerType::user; });
+Words with_a_sensor() {
+    return laws_that([](const LawProperties& law) { return law.has_model || law.type == ControllerType::user; });
+}
 
 std::vector<Key> sampling_keys() {
     std::vector<Key> keys;
@@ -55,7 +56,7 @@ std::vector<Key> sampling_keys() {
 
 }  // namespace
 
-void append_sampling(std::vector<Key>& keys) { append_for_laws(keys, with_a_sensor, sampling_keys()); }
+void append_sampling(std::vector<Key>& keys) { append_for_laws(keys, with_a_sensor(), sampling_keys()); }
 
 void append_observer(std::vector<Key>& keys) {
     const auto vector = [](Key key) { return with_form(Form::number_or_vector, std::move(key)); };

@@ -9,7 +9,9 @@
 namespace arm3r {
 namespace {
 
-const Words with_a_path = laws_that([](const LawProperties& law) { return law.follows_path; });
+Words with_a_path() {
+    return laws_that([](const LawProperties& law) { return law.follows_path; });
+}
 
 std::vector<Key> reference_keys() {
     std::vector<Key> keys;
@@ -73,9 +75,9 @@ std::vector<Key> force_reference_keys() {
     keys.push_back(choice("reference.force.type", words_of<ForceProfile>(), Source::ours,
                           "The desired pressing force as a function of time, along the wall's normal."));
     keys.push_back(for_laws(
-        of_force, but({{"admittance", {0}}},
-                      number("reference.force.value", {20}, Source::ours, {-1e9, 1e9}, "N",
-                             "The desired force; for a step or ramp the one after it, for a sinusoid the mean."))));
+        of_force(), but({{"admittance", {0}}},
+                        number("reference.force.value", {20}, Source::ours, {-1e9, 1e9}, "N",
+                               "The desired force; for a step or ramp the one after it, for a sinusoid the mean."))));
     keys.push_back(in({"step", "ramp"}, number("reference.force.initial", {0}, Source::ours, {-1e9, 1e9}, "N",
                                                "The desired force before the step or ramp.")));
     keys.push_back(in({"step", "ramp"}, number("reference.force.start", {1}, Source::ours, an_instant, "s",
@@ -92,8 +94,8 @@ std::vector<Key> force_reference_keys() {
 }  // namespace
 
 void append_reference(std::vector<Key>& keys) {
-    append_for_laws(keys, with_a_path, reference_keys());
-    append_for_laws(keys, of_force, force_reference_keys());
+    append_for_laws(keys, with_a_path(), reference_keys());
+    append_for_laws(keys, of_force(), force_reference_keys());
 }
 
 }  // namespace arm3r
