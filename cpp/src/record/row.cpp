@@ -30,7 +30,8 @@ constexpr unsigned parts_of(std::size_t column) {
     if (is_between("stiffness_estimate", "tank_energy")) return memory_signals;
     if (is_between("saturated", "saturated")) return applied_torque | memory_signals;
     if (is_between("energy_dissipated_joints", "energy_dissipated_edges")) return losses;
-    if (is_between("wall_x", "energy_residual")) return contact_and_energy;
+    if (is_between("wall_x", "f_on_wall_z")) return contact_state;
+    if (is_between("energy_kinetic", "energy_residual")) return energy_terms;
     return 0;
 }
 
@@ -48,7 +49,7 @@ RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept, bool is_judged)
     if (inverts_jacobian(setup.controller()))
         for (const ColumnIndex angle : {ColumnIndex("q1"), ColumnIndex("q2"), ColumnIndex("q3")}) hidden.set(angle);
     return with_parts(columns_of(setup), in_order(hidden & possible_columns(setup) & ~setup.logged),
-                      is_judged ? contact_and_energy : RowPart{});
+                      is_judged ? judged_parts : 0);
 }
 
 RowPlan plan_of_end() { return {{}, {}, applied_torque | acceleration}; }

@@ -52,8 +52,8 @@ struct Row {
     bool link_behind_wall;  // the elbow, or a link that is not in contact itself, lies behind the plate
 };
 
-// What rows are computed from beside time, angles and rates: each is computed only if a column needs it, and contact and
-// energy also for what a run says about its rows. Any other part comes with these two.
+// What rows are computed from beside time, angles and rates: each is computed only if a column needs it, and energy and
+// links also for what a run says about its rows. The contact comes with any other part.
 enum RowPart : unsigned {
     applied_torque = 1,
     acceleration = 2,
@@ -65,8 +65,13 @@ enum RowPart : unsigned {
     observer_signals = 128,
     memory_signals = 256,
     losses = 512,
-    contact_and_energy = 1024,
+    contact_state = 1024,
+    energy_terms = 2048,
+    links_behind_wall = 4096,
 };
+
+// What a run says about its rows: the largest residual of their energies, and the links behind the wall.
+constexpr unsigned judged_parts = energy_terms | links_behind_wall;
 
 // The columns of a log, those that are kept beside them, and the parts of a row that they need.
 struct RowPlan {
@@ -74,7 +79,7 @@ struct RowPlan {
     unsigned parts;
 };
 
-// is_judged: whether the run says something about its rows, such as the largest residual of their energies.
+// is_judged: whether the run says something about its rows.
 RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept, bool is_judged = true);
 RowPlan plan_of_end();  // of what EndValues has (run_data.hpp); in memory it has no column
 
@@ -92,7 +97,8 @@ struct RowContext {
     double lost_at_edges;                             // J, so far
     const RowPlan& plan;
 
-    bool needs(RowPart part) const { return (plan.parts & part) != 0; }
+    bool needs(unsigned parts) const { return (plan.parts & parts) != 0; }
+    bool is_judged() const { return needs(links_behind_wall); }
 };
 
 // `theta` is the place of t within the step.

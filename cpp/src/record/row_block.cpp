@@ -15,11 +15,12 @@ ARM3R_INLINE void fill_block(const RowContext& context, RowBlock& rows) {
         const Group at = Group::load(rows.t + first);
         const Group theta = (at - context.dense.t0) / context.dense.h;
         RowValues<Group> sampled;
-        fill_row(context, at, state_within(context.dense, theta), theta, sampled);
+        fill_row(context, at, state_for_row(context, theta), theta, sampled);
         const auto store = [&](std::size_t i) ARM3R_INLINE_LAMBDA { sampled.value[i].store(rows.value[i] + first); };
         for (const std::size_t column : context.plan.columns) store(column);
         for (const std::size_t column : context.plan.hidden) store(column);
-        if (context.needs(contact_and_energy)) store(ColumnIndex("energy_residual"));
+        if (!context.is_judged()) continue;
+        store(ColumnIndex("energy_residual"));
         for (int i = N - 1; i >= 0; --i)
             if (sampled.link_behind_wall[i] > 0)
                 rows.first_link_behind_wall = std::min(rows.first_link_behind_wall, first + i);

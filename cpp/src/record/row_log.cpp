@@ -42,7 +42,7 @@ void RowLog::log(const RowContext& context, double t, const FullState& y, double
     });
     if (nothing != 0) return end_at_bad_row(row, t);
     run_.rows += 1;
-    if (!context.needs(contact_and_energy)) return;
+    if (!context.is_judged()) return;
     include_residual(run_.energy_residual_max, row.value[ColumnIndex("energy_residual")]);
     if (row.link_behind_wall) record_link_behind_wall(t);
     if (follows_point(context.controller)) check_workspace(context, t, y);
@@ -62,7 +62,7 @@ void RowLog::log_block(const RowContext& context, int count) {
     const std::span<const double> times(rows.t, static_cast<std::size_t>(count));
     if (nothing != 0) return log_one_by_one(context, times);
     run_.rows += times.size();
-    if (!context.needs(contact_and_energy)) return;
+    if (!context.is_judged()) return;
     for (int i = 0; i < count; ++i)
         include_residual(run_.energy_residual_max, rows.value[ColumnIndex("energy_residual")][i]);
     if (rows.first_link_behind_wall < count) record_link_behind_wall(rows.t[rows.first_link_behind_wall]);

@@ -110,22 +110,32 @@ struct RowValues {
     T link_behind_wall;
 };
 
-// The solution at an instant of a step, or at several in a pack, as DenseOutput::component has it; the sums of a power
-// series stay in registers.
-template <class T>
-ARM3R_INLINE State<T, full_size> state_within(const DenseOutput& dense, const T& theta) {
-    State<T, full_size> y;
-    for (std::size_t i = state_size; i < full_size; ++i) y[i] = T(0.0);
-    if (dense.order < 0 || dense.size != state_size) {
-        for (std::size_t i = 0; i < dense.size; ++i) y[i] = dense.component(i, theta);
-        return y;
-    }
-    const T seconds = theta * dense.h;
-    std::array<T, state_size> sum;
-    for (std::size_t i = 0; i < state_size; ++i) sum[i] = T(dense.c[dense.order][i]);
+// The first N components of the sum of a power series, as DenseOutput::component has them; the sums stay in registers.
+template <std::size_t N, class T>
+ARM3R_INLINE void sum_series(const DenseOutput& dense, const T& seconds, State<T, full_size>& y) {
+    std::array<T, N> sum;
+    for (std::size_t i = 0; i < N; ++i) sum[i] = T(dense.c[dense.order][i]);
     for (int k = dense.order - 1; k >= 0; --k)
-        for (std::size_t i = 0; i < state_size; ++i) sum[i] = sum[i] * seconds + dense.c[k][i];
-    for (std::size_t i = 0; i < state_size; ++i) y[i] = sum[i];
+        for (std::size_t i = 0; i < N; ++i) sum[i] = sum[i] * seconds + dense.c[k][i];
+    for (std::size_t i = 0; i < N; ++i) y[i] = sum[i];
+}
+
+// The solution at several instants of a step. Where the plan needs no energy, and no controller has memory in the state,
+// the quadratures are 0.
+template <class T>
+ARM3R_INLINE State<T, full_size> state_for_row(const RowContext& context, const T& theta) {
+    const DenseOutput& dense = context.dense;
+    State<T, full_size> y;
+    for (std::size_t i = motion_size; i < full_size; ++i) y[i] = T(0.0);
+    const bool is_motion = dense.size == state_size && !context.needs(energy_terms | losses);
+    if (dense.order < 0 || dense.size != state_size) {
+        const std::size_t count = is_motion ? motion_size : dense.size;
+        for (std::size_t i = 0; i < count; ++i) y[i] = dense.component(i, theta);
+    } else if (is_motion) {
+        sum_series<motion_size>(dense, theta * dense.h, y);
+    } else {
+        sum_series<state_size>(dense, theta * dense.h, y);
+    }
     return y;
 }
 
@@ -173,7 +183,7 @@ ARM3R_INLINE void find_contact(const RowContext& context, RowState<T>& now, T& l
         now.in = tip_indentation(plant, now.wall, now.pose, now.qd);
         now.force = force_of(plant, now.wall, now.in, context.mode);
         if (is_touching(context.mode)) now.touches = select(now.in.depth > T(0.0), T(1.0), T(0.0));
-        link_behind_wall = link_behind(plant, now.wall, now.pose, now.touches);
+        if (context.is_judged()) link_behind_wall = link_behind(plant, now.wall, now.pose, now.touches);
     }
     now.felt = plant.acts_on_arm ? now.force.on_tip : zero_vector<T>();
     now.at_tip = now.force.on_tip;
@@ -291,7 +301,7 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
 
     write_motion(context, now, theta, write);
     write_contact(now, write);
-    write_energy(context, now, y, write);
+    if (context.needs(energy_terms)) write_energy(context, now, y, write);
     if (context.needs(law_signals)) {
         const Measurement<T> sensed =
             measurement_of(context, rhs, now.t, now.wall, now.pose, now.q, now.qd, now.at_tip, y);

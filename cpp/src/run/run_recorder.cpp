@@ -136,7 +136,7 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
         }
     }
     explain(y);
-    if (options_.rows) run_.at_end = end_values(y, theta);
+    if (options_.rows && options_.judges) run_.at_end = end_values(y, theta);
     if (run_.link_behind_wall_since >= 0)
         run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
                                 shortest(run_.link_behind_wall_since) + " s on; only the tip feels the wall");

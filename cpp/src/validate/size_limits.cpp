@@ -14,11 +14,18 @@ constexpr double max_ticks = 1e8;
 
 double whole(double count) { return count < 1e15 ? nearest_integer(count) : count; }
 
-void refuse_above(double needed, double most, Problem problem) {
+struct Limit {
+    const char *code, *path, *message, *hint;
+};
+
+void refuse_above(double needed, double most, const Limit& limit) {
     if (needed <= most) return;
-    problem.got = "about " + shortest(whole(needed));
-    problem.allowed = "at most " + shortest(whole(most));
-    throw Error(ARM3R_E_SIZE_CAP, {std::move(problem)});
+    throw Error(ARM3R_E_SIZE_CAP, {{.code = limit.code,
+                                    .path = limit.path,
+                                    .message = limit.message,
+                                    .got = "about " + shortest(whole(needed)),
+                                    .allowed = "at most " + shortest(whole(most)),
+                                    .hint = limit.hint}});
 }
 
 double duration(const Setup& setup) { return setup.stop - setup.start; }
@@ -28,6 +35,20 @@ double ticks_of(const Setup& setup) {
 }
 
 double fixed_steps_allowed(const Solver& solver) { return std::min(max_fixed_steps, solver.max_steps); }
+
+constexpr std::size_t need_count = static_cast<std::size_t>(Need::limits) + 1;
+
+// The columns of each need, in the order of Need.
+const std::array<ColumnSet, need_count>& columns_by_need() {
+    static const std::array<ColumnSet, need_count> columns = [] {
+        std::array<ColumnSet, need_count> of;
+        for (std::size_t i = 0; i < column_count; ++i) of[static_cast<std::size_t>(column_table[i].need)].set(i);
+        return of;
+    }();
+    return columns;
+}
+
+ColumnSet logged_columns(const Setup& setup) { return possible_columns(setup) & setup.logged; }
 
 }  // namespace
 
@@ -39,7 +60,8 @@ bool has_too_many_steps(const Setup& setup) {
 
 void refuse_too_large(const Setup& setup, bool rows) {
     if (rows)
-        refuse_above(duration(setup) / setup.log_every, max_bytes / double(columns_of(setup).size() * sizeof(double)),
+        refuse_above(duration(setup) / setup.log_every,
+                     max_bytes / double(logged_columns(setup).count() * sizeof(double)),
                      {.code = "budget.rows",
                       .path = "time.log_every",
                       .message = "the run would need too many rows",
@@ -76,11 +98,12 @@ ColumnSet possible_columns(const Setup& setup) {
         }
     };
     ColumnSet columns;
-    for (std::size_t i = 0; i < column_count; ++i) columns[i] = is_there(column_table[i].need);
+    for (std::size_t need = 0; need < need_count; ++need)
+        if (is_there(static_cast<Need>(need))) columns |= columns_by_need()[need];
     return columns;
 }
 
-std::vector<std::size_t> columns_of(const Setup& setup) { return in_order(possible_columns(setup) & setup.logged); }
+std::vector<std::size_t> columns_of(const Setup& setup) { return in_order(logged_columns(setup)); }
 
 std::vector<Problem> missing_columns(const Setup& setup, const std::string& path) {
     std::vector<Problem> problems;
@@ -98,6 +121,7 @@ std::vector<Problem> missing_columns(const Setup& setup, const std::string& path
 
 std::vector<std::size_t> in_order(const ColumnSet& columns) {
     std::vector<std::size_t> order;
+    order.reserve(columns.count());
     for (std::size_t i = 0; i < column_count; ++i)
         if (columns[i]) order.push_back(i);
     return order;
