@@ -324,6 +324,34 @@ def test_a_band_is_drawn(browser: Any, address: str) -> None:
         visitor.check()
 
 
+# Questions to the workers, by kind: window.questions.
+COUNT_QUESTIONS = """window.questions = []; const ask = Worker.prototype.postMessage;
+Worker.prototype.postMessage = function (data) { window.questions.push(data.kind); return ask.apply(this, arguments); };
+"""
+
+
+def test_a_band_is_simulated_once(browser: Any, address: str) -> None:
+    """For each run, and for each change of the band; also where the run before had other columns."""
+    hybrid = arm3r.Scenario.example("force_control/hybrid_first_contact")
+    hybrid["checks"] = []
+    hybrid["time.stop"] = 0.02
+    with Visitor(browser, "laptop") as visitor:
+        visitor.page.add_init_script(COUNT_QUESTIONS)
+        visitor.open(address)
+        visitor.type_text(hybrid.to_yaml())
+        visitor.page.check("#band-on")
+        visitor.choose("lecture/12_wall_acts_on_arm")
+        for share in ("30", "40", "15"):
+            visitor.page.locator("#band-within").fill(share)
+            visitor.page.wait_for_timeout(200)
+        visitor.page.wait_for_timeout(2000)
+        visitor.settle()
+        assert 1 <= visitor.page.evaluate("() => window.questions.filter((kind) => kind === 'band').length") <= 6
+        assert visitor.page.locator(".problem").count() == 0
+        assert "15 %" in visitor.text_of("#band-value")
+        visitor.check()
+
+
 @pytest.mark.parametrize("size", ["laptop", pytest.param("phone", marks=pytest.mark.gate)])
 def test_every_guided_stop_can_be_reached(browser: Any, address: str, size: str) -> None:
     stops = json.loads((ROOT / "docs/live/src/parts/stops.json").read_text())

@@ -1,6 +1,6 @@
 /** Play, scrub and speed: the present time of the run. */
 import { at } from "../app/dom.js";
-import { later } from "../app/frames.js";
+import { show } from "../app/frames.js";
 import { shown } from "../app/numbers.js";
 
 const STEPS = 10_000; // positions of the scrubber
@@ -18,7 +18,7 @@ export class Transport {
     this.scrubber.addEventListener("input", () => this.#scrubbed());
     store.on(["opened"], () => (this.rewind = true));
     store.on(["run"], () => this.#fit());
-    store.on(["time", "run"], () => later("transport", () => this.#show()));
+    store.on(["time", "run"], () => show("transport", () => this.#show()));
     store.on(["playing"], () => this.#play());
     store.on(["speed"], () => (at("speed").value = String(store.get("speed"))));
   }

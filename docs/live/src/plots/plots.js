@@ -1,7 +1,7 @@
 /** All panels over one axis of time: chosen by name, zoomed together, with one line for the present time. */
 import { at, make } from "../app/dom.js";
 import { colours } from "../app/colours.js";
-import { later } from "../app/frames.js";
+import { later, show } from "../app/frames.js";
 import { contactSpans } from "./contact.js";
 import { panelsOf } from "./panels.js";
 import { Plot } from "./plot.js";
@@ -13,9 +13,10 @@ export class Plots {
     this.store = store;
     this.list = at("plots");
     this.choice = at("plot-choice");
-    store.on(["run", "bandRun", "chosenPlots"], () => later("plots", () => this.#show()));
+    store.on(["run", "chosenPlots"], () => later("plots", () => this.#show()));
+    store.on(["bandRun"], () => later("plots-band", () => this.#redraw()));
     store.on(["theme"], () => later("plots", () => this.#renew()));
-    store.on(["time"], () => later("plot-time", () => this.#seek()));
+    store.on(["time"], () => show("plots", () => this.#seek()));
     store.on(["range"], () => this.#zoom());
     new ResizeObserver(() => later("plot-size", () => this.#resize())).observe(this.list);
     at("zoom-in").addEventListener("click", () => this.magnify(0.5));
@@ -54,8 +55,12 @@ export class Plots {
     this.#keep(wanted);
     this.run = run;
     this.about = { spans: contactSpans(run), events: run.events };
-    for (const plot of this.#plots.values()) later(`plot-${plot.panel.name}`, () => this.#draw(plot));
+    this.#redraw();
     this.store.set({ panels: wanted });
+  }
+
+  #redraw() {
+    for (const plot of this.#plots.values()) later(`plot-${plot.panel.name}`, () => this.#draw(plot));
   }
 
   #draw(plot) {

@@ -2,7 +2,7 @@
 import { AmbientLight, Color, DirectionalLight, Scene as Space, Vector3, WebGLRenderer } from "three";
 import { BLUE, GREEN, RED, colours } from "../app/colours.js";
 import { at } from "../app/dom.js";
-import { later } from "../app/frames.js";
+import { later, show } from "../app/frames.js";
 import { shown } from "../app/numbers.js";
 import { ArmModel } from "./arm.js";
 import { Forces } from "./forces.js";
@@ -39,7 +39,7 @@ export class Scene {
 
   /** Draw in the next frame. */
   draw() {
-    later("scene", () => this.#draw());
+    show("scene", () => this.#draw());
   }
 
   /** The picture of the present moment as a canvas. */

@@ -16,7 +16,7 @@ export class Simulation {
   constructor(store) {
     this.#store = store;
     store.on(["text"], () => this.#ask());
-    store.on(["band", "run", "panels"], () => this.#askForBand());
+    store.on(["band", "panels"], () => this.#askForBand()); // each run brings its panels
   }
 
   /** Load the simulator. Throws an Error where it cannot be loaded. */
@@ -66,8 +66,10 @@ export class Simulation {
     if (!within) return this.#store.set({ bandRun: null });
     this.#waiting = setTimeout(() => {
       const run = this.#store.get("run");
-      if (!run || this.#runner.busy || run.text !== this.#store.get("text")) return;
-      const columns = this.#store.get("panels").flatMap((panel) => panel.series.map((one) => one.column));
+      if (!run || run.text !== this.#store.get("text")) return; // another run is coming
+      if (this.#runner.busy) return void this.#askForBand(); // a file, or a band that is no longer wanted
+      const shown = this.#store.get("panels").flatMap((panel) => panel.series.map((one) => one.column));
+      const columns = shown.filter((column) => column in run.columns);
       const options = { runs: RUNS, seed: 1, columns, within: Object.fromEntries(keys.map((key) => [key, within])) };
       this.#store.set({ busy: true });
       this.#runner.ask({ kind: "band", ...this.#scenario(), options });
@@ -90,7 +92,8 @@ export class Simulation {
     csv: ({ csv }) => this.#promises.get("csv").resolve(csv),
     failed: ({ message, problems, question }) => {
       this.#promises.get(question?.kind)?.reject(new Error(message));
-      this.#store.set({ failure: message, problems, busy: false });
+      const isOfText = question?.kind !== "band"; // of a text that was read and run before
+      this.#store.set({ failure: message, busy: false, ...(isOfText ? { problems } : {}) });
     },
   };
 }
