@@ -80,8 +80,11 @@ class Visitor:
         return self
 
     def settle(self) -> None:
-        """Wait until the newest text has been simulated and drawn."""
+        """Wait until the newest text has been simulated and drawn, and the present time is shown."""
         self.page.wait_for_selector(SETTLED, state="attached")
+        self.page.evaluate(
+            "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())))"
+        )
 
     def choose(self, name: str) -> None:
         self.page.click("#open-menu")
