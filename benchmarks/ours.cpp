@@ -69,45 +69,42 @@ void Stepper<Size>::start() {
     rhs_(t_, y_, f_);
 }
 
-template <std::size_t Size>
-void Stepper<Size>::advance(int steps) {
-    State<double, Size> y = y_, f = f_;
-    double t = t_;
+// Steps of the kind that a run takes; f is the derivative at (t, y), with rhs.begin_step(y) done.
+template <Terms terms, class T, std::size_t Size>
+ARM3R_INLINE void march_by_terms(RightHandSide<T, T>& rhs, T& t, State<T, Size>& y, State<T, Size>& f, int steps) {
+    constexpr std::size_t moving = terms == Terms::common ? std::min<std::size_t>(Size, common_moving) : Size;
     for (int i = 0; i < steps; ++i) {
-        y = rk4_step(rhs_, t, y, f, step);
-        t += step;
-        rhs_.begin_step(y);
-        rhs_(t, y, f);
-    }
-    y_ = y;
-    f_ = f;
-    t_ = t;
-}
-
-template class Stepper<motion_size>;
-template class Stepper<state_size>;
-
-template <Terms terms, int N, std::size_t Size>
-ARM3R_INLINE void march_packs_of(const Plant<Pack<N>>& plant, State<Pack<N>, Size>& y, int steps) {
-    RightHandSide<Pack<N>, Pack<N>> rhs(plant);
-    if (plant.acts_on_arm) rhs.force_mode = ContactForceMode::each_stage;
-    State<Pack<N>, Size> f{};
-    Pack<N> t(0.0), h(step);
-    rhs.begin_step(y);
-    rhs(t, y, f);
-    for (int i = 0; i < steps; ++i) {
-        constexpr std::size_t moving = terms == Terms::common ? std::min<std::size_t>(Size, common_moving) : Size;
-        y = rk4_step_of_first<moving>(rhs.template of_terms<terms>(), t, y, f, h);
-        t += h;
+        y = rk4_step_of_first<moving>(rhs.template of_terms<terms>(), t, y, f, T(step));
+        t += T(step);
         rhs.begin_step(y);
         rhs.template of_terms<terms>()(t, y, f);
     }
 }
 
+template <class T, std::size_t Size>
+ARM3R_INLINE void march(const Plant<T>& plant, RightHandSide<T, T>& rhs, T& t, State<T, Size>& y, State<T, Size>& f,
+                        int steps) {
+    if (has_common_terms(plant)) march_by_terms<Terms::common>(rhs, t, y, f, steps);
+    else march_by_terms<Terms::any>(rhs, t, y, f, steps);
+}
+
+template <std::size_t Size>
+void Stepper<Size>::advance(int steps) {
+    march(setup_.plant, rhs_, t_, y_, f_, steps);
+}
+
+template class Stepper<motion_size>;
+template class Stepper<state_size>;
+
 template <int N, std::size_t Size>
 ARM3R_INLINE void march_packs(const Plant<Pack<N>>& plant, State<Pack<N>, Size>& y, int steps) {
-    if (has_common_terms(plant)) march_packs_of<Terms::common>(plant, y, steps);
-    else march_packs_of<Terms::any>(plant, y, steps);
+    RightHandSide<Pack<N>, Pack<N>> rhs(plant);
+    if (plant.acts_on_arm) rhs.force_mode = ContactForceMode::each_stage;
+    State<Pack<N>, Size> f{};
+    Pack<N> t(0.0);
+    rhs.begin_step(y);
+    rhs(t, y, f);
+    march(plant, rhs, t, y, f, steps);
 }
 
 template <std::size_t Size>

@@ -40,6 +40,11 @@ struct ContactSignals {
     Polynomial<T> depth, across1, across2;  // m
 };
 
+// Whether contact depends on where on the plate the tip is.
+inline bool depends_on_place(const Plant<double>& plant) {
+    return plant.wall.has_outline || plant.contact.law == ContactLaw::diagonal;
+}
+
 template <class T>
 struct Range {
     T low, high;

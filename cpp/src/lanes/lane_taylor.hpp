@@ -195,8 +195,9 @@ private:
     }
 
     void resolve_lane(int lane) {
-        const ContactSignals<double> signals{polynomial(lane, depth), polynomial(lane, across1),
-                                             polynomial(lane, across2)};
+        ContactSignals<double> signals{polynomial(lane, depth), {}, {}};
+        if (depends_on_place(this->setup(lane).plant))
+            signals.across1 = polynomial(lane, across1), signals.across2 = polynomial(lane, across2);
         const double h = this->h(lane), t0 = Lanes<T>::get(t0_, lane), t = t0 + h;
         const auto crossing =
             next_crossing(this->setup(lane).plant.wall, signals, 0, this->mode(lane), event_resolution(t, h));

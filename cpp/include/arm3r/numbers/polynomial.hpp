@@ -213,8 +213,13 @@ inline double refine_root(const Polynomial<double>& p, const Bracket& bracket, d
     return high;
 }
 
+struct Root {
+    double at;
+    bool is_last;  // certainly no other one follows: p stays negative
+};
+
 // The first downward zero crossing of p in (from, to]; p is not negative at `from`, except by rounding.
-inline std::optional<double> first(const Polynomial<double>& p, double from, double to, double resolution) {
+inline std::optional<Root> first_root(const Polynomial<double>& p, double from, double to, double resolution) {
     if (!(from < to)) return std::nullopt;
     const Search search{p.degree, rounding(p), max(std::numeric_limits<double>::epsilon(), resolution)};
     Bernstein b = bernstein(p);
@@ -223,7 +228,12 @@ inline std::optional<double> first(const Polynomial<double>& p, double from, dou
     if (to < 1) b = split(b, p.degree, (to - from) / (1 - from)).left;
     const auto bracket = search.isolate(b, from, to);
     if (!bracket) return std::nullopt;
-    return refine_root(p, *bracket, search.resolution);
+    return Root{refine_root(p, *bracket, search.resolution), bracket->high == to};
+}
+
+inline std::optional<double> first(const Polynomial<double>& p, double from, double to, double resolution) {
+    const std::optional<Root> root = first_root(p, from, to, resolution);
+    return root ? std::optional(root->at) : std::nullopt;
 }
 
 inline Polynomial<double> minus_constant(Polynomial<double> p, double by) {
@@ -261,10 +271,11 @@ inline Maximum maximum(const Polynomial<double>& p, double a, double b) {
     most.include(p, b);
     Polynomial<double> signed_slope = derivative(p);
     if (value(signed_slope, a) < 0) signed_slope = negative(signed_slope);
-    while (const auto turn = zero_crossing::first(signed_slope, a, b, resolution)) {
-        most.include(p, *turn);
+    while (const auto turn = zero_crossing::first_root(signed_slope, a, b, resolution)) {
+        most.include(p, turn->at);
+        if (turn->is_last) break;
         signed_slope = negative(signed_slope);
-        a = *turn;
+        a = turn->at;
     }
     return most;
 }
