@@ -15,6 +15,12 @@ from pathlib import Path
 MARK = "getppid"  # os.getppid() in a Python program ends one count and begins the next
 
 
+def printed(command: Sequence[str | Path]) -> str:
+    """What a program prints that sees valgrind's processor."""
+    valgrind = ["valgrind", "--tool=none", "--quiet"]
+    return subprocess.run([*valgrind, *command], check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
 def counts(command: Sequence[str | Path]) -> list[int]:
     """Instructions of a whole process, in as many parts as its marks divide it into."""
     with tempfile.TemporaryDirectory() as folder:

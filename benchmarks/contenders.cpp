@@ -56,8 +56,9 @@ Contender our_steps(std::string job, std::vector<double> (*params)()) {
 
 template <std::size_t Size>
 Contender our_packs(std::string job, std::vector<double> (*params)()) {
-    return {std::move(job), "arm3r in packs of " + std::to_string(arm3r::max_lanes()) + ", per arm", our_build,
-            [params] {
+    const int lanes = arm3r::max_lanes();
+    if (lanes == 1) return {std::move(job), "arm3r in packs", "ARM3R_LANES=all has packs for this processor", {}};
+    return {std::move(job), "arm3r in packs of " + std::to_string(lanes) + ", per arm", our_build, [params] {
                 return over_steps<PackStepper<Size>>(std::make_shared<PackStepper<Size>>(params()),
                                                      &PackStepper<Size>::start);
             }};

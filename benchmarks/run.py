@@ -45,12 +45,13 @@ def main() -> None:
     if shutil.which("valgrind"):
         commands.append(script("instructions", program))
     print("load before:", *os.getloadavg(), f"on {os.cpu_count()} cores", file=sys.stderr)
-    tables = [rows(*command) for command in commands]
-    lines = [tables[0][0], *(line for table in tables for line in table[1:])]
-
     out = ROOT / "out" / "bench.csv"
     out.parent.mkdir(exist_ok=True)
-    out.write_text("\n".join(lines) + "\n")
+    lines: list[str] = []
+    for command in commands:
+        header, *values = rows(*command)
+        lines += values if lines else [header, *values]
+        out.write_text("\n".join(lines) + "\n")  # whatever becomes of the next one
     print("\n".join(lines))
     print("load after:", *os.getloadavg(), "written:", out, file=sys.stderr)
 
