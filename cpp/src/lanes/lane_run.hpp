@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/widths.hpp"
@@ -218,13 +219,16 @@ protected:
     template <class Visit>
     void visit_step(int lane, const DenseOutput& dense, Visit visit) const {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-        Setup setup = setups_[lane];
-        if (asks_estimator(plant_.controller))
-            setup.plant.controller.gains.assumed_stiffness = get(plant_.controller.gains.assumed_stiffness);
+        const Setup* setup = &setups_[lane];
+        std::optional<Setup> of_estimate;
+        if (asks_estimator(plant_.controller)) {
+            setup = &of_estimate.emplace(setups_[lane]);
+            of_estimate->plant.controller.gains.assumed_stiffness = get(plant_.controller.gains.assumed_stiffness);
+        }
         const Vec3<double> held{get(tau_before_[0]), get(tau_before_[1]), get(tau_before_[2])};
         const ContinuousInputs inputs = this->inputs(lane);
         const double phase = sampled_.is_on() ? get(phase_) : inputs.force_phase;
-        visit(StepView{setup, dense, mode_[lane] == ContactMode::contact, inputs.contact, phase,
+        visit(StepView{*setup, dense, mode_[lane] == ContactMode::contact, inputs.contact, phase,
                        plant_.holds_torque ? &held : nullptr, slightly_before(t(lane))});
     }
 
