@@ -12,14 +12,15 @@ template <class Element, int N>
 struct Register {
     typedef Element type __attribute__((vector_size(sizeof(Element) * N)));
     // Written out for the widths of registers, because g++ 12 takes three times as long for a loop over the lanes. Eight
-    // written out it would set one by one, with masks: where the function is defined it knows no register for them.
+    // written out it would set one by one, with masks: where the function is defined it knows no register for them; and
+    // two made into eight would go through memory, and wait for it.
     ARM3R_INLINE static void set_all(type& v, Element x) {
         if constexpr (N == 2) v = type{x, x};
         else if constexpr (N == 4) v = type{x, x, x, x};
 #if __has_builtin(__builtin_shufflevector)
         else if constexpr (N == 8) {
-            const typename Register<Element, 2>::type two{x, x};
-            v = __builtin_shufflevector(two, two, 0, 0, 0, 0, 0, 0, 0, 0);
+            const typename Register<Element, 4>::type four{x, x, x, x};
+            v = __builtin_shufflevector(four, four, 0, 0, 0, 0, 0, 0, 0, 0);
         }
 #endif
         else
