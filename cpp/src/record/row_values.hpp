@@ -127,15 +127,13 @@ ARM3R_INLINE State<T, full_size> state_for_row(const RowContext& context, const 
     const DenseOutput& dense = context.dense;
     State<T, full_size> y;
     for (std::size_t i = motion_size; i < full_size; ++i) y[i] = T(0.0);
-    const bool is_motion = dense.size == state_size && !context.needs(energy_terms | losses);
-    if (dense.order < 0 || dense.size != state_size) {
-        const std::size_t count = is_motion ? motion_size : dense.size;
-        for (std::size_t i = 0; i < count; ++i) y[i] = dense.component(i, theta);
-    } else if (is_motion) {
-        sum_series<motion_size>(dense, theta * dense.h, y);
-    } else {
-        sum_series<state_size>(dense, theta * dense.h, y);
-    }
+    const bool has_memory = dense.size > state_size;
+    const std::size_t needed = has_memory || context.needs(energy_terms | losses) ? dense.size : motion_size;
+    const bool is_series = dense.order >= 0 && !has_memory;
+    if (is_series && needed == motion_size) sum_series<motion_size>(dense, theta * dense.h, y);
+    else if (is_series) sum_series<state_size>(dense, theta * dense.h, y);
+    else
+        for (std::size_t i = 0; i < needed; ++i) y[i] = dense.component(i, theta);
     return y;
 }
 

@@ -5,6 +5,7 @@
 
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "control/compiled_laws.hpp"
+#include "run/scalar_search.hpp"
 
 namespace arm3r {
 namespace {
@@ -21,83 +22,6 @@ Vec3<double> torque_at(const StepView& view, double t, const FullState& y, const
     rhs.force_phase = view.force_phase;
     FullState rates;
     return rhs.torque(t, wall, p, q, arm3r::rates(y), f_on_tip, y, rates);
-}
-
-// Positions are fractions of a segment: of a maximum, where f is flat, and of a zero.
-constexpr double maximum_resolution = 1e-8, zero_resolution = 1e-15;
-
-struct Sampled {
-    double at, value;
-};
-
-// The step to the top of the parabola through three points, as a fraction; 0/0 where they are on a line.
-double step_to_top(const Sampled& best, const Sampled& second, const Sampled& third) {
-    const double r = (best.at - second.at) * (best.value - third.value);
-    const double q = (best.at - third.at) * (best.value - second.value);
-    return ((best.at - second.at) * r - (best.at - third.at) * q) / (2 * (q - r));
-}
-
-// The maximum of f between a and b by parabolas through the three best points, or a golden section where they do not
-// converge (Brent 1973, chapter 5); f rises from a and falls to b.
-template <class F>
-Maximum find_maximum(F f, double a, double b) {
-    constexpr double section = 0.3819660112501051;
-    constexpr int most = 60;
-    const auto sample = [&](double at) { return Sampled{at, f(at)}; };
-    Sampled best = sample(a + section * (b - a)), second = best, third = best;
-    double step = 0, before = 0;  // the last step and the one before it
-    for (int n = 0; n < most; ++n) {
-        const double middle = 0.5 * (a + b), to_far_end = best.at < middle ? b - best.at : a - best.at;
-        if (std::abs(best.at - middle) <= 2 * maximum_resolution - 0.5 * (b - a)) break;
-        const double to_top = step_to_top(best, second, third);
-        const bool converges =
-            std::abs(to_top) < 0.5 * std::abs(before) && best.at + to_top > a && best.at + to_top < b;
-        before = converges ? step : to_far_end;
-        step = converges ? to_top : section * to_far_end;
-        const double least = std::copysign(maximum_resolution, to_far_end);
-        const double next = best.at + step;
-        if (converges && (next - a < 2 * maximum_resolution || b - next < 2 * maximum_resolution)) step = least;
-        const Sampled here =
-            sample(best.at + (std::abs(step) < maximum_resolution ? std::copysign(maximum_resolution, step) : step));
-        const bool is_best = here.value >= best.value;
-        const Sampled& inner = is_best ? best : here;  // the new end on its side
-        (((here.at < best.at) == is_best) ? b : a) = inner.at;
-        if (is_best) {
-            third = second, second = best, best = here;
-        } else if (here.value >= second.value || second.at == best.at) {
-            third = second, second = here;
-        } else if (here.value >= third.value || third.at == best.at || third.at == second.at) {
-            third = here;
-        }
-    }
-    return {best.at, best.value};
-}
-
-// The zero of f between a and b, by inverse quadratic interpolation or by halves (Chandrupatla 1997); f is positive at a
-// and not at b. Returns the end of the bracket at which f is not positive.
-template <class F>
-double find_zero(F f, double a, double b) {
-    constexpr int most = 120;
-    const auto sample = [&](double at) { return Sampled{at, f(at)}; };
-    const auto is_positive = [](const Sampled& s) { return s.value > 0; };
-    Sampled newest = sample(b), other = sample(a), dropped = other;  // newest and other enclose the zero
-    double share = 0.5;                                              // of the way from the newest to the other
-    for (int n = 0; n < most && std::abs(other.at - newest.at) > zero_resolution; ++n) {
-        const Sampled here = sample(newest.at + share * (other.at - newest.at));
-        if (is_positive(here) == is_positive(newest)) dropped = newest;
-        else dropped = other, other = newest;
-        newest = here;
-        const double xi = (newest.at - other.at) / (dropped.at - other.at);
-        const double phi = (newest.value - other.value) / (dropped.value - other.value);
-        share = 0.5;
-        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi)
-            share = newest.value / (other.value - newest.value) * dropped.value / (other.value - dropped.value) +
-                    (dropped.at - newest.at) / (other.at - newest.at) * newest.value / (dropped.value - newest.value) *
-                        other.value / (dropped.value - other.value);
-        const double least = 0.5 * zero_resolution / std::abs(other.at - newest.at);
-        share = least < 0.5 ? std::clamp(share, least, 1 - least) : 0.5;
-    }
-    return is_positive(newest) ? other.at : newest.at;
 }
 
 // Refines one segment between the nodes of its rule. Positions are fractions of the segment.

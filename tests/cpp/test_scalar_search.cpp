@@ -1,0 +1,98 @@
+#include <boost/test/unit_test.hpp>
+
+#include "fixtures.hpp"
+#include "run/scalar_search.hpp"
+
+namespace arm3r {
+
+BOOST_AUTO_TEST_SUITE(scalar_searches)
+
+namespace {
+
+// A bracket in [0, 1] and a place within it.
+struct Place {
+    double a, b, at;
+};
+
+Place random_place(Random& random) {
+    const double a = random.in(0, 0.4), b = random.in(0.6, 1);
+    return {a, b, random.in(a, b)};
+}
+
+constexpr int sections = 50, halvings = 50;  // what golden sections and halves alone take
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_smooth_maximum_is_found_in_a_third_of_the_sections) {
+    Random random(91);
+    int calls = 0, searches = 0;
+    for (; searches < 2000; ++searches) {
+        const auto [a, b, at] = random_place(random);
+        const double width = random.in(0.2, 2), height = random.in(-3, 3), lean = random.in(-0.3, 0.3);
+        const int before = calls;
+        const auto f = [&, top = at](double x) {
+            ++calls;
+            const double u = (x - top) / width;
+            return height - u * u * (1 + lean * u) / (1 + u * u);
+        };
+        const Maximum most = find_maximum(f, a, b);
+        BOOST_TEST(std::abs(most.position - at) <= 1e-6);
+        BOOST_TEST(most.value == f(most.position));
+        BOOST_TEST(most.value <= height);
+        BOOST_TEST(height - most.value <= 1e-14);
+        BOOST_TEST(calls - before <= 62);
+    }
+    BOOST_TEST(calls <= searches * sections / 3);
+}
+
+// A corner and a rise up to the end have no parabola: sections find them.
+BOOST_AUTO_TEST_CASE(a_maximum_without_a_parabola_is_found_too) {
+    Random random(92);
+    for (int trial = 0; trial < 500; ++trial) {
+        const auto [a, b, at] = random_place(random);
+        const double left = random.in(0.1, 5), right = random.in(0.1, 5), top = at;
+        const auto corner = [=](double x) { return x < top ? left * (x - top) : right * (top - x); };
+        BOOST_TEST(std::abs(find_maximum(corner, a, b).position - at) <= 1e-7);
+        BOOST_TEST(std::abs(find_maximum([](double x) { return x; }, a, b).position - b) <= 1e-7);
+        BOOST_TEST(std::abs(find_maximum([](double x) { return -x; }, a, b).position - a) <= 1e-7);
+        const double level = find_maximum([](double) { return 4.0; }, a, b).value;
+        BOOST_TEST(level == 4.0);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_smooth_zero_is_found_in_a_third_of_the_halvings) {
+    Random random(93);
+    int calls = 0, searches = 0;
+    for (; searches < 2000; ++searches) {
+        const auto [a, b, at] = random_place(random);
+        const double bend = random.in(-2, 2), scale = std::exp(random.in(-20, 20));
+        const auto f = [&, root = at](double x) {
+            ++calls;
+            return scale * (root - x) * std::exp(bend * x);
+        };
+        const double zero = find_zero(f, a, b);
+        BOOST_TEST(f(zero) <= 0);
+        BOOST_TEST(std::abs(zero - at) <= 2e-15);
+    }
+    BOOST_TEST(calls <= searches * halvings / 3);
+}
+
+// Where a torque reaches its limit the function jumps; then it takes halves.
+BOOST_AUTO_TEST_CASE(a_jump_is_found_by_halves) {
+    Random random(94);
+    for (int trial = 0; trial < 500; ++trial) {
+        const auto [a, b, at] = random_place(random);
+        const double place = at;
+        int calls = 0;
+        const auto jump = [&](double x) { return ++calls, x < place ? 1.0 : -1.0; };
+        const double zero = find_zero(jump, a, b);
+        BOOST_TEST(zero >= place);
+        BOOST_TEST(zero - place <= 2e-15);
+        BOOST_TEST(calls <= halvings + 5);
+        BOOST_TEST(find_zero([](double) { return -1.0; }, a, a) == a);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+}  // namespace arm3r
