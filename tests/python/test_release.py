@@ -101,8 +101,9 @@ def test_wheels_that_are_published_are_not_those_of_this_processor_alone() -> No
         settings = wheels.settings(platform)
         assert settings["cmake.define.ARM3R_LANES"] == "all" and "build/ctest" not in settings["build-dir"]
     own = {name: value for name, value in os.environ.items() if name != "MAKEFLAGS"}  # of the make that runs the tests
-    dry_run = subprocess.run(["make", "--dry-run", "dist"], cwd=ROOT, env=own, capture_output=True, text=True)
-    [line] = [line for line in dry_run.stdout.splitlines() if "cmake/dist.py" in line]
+    command = ["make", "--dry-run", "dist"]
+    recipe = subprocess.run(command, cwd=ROOT, env=own, capture_output=True, text=True, check=True).stdout
+    [line] = [line for line in recipe.splitlines() if "cmake/dist.py" in line]
     assert line.endswith(" cmake/dist.py build/wheels/*.whl")
 
 
