@@ -16,7 +16,8 @@ endif
 SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md $(wildcard docs/*.schema.json build/page/live.html) \
            $(shell find cpp cmake python scenarios -type f -not -path '*/__pycache__/*')
 CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
-PIP     := $(BIN)/python -m pip --disable-pip-version-check install --quiet
+# Python compiles what it imports; pip would compile every module of every package, half of the time of an installation.
+PIP     := $(BIN)/python -m pip --disable-pip-version-check install --no-compile --quiet
 PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
 .PHONY: run test gates page docs wheels dist bench format lint clean

@@ -1,11 +1,44 @@
 #include "linear_algebra.hpp"
 
 #include <Eigen/Dense>
+#include <complex>
+#include <stdexcept>
 
 namespace arm3r {
+namespace {
 
+// A with zeros below its first subdiagonal, by rotations of two rows and columns, which keep eigenvalues.
+Eigen::MatrixXd hessenberg_form(Eigen::MatrixXd A) {
+    for (Eigen::Index column = 0; column + 2 < A.cols(); ++column) {
+        for (Eigen::Index i = A.rows() - 1; i > column + 1; --i) {
+            Eigen::JacobiRotation<double> rotation;
+            rotation.makeGivens(A(i - 1, column), A(i, column));
+            A.applyOnTheLeft(i - 1, i, rotation.adjoint());
+            A.applyOnTheRight(i - 1, i, rotation);
+            A(i, column) = 0;
+        }
+    }
+    return A;
+}
+
+}  // namespace
+
+// From Eigen's Schur form: its EigenSolver takes g++ twice the time and memory.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
-    return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues();
+    Eigen::RealSchur<Eigen::MatrixXd> schur(A.rows());
+    const Eigen::MatrixXd none;
+    const Eigen::MatrixXd& T = schur.computeFromHessenberg(hessenberg_form(A), none, false).matrixT();
+    if (schur.info() != Eigen::Success)
+        throw std::runtime_error("no Schur form: does the matrix have a value that is not finite?");
+    Eigen::VectorXcd values = T.diagonal().cast<std::complex<double>>();
+    for (Eigen::Index i = 0; i + 1 < T.rows(); ++i) {  // a block of two rows holds a pair
+        if (T(i + 1, i) == 0) continue;
+        const double mean = (T(i, i) + T(i + 1, i + 1)) / 2, half = (T(i, i) - T(i + 1, i + 1)) / 2;
+        const std::complex<double> root = std::sqrt(std::complex<double>(half * half + T(i, i + 1) * T(i + 1, i)));
+        values[i] = mean + root;
+        values[i + 1] = mean - root;
+    }
+    return values;
 }
 
 namespace evaluated {
@@ -42,7 +75,7 @@ Matrix outer_product(const Vector& a, const Vector& b) { return {a.v * b.v.trans
 double distance(const Vector& a, const Vector& b) { return (a.v - b.v).cwiseAbs().maxCoeff(); }
 
 PseudoInverse pseudo_inverse(const Matrix& a) {
-    const Eigen::JacobiSVD<Mat3<double>> svd(a.m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<Mat3<double>, Eigen::NoQRPreconditioner> svd(a.m, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Vec3<double> values = svd.singularValues();
     const auto large = values.array() > 1e-9 * values[0];
     const Vec3<double> inverse = large.select(values.cwiseInverse(), 0.0);

@@ -274,5 +274,5 @@ def test_the_package_is_installed_by_any_pip_of_python_3_10(monkeypatch: pytest.
     monkeypatch.setattr(module.subprocess, "Popen", popen)
     assert module.main("folder") == 0
     options = [word for word in called["command"][3:] if word.startswith("-")]
-    assert options == ["--disable-pip-version-check", "--no-build-isolation", "-v"]
+    assert options == ["--disable-pip-version-check", "--no-compile", "--no-build-isolation", "-v"]
     assert called["env"]["SKBUILD_CMAKE_DEFINE"] == "ARM3R_LANES=native"
