@@ -317,6 +317,26 @@ def test_keys_move_time_and_play(browser: Any, address: str) -> None:
         visitor.check()
 
 
+def test_the_values_in_a_pause_are_those_of_its_instant(browser: Any, address: str) -> None:
+    """While a run plays, values change ten times a second; the wall comes nearer by 50 mm/s."""
+
+    def depth() -> float:
+        return float(visitor.text_of('.plot[aria-label="Depth of the tip in the wall"] b').replace("\u2212", "-"))
+
+    with Visitor(browser, "laptop") as visitor:
+        visitor.open(address)
+        visitor.page.keyboard.press("Home")
+        visitor.settle()
+        at_start = depth()
+        for _ in range(5):
+            visitor.page.keyboard.press(" ")
+            visitor.page.wait_for_timeout(330)
+            visitor.page.keyboard.press(" ")
+            visitor.settle()
+            passed = float(visitor.text_of("#time").split()[0])
+            assert passed > 0 and abs(depth() - at_start - 50 * passed) < 0.2, (passed, depth())
+
+
 def test_a_band_is_drawn(browser: Any, address: str) -> None:
     with Visitor(browser, "laptop") as visitor:
         visitor.open(address)

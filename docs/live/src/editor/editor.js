@@ -70,6 +70,7 @@ export class Editor {
     if (this.store.get("checked") !== this.store.get("text")) return; // newer ones are under way
     const { problems, failure } = { problems: this.store.get("problems"), failure: this.store.get("failure") };
     const all = problems.length > 0 || !failure ? problems : [{ line: 1, column: 1, message: failure }];
+    if (all.length === 0 && this.view.state.field(problemField).size === 0) return;
     this.view.dispatch({ effects: setProblems.of(all) });
   }
 }

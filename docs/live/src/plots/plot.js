@@ -52,11 +52,22 @@ export class Plot {
 
   /** Move the line to a time, s, and say the values there. */
   seek(time) {
+    this.move(time);
+    this.tell(time);
+  }
+
+  /** Move the line to a time, s. */
+  move(time) {
     if (!this.plot) return;
     const x = this.plot.valToPos(time, "x");
     const inside = x >= 0 && x <= this.plot.bbox.width / devicePixelRatio; // an element's width would cost a layout
     this.line.style.transform = `translateX(${x}px)`;
     this.line.style.visibility = inside ? "" : "hidden";
+  }
+
+  /** Say the values at a time, s. */
+  tell(time) {
+    if (!this.plot) return;
     this.panel.series.forEach((one, i) => {
       const text = shown(this.#value(one, time));
       if (this.values[i].textContent !== text) this.values[i].textContent = text;

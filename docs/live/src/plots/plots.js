@@ -6,8 +6,11 @@ import { contactSpans } from "./contact.js";
 import { panelsOf } from "./panels.js";
 import { Plot } from "./plot.js";
 
+const READABLE = 100; // ms for which a number stays while a run plays: nobody reads faster
+
 export class Plots {
   #plots = new Map();
+  told = -Infinity; // when the values were last said, ms
 
   constructor(store) {
     this.store = store;
@@ -16,7 +19,7 @@ export class Plots {
     store.on(["run", "chosenPlots"], () => later("plots", () => this.#show()));
     store.on(["bandRun"], () => later("plots-band", () => this.#redraw()));
     store.on(["theme"], () => later("plots", () => this.#renew()));
-    store.on(["time"], () => show("plots", () => this.#seek()));
+    store.on(["time", "playing"], () => show("plots", () => this.#seek()));
     store.on(["range"], () => this.#zoom());
     new ResizeObserver(() => later("plot-size", () => this.#resize())).observe(this.list);
     at("zoom-in").addEventListener("click", () => this.magnify(0.5));
@@ -126,7 +129,11 @@ export class Plots {
   }
 
   #seek() {
-    for (const plot of this.#plots.values()) plot.seek(this.store.get("time"));
+    const time = this.store.get("time");
+    for (const plot of this.#plots.values()) plot.move(time);
+    if (this.store.get("playing") && performance.now() - this.told < READABLE) return;
+    this.told = performance.now();
+    for (const plot of this.#plots.values()) plot.tell(time);
   }
 
   #resize() {

@@ -30,7 +30,7 @@ export class Trace {
     const points = (name) => ["x", "y", "z"].map((axis) => columns[`${name}_${axis}`]);
     this.rows = this.whole.set(points("tip"));
     this.times = Float64Array.from(this.rows, (row) => columns.t[row]);
-    this.past.set(points("tip"));
+    this.past.set(points("tip"), this.rows);
     this.reference.material.dashSize = this.reference.material.gapSize = 0.012 * size;
     this.reference.line.visible = "tip_ref_x" in columns;
     if (this.reference.line.visible) this.reference.set(points("tip_ref"));
@@ -51,8 +51,7 @@ class Path {
     this.line.frustumCulled = false;
   }
 
-  set(axes) {
-    const rows = thin(axes, 0, axes[0].length, MOST);
+  set(axes, rows = thin(axes, 0, axes[0].length, MOST)) {
     const places = new Float32Array(3 * Math.max(2, rows.length));
     for (let i = 0; i < places.length; i += 1) places[i] = axes[i % 3][rows[Math.min((i / 3) | 0, rows.length - 1)]];
     this.line.geometry.dispose();
