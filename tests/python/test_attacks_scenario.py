@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import re
@@ -15,7 +16,7 @@ from pathlib import Path
 
 import arm3r_cpp as arm3r
 import pytest
-from conftest import scenario_files
+from conftest import ROOT, scenario_files
 from random_scenarios import sample_seed
 from timing import once_within
 
@@ -362,6 +363,19 @@ def test_a_key_in_the_wrong_section_is_sent_to_the_right_one(refused):
     assert "`section` belongs to shape brick; here the shape is cylinder" in refused(
         HEAD + "arm: {link2: {shape: cylinder, radius: 0.1, section: [0.01, 0.01]}}\n"
     )
+
+
+def test_a_section_in_another_one_is_sent_to_the_top_level(refused):
+    schema = json.loads((ROOT / "docs/scenario.schema.json").read_text())
+    sections = [name for name, key in schema["properties"].items() if "$ref" in key]
+    assert {"wall", "controller", "reference", "sampling"} <= set(sections)
+    for inner in set(sections) - {"wall"}:
+        message = refused(HEAD + f"wall: {{{inner}: {{}}}}\n")
+        assert f"`{inner}` stands at the top level of a scenario, beside `wall`" in message
+    assert "its keys stand directly under `wall`" in refused(HEAD + "wall: {wall: {point: [1, 0, 0]}}\n")
+    controller = "wall: {}\ncontroller: {type: hybrid, reference: {type: hold}}\n"
+    assert "`reference` stands at the top level of a scenario, beside `controller`" in refused(HEAD + controller)
+    assert "`initial` belongs to reference.force" in refused(HEAD + "reference: {initial: 1}\n")  # a key within
 
 
 def test_the_controllers_copy_of_the_arm_belongs_to_controllers_that_use_it(refused):

@@ -145,11 +145,16 @@ Words sections_of(std::string_view name) {
     return sections;
 }
 
-// "`velocity` belongs to wall.motion", of the sections within this one if there are such; "" if none has the key.
+// "`velocity` belongs to wall.motion", of the sections within this one if there are such, or that it is no section's;
+// "" if nothing has this name.
 std::string section_of(std::string_view name, std::string_view section) {
     const Words all = sections_of(name);
     Words inner = all;
     std::erase_if(inner, [&](const std::string& other) { return !other.starts_with(join(section, "")); });
+    const std::string_view outermost = section.substr(0, section.find('.'));
+    if (name == outermost) return "its keys stand directly under `" + visible(outermost) + "`";
+    if (inner.empty() && !section.empty() && is_in(names_below(""), name))
+        return "`" + visible(name) + "` stands at the top level of a scenario, beside `" + visible(outermost) + "`";
     if (all.empty()) return "";
     return "`" + visible(name) + "` belongs to " + listed(section.empty() || inner.empty() ? all : inner, " or ");
 }
