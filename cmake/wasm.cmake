@@ -24,7 +24,7 @@ set_source_files_properties(${_zig}/libunwind/src/Unwind-wasm.c PROPERTIES COMPI
 # ---- small where little time is spent: only the templates are compiled for speed
 add_executable(arm3r_wasm ${ARM3R_LIBRARY_SOURCES} ${ARM3R_TEXT_SOURCES} cpp/src/wasm/csv.cpp cpp/src/wasm/runtime.cpp)
 target_compile_definitions(arm3r_wasm PRIVATE ARM3R_BUILD_INFO="${ARM3R_BUILD_INFO}")
-foreach(_target arm3r_wasm arm3r_core arm3r_rules arm3r_platform arm3r_yaml cxx_with_exceptions)
+foreach(_target arm3r_wasm arm3r_core arm3r_keys arm3r_platform arm3r_yaml cxx_with_exceptions)
   target_compile_options(${_target} PRIVATE -Os -ffunction-sections -fdata-sections)
 endforeach()
 set_source_files_properties(${ARM3R_TEMPLATE_SOURCES} PROPERTIES COMPILE_OPTIONS -O2)
