@@ -43,6 +43,9 @@ def main() -> int:
     begun = time.perf_counter()
     changed = report(*map(json.loads, outputs([[python, HERE / "build_results.py"] for python in pythons])))
     if options.instructions:
+        versions = outputs([[python, "-c", "import platform; print(platform.python_version())"] for python in pythons])
+        if note := other_python(*versions):
+            print(note)
         counts = map(json.loads, outputs([[python, HERE / "instruction_jobs.py"] for python in pythons]))
         changed |= report_instructions(*counts)
     if options.programs:
@@ -60,6 +63,14 @@ def outputs(commands: Sequence[Sequence[Any]]) -> list[str]:
         if process.returncode != 0:
             raise SystemExit(f"{' '.join(map(str, process.args))}: ended with exit code {process.returncode}")
     return printed
+
+
+def other_python(before: str, after: str) -> str:
+    """What to know of counts that two versions of Python took; "" for one version."""
+    if before == after:
+        return ""
+    versions = f"{before.strip()} before, {after.strip()} after"
+    return f"Python is another one ({versions}): what it does itself counts, too; jobs of Python differ by that alone"
 
 
 def differing(before: dict[str, str], after: dict[str, str]) -> list[str]:

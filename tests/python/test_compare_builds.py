@@ -81,3 +81,9 @@ def test_every_broken_scenario_is_refused_by_python_and_by_the_executable(benchm
             assert "broken.yaml:" in text, name
         else:
             assert "exit code 0" not in text and "<stdin>:" in text, name
+
+
+def test_counts_by_two_versions_of_python_are_called_so(benchmark) -> None:
+    note = benchmark("compare_builds").other_python
+    assert note("3.11.2\n", "3.11.2\n") == ""
+    assert "3.11.2 before, 3.11.7 after" in note("3.11.2\n", "3.11.7\n")
