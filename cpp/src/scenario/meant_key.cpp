@@ -145,16 +145,20 @@ Words sections_of(std::string_view name) {
     return sections;
 }
 
-// "`velocity` belongs to wall.motion", of the sections within this one if there are such, or that it is no section's;
-// "" if nothing has this name.
+// "`wall` stands at the top level of a scenario", of a name that stands in a section by mistake.
+std::string top_level_of(std::string_view name, std::string_view section) {
+    const std::string outermost = visible(section.substr(0, section.find('.')));
+    if (name == outermost) return "the keys of `" + outermost + "` stand directly under it";
+    return "`" + visible(name) + "` stands at the top level of a scenario, beside `" + outermost + "`";
+}
+
+// "`velocity` belongs to wall.motion", of the sections within this one if there are such, else of the top level or of
+// other sections; "" if nothing has this name.
 std::string section_of(std::string_view name, std::string_view section) {
     const Words all = sections_of(name);
     Words inner = all;
     std::erase_if(inner, [&](const std::string& other) { return !other.starts_with(join(section, "")); });
-    const std::string_view outermost = section.substr(0, section.find('.'));
-    if (name == outermost) return "its keys stand directly under `" + visible(outermost) + "`";
-    if (inner.empty() && !section.empty() && is_in(names_below(""), name))
-        return "`" + visible(name) + "` stands at the top level of a scenario, beside `" + visible(outermost) + "`";
+    if (inner.empty() && !section.empty() && is_in(names_below(""), name)) return top_level_of(name, section);
     if (all.empty()) return "";
     return "`" + visible(name) + "` belongs to " + listed(section.empty() || inner.empty() ? all : inner, " or ");
 }

@@ -10,7 +10,7 @@ const READABLE = 100; // ms for which a number stays while a run plays: nobody r
 
 export class Plots {
   #plots = new Map();
-  told = -Infinity; // when the values were last said, ms
+  #told = -Infinity; // when the values were last said, ms
 
   constructor(store) {
     this.store = store;
@@ -131,8 +131,8 @@ export class Plots {
   #seek() {
     const time = this.store.get("time");
     for (const plot of this.#plots.values()) plot.move(time);
-    if (this.store.get("playing") && performance.now() - this.told < READABLE) return;
-    this.told = performance.now();
+    if (this.store.get("playing") && performance.now() - this.#told < READABLE) return;
+    this.#told = performance.now();
     for (const plot of this.#plots.values()) plot.tell(time);
   }
 
