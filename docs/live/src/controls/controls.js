@@ -67,16 +67,17 @@ export class Controls {
     return button;
   }
 
-  /** Put a value into the text: an item of a list that the text lacks comes with the whole list. */
   #set(path, value, joined = false) {
-    const text = this.store.get("text");
+    this.editor.changeSoon(path, (text, tree) => this.#change(text, tree, path, value), joined);
+  }
+
+  /** What puts a value into the text: an item of a list that the text lacks comes with the whole list. */
+  #change(text, tree, path, value) {
     const list = /^(.*)\[(\d+)\]$/.exec(path);
-    if (!list || find(text, list[1])?.name.endsWith("Sequence")) this.editor.apply(setting(text, path, value), joined);
-    else {
-      const items = valueAt(this.store.get("resolved"), list[1]).map((item) => yaml(number(item)));
-      items[Number(list[2])] = value;
-      this.editor.apply(setting(text, list[1], `[${items.join(", ")}]`), joined);
-    }
+    if (!list || find(text, tree, list[1])?.name.endsWith("Sequence")) return setting(text, path, value, tree);
+    const items = valueAt(this.store.get("resolved"), list[1]).map((item) => yaml(number(item)));
+    items[Number(list[2])] = value;
+    return setting(text, list[1], `[${items.join(", ")}]`, tree);
   }
 
   /** Another type or law: the simulator says which keys go with it. */

@@ -1,9 +1,9 @@
 /** The scenario as text. The store has the same text at all times; sliders change it through the editor, so that undo works. */
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { yaml } from "@codemirror/lang-yaml";
-import { HighlightStyle, bracketMatching, indentUnit, syntaxHighlighting } from "@codemirror/language";
+import { HighlightStyle, bracketMatching, ensureSyntaxTree, indentUnit, syntaxHighlighting } from "@codemirror/language";
 import { searchKeymap } from "@codemirror/search";
-import { EditorState, Transaction } from "@codemirror/state";
+import { EditorState } from "@codemirror/state";
 import { EditorView, drawSelection, highlightActiveLine, keymap, lineNumbers } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import { at } from "../app/dom.js";
@@ -30,15 +30,26 @@ export class Editor {
     this.store.set({ text });
   }
 
-  /** Apply a change { from, to, insert } as if it were typed; `joined`: it continues the one before, for undo. */
-  apply(change, joined = false) {
-    const annotations = [Transaction.userEvent.of(joined ? "input.type.slider" : "input")];
-    this.view.dispatch({ changes: change, annotations });
+  /**
+   * Change the text in the next frames, one step of the work in each.
+   *
+   * change(text, tree) gives { from, to, insert }; it is asked again where the text has become another one meanwhile.
+   * `joined`: it continues the change before, for undo. A change that waits under the same name is replaced.
+   */
+  changeSoon(name, change, joined) {
+    const { state } = this.view;
+    const soon = (step) => later(`text-${name}`, () => (this.view.state === state ? step() : this.changeSoon(name, change, joined)));
+    const tree = ensureSyntaxTree(state, state.doc.length, Infinity);
+    const changes = change(state.doc.toString(), tree);
+    soon(() => {
+      const transaction = state.update({ changes, userEvent: joined ? "input.type.slider" : "input" });
+      soon(() => this.view.dispatch(transaction));
+    });
   }
 
   /** Put a whole text in place of the present one. */
-  replace(text) {
-    this.apply({ from: 0, to: this.view.state.doc.length, insert: text });
+  replace(insert) {
+    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert }, userEvent: "input" });
   }
 
   focus() {

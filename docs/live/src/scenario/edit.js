@@ -1,9 +1,9 @@
 /** Changes of a scenario's text that leave everything else as it stands, comments included. */
-import { isList, isMapping, items, pairs, parts, root } from "./tree.js";
+import { isList, isMapping, items, pairs, parsed, parts, root } from "./tree.js";
 
-/** The change { from, to, insert } that puts a value (YAML on one line) at a path. */
-export function setting(text, path, value) {
-  let node = root(text);
+/** The change { from, to, insert } that puts a value (YAML on one line) at a path. An editor has a tree of the text already. */
+export function setting(text, path, value, tree = parsed(text)) {
+  let node = root(tree);
   const keys = parts(path);
   for (let depth = 0; depth < keys.length; depth += 1) {
     if (isList(node)) {
@@ -23,7 +23,7 @@ export function setting(text, path, value) {
 export function removing(text, path) {
   const keys = parts(path);
   const last = keys.pop();
-  let node = root(text);
+  let node = root(parsed(text));
   for (const key of keys) {
     node = isMapping(node) ? pairs(text, node).find((pair) => pair.key === key)?.value : null;
   }

@@ -9,9 +9,13 @@ export function parts(path) {
   return [...path.matchAll(/([^.[\]]+)|\[(\d+)\]/g)].map(([, name, index]) => name ?? Number(index));
 }
 
+/** The syntax tree of a text. */
+export function parsed(text) {
+  return parser.parse(text);
+}
+
 /** The node of the whole document; null where there is none. */
-export function root(text) {
-  const tree = parser.parse(text);
+export function root(tree) {
   return tree.topNode.getChild("Document")?.lastChild ?? null;
 }
 
@@ -43,9 +47,9 @@ export function items(list) {
   return found;
 }
 
-/** The node of the value at a path; null where the text has none. */
-export function find(text, path) {
-  let node = root(text);
+/** The node of the value at a path; null where the text, whose tree is given, has none. */
+export function find(text, tree, path) {
+  let node = root(tree);
   for (const part of parts(path)) {
     if (typeof part === "number") node = isList(node) ? (items(node)[part] ?? null) : null;
     else node = isMapping(node) ? (pairs(text, node).find((pair) => pair.key === part)?.value ?? null) : null;
