@@ -35,7 +35,7 @@ def show(run_or_scenario: Run | Scenario, *, height: int = HEIGHT) -> None:
     if has_notebook():
         from IPython import display
 
-        display.display(Cell(html, height))  # type: ignore[no-untyped-call]
+        display.display(Cell(html, height))
     else:
         _open_in_browser(html)
 

@@ -150,6 +150,6 @@ def show(*figures: Figure) -> None:
     if has_notebook():
         from IPython import display
 
-        display.display(*figures)  # type: ignore[no-untyped-call]
+        display.display(*figures)
     else:
         open_windows(figures)
