@@ -42,13 +42,16 @@ struct DenseOutput {
         return order < 0 ? interpolated(c, i, theta) : summed(i, S(theta * h));
     }
 
-    FullState operator()(double theta) const {
-        FullState y{};
-        for (std::size_t i = 0; i < size; ++i) y[i] = component(i, theta);
-        return y;
-    }
+    FullState operator()(double theta) const { return first(size, theta); }
+    // Angles and rates; the other components are 0.
+    FullState motion(double theta) const { return first(motion_size, theta); }
 
 private:
+    FullState first(std::size_t count, double theta) const {
+        FullState y{};
+        for (std::size_t i = 0; i < count; ++i) y[i] = component(i, theta);
+        return y;
+    }
     template <class S>
     ARM3R_INLINE S summed(std::size_t i, const S& seconds) const {
         S sum(c[order][i]);

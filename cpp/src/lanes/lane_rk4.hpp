@@ -268,13 +268,14 @@ private:
         const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
         WallState<T> wall = no_wall<T>();
         Indentation<T> in{};
-        if (this->plant_.has_wall) {
+        if (this->plant_.has_wall && (N != state_size || this->tracked_.force)) {
             wall = wall_at(this->plant_.wall, t);
             in = tip_indentation(this->plant_, wall, p, qd);
         }
         Vec3<T> tau;
-        if constexpr (N == state_size) tau = torque_without_memory(this->plant_, q, p);
-        else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
+        if constexpr (N == state_size) {
+            if (!this->plant_.holds_torque) tau = torque_without_memory(this->plant_, q, p);
+        } else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
         this->sample_performance(t, p, wall, in, tau, qd, this->segment_.samples[1]);
     }
 

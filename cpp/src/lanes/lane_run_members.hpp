@@ -25,7 +25,7 @@ LaneRun<T, N>::LaneRun(const Setup& any_lane)
       may_be_ill_conditioned_(batch_key_of(any_lane).may_be_ill_conditioned),
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
       has_performance_(any_lane.has_performance()),
-      tracked_(any_lane),
+      tracked_(tracked_quantities(any_lane)),
       true_contact_(plant_.contact),
       is_elastic_(!is_damped(any_lane.plant.contact.law)) {
     rhs_.law_function = compiled_law<T, T>();

@@ -248,7 +248,7 @@ private:
         const Pose<T> p = pose(q);
         WallState<T> wall = no_wall<T>();
         Indentation<T> in{};
-        if (this->plant_.has_wall) {
+        if (this->plant_.has_wall && this->tracked_.force) {
             wall = wall_at(this->plant_.wall, t);
             in = tip_indentation(this->plant_, wall, p, qd);
         }

@@ -388,7 +388,7 @@ private:
                             is_sampled ? sampled_.controller_state().force_phase : inputs_.force_phase,
                             is_sampled ? &setup_.plant.held_torque : nullptr,
                             slightly_before(t1)};
-        if (is_sampled && !TrackedQuantities(setup_).motion())
+        if (is_sampled && !tracked_quantities(setup_).motion())
             add_whole_segment(trapezoid, is_touching(mode_), view, 0, b, sums_);
         else add_whole_segment(boole, is_touching(mode_), view, 0, b, sums_);
     }

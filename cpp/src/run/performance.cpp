@@ -10,18 +10,44 @@
 namespace arm3r {
 namespace {
 
-Vec3<double> torque_at(const StepView& view, double t, const FullState& y, const Pose<double>& p,
-                       const WallState<double>& wall, const Vec3<double>& f_on_tip) {
+// What is known at one instant of a step.
+struct Instant {
+    double t;
+    FullState y;
+    Pose<double> p;
+    WallState<double> wall = no_wall<double>();
+    Indentation<double> in{};  // zero unless it is asked for
+
+    Instant(const Plant<double>& plant, double time, const FullState& state, bool needs_indentation)
+        : t(time), y(state), p(pose(angles(state))) {
+        if (plant.has_wall) wall = wall_at(plant.wall, t);
+        if (plant.has_wall && needs_indentation) in = tip_indentation(plant, wall, p, rates(y));
+    }
+};
+
+PerformanceSample<double> motion_at(const StepView& view, const Instant& now, const TrackedQuantities& wanted) {
+    const Plant<double>& plant = view.setup.plant;
+    PerformanceSample<double> sample;
+    sample_motion(wanted, plant, plant.contact, view.setup.controller(), now.t, now.p, now.wall, now.in, view.pressed,
+                  view.force_phase, sample);
+    return sample;
+}
+
+Vec3<double> torque_at(const StepView& view, const Instant& now) {
     if (view.held) return *view.held;
     const Plant<double>& plant = view.setup.plant;
-    const Vec3<double> q = angles(y);
-    if (!has_memory(plant)) return torque_without_memory(plant, q, p);
+    const Vec3<double> q = angles(now.y);
+    if (!has_memory(plant)) return torque_without_memory(plant, q, now.p);
+    Vec3<double> f_on_tip(0, 0, 0);
+    if (plant.has_wall && view.pressed)
+        f_on_tip = contact_force(plant.wall, now.wall, plant.contact, now.in, Clamping::clamped).on_tip;
+    if (plant.external_force.on) f_on_tip = plus(f_on_tip, external_force_at(plant.external_force, now.t));
     RightHandSide<double, double> rhs(plant);
     rhs.law_function = compiled_law<double, double>();
     rhs.contact = view.contact;
     rhs.force_phase = view.force_phase;
     FullState rates;
-    return rhs.torque(t, wall, p, q, arm3r::rates(y), f_on_tip, y, rates);
+    return rhs.torque(now.t, now.wall, now.p, q, arm3r::rates(now.y), f_on_tip, now.y, rates);
 }
 
 // Refines one segment between the nodes of its rule. Positions are fractions of the segment.
@@ -36,26 +62,32 @@ public:
             if (segment_.touching) refine_force(sums);
             refine_settling(sums);
         }
-        if (tracked.path) include_maxima(&path_error_2_of, 0, sums.max_path_2);
+        if (tracked.path) include_maxima(path_error, 0, sums.max_path_2);
         if (tracked.limits) refine_saturation(sums);
     }
 
 private:
-    using Quantity = double (*)(const PerformanceSample<double>&);
+    // A function of a sample, and the quantities of the sample that it needs.
+    struct Quantity {
+        double (*value)(const PerformanceSample<double>&);
+        TrackedQuantities needed;
 
-    static double path_error_2_of(const PerformanceSample<double>& sample) { return sample.path_error_2; }
-    static double shortfall_of(const PerformanceSample<double>& sample) { return force_error_of(sample); }
-    static double excess_of(const PerformanceSample<double>& sample) { return -force_error_of(sample); }
-    static double band_excess(const PerformanceSample<double>& sample) { return band_excess_of(sample); }
+        double operator()(const PerformanceSample<double>& sample) const { return value(sample); }
+    };
+    static constexpr TrackedQuantities force_alone{true, false, false}, path_alone{false, true, false};
+    static constexpr Quantity path_error{[](const auto& sample) { return sample.path_error_2; }, path_alone},
+        shortfall{[](const auto& sample) { return force_error_of(sample); }, force_alone},
+        excess{[](const auto& sample) { return -force_error_of(sample); }, force_alone},
+        band_excess{[](const auto& sample) { return band_excess_of(sample); }, force_alone};
 
-    PerformanceSample<double> at(double place) const { return view_(a_ + (b_ - a_) * place); }
-    auto along(Quantity quantity) const {
-        return [this, quantity](double place) { return quantity(at(place)); };
+    double theta(double place) const { return a_ + (b_ - a_) * place; }
+    auto along(const Quantity& quantity) const {
+        return [this, quantity](double place) { return quantity(view_.motion(theta(place), quantity.needed)); };
     }
-    double sampled(Quantity quantity, std::size_t j) const { return quantity(segment_.samples[j]); }
+    double sampled(const Quantity& quantity, std::size_t j) const { return quantity(segment_.samples[j]); }
 
     // Includes maxima after `from` that exceed the largest value so far.
-    void include_maxima(Quantity quantity, double from, double& largest) const {
+    void include_maxima(const Quantity& quantity, double from, double& largest) const {
         for (std::size_t j = 1; j + 1 < n; ++j)
             if (rule_.node[j + 1] > from && peak_bound_around(rule_, segment_, quantity, j) > largest)
                 largest = std::max(
@@ -63,7 +95,7 @@ private:
     }
 
     void refine_force(PerformanceSums<double>& sums) const {
-        include_maxima(&excess_of, 0, sums.overshoot);
+        include_maxima(excess, 0, sums.overshoot);
         double from = 0;
         if (!(sums.reached > 0)) {
             const std::optional<double> reached = first_time_reached();
@@ -72,34 +104,34 @@ private:
             sums.reached = 1;
             for (std::size_t j = 0; j < n; ++j)
                 if (rule_.node[j] >= from)
-                    sums.max_force_error = std::max(sums.max_force_error, std::abs(sampled(&shortfall_of, j)));
+                    sums.max_force_error = std::max(sums.max_force_error, std::abs(sampled(shortfall, j)));
         }
-        include_maxima(&shortfall_of, from, sums.max_force_error);
-        include_maxima(&excess_of, from, sums.max_force_error);
+        include_maxima(shortfall, from, sums.max_force_error);
+        include_maxima(excess, from, sums.max_force_error);
     }
 
     // The first position at which the force reaches the desired one.
     std::optional<double> first_time_reached() const {
         for (std::size_t j = 0; j < n; ++j) {
-            if (sampled(&shortfall_of, j) <= 0)
-                return j == 0 ? 0 : find_zero(along(&shortfall_of), rule_.node[j - 1], rule_.node[j]);
-            if (j == 0 || j + 1 == n || peak_bound_around(rule_, segment_, &excess_of, j) < 0) continue;
-            const Maximum top = find_maximum(along(&excess_of), rule_.node[j - 1], rule_.node[j + 1]);
-            if (top.value >= 0) return find_zero(along(&shortfall_of), rule_.node[j - 1], top.position);
+            if (sampled(shortfall, j) <= 0)
+                return j == 0 ? 0 : find_zero(along(shortfall), rule_.node[j - 1], rule_.node[j]);
+            if (j == 0 || j + 1 == n || peak_bound_around(rule_, segment_, excess, j) < 0) continue;
+            const Maximum top = find_maximum(along(excess), rule_.node[j - 1], rule_.node[j + 1]);
+            if (top.value >= 0) return find_zero(along(shortfall), rule_.node[j - 1], top.position);
         }
         return std::nullopt;
     }
 
     // The last instant at which the force is outside its band, if it is inside at the end.
     void refine_settling(PerformanceSums<double>& sums) const {
-        if (sampled(&band_excess, n - 1) > 0) return;
+        if (sampled(band_excess, n - 1) > 0) return;
         const auto note = [&](double from, double to) {
-            sums.unsettled_until = segment_.start + segment_.duration * find_zero(along(&band_excess), from, to);
+            sums.unsettled_until = segment_.start + segment_.duration * find_zero(along(band_excess), from, to);
         };
         for (std::size_t j = n - 1; j-- > 0;) {
-            if (sampled(&band_excess, j) > 0) return note(rule_.node[j], rule_.node[j + 1]);
-            if (j == 0 || !(peak_bound_around(rule_, segment_, &band_excess, j) > 0)) continue;
-            const Maximum top = find_maximum(along(&band_excess), rule_.node[j - 1], rule_.node[j + 1]);
+            if (sampled(band_excess, j) > 0) return note(rule_.node[j], rule_.node[j + 1]);
+            if (j == 0 || !(peak_bound_around(rule_, segment_, band_excess, j) > 0)) continue;
+            const Maximum top = find_maximum(along(band_excess), rule_.node[j - 1], rule_.node[j + 1]);
             if (top.value > 0) return note(top.position, rule_.node[j + 1]);
         }
     }
@@ -112,7 +144,9 @@ private:
         for (std::size_t j = 1; j < n; ++j) {
             const double before = segment_.samples[j - 1].saturated, after = segment_.samples[j].saturated;
             const double from = rule_.node[j - 1], to = rule_.node[j];
-            const auto is_as_before = [&](double place) { return at(place).saturated == before ? 1.0 : -1.0; };
+            const auto is_as_before = [&](double place) {
+                return view_(theta(place)).saturated == before ? 1.0 : -1.0;
+            };
             const double change = before == after ? to : find_zero(is_as_before, from, to);
             share += before * (change - from) + after * (to - change);
         }
@@ -128,30 +162,20 @@ private:
 }  // namespace
 
 PerformanceSample<double> StepView::operator()(double theta) const {
-    const Plant<double>& plant = setup.plant;
-    const double t = std::min(dense.t0 + theta * dense.h, latest);
-    const FullState y = dense(theta);
-    const Pose<double> p = pose(angles(y));
-    WallState<double> wall = no_wall<double>();
-    Indentation<double> in{};
-    Vec3<double> f_on_tip(0, 0, 0);
-    if (plant.has_wall) {
-        wall = wall_at(plant.wall, t);
-        in = tip_indentation(plant, wall, p, rates(y));
-        if (pressed) f_on_tip = contact_force(plant.wall, wall, plant.contact, in, Clamping::clamped).on_tip;
-    }
-    if (plant.external_force.on) f_on_tip = plus(f_on_tip, external_force_at(plant.external_force, t));
-    PerformanceSample<double> sample;
-    sample_motion(TrackedQuantities(setup), plant, plant.contact, setup.controller(), t, p, wall, in, pressed,
-                  force_phase, sample);
-    sample_torque(plant.arm, torque_at(*this, t, y, p, wall, f_on_tip), rates(y), sample);
+    const Instant now(setup.plant, time(theta), dense(theta), true);
+    PerformanceSample<double> sample = motion_at(*this, now, tracked_quantities(setup));
+    sample_torque(setup.plant.arm, torque_at(*this, now), rates(now.y), sample);
     return sample;
+}
+
+PerformanceSample<double> StepView::motion(double theta, const TrackedQuantities& wanted) const {
+    return motion_at(*this, Instant(setup.plant, time(theta), dense.motion(theta), wanted.force), wanted);
 }
 
 template <std::size_t n>
 void refine_segment(const Rule<n>& rule, const Segment<double>& segment, const StepView& view, double a, double b,
                     PerformanceSums<double>& sums) {
-    SegmentRefinement<n>(rule, segment, view, a, b).refine(TrackedQuantities(view.setup), sums);
+    SegmentRefinement<n>(rule, segment, view, a, b).refine(tracked_quantities(view.setup), sums);
 }
 
 template <std::size_t n>
@@ -165,7 +189,7 @@ void add_whole_segment(const Rule<n>& rule, bool touching, const StepView& view,
             view.held ? (*view.held)[i] * (dense.component(i, b) - dense.component(i, a))
                       : segment.duration *
                             mean_of(rule, segment, [i](const PerformanceSample<double>& s) { return s.power[i]; });
-    if (add_segment(TrackedQuantities(view.setup), rule, true, segment, sums))
+    if (add_segment(tracked_quantities(view.setup), rule, true, segment, sums))
         refine_segment(rule, segment, view, a, b, sums);
 }
 

@@ -3,6 +3,7 @@
 // jumps. It is sampled at the nodes of a quadrature rule, and elsewhere too if a maximum or a limit may lie between
 // them.
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -22,16 +23,18 @@ struct PerformanceSample {
     Vec3<T> power{T(0.0), T(0.0), T(0.0)};  // W, of each torque
 };
 
-// The quantities that the metrics need: those that the law tracks, and torque limits if there are any.
+// The quantities that metrics need.
 struct TrackedQuantities {
-    bool force, path, limits;
+    bool force = false, path = false, limits = false;
 
-    explicit TrackedQuantities(const Setup& setup)
-        : force(tracks_force(setup.controller().type)),
-          path(tracks_path(setup.controller().type)),
-          limits(setup.plant.arm.has_torque_limit) {}
     bool motion() const { return force || path; }
 };
+
+// Those that the law tracks, and torque limits if there are any.
+inline TrackedQuantities tracked_quantities(const Setup& setup) {
+    const ControllerType type = setup.controller().type;
+    return {tracks_force(type), tracks_path(type), setup.plant.arm.has_torque_limit};
+}
 
 // A quadrature rule on [0, 1] with nodes at both ends and between.
 template <std::size_t n>
@@ -141,6 +144,7 @@ ARM3R_INLINE T peak_bound_around(const Rule<n>& rule, const Segment<T>& segment,
     const T bend = (fall - rise) * (1 / (before + after));
     const T slope = rise - bend * before;  // at the first of the three nodes
     const auto turns = slope > T(0.0) && fall + bend * after < T(0.0);
+    if (!any(turns)) return T(-infinite);  // without the division
     const T top = a - slope * slope / (4.0 * select(turns, bend, T(-1.0)));
     return select(turns, T(2.0 * top - max(a, max(b, c))), T(-infinite));
 }
@@ -223,6 +227,11 @@ struct StepView {
     double latest = infinite;
 
     PerformanceSample<double> operator()(double theta) const;
+    // Force and path error alone, those that are wanted.
+    PerformanceSample<double> motion(double theta, const TrackedQuantities& wanted) const;
+
+private:
+    double time(double theta) const { return std::min(dense.t0 + theta * dense.h, latest); }
 };
 
 // Refines a segment between the nodes of its rule; it goes from theta = a to b of the step.
