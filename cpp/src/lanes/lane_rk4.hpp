@@ -58,11 +58,11 @@ private:
     template <Terms terms>
     ARM3R_INLINE void step_of() {
         t0_ = this->t_;
-        if (Base::lanes == 1 || this->has_performance_) {
+        if (Base::lanes == 1 || this->performance_.is_on()) {
             y0_ = this->y_;
             f0_ = this->f_;
         }
-        if (this->has_performance_) this->begin_segment();
+        if (this->performance_.is_on()) this->begin_segment();
         before_ = this->in_;
         const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
@@ -81,9 +81,9 @@ private:
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
-        if (this->has_performance_)
-            this->plant_.holds_torque && !this->tracked_.motion() ? add_performance(trapezoid, moved)
-                                                                  : add_performance(simpson, moved);
+        if (this->performance_.is_on())
+            this->plant_.holds_torque && !this->performance_.tracked().motion() ? add_performance(trapezoid, moved)
+                                                                                : add_performance(simpson, moved);
         this->check_lanes();
     }
 
@@ -140,44 +140,27 @@ private:
 
     template <Terms terms>
     ARM3R_INLINE void detect_contact(const Mask& moved) {
-        const T &h = this->h_, o(0.0);
+        const T& h = this->h_;
         const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
-        const bool is_elastic = terms == Terms::common || this->is_elastic_;
-        Mask eventful = Base::select_mask(this->touching_ || this->embedded_, depth.low() <= o, depth.high() > o);
-        if (this->any_touching_) {
-            if (is_elastic)
-                eventful = eventful || (this->touching_ && depth.high() > max(this->max_depth_, depth.fourth));
-            if (this->plant_.wall.has_outline) eventful = eventful || (this->touching_ && is_near_edge());
-            const Mask uneventful = this->touching_ && !eventful && moved;
-            if (is_elastic) {
-                this->update_peak_where(uneventful, depth.fourth, this->t_, this->max_depth_);
-                this->depth_time_ = this->depth_time_ + select(uneventful, T(h * depth.mean()), o);
-            } else {
-                Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { measure_damped(uneventful); });
-            }
+        auto& contact = this->contact_;
+        const bool is_elastic = terms == Terms::common || contact.is_elastic();
+        Mask eventful = contact.may_cross(depth.low(), depth.high());
+        if (contact.any_touching()) {
+            if (is_elastic) eventful = eventful || contact.may_peak(depth.high(), depth.fourth);
+            if (this->plant_.wall.has_outline) eventful = eventful || (contact.touching() && is_near_edge());
+            const Mask uneventful = contact.touching() && !eventful && moved;
+            if (is_elastic) contact.add_elastic(uneventful, depth.fourth, depth.mean(), h, this->t_);
+            else Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { add_damped(uneventful); });
         }
         eventful_ = eventful && moved;
         if (any(eventful_)) resolve_contacts(eventful_);
     }
 
-    // The force of a damped contact over the step; a lane in which it may have a maximum within the step is handled
-    // alone.
-    ARM3R_INLINE void measure_damped(const Mask& uneventful) {
-        const T &h = this->h_, o(0.0);
-        const Polynomial<T> depth =
-            hermite_cubic(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
-        const std::array<T, 5> force = Base::forces(this->plant_.contact, depth, h, o, T(1.0));
-        const Mask turns = uneventful && range_of(through_five(force)).high > max(this->peak_, force[4]);
-        const Mask rises = uneventful && !turns;
-        this->update_peak_where(rises, force[4], this->t_, this->peak_);
-        this->impulse_ = this->impulse_ + select(rises, T(h * mean_of_five(force)), o);
-        if (!any(turns)) return;
-        for (int lane = 0; lane < Base::lanes; ++lane) {
-            if (!Lanes<T>::is(turns, lane)) continue;
-            std::array<double, 5> alone;
-            for (int i = 0; i < 5; ++i) alone[i] = Lanes<T>::get(force[i], lane);
-            this->add_damped_contact(lane, alone, Lanes<T>::get(t0_, lane), this->h(lane));
-        }
+    ARM3R_INLINE void add_damped(const Mask& uneventful) {
+        const T& h = this->h_;
+        this->contact_.add_damped(
+            uneventful, hermite_cubic(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate)), t0_,
+            h, this->t_);
     }
 
     ARM3R_INLINE Mask is_near_edge() const {
@@ -217,12 +200,12 @@ private:
         const double resolution = event_resolution(this->t(lane), h);
         const ContactSignals<double> signals = signals_of(lane);
         DenseOutput dense;
-        if (this->has_performance_) dense = dense_output_of(lane);
+        if (this->performance_.is_on()) dense = dense_output_of(lane);
         double from = 0;
         bool is_stale = false;
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
             this->add_contact(lane, signals.depth, t0, from, crossing->theta);
-            if (this->has_performance_) this->add_lane_performance(lane, simpson, dense, from, crossing->theta);
+            if (this->performance_.is_on()) add_lane_performance(lane, dense, from, crossing->theta);
             from = crossing->theta;
             const ContactChange change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
             this->change_mode(lane, change);
@@ -230,7 +213,7 @@ private:
             if (this->outcome(lane) != ARM3R_RUN_OK || from >= 1) break;
         }
         this->add_contact(lane, signals.depth, t0, from, 1.0);
-        if (this->has_performance_ && from < 1) this->add_lane_performance(lane, simpson, dense, from, 1.0);
+        if (this->performance_.is_on() && from < 1) add_lane_performance(lane, dense, from, 1.0);
         return is_stale;
     }
 
@@ -248,14 +231,21 @@ private:
     ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved) {
         Mask unresolved = false;
         if (n == simpson.node.size()) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
-        this->end_segment(rule, this->h_, nullptr, moved && !eventful_, unresolved);
+        this->performance_.end(rule, this->instant(), this->h_, nullptr, moved && !eventful_, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 
     template <std::size_t n>
     [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
         for (int lane = 0; lane < Base::lanes; ++lane)
-            if (Lanes<T>::is(unresolved, lane)) this->refine_lane_performance(lane, rule, dense_output_of(lane), 1.0);
+            if (Lanes<T>::is(unresolved, lane))
+                this->visit_step(lane, dense_output_of(lane),
+                                 [&](const StepView& view) { this->performance_.refine(lane, rule, view, 1.0); });
+    }
+
+    // A part of the step, in the lane's present contact mode.
+    void add_lane_performance(int lane, const DenseOutput& dense, double a, double b) {
+        this->visit_step(lane, dense, [&](const StepView& view) { this->performance_.add(lane, simpson, view, a, b); });
     }
 
     // The midpoint lies on the cubic through both ends.
@@ -268,7 +258,7 @@ private:
         const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
         WallState<T> wall = no_wall<T>();
         Indentation<T> in{};
-        if (this->plant_.has_wall && (N != state_size || this->tracked_.force)) {
+        if (this->plant_.has_wall && (N != state_size || this->performance_.tracked().force)) {
             wall = wall_at(this->plant_.wall, t);
             in = tip_indentation(this->plant_, wall, p, qd);
         }
@@ -276,7 +266,7 @@ private:
         if constexpr (N == state_size) {
             if (!this->plant_.holds_torque) tau = torque_without_memory(this->plant_, q, p);
         } else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
-        this->sample_performance(t, p, wall, in, tau, qd, this->segment_.samples[1]);
+        this->performance_.sample(1, {t, p, wall, in, &y[0], &y[3], tau});
     }
 
     const bool has_common_terms_;

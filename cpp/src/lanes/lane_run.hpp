@@ -12,13 +12,12 @@
 
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/widths.hpp"
-#include "contact/contact_change.hpp"
 #include "control/compiled_laws.hpp"
 #include "control/continuous_inputs.hpp"
 #include "control/sampled_controller.hpp"
-#include "record/contact_tally.hpp"
+#include "lanes/lane_contact.hpp"
+#include "lanes/lane_performance.hpp"
 #include "record/energy_balance.hpp"
-#include "run/performance.hpp"
 
 namespace arm3r {
 
@@ -70,7 +69,7 @@ public:
             if (is_new_[lane]) start_lane(lane);
         if (N == full_size) start_memory();
         started_ = active_;
-        if (is_controlled_ || N == full_size || any_embedded_) observe_outlined();
+        if (is_controlled_ || N == full_size || contact_.any_embedded()) observe_outlined();
         for (bool& is_new : is_new_) is_new = false;
     }
 
@@ -100,23 +99,19 @@ public:
         failed_ = true;
     }
     Metrics metrics(int lane) const;
-    double peak_force(int lane) const {  // N, normal
-        return is_elastic_ ? Lanes<T>::get(true_contact_.stiffness[0], lane) * Lanes<T>::get(max_depth_, lane)
-                           : Lanes<T>::get(peak_, lane);
-    }
     EnergyTotals totals(int lane) const {
-        return balance_.totals(lane, force_times_reach(setups_[lane].plant, peak_force(lane)));
+        return balance_.totals(lane, force_times_reach(setups_[lane].plant, contact_.peak_force(lane)));
     }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
-        return {count(accepted_), count(rejected_), count(evaluations_)};
+        return {count(accepted_), 0, count(evaluations_)};
     }
 
     // One lane, in doubles.
     double t(int lane) const { return Lanes<T>::get(t_, lane); }
     double h(int lane) const { return Lanes<T>::get(h_, lane); }
     FullState y(int lane) const { return state_of(y_, lane); }
-    ContactMode mode(int lane) const { return mode_[lane]; }
+    ContactMode mode(int lane) const { return contact_.mode(lane); }
     double energy_at_start(int lane) const { return balance_.energy_at_start(lane); }
     arm3r_outcome outcome(int lane) const { return outcome_[lane]; }
 
@@ -125,9 +120,6 @@ protected:
         FullState one{};
         for (std::size_t i = 0; i < N; ++i) one[i] = Lanes<T>::get(y[i], lane);
         return one;
-    }
-    ARM3R_INLINE static Mask select_mask(const Mask& which, const Mask& a, const Mask& b) {
-        return (which && a) || (!which && b);
     }
 
     // ---- one instant
@@ -147,7 +139,7 @@ protected:
         potential_ = potential_energy(plant_.arm, p_);
         if (is_controlled_ && any(is_due())) update_controller();
         if (needs_derivative_) derive<terms>();
-        else if (has_performance_) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
+        else if (performance_.is_on()) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
     }
     void observe_outlined();
 
@@ -192,30 +184,21 @@ protected:
 
     // The contact force at this instant, also where the contact mode has not changed yet.
     ARM3R_INLINE Vec3<T> force_on_tip() const {
-        Mask pressed = in_.depth > T(0.0) && !embedded_;
+        Mask pressed = in_.depth > T(0.0) && !contact_.embedded();
         if (plant_.wall.has_outline) pressed = pressed && inside_outline(plant_.wall, in_) >= T(0.0);
         if (!any(pressed)) return zero_vector<T>();
-        return only_where(pressed, contact_force(plant_.wall, wall_, true_contact_, in_, Clamping::clamped)).on_tip;
+        return only_where(pressed, contact_force(plant_.wall, wall_, contact_.law(), in_, Clamping::clamped)).on_tip;
     }
 
     // ---- performance
 
-    // A sample of the present segment.
-    ARM3R_INLINE void sample_performance(const T& t, const Pose<T>& p, const WallState<T>& wall,
-                                         const Indentation<T>& in, const Vec3<T>& tau, const Vec3<T>& qd,
-                                         PerformanceSample<T>& sample) const {
-        const Controller<T>& controller = sampled_.is_on() ? sampled_.controller() : plant_.controller;
-        sample_motion(tracked_, plant_, true_contact_, controller, t, p, wall, in, segment_.touching, phase_, sample);
-        sample_torque(plant_.arm, plant_.holds_torque ? tau_before_ : tau, qd, sample);
+    ARM3R_INLINE LaneInstant<T> instant() const { return {t_, p_, wall_, in_, &y_[0], &y_[3], tau_}; }
+    ARM3R_INLINE void begin_segment() {
+        const T& force_phase = sampled_.is_on() ? sampled_.controller_state().force_phase : rhs_.force_phase;
+        performance_.begin(instant(), contact_.touching(), force_phase);
     }
-    // Starts a segment; contact, phase and a held torque are constant within it.
-    void begin_segment();
-    // The segment ends at the present instant: adds it to the sums where `moved`, and sets the lanes in which it must be
-    // refined. work: J, of each torque that is not held; null: by the rule.
-    template <std::size_t n>
-    void end_segment(const Rule<n>& rule, const T& duration, const Vec3<T>* work, const Mask& moved, Mask& unresolved);
 
-    // The same in doubles for one lane, as a function of theta; the torque of a sampled controller is that of the step.
+    // The step of one lane in doubles, as a function of theta; the torque of a sampled controller is that of the step.
     template <class Visit>
     void visit_step(int lane, const DenseOutput& dense, Visit visit) const {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
@@ -225,47 +208,21 @@ protected:
             setup = &of_estimate.emplace(setups_[lane]);
             of_estimate->plant.controller.gains.assumed_stiffness = get(plant_.controller.gains.assumed_stiffness);
         }
-        const Vec3<double> held{get(tau_before_[0]), get(tau_before_[1]), get(tau_before_[2])};
+        const Vec3<T>& tau = performance_.torque_at_start();
+        const Vec3<double> held{get(tau[0]), get(tau[1]), get(tau[2])};
         const ContinuousInputs inputs = this->inputs(lane);
-        const double phase = sampled_.is_on() ? get(phase_) : inputs.force_phase;
-        visit(StepView{*setup, dense, mode_[lane] == ContactMode::contact, inputs.contact, phase,
+        const double phase = sampled_.is_on() ? get(performance_.force_phase()) : inputs.force_phase;
+        visit(StepView{*setup, dense, mode(lane) == ContactMode::contact, inputs.contact, phase,
                        plant_.holds_torque ? &held : nullptr, slightly_before(t(lane))});
-    }
-
-    // Adds the part of the step from theta = a to b, in the lane's present contact mode.
-    template <std::size_t n>
-    void add_lane_performance(int lane, const Rule<n>& rule, const DenseOutput& dense, double a, double b) {
-        PerformanceSums<double> sums = sums_of(lane);
-        visit_step(lane, dense, [&](const StepView& view) { add_whole_segment(rule, view.pressed, view, a, b, sums); });
-        set_sums(lane, sums);
-    }
-
-    // Refines the last segment between its samples; it ends at theta = b.
-    template <std::size_t n>
-    void refine_lane_performance(int lane, const Rule<n>& rule, const DenseOutput& dense, double b) {
-        const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-        Segment<double> segment{
-            get(segment_.start), get(segment_.duration), Lanes<T>::is(segment_.touching, lane), {}, {}};
-        for (std::size_t j = 0; j < n; ++j) {
-            const PerformanceSample<T>& sample = segment_.samples[j];
-            segment.samples[j] = {get(sample.force), get(sample.desired_force), get(sample.path_error_2),
-                                  get(sample.saturated), zero_vector<double>()};
-        }
-        PerformanceSums<double> sums = sums_of(lane);
-        visit_step(lane, dense, [&](StepView view) {
-            view.pressed = segment.touching;
-            refine_segment(rule, segment, view, 0, b, sums);
-        });
-        set_sums(lane, sums);
     }
 
     ARM3R_INLINE T stored() const {
         if (!plant_.acts_on_arm) return T(0.0);
-        const auto pressed = touching_ && in_.depth > T(0.0);
-        if (plant_.contact.law == ContactLaw::spring)
-            return select(pressed, T(0.5 * true_contact_.stiffness[0] * in_.depth * in_.depth), T(0.0));
-        return select(pressed, T(normal_force_law(true_contact_, in_).stored + stored_tangential(true_contact_, in_)),
-                      T(0.0));
+        const Contact<T>& law = contact_.law();
+        const auto pressed = contact_.touching() && in_.depth > T(0.0);
+        if (law.law == ContactLaw::spring)
+            return select(pressed, T(0.5 * law.stiffness[0] * in_.depth * in_.depth), T(0.0));
+        return select(pressed, T(normal_force_law(law, in_).stored + stored_tangential(law, in_)), T(0.0));
     }
 
     // ---- after a step
@@ -291,7 +248,7 @@ protected:
     ARM3R_INLINE void check_lanes() {
         Mask bad = max(max(abs(y_[0]), abs(y_[1])), abs(y_[2])) > T(sincos_limit);
         if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned(plant_.arm, p_);
-        bad = bad || (accepted_ + rejected_ >= max_steps_ && t_ < stop_);
+        bad = bad || (accepted_ >= max_steps_ && t_ < stop_);
         bad = bad && active_;
         if (any(bad)) fail_lanes(bad);
     }
@@ -299,9 +256,10 @@ protected:
     // ---- contact
 
     // Adds the contact from a to b of the step that began at t0.
-    void add_contact(int lane, const Polynomial<double>& depth, double t0, double a, double b);
+    void add_contact(int lane, const Polynomial<double>& depth, double t0, double a, double b) {
+        contact_.add(lane, setups_[lane].plant.contact, depth, {t0, h(lane), a, b});
+    }
     void change_mode(int lane, const ContactChange& change);
-    void add_damped_contact(int lane, const std::array<double, 5>& force, double t0, double duration);
 
     const Setup& setup(int lane) const { return setups_[lane]; }
 
@@ -313,29 +271,10 @@ protected:
                             ContactMode next) const {
         const Indentation<double> in{value(signals.depth, theta),   0, value(signals.across1, theta),
                                      value(signals.across2, theta), 0, 0};
-        return change_at(setups_[lane].plant, in, theta, t, mode_[lane], next);
+        return change_at(setups_[lane].plant, in, theta, t, mode(lane), next);
     }
 
     void fail_lanes(const Mask& bad);
-
-    // Updates `peak`, of the depth or of the force, and its time t, where `here`.
-    ARM3R_INLINE void update_peak_where(const Mask& here, const T& value, const T& t, T& peak) {
-        peak_time_ = select(here && value > peak, t, peak_time_);
-        peak = max_where(here, peak, value);
-    }
-
-    // N: the normal force over the step h at five equidistant points of the depth.
-    template <class P, class S>
-    ARM3R_INLINE static std::array<S, 5> forces(const Contact<P>& contact, const Polynomial<S>& depth, const S& h,
-                                                const S& a, const S& b) {
-        std::array<S, 5> force;
-        const S o(0.0);
-        for (int i = 0; i < 5; ++i) {
-            const S theta = a + (b - a) * (0.25 * i);
-            force[i] = normal_force(contact, Indentation<S>{value(depth, theta), slope(depth, theta) / h, o, o, o, o});
-        }
-        return force;
-    }
 
     Plant<T>
         // its contact is the one that acts on the motion: without stiffness in embedded lanes, and, if
@@ -344,14 +283,11 @@ protected:
     RightHandSide<T, T> rhs_;
     bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
 
-    bool is_controlled_, has_performance_;
+    bool is_controlled_;
     SampledController<T> sampled_;
-    TrackedQuantities tracked_;
-    PerformanceSums<T> sums_;
-    Segment<T> segment_;
-    T phase_{0.0};                                                         // of force control, in the segment
-    Vec3<T> q_before_ = zero_vector<T>(), tau_before_ = zero_vector<T>();  // rad, N m: at the start of the segment
-    Contact<T> true_contact_;                                              // for sensors and performance, in every mode
+    LaneContact<T> contact_;
+    EnergyBalance<T> balance_;
+    LanePerformance<T> performance_;
 
     T t_{0.0}, h_{0.0}, stop_{0.0}, slack_{0.0};  // slack: the tolerance with which an instant counts as reached, s
     Y y_{}, f_{};
@@ -361,34 +297,22 @@ protected:
     Vec3<T> tau_ = zero_vector<T>();  // N m, applied
     T kinetic_, potential_;
 
-    Mask active_ = false, started_ = false, touching_ = false, embedded_ = false;
-    std::array<ContactMode, lanes> mode_{};
-    bool any_embedded_ = false, any_touching_ = false;
-
-    EnergyBalance<T> balance_;
-    bool is_elastic_;                     // then the force is the stiffness times the depth:
-    T max_depth_{0.0}, depth_time_{0.0};  // m, m s
-    T peak_{0.0}, impulse_{0.0};          // N, N s: otherwise
-    T peak_time_{0.0};                    // s
-    T accepted_{0.0}, rejected_{0.0}, evaluations_{0.0}, max_steps_{0.0};
+    Mask active_ = false, started_ = false;
+    T accepted_{0.0}, evaluations_{0.0}, max_steps_{0.0};
 
 private:
     bool at_stop(int lane) const { return !(Lanes<T>::get(t_, lane) < Lanes<T>::get(stop_, lane)); }
     void start_lane(int lane);
     void start_memory();
-    PerformanceSums<double> sums_of(int lane) const;
-    void set_sums(int lane, const PerformanceSums<double>& sums);
     void update_inputs(int lane);
     void set_mode(int lane, ContactMode mode);
     double force_of(int lane) const;  // N, normal
-    void update_peak(int lane, double value, double t, T& peak);
     void set_running(int lane, bool running);
 
     std::array<Setup, lanes> setups_;
     std::array<bool, lanes> running_{}, is_new_{};
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;
-    std::array<ContactTally, lanes> contacts_;
     std::function<void(int, const ContactChange&)> on_change_;
 };
 

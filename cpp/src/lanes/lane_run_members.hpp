@@ -10,24 +10,14 @@
 
 namespace arm3r {
 
-// Makes a mask lane by lane, by way of a number.
-template <class T, class Items, class Item>
-typename Lanes<T>::Mask mask_where(const Items& items, Item wanted) {
-    T here(0.0);
-    for (int lane = 0; lane < Lanes<T>::count; ++lane)
-        if (items[lane] == wanted) Lanes<T>::set(here, lane, 1.0);
-    return here > T(0.0);
-}
-
 template <class T, std::size_t N>
 LaneRun<T, N>::LaneRun(const Setup& any_lane)
     : rhs_((copy_choices(any_lane.plant, plant_), plant_)),
       may_be_ill_conditioned_(batch_key_of(any_lane).may_be_ill_conditioned),
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
-      has_performance_(any_lane.has_performance()),
-      tracked_(tracked_quantities(any_lane)),
-      true_contact_(plant_.contact),
-      is_elastic_(!is_damped(any_lane.plant.contact.law)) {
+      contact_(plant_.contact, is_damped(any_lane.plant.contact.law)),
+      performance_(any_lane, plant_, contact_.law(),
+                   any_lane.digital.sampling.on ? sampled_.controller() : plant_.controller) {
     rhs_.law_function = compiled_law<T, T>();
     for (int lane = 0; lane < lanes; ++lane) {
         setups_[lane] = any_lane;
@@ -46,8 +36,7 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
         set(y_[3 + i], setup.qd[i]);
     }
     for (std::size_t i = motion_size; i < N; ++i) set(y_[i], 0.0);
-    for (T* zero : {&max_depth_, &depth_time_, &peak_, &impulse_, &accepted_, &rejected_, &evaluations_})
-        set(*zero, 0.0);
+    set(accepted_, 0.0), set(evaluations_, 0.0);
     if (has_law(plant_.controller.type)) each_law_number(set, plant_.controller, setup.plant.controller);
     if (has_memory(plant_)) {
         each_sensor_number(set, plant_.sensors, setup.plant.sensors);
@@ -55,12 +44,11 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
     }
     if (plant_.external_force.on) each_external_force_number(set, plant_.external_force, setup.plant.external_force);
     if (is_controlled_) sampled_.load_lane(lane, setup.digital, setup.estimation);
-    set_sums(lane, {});
     set(rhs_.contact, 0.0), set(rhs_.force_phase, 0.0);
-    set(t_, setup.start), set(stop_, setup.stop), set(peak_time_, setup.start);
+    set(t_, setup.start), set(stop_, setup.stop);
     set(max_steps_, setup.solver.max_steps);
-    each_contact_number(set, true_contact_, setup.plant.contact);
-    contacts_[lane] = {};
+    contact_.load_lane(lane, setup.plant.contact, setup.start);
+    performance_.load_lane(lane);
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
     set_running(lane, false);  // for a run that was in the lane before
@@ -77,11 +65,7 @@ void LaneRun<T, N>::start_lane(int lane) {
             abs(Lanes<T>::get(in_.across1, lane)) <= wall.half1 && abs(Lanes<T>::get(in_.across2, lane)) <= wall.half2;
         set_mode(lane, within ? ContactMode::contact : ContactMode::embedded);
     }
-    if (mode_[lane] == ContactMode::contact) {
-        contacts_[lane].begin(setups_[lane].start);
-        Lanes<T>::set(max_depth_, lane, depth);
-        Lanes<T>::set(peak_, lane, force_of(lane));
-    }
+    if (mode(lane) == ContactMode::contact) contact_.begin(lane, setups_[lane].start, depth, force_of(lane));
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
     balance_.start(lane, {get(kinetic_), get(potential_), get(stored())});
     Lanes<T>::set(evaluations_, lane, needs_derivative_ ? 1.0 : 0.0);
@@ -112,50 +96,6 @@ void LaneRun<T, N>::update_controller() {
     if (sampled_.has_failed()) stop_lane(0, ARM3R_RUN_CONTROLLER);
 }
 
-// ---- performance
-
-template <class T, std::size_t N>
-void LaneRun<T, N>::begin_segment() {
-    Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA {
-        segment_.start = t_;
-        segment_.touching = touching_;
-        phase_ = sampled_.is_on() ? sampled_.controller_state().force_phase : rhs_.force_phase;
-        for (int i = 0; i < 3; ++i) q_before_[i] = y_[i], tau_before_[i] = tau_[i];
-        sample_performance(t_, p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[0]);
-    });
-}
-
-template <class T, std::size_t N>
-template <std::size_t n>
-void LaneRun<T, N>::end_segment(const Rule<n>& rule, const T& duration, const Vec3<T>* work, const Mask& moved,
-                                Mask& unresolved) {
-    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
-        segment_.duration = duration;
-        sample_performance(slightly_before(t_), p_, wall_, in_, tau_, {y_[3], y_[4], y_[5]}, segment_.samples[n - 1]);
-        for (int i = 0; i < 3; ++i) {
-            if (plant_.holds_torque) segment_.work[i] = tau_before_[i] * (y_[i] - q_before_[i]);
-            else if (work) segment_.work[i] = (*work)[i];
-            else
-                segment_.work[i] =
-                    duration * mean_of(rule, segment_,
-                                       [i](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.power[i]; });
-        }
-        unresolved = add_segment(tracked_, rule, moved, segment_, sums_);
-    });
-}
-
-template <class T, std::size_t N>
-PerformanceSums<double> LaneRun<T, N>::sums_of(int lane) const {
-    PerformanceSums<double> sums;
-    each_sum([&](double& to, const T& from) { to = Lanes<T>::get(from, lane); }, sums, sums_);
-    return sums;
-}
-
-template <class T, std::size_t N>
-void LaneRun<T, N>::set_sums(int lane, const PerformanceSums<double>& sums) {
-    each_sum([&](T& to, const double& from) { Lanes<T>::set(to, lane, from); }, sums_, sums);
-}
-
 // The initial memory of a law depends on the contact, which start_lane() has determined.
 template <class T, std::size_t N>
 void LaneRun<T, N>::start_memory() {
@@ -176,7 +116,7 @@ void LaneRun<T, N>::update_inputs(int lane) {
     if constexpr (N == full_size) {
         ContinuousInputs inputs = this->inputs(lane);
         double integral = Lanes<T>::get(y_[law_at], lane);
-        inputs.update(plant_.controller, is_touching(mode_[lane]), integral);
+        inputs.update(plant_.controller, is_touching(mode(lane)), integral);
         Lanes<T>::set(rhs_.contact, lane, inputs.contact);
         Lanes<T>::set(rhs_.force_phase, lane, inputs.force_phase);
         Lanes<T>::set(y_[law_at], lane, integral);
@@ -203,11 +143,7 @@ void LaneRun<T, N>::set_running(int lane, bool running) {
 
 template <class T, std::size_t N>
 void LaneRun<T, N>::set_mode(int lane, ContactMode mode) {
-    mode_[lane] = mode;
-    touching_ = mask_where<T>(mode_, ContactMode::contact);
-    embedded_ = mask_where<T>(mode_, ContactMode::embedded);
-    any_touching_ = any(touching_);
-    any_embedded_ = any(embedded_);
+    contact_.set_mode(lane, mode);
     const bool feels =
         only_contact_is_felt_ ? mode == ContactMode::contact && plant_.acts_on_arm : mode != ContactMode::embedded;
     const Contact<double>& own = setups_[lane].plant.contact;
@@ -223,43 +159,12 @@ double LaneRun<T, N>::force_of(int lane) const {
 }
 
 template <class T, std::size_t N>
-void LaneRun<T, N>::add_contact(int lane, const Polynomial<double>& depth, double t0, double a, double b) {
-    if (mode_[lane] != ContactMode::contact) return;
-    const double h = Lanes<T>::get(h_, lane);
-    if (!is_elastic_)
-        return add_damped_contact(lane, forces(setups_[lane].plant.contact, depth, h, a, b), t0 + h * a, h * (b - a));
-    if (range_of(depth).high > Lanes<T>::get(max_depth_, lane)) {
-        const Maximum most = maximum(depth, a, b);
-        update_peak(lane, most.value, t0 + h * most.position, max_depth_);
-    }
-    Lanes<T>::set(depth_time_, lane, Lanes<T>::get(depth_time_, lane) + h * integral(depth, a, b));
-}
-
-template <class T, std::size_t N>
-void LaneRun<T, N>::add_damped_contact(int lane, const std::array<double, 5>& force, double t0, double duration) {
-    const Polynomial<double> over_time = through_five(force);
-    if (range_of(over_time).high > Lanes<T>::get(peak_, lane)) {
-        const Maximum most = maximum(over_time, 0, 1);
-        update_peak(lane, most.value, t0 + duration * most.position, peak_);
-    }
-    Lanes<T>::set(impulse_, lane, Lanes<T>::get(impulse_, lane) + duration * mean_of_five(force));
-}
-
-template <class T, std::size_t N>
-void LaneRun<T, N>::update_peak(int lane, double value, double t, T& peak) {
-    if (!(value > Lanes<T>::get(peak, lane))) return;
-    Lanes<T>::set(peak, lane, value);
-    Lanes<T>::set(peak_time_, lane, t);
-}
-
-template <class T, std::size_t N>
 void LaneRun<T, N>::change_mode(int lane, const ContactChange& change) {
     if (on_change_) on_change_(lane, change);
     const auto add = [lane](T& x, double more) { Lanes<T>::set(x, lane, Lanes<T>::get(x, lane) + more); };
     add(y_[work_of_wall], change.gained);
     add(y_[dissipated], change.lost);
-    contacts_[lane].add(change);
-    if (contacts_[lane].is_event_storm()) stop_lane(lane, ARM3R_RUN_EVENT_STORM);
+    if (contact_.count(lane, change)) stop_lane(lane, ARM3R_RUN_EVENT_STORM);
     set_mode(lane, change.to);
     update_inputs(lane);
 }
@@ -270,8 +175,7 @@ void LaneRun<T, N>::fail_lanes(const Mask& bad) {
         if (!running_[lane] || !Lanes<T>::is(bad, lane)) continue;
         const FullState y = state_of(y_, lane);
         const bool in_range = abs(y[0]) <= sincos_limit && abs(y[1]) <= sincos_limit && abs(y[2]) <= sincos_limit;
-        const double steps = Lanes<T>::get(accepted_, lane) + Lanes<T>::get(rejected_, lane);
-        const bool used_up = steps >= Lanes<T>::get(max_steps_, lane) && !at_stop(lane);
+        const bool used_up = Lanes<T>::get(accepted_, lane) >= Lanes<T>::get(max_steps_, lane) && !at_stop(lane);
         if (!in_range) stop_lane(lane, ARM3R_RUN_DIVERGED);
         else if (used_up) stop_lane(lane, ARM3R_RUN_BUDGET);
         else stop_lane(lane, ARM3R_RUN_ILL_CONDITIONED);
@@ -282,17 +186,17 @@ template <class T, std::size_t N>
 Metrics LaneRun<T, N>::metrics(int lane) const {
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
     const Setup& setup = setups_[lane];
-    const bool touches = is_touching(mode_[lane]);
+    const bool touches = is_touching(mode(lane));
 
     Metrics m;
     m.outcome = outcome_[lane];
-    set_end_values(setup, get(t_), state_of(y_, lane), touches, contacts_[lane], m);
-    m.peak_force = peak_force(lane);
-    if (m.contacts > 0) m.peak_force_time = get(peak_time_);
-    m.impulse = is_elastic_ ? get(true_contact_.stiffness[0]) * get(depth_time_) : get(impulse_);
+    set_end_values(setup, get(t_), state_of(y_, lane), touches, contact_.tally(lane), m);
+    m.peak_force = contact_.peak_force(lane);
+    if (m.contacts > 0) m.peak_force_time = contact_.peak_time(lane);
+    m.impulse = contact_.impulse(lane);
     m.final_force = touches ? force_of(lane) : 0;
     m.steps = steps(lane);
-    if (has_performance_) write_performance(sums_of(lane), setup, m);
+    if (performance_.is_on()) write_performance(performance_.sums(lane), setup, m);
     if (is_controlled_ && get(sampled_.controller_state().identifiable) > 0) {
         m.stiffness_estimate = get(sampled_.controller_state().stiffness);
         m.wall_speed_estimate = get(sampled_.controller_state().wall_speed);
@@ -305,25 +209,17 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
 }
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
-#define ARM3R_LANE_RUN(T, N)                                                                                \
-    template LaneRun<T, N>::LaneRun(const Setup&);                                                          \
-    template void LaneRun<T, N>::load_lane(int, const Setup&);                                              \
-    template void LaneRun<T, N>::start_lane(int);                                                           \
-    template void LaneRun<T, N>::observe_outlined();                                                        \
-    template void LaneRun<T, N>::reevaluate();                                                              \
-    template void LaneRun<T, N>::update_controller();                                                       \
-    template void LaneRun<T, N>::start_memory();                                                            \
-    template void LaneRun<T, N>::clear_lane(int);                                                           \
-    template void LaneRun<T, N>::add_contact(int, const Polynomial<double>&, double, double, double);       \
-    template void LaneRun<T, N>::add_damped_contact(int, const std::array<double, 5>&, double, double);     \
-    template void LaneRun<T, N>::change_mode(int, const ContactChange&);                                    \
-    template void LaneRun<T, N>::fail_lanes(const Mask&);                                                   \
-    template PerformanceSums<double> LaneRun<T, N>::sums_of(int) const;                                     \
-    template void LaneRun<T, N>::begin_segment();                                                           \
-    template void LaneRun<T, N>::end_segment(const Rule<2>&, const T&, const Vec3<T>*, const Mask&, Mask&); \
-    template void LaneRun<T, N>::end_segment(const Rule<3>&, const T&, const Vec3<T>*, const Mask&, Mask&); \
-    template void LaneRun<T, N>::end_segment(const Rule<7>&, const T&, const Vec3<T>*, const Mask&, Mask&); \
-    template void LaneRun<T, N>::set_sums(int, const PerformanceSums<double>&);                             \
+#define ARM3R_LANE_RUN(T, N)                                             \
+    template LaneRun<T, N>::LaneRun(const Setup&);                       \
+    template void LaneRun<T, N>::load_lane(int, const Setup&);           \
+    template void LaneRun<T, N>::start_lane(int);                        \
+    template void LaneRun<T, N>::observe_outlined();                     \
+    template void LaneRun<T, N>::reevaluate();                           \
+    template void LaneRun<T, N>::update_controller();                    \
+    template void LaneRun<T, N>::start_memory();                         \
+    template void LaneRun<T, N>::clear_lane(int);                        \
+    template void LaneRun<T, N>::change_mode(int, const ContactChange&); \
+    template void LaneRun<T, N>::fail_lanes(const Mask&);                \
     template Metrics LaneRun<T, N>::metrics(int) const;
 
 }  // namespace arm3r

@@ -30,8 +30,8 @@ public:
 
     ARM3R_INLINE void step() {
         t0_ = this->t_;
-        if (this->has_performance_) this->begin_segment();
-        const bool pressed = this->plant_.acts_on_arm && this->any_touching_;
+        if (this->performance_.is_on()) this->begin_segment();
+        const bool pressed = this->plant_.acts_on_arm && this->contact_.any_touching();
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
         if (this->plant_.arm.has_dry_friction) slow_before_friction(wanted);
@@ -55,8 +55,9 @@ public:
         this->observe();
         if (crosses_) apply_changes();
         this->update_energy_balance();
-        if (this->has_performance_)
-            this->tracked_.motion() ? add_performance(lobatto, moved, h) : add_performance(trapezoid, moved, h);
+        if (this->performance_.is_on())
+            this->performance_.tracked().motion() ? add_performance(lobatto, moved, h)
+                                                  : add_performance(trapezoid, moved, h);
         this->check_lanes();
     }
 
@@ -146,13 +147,13 @@ private:
             end = end + term;
             mean = mean + reciprocals[i + 1] * term;
         }
+        auto& contact = this->contact_;
         Mask eventful = moved && is_eventful(low, high, high, end);
         if (any(eventful)) eventful = eventful && is_eventful_by_bernstein(over_step);
-        if (this->any_touching_) {
-            if (this->plant_.wall.has_outline) eventful = eventful || (moved && this->touching_ && is_near_edge());
-            const Mask uneventful = this->touching_ && !eventful && moved;
-            this->update_peak_where(uneventful, end, T(t0_ + this->h_), this->max_depth_);
-            this->depth_time_ = this->depth_time_ + select(uneventful, T(this->h_ * mean), T(0.0));
+        if (contact.any_touching()) {
+            if (this->plant_.wall.has_outline) eventful = eventful || (moved && contact.touching() && is_near_edge());
+            const Mask uneventful = contact.touching() && !eventful && moved;
+            contact.add_elastic(uneventful, end, mean, this->h_, T(t0_ + this->h_));
         }
         if (any(eventful)) resolve_contacts(eventful);
     }
@@ -160,9 +161,7 @@ private:
     // Whether a depth between low and high, which is below `before_end` except at its end, may change the contact or
     // its maximum.
     ARM3R_INLINE Mask is_eventful(const T& low, const T& high, const T& before_end, const T& end) const {
-        const T o(0.0);
-        const Mask crosses = Base::select_mask(this->touching_ || this->embedded_, low <= o, high > o);
-        return crosses || (this->touching_ && before_end > max(this->max_depth_, end));
+        return this->contact_.may_cross(low, high) || this->contact_.may_peak(before_end, end);
     }
 
     // The same with the sharper bounds of the Bernstein coefficients.
@@ -232,34 +231,36 @@ private:
     ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved, const T& h) {
         Mask unresolved = false;
         for (std::size_t j = 1; j + 1 < n; ++j)
-            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), this->segment_.samples[j]); });
+            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), j); });
         Vec3<T> work;
         Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
             for (int i = 0; i < 3; ++i) work[i] = value(series_, work1 + i, h);
         });
-        this->end_segment(rule, h, &work, moved, unresolved);
+        this->performance_.end(rule, this->instant(), h, &work, moved, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 
-    ARM3R_INLINE void sample_at(const T& seconds, PerformanceSample<T>& sample) const {
+    ARM3R_INLINE void sample_at(const T& seconds, std::size_t j) {
         Vec3<T> q, qd;
         for (std::size_t i = 0; i < 3; ++i) q[i] = value(series_, i, seconds), qd[i] = value(series_, 3 + i, seconds);
         const T t = t0_ + seconds;
         const Pose<T> p = pose(q);
         WallState<T> wall = no_wall<T>();
         Indentation<T> in{};
-        if (this->plant_.has_wall && this->tracked_.force) {
+        if (this->plant_.has_wall && this->performance_.tracked().force) {
             wall = wall_at(this->plant_.wall, t);
             in = tip_indentation(this->plant_, wall, p, qd);
         }
-        this->sample_performance(t, p, wall, in, this->tau_before_, qd, sample);
+        this->performance_.sample(j, {t, p, wall, in, q.data(), qd.data(), this->performance_.torque_at_start()});
     }
 
     template <std::size_t n>
     [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
         for (int lane = 0; lane < Base::lanes; ++lane)
             if (Lanes<T>::is(unresolved, lane))
-                this->refine_lane_performance(lane, rule, dense_output(lane), theta(lane));
+                this->visit_step(lane, dense_output(lane), [&](const StepView& view) {
+                    this->performance_.refine(lane, rule, view, theta(lane));
+                });
     }
 
     struct PendingChange {

@@ -1,0 +1,77 @@
+#include "lanes/lane_contact.hpp"
+
+#include "arm3r/lanes.hpp"
+
+namespace arm3r {
+
+template <class T>
+void LaneContact<T>::load_lane(int lane, const Contact<double>& law, double start) {
+    const auto set = [lane](T& x, double value) { Lanes<T>::set(x, lane, value); };
+    each_contact_number(set, law_, law);
+    for (T* zero : {&max_depth_, &depth_time_, &peak_, &impulse_}) set(*zero, 0.0);
+    set(peak_time_, start);
+    tally_[lane] = {};
+}
+
+template <class T>
+void LaneContact<T>::set_mode(int lane, ContactMode mode) {
+    mode_[lane] = mode;
+    touching_ = mask_where<T>(mode_, ContactMode::contact);
+    embedded_ = mask_where<T>(mode_, ContactMode::embedded);
+    any_touching_ = any(touching_);
+    any_embedded_ = any(embedded_);
+}
+
+template <class T>
+void LaneContact<T>::begin(int lane, double t, double depth, double force) {
+    tally_[lane].begin(t);
+    Lanes<T>::set(max_depth_, lane, depth);
+    Lanes<T>::set(peak_, lane, force);
+}
+
+template <class T>
+bool LaneContact<T>::count(int lane, const ContactChange& change) {
+    tally_[lane].add(change);
+    return tally_[lane].is_event_storm();
+}
+
+template <class T>
+void LaneContact<T>::add(int lane, const Contact<double>& law, const Polynomial<double>& depth, const StepPart& part) {
+    if (mode_[lane] != ContactMode::contact) return;
+    const auto& [t0, h, a, b] = part;
+    if (!is_elastic_) return add_forces(lane, normal_forces(law, depth, h, a, b), t0 + h * a, h * (b - a));
+    if (range_of(depth).high > Lanes<T>::get(max_depth_, lane)) {
+        const Maximum most = maximum(depth, a, b);
+        update_peak(lane, most.value, t0 + h * most.position, max_depth_);
+    }
+    Lanes<T>::set(depth_time_, lane, Lanes<T>::get(depth_time_, lane) + h * integral(depth, a, b));
+}
+
+template <class T>
+void LaneContact<T>::add_forces(int lane, const std::array<double, 5>& force, double t0, double duration) {
+    const Polynomial<double> over_time = through_five(force);
+    if (range_of(over_time).high > Lanes<T>::get(peak_, lane)) {
+        const Maximum most = maximum(over_time, 0, 1);
+        update_peak(lane, most.value, t0 + duration * most.position, peak_);
+    }
+    Lanes<T>::set(impulse_, lane, Lanes<T>::get(impulse_, lane) + duration * mean_of_five(force));
+}
+
+template <class T>
+void LaneContact<T>::update_peak(int lane, double value, double t, T& peak) {
+    if (!(value > Lanes<T>::get(peak, lane))) return;
+    Lanes<T>::set(peak, lane, value);
+    Lanes<T>::set(peak_time_, lane, t);
+}
+
+// Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
+#define ARM3R_LANE_CONTACT(T)                                                                                   \
+    template void LaneContact<T>::load_lane(int, const Contact<double>&, double);                               \
+    template void LaneContact<T>::set_mode(int, ContactMode);                                                   \
+    template void LaneContact<T>::begin(int, double, double, double);                                           \
+    template bool LaneContact<T>::count(int, const ContactChange&);                                             \
+    template void LaneContact<T>::add(int, const Contact<double>&, const Polynomial<double>&, const StepPart&); \
+    template void LaneContact<T>::add_forces(int, const std::array<double, 5>&, double, double);
+ARM3R_LANE_TYPES(ARM3R_LANE_CONTACT)
+
+}  // namespace arm3r

@@ -1,0 +1,64 @@
+#include "lanes/lane_performance.hpp"
+
+#include "arm3r/numbers/eigen_traits.hpp"
+
+namespace arm3r {
+
+template <class T>
+void LanePerformance<T>::begin(const LaneInstant<T>& now, const Mask& touching, const T& force_phase) {
+    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+        segment_.start = now.t;
+        segment_.touching = touching;
+        force_phase_ = force_phase;
+        q_at_start_ = {now.q[0], now.q[1], now.q[2]};
+        tau_at_start_ = now.tau;
+        sample(0, now);
+    });
+}
+
+template <class T>
+template <std::size_t n>
+void LanePerformance<T>::end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Vec3<T>* work,
+                             const Mask& moved, Mask& unresolved) {
+    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+        segment_.duration = duration;
+        const T t = slightly_before(now.t);
+        sample(n - 1, {t, now.p, now.wall, now.in, now.q, now.qd, now.tau});
+        for (int i = 0; i < 3; ++i) {
+            if (plant_.holds_torque) segment_.work[i] = tau_at_start_[i] * (now.q[i] - q_at_start_[i]);
+            else if (work) segment_.work[i] = (*work)[i];
+            else
+                segment_.work[i] =
+                    duration * mean_of(rule, segment_,
+                                       [i](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.power[i]; });
+        }
+        unresolved = add_segment(tracked_, rule, moved, segment_, sums_);
+    });
+}
+
+template <class T>
+PerformanceSums<double> LanePerformance<T>::sums(int lane) const {
+    PerformanceSums<double> sums;
+    each_sum([&](double& to, const T& from) { to = Lanes<T>::get(from, lane); }, sums, sums_);
+    return sums;
+}
+
+template <class T>
+void LanePerformance<T>::set_sums(int lane, const PerformanceSums<double>& sums) {
+    each_sum([&](T& to, const double& from) { Lanes<T>::set(to, lane, from); }, sums_, sums);
+}
+
+// Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
+#define ARM3R_LANE_PERFORMANCE_END(T, n)                                                                   \
+    template void LanePerformance<T>::end(const Rule<n>&, const LaneInstant<T>&, const T&, const Vec3<T>*, \
+                                          const Mask&, Mask&);
+#define ARM3R_LANE_PERFORMANCE(T)                                                          \
+    template void LanePerformance<T>::begin(const LaneInstant<T>&, const Mask&, const T&); \
+    ARM3R_LANE_PERFORMANCE_END(T, 2)                                                       \
+    ARM3R_LANE_PERFORMANCE_END(T, 3)                                                       \
+    ARM3R_LANE_PERFORMANCE_END(T, 7)                                                       \
+    template PerformanceSums<double> LanePerformance<T>::sums(int) const;                  \
+    template void LanePerformance<T>::set_sums(int, const PerformanceSums<double>&);
+ARM3R_LANE_TYPES(ARM3R_LANE_PERFORMANCE)
+
+}  // namespace arm3r

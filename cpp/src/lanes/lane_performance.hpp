@@ -1,0 +1,100 @@
+#pragma once
+// The metrics of a controller's performance in every lane (8.10). A segment of a step is sampled on the number type; a
+// lane in which it must be refined, and a step in which the contact changes, is handled alone in doubles.
+
+#include "arm3r/numbers/widths.hpp"
+#include "run/performance.hpp"
+
+namespace arm3r {
+
+// One instant of all lanes, as the metrics see it.
+template <class T>
+struct LaneInstant {
+    const T& t;
+    const Pose<T>& p;
+    const WallState<T>& wall;
+    const Indentation<T>& in;
+    const T *q, *qd;  // rad, rad/s: three of each
+    const Vec3<T>& tau;
+};
+
+template <class T>
+class LanePerformance {
+public:
+    using Mask = typename Lanes<T>::Mask;
+
+    // contact: its law in every mode.
+    LanePerformance(const Setup& any_lane, const Plant<T>& plant, const Contact<T>& contact,
+                    const Controller<T>& controller)
+        : is_on_(any_lane.has_performance()),
+          tracked_(tracked_quantities(any_lane)),
+          plant_(plant),
+          contact_(contact),
+          controller_(controller) {}
+
+    bool is_on() const { return is_on_; }
+    ARM3R_INLINE const TrackedQuantities& tracked() const { return tracked_; }
+    // At the start of the segment; a sampled controller holds it.
+    ARM3R_INLINE const Vec3<T>& torque_at_start() const { return tau_at_start_; }
+    ARM3R_INLINE const T& force_phase() const { return force_phase_; }
+
+    // The run of the lane has no segments yet.
+    void load_lane(int lane) { set_sums(lane, {}); }
+
+    // Starts a segment; contact, phase and a held torque are constant within it.
+    void begin(const LaneInstant<T>& now, const Mask& touching, const T& force_phase);
+    // Takes sample j of the segment.
+    ARM3R_INLINE void sample(std::size_t j, const LaneInstant<T>& now) {
+        PerformanceSample<T>& sample = segment_.samples[j];
+        sample_motion(tracked_, plant_, contact_, controller_, now.t, now.p, now.wall, now.in, segment_.touching,
+                      force_phase_, sample);
+        sample_torque(plant_.arm, plant_.holds_torque ? tau_at_start_ : now.tau, {now.qd[0], now.qd[1], now.qd[2]},
+                      sample);
+    }
+    // The segment ends now: adds it to the sums where `moved`, and sets the lanes in which it must be refined. work: J, of
+    // each torque that is not held; null: by the rule.
+    template <std::size_t n>
+    void end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Vec3<T>* work, const Mask& moved,
+             Mask& unresolved);
+
+    // Adds the part of a lane's step from theta = a to b.
+    template <std::size_t n>
+    void add(int lane, const Rule<n>& rule, const StepView& view, double a, double b) {
+        PerformanceSums<double> sums = this->sums(lane);
+        add_whole_segment(rule, view.pressed, view, a, b, sums);
+        set_sums(lane, sums);
+    }
+    // Refines a lane's last segment between its samples; it ends at theta = b of the step.
+    template <std::size_t n>
+    void refine(int lane, const Rule<n>& rule, StepView view, double b) {
+        const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+        view.pressed = Lanes<T>::is(segment_.touching, lane);
+        Segment<double> segment{get(segment_.start), get(segment_.duration), view.pressed, {}, {}};
+        for (std::size_t j = 0; j < n; ++j) {
+            const PerformanceSample<T>& sample = segment_.samples[j];
+            segment.samples[j] = {get(sample.force), get(sample.desired_force), get(sample.path_error_2),
+                                  get(sample.saturated), zero_vector<double>()};
+        }
+        PerformanceSums<double> sums = this->sums(lane);
+        refine_segment(rule, segment, view, 0, b, sums);
+        set_sums(lane, sums);
+    }
+
+    PerformanceSums<double> sums(int lane) const;
+
+private:
+    void set_sums(int lane, const PerformanceSums<double>& sums);
+
+    const bool is_on_;
+    const TrackedQuantities tracked_;
+    const Plant<T>& plant_;
+    const Contact<T>& contact_;
+    const Controller<T>& controller_;
+
+    PerformanceSums<T> sums_;
+    Segment<T> segment_;
+    T force_phase_{0.0};
+    Vec3<T> q_at_start_ = zero_vector<T>(), tau_at_start_ = zero_vector<T>();  // rad, N m
+};
+
+}  // namespace arm3r
