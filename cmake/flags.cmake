@@ -1,16 +1,16 @@
 # How every file is compiled. Results are the same to the last bit at any optimisation level and on any CPU, so nothing
 # may contract, reorder or assume; what is switched off below does not change a result.
 
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, RelWithDebInfo" FORCE)
+endif()
+
 string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 foreach(_flags CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${_type})
   if("${${_flags}}" MATCHES "-ffast-math|-Ofast|-funsafe-math|-fassociative-math|-ffp-contract=(fast|on)|-freciprocal-math")
     message(FATAL_ERROR "${_flags} holds ${CMAKE_MATCH_0}: it would change results. Remove it; -O3 is the default.")
   endif()
 endforeach()
-
-if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, RelWithDebInfo" FORCE)
-endif()
 
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
@@ -27,6 +27,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND _numeric -fno-tree-vectorize -fopenmp-simd)
   set(_marked_loops ARM3R_MARKED_LOOPS)
   set(_memory --param=ggc-min-expand=60) # g++ frees memory sooner: below 600 MB for each file of the library
+  if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13 AND NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}}" MATCHES "-O3")
+    list(APPEND _numeric -fno-thread-jumps) # else g++ 12 breaks off at -O2 with an internal error: a mask of 8 on two ways
+  endif()
   set(_quicker -fno-gcse-after-reload) # a pass that takes g++ three per cent of its time, and gains nothing here
 endif()
 add_library(arm3r_flags INTERFACE)
@@ -60,7 +63,6 @@ elseif(NOT _lanes STREQUAL "all")
   target_compile_definitions(arm3r_flags INTERFACE ARM3R_LANES=${_lanes})
 endif()
 
-string(TOUPPER "${CMAKE_BUILD_TYPE}" _type)
 list(JOIN _numeric " " _numeric)
 string(JOIN " " ARM3R_BUILD_INFO ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_SYSTEM_PROCESSOR}
        ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${_type}} ${_numeric} ARM3R_LANES=${_lanes})
