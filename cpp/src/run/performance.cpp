@@ -85,13 +85,27 @@ private:
         return [this, quantity](double place) { return quantity(view_.motion(theta(place), quantity.needed)); };
     }
     double sampled(const Quantity& quantity, std::size_t j) const { return quantity(segment_.samples[j]); }
+    SearchPoint point(const Quantity& quantity, std::size_t j) const { return {rule_.node[j], sampled(quantity, j)}; }
+    SearchPoint point_at(const Quantity& quantity, double place) const { return {place, along(quantity)(place)}; }
+
+    // Around node j.
+    Maximum maximum_around(const Quantity& quantity, std::size_t j) const {
+        return find_maximum(along(quantity), point(quantity, j - 1), point(quantity, j), point(quantity, j + 1));
+    }
+    // The same in the part after `from`, which may lie beyond the node.
+    Maximum maximum_around(const Quantity& quantity, std::size_t j, double from) const {
+        if (from <= rule_.node[j - 1]) return maximum_around(quantity, j);
+        const SearchPoint last = point(quantity, j + 1);
+        const SearchPoint middle =
+            from < rule_.node[j] ? point(quantity, j) : point_at(quantity, 0.5 * (from + last.at));
+        return find_maximum(along(quantity), point_at(quantity, from), middle, last);
+    }
 
     // Includes maxima after `from` that exceed the largest value so far.
     void include_maxima(const Quantity& quantity, double from, double& largest) const {
         for (std::size_t j = 1; j + 1 < n; ++j)
             if (rule_.node[j + 1] > from && peak_bound_around(rule_, segment_, quantity, j) > largest)
-                largest = std::max(
-                    largest, find_maximum(along(quantity), std::max(from, rule_.node[j - 1]), rule_.node[j + 1]).value);
+                largest = std::max(largest, maximum_around(quantity, j, from).value);
     }
 
     void refine_force(PerformanceSums<double>& sums) const {
@@ -103,21 +117,19 @@ private:
             from = *reached;
             sums.reached = 1;
             for (std::size_t j = 0; j < n; ++j)
-                if (rule_.node[j] >= from)
-                    sums.max_force_error = std::max(sums.max_force_error, std::abs(sampled(shortfall, j)));
+                if (rule_.node[j] >= from) sums.max_shortfall = std::max(sums.max_shortfall, sampled(shortfall, j));
         }
-        include_maxima(shortfall, from, sums.max_force_error);
-        include_maxima(excess, from, sums.max_force_error);
+        include_maxima(shortfall, from, sums.max_shortfall);
     }
 
     // The first position at which the force reaches the desired one.
     std::optional<double> first_time_reached() const {
         for (std::size_t j = 0; j < n; ++j) {
             if (sampled(shortfall, j) <= 0)
-                return j == 0 ? 0 : find_zero(along(shortfall), rule_.node[j - 1], rule_.node[j]);
+                return j == 0 ? 0 : find_zero(along(shortfall), point(shortfall, j - 1), point(shortfall, j));
             if (j == 0 || j + 1 == n || peak_bound_around(rule_, segment_, excess, j) < 0) continue;
-            const Maximum top = find_maximum(along(excess), rule_.node[j - 1], rule_.node[j + 1]);
-            if (top.value >= 0) return find_zero(along(shortfall), rule_.node[j - 1], top.position);
+            const Maximum top = maximum_around(excess, j);
+            if (top.value >= 0) return find_zero(along(shortfall), point(shortfall, j - 1), {top.position, -top.value});
         }
         return std::nullopt;
     }
@@ -125,14 +137,15 @@ private:
     // The last instant at which the force is outside its band, if it is inside at the end.
     void refine_settling(PerformanceSums<double>& sums) const {
         if (sampled(band_excess, n - 1) > 0) return;
-        const auto note = [&](double from, double to) {
-            sums.unsettled_until = segment_.start + segment_.duration * find_zero(along(band_excess), from, to);
+        const auto note = [&](const SearchPoint& from, std::size_t to) {
+            const double last = find_zero(along(band_excess), from, point(band_excess, to));
+            sums.unsettled_until = segment_.start + segment_.duration * last;
         };
         for (std::size_t j = n - 1; j-- > 0;) {
-            if (sampled(band_excess, j) > 0) return note(rule_.node[j], rule_.node[j + 1]);
+            if (sampled(band_excess, j) > 0) return note(point(band_excess, j), j + 1);
             if (j == 0 || !(peak_bound_around(rule_, segment_, band_excess, j) > 0)) continue;
-            const Maximum top = find_maximum(along(band_excess), rule_.node[j - 1], rule_.node[j + 1]);
-            if (top.value > 0) return note(top.position, rule_.node[j + 1]);
+            const Maximum top = maximum_around(band_excess, j);
+            if (top.value > 0) return note({top.position, top.value}, j + 1);
         }
     }
 
@@ -147,7 +160,7 @@ private:
             const auto is_as_before = [&](double place) {
                 return view_(theta(place)).saturated == before ? 1.0 : -1.0;
             };
-            const double change = before == after ? to : find_zero(is_as_before, from, to);
+            const double change = before == after ? to : find_zero(is_as_before, {from, 1}, {to, -1});
             share += before * (change - from) + after * (to - change);
         }
         sums.saturated_time += segment_.duration * share;
@@ -200,7 +213,7 @@ void write_performance(const PerformanceSums<double>& sums, const Setup& setup, 
         if (sums.touching_time > 0) m.force_error_rms = std::sqrt(sums.force_error_2 / sums.touching_time);
         const bool is_constant = controller.reference.force_profile == ForceProfile::constant;
         m.overshoot = is_constant ? std::max(0.0, m.peak_force - controller.reference.force) : sums.overshoot;
-        if (sums.reached > 0) m.force_error_peak = std::max(sums.max_force_error, m.overshoot);
+        if (sums.reached > 0) m.force_error_peak = std::max(sums.max_shortfall, m.overshoot);
         if (sums.unsettled_until < m.t_end) m.settling_time = std::max(0.0, sums.unsettled_until - m.first_contact);
     }
     if (tracks_path(controller.type) && duration > 0) {

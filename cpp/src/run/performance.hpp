@@ -108,15 +108,17 @@ ARM3R_INLINE void sample_torque(const Arm<P>& arm, const Vec3<T>& tau, const Vec
 
 template <class T>
 struct PerformanceSums {
-    T touching_time{0.0}, force_error_2{0.0}, reached{0.0}, max_force_error{0.0}, overshoot{0.0};
-    T unsettled_until{-infinite};  // s
+    T touching_time{0.0}, force_error_2{0.0};
+    T reached{0.0};                        // 1 once the force has reached the desired one
+    T max_shortfall{0.0}, overshoot{0.0};  // N, below the desired force since then, and above it
+    T unsettled_until{-infinite};          // s
     T path_2{0.0}, max_path_2{0.0}, saturated_time{0.0};
     Vec3<T> work{T(0.0), T(0.0), T(0.0)};
 };
 
 template <class F, class... Sums>
 ARM3R_INLINE void each_sum(F f, Sums&... t) {
-    f(t.touching_time...), f(t.force_error_2...), f(t.reached...), f(t.max_force_error...), f(t.overshoot...);
+    f(t.touching_time...), f(t.force_error_2...), f(t.reached...), f(t.max_shortfall...), f(t.overshoot...);
     f(t.unsettled_until...), f(t.path_2...), f(t.max_path_2...), f(t.saturated_time...);
     f(t.work[0]...), f(t.work[1]...), f(t.work[2]...);
 }
@@ -184,16 +186,16 @@ ARM3R_INLINE M add_segment(const TrackedQuantities& tracked, const Rule<n>& rule
         const auto square = [](const PerformanceSample<T>& s)
                                 ARM3R_INLINE_LAMBDA { return T(force_error_of(s) * force_error_of(s)); };
         const auto in_touch = moved && segment.touching, after = in_touch && sums.reached > o;
-        const T most = max_of<n>(segment, excess), least = max_of<n>(segment, shortfall);
+        const T most = max_of<n>(segment, excess);
         sums.touching_time = sums.touching_time + select(in_touch, dt, o);
         sums.force_error_2 = sums.force_error_2 + select(in_touch, T(dt * mean_of(rule, segment, square)), o);
         sums.overshoot = max_where(in_touch, sums.overshoot, most);
-        sums.max_force_error = max_where(after, sums.max_force_error, max(most, least));
+        sums.max_shortfall = max_where(after, sums.max_shortfall, max_of<n>(segment, shortfall));
         const auto ends_unsettled = moved && band_excess_of(segment.samples[n - 1]) > o;
         sums.unsettled_until = select(ends_unsettled, T(segment.start + segment.duration), sums.unsettled_until);
         const T top = peak_bound(rule, segment, excess);
         unresolved = unresolved || (in_touch && (top > sums.overshoot || (!(sums.reached > o) && max(most, top) >= o)));
-        unresolved = unresolved || (after && max(top, peak_bound(rule, segment, shortfall)) > sums.max_force_error);
+        unresolved = unresolved || (after && peak_bound(rule, segment, shortfall) > sums.max_shortfall);
         const T band_excess_within = max(max_of<n>(segment, band_excess), peak_bound(rule, segment, band_excess));
         unresolved = unresolved || (moved && !ends_unsettled && band_excess_within > o);
     }

@@ -1,31 +1,43 @@
 #pragma once
-// The maximum and the zero of a function of one number between two places in [0, 1], without its derivative.
+// The maximum and the zero of a function of one number between places in [0, 1] where it is known, without its
+// derivative.
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "arm3r/numbers/polynomial.hpp"
 
 namespace arm3r {
-namespace scalar_search {
 
-inline constexpr double maximum_resolution = 1e-8;  // of the place: there the function is flat
-inline constexpr double zero_resolution = 1e-15;
-
-struct Point {
+// The value of a function at a place.
+struct SearchPoint {
     double at, value;
 };
 
-// The step from the best point to the top of the parabola through three points; not finite if they lie on a line.
-inline double step_to_top(const Point& best, const Point& second, const Point& third) {
-    const double r = (best.at - second.at) * (best.value - third.value);
-    const double q = (best.at - third.at) * (best.value - second.value);
-    return ((best.at - second.at) * r - (best.at - third.at) * q) / (2 * (q - r));
+namespace scalar_search {
+
+// Of the place. A maximum is flat: it is missed by the square of this share of what the function varies by. Closer,
+// rounding errors of the function lead the search.
+inline constexpr double maximum_resolution = 1e-6, zero_resolution = 1e-12;
+
+// The top of the parabola through three points, seen from the best of them: the step to it, and how much higher it lies.
+// Not finite where they lie on a line.
+struct Top {
+    double step, rise;
+};
+inline Top top_of(const SearchPoint& best, const SearchPoint& second, const SearchPoint& third) {
+    const double to_second = second.at - best.at, to_third = third.at - best.at;
+    const double slope2 = (second.value - best.value) / to_second, slope3 = (third.value - best.value) / to_third;
+    const double bend = (slope3 - slope2) / (to_third - to_second), slope = slope2 - bend * to_second;
+    const double step = -0.5 * slope / bend;
+    return {step, 0.5 * slope * step};
 }
 
 // The place of the next sample, as a fraction of the way from the newest point to the other end of the bracket: the zero
 // of the inverse parabola through three points where that is safe, else a half.
-inline double share_to_zero(const Point& newest, const Point& other, const Point& dropped) {
+inline double share_to_zero(const SearchPoint& newest, const SearchPoint& other, const SearchPoint& dropped) {
     const double xi = (newest.at - other.at) / (dropped.at - other.at);
     const double phi = (newest.value - other.value) / (dropped.value - other.value);
     if (!(phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi)) return 0.5;
@@ -36,25 +48,41 @@ inline double share_to_zero(const Point& newest, const Point& other, const Point
 
 }  // namespace scalar_search
 
-// The maximum of f between a and b, by parabolas through the three best points, or by a golden section where they do not
-// converge (Brent 1973, chapter 5); f rises from a and falls to b.
+// The maximum of f between the outer ones of three places, by parabolas through the three best points, or by a golden
+// section where they do not converge (Brent 1973, chapter 5), until two of them in turn have foretold the next value well
+// and promise nothing but rounding errors; f rises from the first place and falls to the last.
 template <class F>
-Maximum find_maximum(F f, double a, double b) {
+Maximum find_maximum(F f, const SearchPoint& first, const SearchPoint& middle, const SearchPoint& last) {
     using namespace scalar_search;
     constexpr double golden_section = 0.3819660112501051, least = maximum_resolution;
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
     constexpr int most_steps = 60;
-    const auto sample = [&](double at) { return Point{at, f(at)}; };
-    Point best = sample(a + golden_section * (b - a)), second = best, third = best;
-    double step = 0, before = 0;  // the last step and the one before it
+    double a = first.at, b = last.at;
+    const bool falls = first.value > last.value;
+    SearchPoint best = middle, second = falls ? first : last, third = falls ? last : first;
+    if (second.value > best.value) std::swap(best, second);
+    if (third.value > second.value) std::swap(second, third);
+    const double height = best.value - third.value;
+    double step = b - a, before = b - a;                        // the last step and the one before it
+    double surprise = std::numeric_limits<double>::infinity();  // by which the last value is not as foretold
+    bool is_flat = false;
     for (int n = 0; n < most_steps; ++n) {
         const double to_far_end = best.at < 0.5 * (a + b) ? b - best.at : a - best.at;
         if (std::abs(to_far_end) <= 2 * least) break;
-        const double to_top = step_to_top(best, second, third), top = best.at + to_top;
-        const bool converges = std::abs(to_top) < 0.5 * std::abs(before) && a < top && top < b;
+        const Top parabola = top_of(best, second, third);
+        const double top = best.at + parabola.step;
+        const bool converges = std::abs(parabola.step) < 0.5 * std::abs(before) && a < top && top < b;
+        // A parabola that missed the last value by so much misses the maximum by its square over the height.
+        const double rounding = epsilon * (std::abs(best.value) + height);
+        const bool was_flat = is_flat;
+        is_flat = converges && std::abs(parabola.rise) <= rounding && surprise * surprise <= rounding * height;
+        if (is_flat && was_flat) break;
         before = converges ? step : to_far_end;
-        step = converges ? to_top : golden_section * to_far_end;
+        step = converges ? parabola.step : golden_section * to_far_end;
         if (converges && std::min(top - a, b - top) < 2 * least) step = std::copysign(least, to_far_end);
-        const Point here = sample(best.at + std::copysign(std::max(std::abs(step), least), step));
+        const double at = best.at + std::copysign(std::max(std::abs(step), least), step);
+        const SearchPoint here{at, f(at)};
+        surprise = std::abs(here.value - (best.value + parabola.rise));
         if (here.value >= best.value) {
             (here.at < best.at ? b : a) = best.at;
             third = second, second = best, best = here;
@@ -67,18 +95,18 @@ Maximum find_maximum(F f, double a, double b) {
     return {best.at, best.value};
 }
 
-// The zero of f between a and b, by inverse quadratic interpolation or by halves (Chandrupatla 1997); f is positive at a
-// and not at b. Returns the end of the last bracket at which f is not positive.
+// The zero of f between two places, by inverse quadratic interpolation or by halves (Chandrupatla 1997); f is positive at
+// the first and not at the last. Returns the end of the last bracket at which f is not positive.
 template <class F>
-double find_zero(F f, double a, double b) {
+double find_zero(F f, const SearchPoint& first, const SearchPoint& last) {
     using namespace scalar_search;
     constexpr int most_steps = 120;
-    const auto sample = [&](double at) { return Point{at, f(at)}; };
-    const auto is_positive = [](const Point& p) { return p.value > 0; };
-    Point newest = sample(b), other = sample(a), dropped = other;  // the zero lies between newest and other
+    const auto is_positive = [](const SearchPoint& p) { return p.value > 0; };
+    SearchPoint newest = last, other = first, dropped = other;  // the zero lies between newest and other
     double share = 0.5;
     for (int n = 0; n < most_steps && std::abs(other.at - newest.at) > zero_resolution; ++n) {
-        const Point here = sample(newest.at + share * (other.at - newest.at));
+        const double at = newest.at + share * (other.at - newest.at);
+        const SearchPoint here{at, f(at)};
         if (is_positive(here) == is_positive(newest)) dropped = newest;
         else dropped = other, other = newest;
         newest = here;
