@@ -35,6 +35,30 @@ inline Top top_of(const SearchPoint& best, const SearchPoint& second, const Sear
     return {step, 0.5 * slope * step};
 }
 
+// The three best points so far, between a and b.
+struct MaximumBracket {
+    double a, b;
+    SearchPoint best, second, third;
+
+    MaximumBracket(const SearchPoint& first, const SearchPoint& middle, const SearchPoint& last)
+        : a(first.at), b(last.at), best(middle), second(first), third(last) {
+        if (third.value > second.value) std::swap(second, third);
+        if (second.value > best.value) std::swap(best, second);
+        if (third.value > second.value) std::swap(second, third);
+    }
+    double to_far_end() const { return best.at < 0.5 * (a + b) ? b - best.at : a - best.at; }
+    void include(const SearchPoint& here) {
+        if (here.value >= best.value) {
+            (here.at < best.at ? b : a) = best.at;
+            third = second, second = best, best = here;
+        } else {
+            (here.at < best.at ? a : b) = here.at;
+            if (here.value >= second.value || second.at == best.at) third = second, second = here;
+            else if (here.value >= third.value || third.at == best.at || third.at == second.at) third = here;
+        }
+    }
+};
+
 // The place of the next sample, as a fraction of the way from the newest point to the other end of the bracket: the zero
 // of the inverse parabola through three points where that is safe, else a half.
 inline double share_to_zero(const SearchPoint& newest, const SearchPoint& other, const SearchPoint& dropped) {
@@ -57,17 +81,14 @@ Maximum find_maximum(F f, const SearchPoint& first, const SearchPoint& middle, c
     constexpr double golden_section = 0.3819660112501051, least = maximum_resolution;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     constexpr int most_steps = 60;
-    double a = first.at, b = last.at;
-    const bool falls = first.value > last.value;
-    SearchPoint best = middle, second = falls ? first : last, third = falls ? last : first;
-    if (second.value > best.value) std::swap(best, second);
-    if (third.value > second.value) std::swap(second, third);
+    MaximumBracket bracket(first, middle, last);
+    const auto& [a, b, best, second, third] = bracket;
     const double height = best.value - third.value;
     double step = b - a, before = b - a;                        // the last step and the one before it
     double surprise = std::numeric_limits<double>::infinity();  // by which the last value is not as foretold
     bool is_flat = false;
     for (int n = 0; n < most_steps; ++n) {
-        const double to_far_end = best.at < 0.5 * (a + b) ? b - best.at : a - best.at;
+        const double to_far_end = bracket.to_far_end();
         if (std::abs(to_far_end) <= 2 * least) break;
         const Top parabola = top_of(best, second, third);
         const double top = best.at + parabola.step;
@@ -83,14 +104,7 @@ Maximum find_maximum(F f, const SearchPoint& first, const SearchPoint& middle, c
         const double at = best.at + std::copysign(std::max(std::abs(step), least), step);
         const SearchPoint here{at, f(at)};
         surprise = std::abs(here.value - (best.value + parabola.rise));
-        if (here.value >= best.value) {
-            (here.at < best.at ? b : a) = best.at;
-            third = second, second = best, best = here;
-        } else {
-            (here.at < best.at ? a : b) = here.at;
-            if (here.value >= second.value || second.at == best.at) third = second, second = here;
-            else if (here.value >= third.value || third.at == best.at || third.at == second.at) third = here;
-        }
+        bracket.include(here);
     }
     return {best.at, best.value};
 }
