@@ -251,6 +251,25 @@ def test_numbers_of_a_sampled_run_are_those_of_its_rows(method: str) -> None:
     assert not (wrong := wrong_numbers(run, 1e-8)), wrong
 
 
+@pytest.mark.parametrize("method", [*METHODS, "taylor"])
+@pytest.mark.parametrize("kind", ["step", "ramp"])
+def test_a_reference_may_change_between_two_samples(kind: str, method: str) -> None:
+    """Steps are as long as a sample, and the controller sees the change at the next one; the metrics see it at once."""
+    solver = {"method": "taylor", "tol": 1e-12} if method == "taylor" else METHODS[method]
+    force = {"type": kind, "value": 30, "initial": 12, "start": 0.413761} | (
+        {"duration": 0.1234} if kind == "ramp" else {}
+    )
+    changes = {
+        "sampling.rate": 50, "wall.motion": {"type": "constant", "velocity": 0.05}, "solver": solver,
+        "reference": {"force": force}, "time.stop": 1.0, "time.log_every": 1e-4,
+    }  # fmt: skip
+    scenario = read("hybrid_moving_wall", changes)
+    run = scenario.run()
+    assert not (wrong := wrong_numbers(run, 1e-8)), wrong
+    batch = scenario.batch({"reference.force.value": [29.0, 30.0, 31.0, 28.0, 27.0]})
+    assert batch["force_error_rms"][1] == run.summary["metrics"]["force_error_rms"]
+
+
 # ---- random scenarios -----------------------------------------------------------------------------------------------
 
 

@@ -4,7 +4,6 @@
 // the end of a step, the step uses the values before the jump (5.8).
 
 #include "lanes/lane_run.hpp"
-#include "setup/time_instants.hpp"
 
 namespace arm3r {
 
@@ -25,6 +24,7 @@ public:
         Lanes<T>::set(step_, lane, setup.solver.step);
         Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
         Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
+        Lanes<T>::set(next_knot_, lane, this->next_metric_knot(lane, setup.start));
     }
 
     ARM3R_INLINE void step() {
@@ -226,12 +226,27 @@ private:
         return dense;
     }
 
+    // Handles the lanes alone in which the reference has a knot within the step, and takes them out of `whole`.
+    [[gnu::noinline]] void split_at_knots(Mask& whole) {
+        T alone(0.0);
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            const double knot = Lanes<T>::get(next_knot_, lane), end = this->t(lane);
+            if (!(knot <= end)) continue;
+            Lanes<T>::set(next_knot_, lane, this->next_metric_knot(lane, end));
+            if (!(knot < slightly_before(end)) || !Lanes<T>::is(whole, lane)) continue;
+            add_lane_performance(lane, dense_output_of(lane), 0, 1);
+            Lanes<T>::set(alone, lane, 1.0);
+        }
+        whole = whole && alone == T(0.0);
+    }
+
     // The step as one segment, except in lanes where the contact has changed.
     template <std::size_t n>
     ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved) {
-        Mask unresolved = false;
+        Mask unresolved = false, whole = moved && !eventful_;
+        if (any(next_knot_ <= this->t_)) split_at_knots(whole);
         if (n == simpson.node.size()) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
-        this->performance_.end(rule, this->instant(), this->h_, nullptr, moved && !eventful_, unresolved);
+        this->performance_.end(rule, this->instant(), this->h_, nullptr, whole, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 
@@ -243,9 +258,20 @@ private:
                                  [&](const StepView& view) { this->performance_.refine(lane, rule, view, 1.0); });
     }
 
-    // A part of the step, in the lane's present contact mode.
+    // A part of the step, in the lane's present contact mode, from knot to knot of the reference.
     void add_lane_performance(int lane, const DenseOutput& dense, double a, double b) {
-        this->visit_step(lane, dense, [&](const StepView& view) { this->performance_.add(lane, simpson, view, a, b); });
+        this->visit_step(lane, dense, [&](StepView view) {
+            const double latest = view.latest, end = slightly_before(dense.t0 + b * dense.h);
+            double knot = this->next_metric_knot(lane, dense.t0 + a * dense.h);
+            for (; knot < end; knot = this->next_metric_knot(lane, knot)) {
+                const double theta = (knot - dense.t0) / dense.h;
+                view.latest = slightly_before(knot);
+                this->performance_.add(lane, simpson, view, a, theta);
+                view.earliest = knot, a = theta;
+            }
+            view.latest = latest;
+            this->performance_.add(lane, simpson, view, a, b);
+        });
     }
 
     // The midpoint lies on the cubic through both ends.
@@ -273,6 +299,7 @@ private:
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};
+    T next_knot_{infinite};  // of the reference, for the metrics
     bool has_jump_ = false, was_due_ = false;
     Y y0_{}, f0_{};
     Vec3<T> torque_before_;

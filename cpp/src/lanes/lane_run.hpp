@@ -18,6 +18,7 @@
 #include "lanes/lane_contact.hpp"
 #include "lanes/lane_performance.hpp"
 #include "record/energy_balance.hpp"
+#include "setup/time_instants.hpp"
 
 namespace arm3r {
 
@@ -196,6 +197,11 @@ protected:
     ARM3R_INLINE void begin_segment() {
         const T& force_phase = sampled_.is_on() ? sampled_.controller_state().force_phase : rhs_.force_phase;
         performance_.begin(instant(), contact_.touching(), force_phase);
+    }
+
+    // The next instant after t at which the reference that the metrics compare with has another formula.
+    double next_metric_knot(int lane, double t) const {
+        return performance_.tracked().motion() ? next_knot(setups_[lane].controller().reference, t) : infinite;
     }
 
     // The step of one lane in doubles, as a function of theta; the torque of a sampled controller is that of the step.

@@ -225,15 +225,15 @@ struct StepView {
     double contact = 0;                  // as a continuous controller knows it
     double force_phase = 0;              // of either kind of controller
     const Vec3<double>* held = nullptr;  // N m, the torque of a sampled controller
-    // s: formulas of time are evaluated at this instant at the latest
-    double latest = infinite;
+    // s: formulas of time are evaluated between these instants
+    double latest = infinite, earliest = -infinite;
 
     PerformanceSample<double> operator()(double theta) const;
     // Force and path error alone, those that are wanted.
     PerformanceSample<double> motion(double theta, const TrackedQuantities& wanted) const;
 
 private:
-    double time(double theta) const { return std::min(dense.t0 + theta * dense.h, latest); }
+    double time(double theta) const { return std::max(earliest, std::min(dense.t0 + theta * dense.h, latest)); }
 };
 
 // Refines a segment between the nodes of its rule; it goes from theta = a to b of the step.

@@ -46,6 +46,18 @@ double next_knot(const Wall<double>& wall, double t) {
     return next;
 }
 
+double next_knot(const Reference<double>& reference, double t) {
+    double next = infinite;
+    const auto consider = [&](double knot) {
+        if (knot > t) next = std::min(next, knot);
+    };
+    if (is_moving(reference.path)) consider(reference.start), consider(reference.end);
+    for (int i = 0; i < reference.knots; ++i) consider((*reference.table)[0].t[std::size_t(i)]);
+    if (reference.force_profile == ForceProfile::step || reference.force_profile == ForceProfile::ramp)
+        consider(reference.force_start), consider(reference.force_start + reference.force_duration);
+    return next;
+}
+
 double next_knot(const Setup& setup, double t) {
     const Plant<double>& plant = setup.plant;
     double next = plant.has_wall ? next_knot(plant.wall, t) : infinite;
@@ -57,13 +69,7 @@ double next_knot(const Setup& setup, double t) {
         for (const double knot : {external_force.start, external_force.start + external_force.rise, external_force.end})
             consider(knot);
     }
-    if (!has_law(plant.controller.type)) return next;
-    const Reference<double>& reference = plant.controller.reference;
-    if (is_moving(reference.path)) consider(reference.start), consider(reference.end);
-    for (int i = 0; i < reference.knots; ++i) consider((*reference.table)[0].t[std::size_t(i)]);
-    if (reference.force_profile == ForceProfile::step || reference.force_profile == ForceProfile::ramp)
-        consider(reference.force_start), consider(reference.force_start + reference.force_duration);
-    return next;
+    return has_law(setup.controller().type) ? std::min(next, next_knot(setup.controller().reference, t)) : next;
 }
 
 double next_jump(const Setup& setup, double t) {

@@ -8,9 +8,11 @@ namespace arm3r {
 
 // The next instant after t at which the formula of the wall's motion changes; infinite for none.
 double next_knot(const Wall<double>& wall, double t);
+// The same for a reference: of the motion or of the force.
+double next_knot(const Reference<double>& reference, double t);
 
 // The next instant after t, s, at which a formula of time changes: of the wall's motion, the reference, an external
-// force.
+// force. A sampled controller sees its reference at samples only, but its metrics (8.10) at every instant.
 double next_knot(const Setup& setup, double t);
 // The next instant at which the value of such a formula jumps, so that the steps before and after it use different
 // values; and the instant before.
