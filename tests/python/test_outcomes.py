@@ -352,6 +352,23 @@ time: {stop: 20}
     assert "sampling.rate" in message and "tighten" not in message
 
 
+def test_a_run_through_a_singular_pose_warns() -> None:
+    """Torques at their limits turn to and fro there within microseconds, which steps of any tolerance may pass over."""
+    text = """
+format: 1
+arm: {convention: slide, torque_limit: [5, 5, 5]}
+initial: {q: [0.3, 0.4, -0.5], qd: [0.2, 0.1, 6]}
+controller: {type: resolved_acceleration}
+time: {stop: 0.3}
+"""
+    run = _run(text)
+    assert run.outcome == "ok"
+    (warning,) = run.summary["warnings"]
+    after = np.searchsorted(run.t, float(re.findall(r"passed a singular pose at t = (\S+) s", warning)[0])) + 1
+    assert run["q"][after - 1, 2] * run["q"][after, 2] <= 0 and "solver.max_step" in warning
+    assert not _run(text + "sampling: {rate: 1000}").summary["warnings"], "a torque that is held has no such pulse"
+
+
 @pytest.mark.parametrize("method", ["dopri5", "rodas4"])
 def test_a_singular_pose_is_named(method: str) -> None:
     text = """

@@ -136,6 +136,11 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
         }
     }
     explain(y);
+    if (is_running() && options_.judges && !setup_.digital.sampling.on)
+        if (const std::optional<std::string> passed = singular_pose(setup_, run_, angles(y)))
+            run_.warnings.push_back(*passed +
+                                    "; steps may miss torques that last for microseconds there: compare with a "
+                                    "small solver.max_step");
     if (options_.rows && options_.judges) run_.at_end = end_values(y, theta);
     if (run_.link_behind_wall_since >= 0)
         run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
