@@ -24,7 +24,6 @@ public:
         Lanes<T>::set(step_, lane, setup.solver.step);
         Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
         Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
-        Lanes<T>::set(next_knot_, lane, this->next_metric_knot(lane, setup.start));
     }
 
     ARM3R_INLINE void step() {
@@ -230,9 +229,9 @@ private:
     [[gnu::noinline]] void split_at_knots(Mask& whole) {
         T alone(0.0);
         for (int lane = 0; lane < Base::lanes; ++lane) {
-            const double knot = Lanes<T>::get(next_knot_, lane), end = this->t(lane);
+            const double knot = Lanes<T>::get(this->next_knot_, lane), end = this->t(lane);
             if (!(knot <= end)) continue;
-            Lanes<T>::set(next_knot_, lane, this->next_metric_knot(lane, end));
+            Lanes<T>::set(this->next_knot_, lane, this->next_metric_knot(lane, end));
             if (!(knot < slightly_before(end)) || !Lanes<T>::is(whole, lane)) continue;
             add_lane_performance(lane, dense_output_of(lane), 0, 1);
             Lanes<T>::set(alone, lane, 1.0);
@@ -244,7 +243,7 @@ private:
     template <std::size_t n>
     ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved) {
         Mask unresolved = false, whole = moved && !eventful_;
-        if (any(next_knot_ <= this->t_)) split_at_knots(whole);
+        if (any(this->next_knot_ <= this->t_)) split_at_knots(whole);
         if (n == simpson.node.size()) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
         this->performance_.end(rule, this->instant(), this->h_, nullptr, whole, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
@@ -299,7 +298,6 @@ private:
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};
-    T next_knot_{infinite};  // of the reference, for the metrics
     bool has_jump_ = false, was_due_ = false;
     Y y0_{}, f0_{};
     Vec3<T> torque_before_;

@@ -295,6 +295,7 @@ protected:
     EnergyBalance<T> balance_;
     LanePerformance<T> performance_;
 
+    T next_knot_{infinite};                       // s, of the reference, for the metrics
     T t_{0.0}, h_{0.0}, stop_{0.0}, slack_{0.0};  // slack: the tolerance with which an instant counts as reached, s
     Y y_{}, f_{};
     Pose<T> p_;

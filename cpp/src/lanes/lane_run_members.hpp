@@ -49,6 +49,7 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
     set(max_steps_, setup.solver.max_steps);
     contact_.load_lane(lane, setup.plant.contact, setup.start);
     performance_.load_lane(lane);
+    set(next_knot_, next_metric_knot(lane, setup.start));
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
     set_running(lane, false);  // for a run that was in the lane before

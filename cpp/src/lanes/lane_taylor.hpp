@@ -26,7 +26,6 @@ public:
         Lanes<T>::set(tol_, lane, setup.solver.tol);
         Lanes<T>::set(max_step_, lane, setup.solver.max_step);
         Lanes<T>::set(this->slack_, lane, setup.clock_rounding());
-        Lanes<T>::set(next_knot_, lane, this->next_metric_knot(lane, setup.start));
     }
 
     ARM3R_INLINE void step() {
@@ -36,7 +35,7 @@ public:
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
         if (this->plant_.arm.has_dry_friction) slow_before_friction(wanted);
-        const T until = min(this->next_instant(), next_knot_), rest = until - t0_;
+        const T until = min(this->next_instant(), this->next_knot_), rest = until - t0_;
         is_last_ = wanted >= rest;
         this->h_ = select(is_last_, rest, wanted);
         const Mask finite = is_finite(), stalls = !is_last_ && this->h_ < min_step(t0_);
@@ -55,7 +54,7 @@ public:
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->observe();
         if (crosses_) apply_changes();
-        if (any(next_knot_ <= this->t_)) pass_knots();
+        if (any(this->next_knot_ <= this->t_)) pass_knots();
         this->update_energy_balance();
         if (this->performance_.is_on())
             this->performance_.tracked().motion() ? add_performance(lobatto, moved, h)
@@ -267,8 +266,8 @@ private:
 
     [[gnu::noinline]] void pass_knots() {
         for (int lane = 0; lane < Base::lanes; ++lane)
-            if (Lanes<T>::get(next_knot_, lane) <= this->t(lane))
-                Lanes<T>::set(next_knot_, lane, this->next_metric_knot(lane, this->t(lane)));
+            if (Lanes<T>::get(this->next_knot_, lane) <= this->t(lane))
+                Lanes<T>::set(this->next_knot_, lane, this->next_metric_knot(lane, this->t(lane)));
     }
 
     struct PendingChange {
@@ -279,7 +278,6 @@ private:
     const int order_;
     const Kernel free_kernel_, pressed_kernel_;
     T tol_{1e-9}, max_step_{1.0}, t0_{0.0}, theta_{1.0};
-    T next_knot_{infinite};  // of the reference, for the metrics
     Mask is_last_ = false;
     bool crosses_ = false;
     std::array<PendingChange, Base::lanes> pending_changes_{};

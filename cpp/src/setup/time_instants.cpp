@@ -30,13 +30,18 @@ void each_jump_of_reference(S& reference, Visit visit) {
     if (reference.force_profile == ForceProfile::step) visit(reference.force_start);
 }
 
+// Of the instants that it is called with, those after t: `next` becomes the earliest of them.
+auto earliest_after(double t, double& next) {
+    return [t, &next](double instant) {
+        if (instant > t) next = std::min(next, instant);
+    };
+}
+
 }  // namespace
 
 double next_knot(const Wall<double>& wall, double t) {
     double next = infinite;
-    const auto consider = [&](double knot) {
-        if (knot > t) next = std::min(next, knot);
-    };
+    const auto consider = earliest_after(t, next);
     if (wall.motion == Motion::ramp) {
         consider(wall.ramp.start);
         consider(wall.ramp.start + wall.ramp.duration);
@@ -48,9 +53,7 @@ double next_knot(const Wall<double>& wall, double t) {
 
 double next_knot(const Reference<double>& reference, double t) {
     double next = infinite;
-    const auto consider = [&](double knot) {
-        if (knot > t) next = std::min(next, knot);
-    };
+    const auto consider = earliest_after(t, next);
     if (is_moving(reference.path)) consider(reference.start), consider(reference.end);
     for (int i = 0; i < reference.knots; ++i) consider((*reference.table)[0].t[std::size_t(i)]);
     if (reference.force_profile == ForceProfile::step || reference.force_profile == ForceProfile::ramp)
@@ -61,9 +64,7 @@ double next_knot(const Reference<double>& reference, double t) {
 double next_knot(const Setup& setup, double t) {
     const Plant<double>& plant = setup.plant;
     double next = plant.has_wall ? next_knot(plant.wall, t) : infinite;
-    const auto consider = [&](double knot) {
-        if (knot > t) next = std::min(next, knot);
-    };
+    const auto consider = earliest_after(t, next);
     if (plant.external_force.on) {
         const ExternalForce<double>& external_force = plant.external_force;
         for (const double knot : {external_force.start, external_force.start + external_force.rise, external_force.end})
@@ -75,9 +76,7 @@ double next_knot(const Setup& setup, double t) {
 double next_jump(const Setup& setup, double t) {
     const Plant<double>& plant = setup.plant;
     double next = infinite;
-    const auto consider = [&](double jump) {
-        if (jump > t) next = std::min(next, jump);
-    };
+    const auto consider = earliest_after(t, next);
     each_jump_of_external_force(plant.external_force, consider);
     if (plant.has_wall) each_jump_of_wall(plant.wall, consider);
     if (has_law(plant.controller.type)) each_jump_of_reference(plant.controller.reference, consider);
