@@ -170,6 +170,25 @@ def test_the_page_has_the_bits_of_the_library(browser: Any, address: str) -> Non
             assert visitor.hash() == arm3r.Scenario.example(name).run().summary["hash"]
 
 
+def test_a_slider_that_was_just_moved_changes_no_other_scenario(browser: Any, address: str) -> None:
+    """Its change of the text takes some frames; another scenario is opened before they have passed."""
+    with Visitor(browser, "laptop") as visitor:
+        visitor.open(address)
+        for frames in range(4):
+            visitor.choose("moving_wall")
+            other = "force_control/hybrid_first_contact"
+            visitor.page.evaluate(
+                "async ([name, frames]) => {"
+                "  const slider = document.querySelector('[data-path=\"wall.contact.stiffness\"]');"
+                "  slider.value = 900; slider.dispatchEvent(new Event('input'));"
+                "  for (let i = 0; i < frames; i += 1) await new Promise(requestAnimationFrame);"
+                '  document.querySelector(`.card[data-name="${name}"]`).click(); }',
+                [other, frames],
+            )
+            visitor.settle()
+            assert visitor.hash() == arm3r.Scenario.example(other).run().summary["hash"], frames
+
+
 def move_sliders(visitor: Visitor, name: str) -> int:
     """Each slider to a random place, where the run follows or the text says what is wrong; then its number is typed
     as it was. Returns the number of sliders."""

@@ -71,8 +71,10 @@ export class Controls {
     this.editor.changeSoon(path, (text, tree) => this.#change(text, tree, path, value), joined);
   }
 
-  /** What puts a value into the text: an item of a list that the text lacks comes with the whole list. */
+  /** What puts a value into the text: an item of a list that the text lacks comes with the whole list. Null where the
+   *  controls are still those of the scenario before. */
   #change(text, tree, path, value) {
+    if (this.opened !== this.store.get("opened")) return null;
     const list = /^(.*)\[(\d+)\]$/.exec(path);
     if (!list || find(text, tree, list[1])?.name.endsWith("Sequence")) return setting(text, path, value, tree);
     const items = valueAt(this.store.get("resolved"), list[1]).map((item) => yaml(number(item)));

@@ -33,7 +33,8 @@ export class Editor {
   /**
    * Change the text in the next frames, one step of the work in each.
    *
-   * change(text, tree) gives { from, to, insert }; it is asked again where the text has become another one meanwhile.
+   * change(text, tree) gives { from, to, insert }, or null for none; it is asked again where the text has become another
+   * one meanwhile.
    * `joined`: it continues the change before, for undo. A change that waits under the same name is replaced.
    */
   changeSoon(name, change, joined) {
@@ -41,6 +42,7 @@ export class Editor {
     const soon = (step) => later(`text-${name}`, () => (this.view.state === state ? step() : this.changeSoon(name, change, joined)));
     const tree = ensureSyntaxTree(state, state.doc.length, Infinity);
     const changes = change(state.doc.toString(), tree);
+    if (!changes) return;
     soon(() => {
       const transaction = state.update({ changes, userEvent: joined ? "input.type.slider" : "input" });
       soon(() => this.view.dispatch(transaction));
