@@ -73,11 +73,15 @@ void Stepper<Size>::start() {
 template <Terms terms, class T, std::size_t Size>
 ARM3R_INLINE void march_by_terms(RightHandSide<T, T>& rhs, T& t, State<T, Size>& y, State<T, Size>& f, int steps) {
     constexpr std::size_t moving = terms == Terms::common ? std::min<std::size_t>(Size, common_moving) : Size;
+    const auto derive = [&rhs](const T& at, const State<T, Size>& state, State<T, Size>& rates) ARM3R_INLINE_LAMBDA {
+        Vec3<T> tau;
+        rhs.template derivative_at<terms>(at, state, rates, tau);
+    };
     for (int i = 0; i < steps; ++i) {
-        y = rk4_step_of_first<moving>(rhs.template of_terms<terms>(), t, y, f, T(step));
+        y = rk4_step_of_first<moving>(derive, t, y, f, T(step));
         t += T(step);
         rhs.begin_step(y);
-        rhs.template of_terms<terms>()(t, y, f);
+        derive(t, y, f);
     }
 }
 

@@ -284,7 +284,8 @@ BOOST_AUTO_TEST_CASE(common_terms_are_the_terms_of_every_plant) {
             const double t = random.in(15, 40);
             rhs.begin_step(y);
             rhs(t, y, every);
-            rhs.of_terms<Terms::common>()(t, y, common);
+            Vec3<double> tau;
+            rhs.derivative_at<Terms::common>(t, y, common, tau);
             for (std::size_t j = 0; j < state_size; ++j) BOOST_TEST(every[j] == common[j]);
             pressed += every[work_of_wall] != 0;
         }

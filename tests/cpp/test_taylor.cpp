@@ -146,7 +146,10 @@ static std::vector<Terms> series_by_definition(const Plant<double>& plant, bool 
     for (Expr& x : wall.velocity) x = tape.input();
     RightHandSide<double, Expr> rhs(plant);
     rhs.force_mode = pressed ? ContactForceMode::pressed : ContactForceMode::none;
-    rhs.derivative(Expr(0.0), wall, rhs.pose_near(y), y, dy);
+    const Pose<Expr> start_pose = rhs.pose_near(y);
+    Vec3<Expr> tau;
+    rhs.derivative(Expr(0.0), wall, start_pose, tip_indentation(plant, wall, start_pose, Vec3<Expr>(y[3], y[4], y[5])),
+                   y, dy, tau);
     for (const Expr& x : dy) tape.output(x);
     const auto [q1, q2, q3] = std::array{y[0], y[1], Expr(y[1] + y[2])};
     const SinCos<Expr> s1 = sincos(q1), s2 = sincos(q2), s3 = sincos(q3);

@@ -9,6 +9,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from agreement import rk4, run_of
 from force_scenarios import read
 from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 from scipy.interpolate import make_interp_spline
@@ -299,6 +300,25 @@ def check_random_scenarios(count: int) -> None:
         rough = ("impulse",) if keys.get("wall", {}).get("contact", {}).get("law") == "hunt_crossley" else ()
         wrong = {key: off for key, off in wrong_numbers(run, 2e-7).items() if key not in rough or off > 1e-5}
         assert not wrong, f"scenario {number} of seed {seed}: {wrong}\n{yaml_of(keys)}"
+
+
+def test_by_rk4_the_works_of_the_torques_add_up_to_that_of_the_energy_balance() -> None:
+    """Both are sums over the same stages: also where contact changes within a step, or a torque is at its limit."""
+    seed = sample_seed()
+    rng = np.random.default_rng(seed)
+    continuous = 0
+    for number in range(60):
+        keys = random_scenario(rng, longest=0.3)
+        run = run_of(keys, rk4(keys, 5e-4))
+        if run is None or run.summary["outcome"] != "ok" or run.summary["metrics"]["work_1"] is None:
+            continue
+        works = [run.summary["metrics"][f"work_{i}"] for i in (1, 2, 3)]
+        continuous += "sampling" not in keys and any(works)
+        size = np.abs(np.diff(run["work_actuators"])).sum() + np.abs(works).sum()
+        assert sum(works) == pytest.approx(run["work_actuators"][-1], abs=1e-10 * max(1.0, size)), (
+            f"scenario {number} of seed {seed}\n{yaml_of(keys)}"
+        )
+    assert continuous > 5
 
 
 @pytest.mark.parametrize("exponent", [1.2, 1.5, 1.8])

@@ -149,33 +149,33 @@ public:
 
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
-        const T seen = min(t, latest);
-        WallState<T> wall;  // left uninitialised if unused
-        if (senses_wall(plant_) || (plant_.acts_on_arm && force_mode != ContactForceMode::none))
-            wall = wall_state_at(seen);
-        derivative(seen, wall, pose_near(y), y, dy);
-    }
-
-    // The same for a plant of known terms; with common ones the contact is decided at each stage, if there is any.
-    template <Terms terms>
-    ARM3R_INLINE auto of_terms() const {
-        return [this](const T& t, const auto& y, auto& dy) ARM3R_INLINE_LAMBDA {
-            if constexpr (terms == Terms::common) this->common_derivative_at(t, y, dy);
-            else (*this)(t, y, dy);
-        };
-    }
-
-    // The same with a known pose, and with a known wall if the wall is needed.
-    template <std::size_t N>
-    ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const State<T, N>& y,
-                                 State<T, N>& dy) const {
-        Indentation<T> in;
-        if (needs_contact()) in = indentation_of(wall, p, Vec3<T>(y[3], y[4], y[5]));
         Vec3<T> tau;
-        derivative(t, wall, p, in, y, dy, tau);
+        derivative_at<Terms::any>(t, y, dy, tau);
     }
 
-    // The same with a known indentation; it also returns the applied torque.
+    // The same for a plant of known terms, and the applied torque. With common terms the contact is decided at each stage,
+    // if there is any.
+    template <Terms terms, std::size_t N>
+    ARM3R_INLINE void derivative_at(const T& t, const State<T, N>& y, State<T, N>& dy, Vec3<T>& tau) const {
+        const T seen = min(t, latest);
+        const Pose<T> p = pose_near(y);
+        WallState<T> wall;  // left uninitialised if unused, as the indentation
+        Indentation<T> in;
+        if constexpr (terms == Terms::common) {
+            if (plant_.acts_on_arm) {
+                wall = even_wall_at(plant_.wall, seen);
+                in = indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p));
+            }
+            common_derivative(wall, p, in, y, dy, tau);
+        } else {
+            if (senses_wall(plant_) || (plant_.acts_on_arm && force_mode != ContactForceMode::none))
+                wall = wall_state_at(seen);
+            if (needs_contact()) in = indentation_of(wall, p, Vec3<T>(y[3], y[4], y[5]));
+            derivative(seen, wall, p, in, y, dy, tau);
+        }
+    }
+
+    // The same with a known pose, and with wall and indentation if they are needed.
     template <std::size_t N>
     ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
                                  const State<T, N>& y, State<T, N>& dy, Vec3<T>& tau) const {
@@ -335,19 +335,6 @@ public:
     }
 
 private:
-    template <std::size_t N>
-    ARM3R_INLINE void common_derivative_at(const T& t, const State<T, N>& y, State<T, N>& dy) const {
-        const Pose<T> p = pose_near(y);
-        WallState<T> wall;  // left uninitialised if unused, as the indentation
-        Indentation<T> in;
-        if (plant_.acts_on_arm) {
-            wall = even_wall_at(plant_.wall, min(t, latest));
-            in = indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p));
-        }
-        Vec3<T> tau;
-        common_derivative(wall, p, in, y, dy, tau);
-    }
-
     ARM3R_INLINE static Vec3<T> vertical_weight(const Arm<P>& arm, const Pose<T>& p) {
         return link_weight(arm.lumped, arm.gravity, true, p);
     }

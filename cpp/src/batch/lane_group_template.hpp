@@ -31,10 +31,9 @@ public:
 
 private:
     bool fill(int lane) {
-        Setup setup;
-        const bool found = worker_.next(batch_key_, setup, run_[lane]);
-        if (found) lane_run_.load_lane(lane, setup);
-        return found;
+        const std::optional<Setup> setup = worker_.next(batch_key_, run_[lane]);
+        if (setup) lane_run_.load_lane(lane, *setup);
+        return setup.has_value();
     }
 
     // Runs that have ended are stored and their lanes refilled; returns whether there are new runs.

@@ -32,9 +32,8 @@ BatchWorker::BatchWorker(BatchJob& job)
 
 void BatchWorker::run() {
     std::size_t run;
-    Setup setup;
     while (fetch(run))
-        if (prepare(run, setup)) run_group(setup, run);
+        if (const std::optional<Setup> setup = prepare(run)) run_group(*setup, run);
 }
 
 void BatchWorker::run_group(const Setup& first, std::size_t run) {
@@ -71,13 +70,16 @@ void BatchWorker::run_alone(const Setup& setup, RunOptions options, std::size_t 
     store(run, done);
 }
 
-bool BatchWorker::next(const BatchKey& batch_key, Setup& setup, std::size_t& run) {
+std::optional<Setup> BatchWorker::next(const BatchKey& batch_key, std::size_t& run) {
+    std::optional<Setup> setup;
     while (deferred_.size() < max_deferred && fetch(run)) {
-        if (!prepare(run, setup)) continue;
-        if (batch_key_of(setup) == batch_key) return true;
+        setup = prepare(run);
+        if (!setup) continue;
+        if (batch_key_of(*setup) == batch_key) return setup;
         deferred_.push_back(run);
     }
-    return false;
+    setup.reset();
+    return setup;
 }
 
 bool BatchWorker::fetch(std::size_t& run) {
@@ -98,14 +100,16 @@ bool BatchWorker::fetch(std::size_t& run) {
     return true;
 }
 
-// Returns false if there is nothing to simulate; the row is then complete.
-bool BatchWorker::prepare(std::size_t run, Setup& setup) {
+std::optional<Setup> BatchWorker::prepare(std::size_t run) {
     job_.variation.put(run, params_);
-    const std::optional<Setup> valid = job_.check(params_);
-    if (!valid) return refuse(run, run + 1, ARM3R_RUN_INVALID), false;
-    setup = *valid;
-    if (has_too_many_steps(setup)) return refuse(run, run + 1, ARM3R_RUN_BUDGET), false;
-    return true;
+    std::optional<Setup> setup = job_.check(params_);
+    if (!setup) {
+        refuse(run, run + 1, ARM3R_RUN_INVALID);
+    } else if (has_too_many_steps(*setup)) {
+        refuse(run, run + 1, ARM3R_RUN_BUDGET);
+        setup.reset();
+    }
+    return setup;
 }
 
 void BatchWorker::store(std::size_t run, const Metrics& metrics) {

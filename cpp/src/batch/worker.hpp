@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,14 +33,16 @@ public:
     // Works until there are no more runs.
     void run();
 
-    // The next run with the key `batch_key`; runs with other keys are deferred.
-    bool next(const BatchKey& batch_key, Setup& setup, std::size_t& run);
+    // The setup of the next run with the key `batch_key`, and sets its number; runs with other keys are deferred. Empty where
+    // there is none.
+    std::optional<Setup> next(const BatchKey& batch_key, std::size_t& run);
     void store(std::size_t run, const Metrics& metrics);
     bool is_stopped() const { return job_.stop.load(std::memory_order_relaxed); }
 
 private:
     bool fetch(std::size_t& run);
-    bool prepare(std::size_t run, Setup& setup);
+    // The setup of a run; empty if there is nothing to simulate, and its row is complete.
+    std::optional<Setup> prepare(std::size_t run);
     void run_group(const Setup& first, std::size_t run);
     void run_with_law(const Setup& setup, std::size_t run);
     void run_alone(const Setup& setup, RunOptions options, std::size_t run);

@@ -1,5 +1,7 @@
 #include "lanes/lane_contact.hpp"
 
+#include <algorithm>
+
 #include "arm3r/lanes.hpp"
 
 namespace arm3r {
@@ -16,10 +18,10 @@ void LaneContact<T>::load_lane(int lane, const Contact<double>& law, double star
 template <class T>
 void LaneContact<T>::set_mode(int lane, ContactMode mode) {
     mode_[lane] = mode;
-    touching_ = mask_where<T>(mode_, ContactMode::contact);
-    embedded_ = mask_where<T>(mode_, ContactMode::embedded);
-    any_touching_ = any(touching_);
-    any_embedded_ = any(embedded_);
+    Lanes<T>::mark(touching_, lane, mode == ContactMode::contact);
+    Lanes<T>::mark(embedded_, lane, mode == ContactMode::embedded);
+    any_touching_ = std::ranges::count(mode_, ContactMode::contact) > 0;
+    any_embedded_ = std::ranges::count(mode_, ContactMode::embedded) > 0;
 }
 
 template <class T>

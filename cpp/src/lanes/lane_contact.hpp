@@ -13,15 +13,6 @@
 
 namespace arm3r {
 
-// Makes a mask lane by lane, by way of a number.
-template <class T, class Items, class Item>
-typename Lanes<T>::Mask mask_where(const Items& items, Item wanted) {
-    T here(0.0);
-    for (int lane = 0; lane < Lanes<T>::count; ++lane)
-        if (items[lane] == wanted) Lanes<T>::set(here, lane, 1.0);
-    return here > T(0.0);
-}
-
 // N: the normal force over a step of h seconds from theta = a to b, at five equidistant points of the depth.
 template <class P, class S>
 ARM3R_INLINE std::array<S, 5> normal_forces(const Contact<P>& law, const Polynomial<S>& depth, const S& h, const S& a,

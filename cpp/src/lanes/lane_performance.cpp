@@ -10,7 +10,6 @@ void LanePerformance<T>::begin(const LaneInstant<T>& now, const Mask& touching, 
         segment_.start = now.t;
         segment_.touching = touching;
         force_phase_ = force_phase;
-        q_at_start_ = {now.q[0], now.q[1], now.q[2]};
         tau_at_start_ = now.tau;
         sample(0, now);
     });
@@ -18,20 +17,12 @@ void LanePerformance<T>::begin(const LaneInstant<T>& now, const Mask& touching, 
 
 template <class T>
 template <std::size_t n>
-void LanePerformance<T>::end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Vec3<T>* work,
-                             const Mask& moved, Mask& unresolved) {
+void LanePerformance<T>::end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Mask& moved,
+                             Mask& unresolved) {
     Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
         segment_.duration = duration;
         const T t = slightly_before(now.t);
-        sample(n - 1, {t, now.p, now.wall, now.in, now.q, now.qd, now.tau});
-        for (int i = 0; i < 3; ++i) {
-            if (plant_.holds_torque) segment_.work[i] = tau_at_start_[i] * (now.q[i] - q_at_start_[i]);
-            else if (work) segment_.work[i] = (*work)[i];
-            else
-                segment_.work[i] =
-                    duration * mean_of(rule, segment_,
-                                       [i](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.power[i]; });
-        }
+        sample(n - 1, {t, now.p, now.wall, now.in, now.tau});
         unresolved = add_segment(tracked_, rule, moved, segment_, sums_);
     });
 }
@@ -49,9 +40,8 @@ void LanePerformance<T>::set_sums(int lane, const PerformanceSums<double>& sums)
 }
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
-#define ARM3R_LANE_PERFORMANCE_END(T, n)                                                                   \
-    template void LanePerformance<T>::end(const Rule<n>&, const LaneInstant<T>&, const T&, const Vec3<T>*, \
-                                          const Mask&, Mask&);
+#define ARM3R_LANE_PERFORMANCE_END(T, n) \
+    template void LanePerformance<T>::end(const Rule<n>&, const LaneInstant<T>&, const T&, const Mask&, Mask&);
 #define ARM3R_LANE_PERFORMANCE(T)                                                          \
     template void LanePerformance<T>::begin(const LaneInstant<T>&, const Mask&, const T&); \
     ARM3R_LANE_PERFORMANCE_END(T, 2)                                                       \

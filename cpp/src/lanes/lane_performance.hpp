@@ -14,7 +14,6 @@ struct LaneInstant {
     const Pose<T>& p;
     const WallState<T>& wall;
     const Indentation<T>& in;
-    const T *q, *qd;  // rad, rad/s: three of each
     const Vec3<T>& tau;
 };
 
@@ -33,6 +32,8 @@ public:
           controller_(controller) {}
 
     bool is_on() const { return is_on_; }
+    // Whether more than the works of the torques is needed.
+    bool samples() const { return is_on_ && tracked_.anything(); }
     ARM3R_INLINE const TrackedQuantities& tracked() const { return tracked_; }
     // At the start of the segment; a sampled controller holds it.
     ARM3R_INLINE const Vec3<T>& torque_at_start() const { return tau_at_start_; }
@@ -48,16 +49,17 @@ public:
         PerformanceSample<T>& sample = segment_.samples[j];
         sample_motion(tracked_, plant_, contact_, controller_, now.t, now.p, now.wall, now.in, segment_.touching,
                       force_phase_, sample);
-        sample_torque(plant_.arm, plant_.holds_torque ? tau_at_start_ : now.tau, {now.qd[0], now.qd[1], now.qd[2]},
-                      sample);
+        sample_saturation(plant_.arm, plant_.holds_torque ? tau_at_start_ : now.tau, sample);
     }
-    // The segment ends now: adds it to the sums where `moved`, and sets the lanes in which it must be refined. work: J, of
-    // each torque that is not held; null: by the rule.
+    // The segment ends now: adds it to the sums where `moved`, and sets the lanes in which it must be refined.
     template <std::size_t n>
-    void end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Vec3<T>* work, const Mask& moved,
-             Mask& unresolved);
+    void end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Mask& moved, Mask& unresolved);
+    // Adds the work of each torque in the segment, in J, where `moved`.
+    ARM3R_INLINE void add_work(const Vec3<T>& work, const Mask& moved) {
+        for (int i = 0; i < 3; ++i) sums_.work[i] = sums_.work[i] + select(moved, work[i], T(0.0));
+    }
 
-    // Adds the part of a lane's step from theta = a to b.
+    // Adds the part of a lane's step from theta = a to b, without the works.
     template <std::size_t n>
     void add(int lane, const Rule<n>& rule, const StepView& view, double a, double b) {
         PerformanceSums<double> sums = this->sums(lane);
@@ -69,11 +71,11 @@ public:
     void refine(int lane, const Rule<n>& rule, StepView view, double b) {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
         view.pressed = Lanes<T>::is(segment_.touching, lane);
-        Segment<double> segment{get(segment_.start), get(segment_.duration), view.pressed, {}, {}};
+        Segment<double> segment{get(segment_.start), get(segment_.duration), view.pressed, {}};
         for (std::size_t j = 0; j < n; ++j) {
             const PerformanceSample<T>& sample = segment_.samples[j];
             segment.samples[j] = {get(sample.force), get(sample.desired_force), get(sample.path_error_2),
-                                  get(sample.saturated), zero_vector<double>()};
+                                  get(sample.saturated)};
         }
         PerformanceSums<double> sums = this->sums(lane);
         refine_segment(rule, segment, view, 0, b, sums);
@@ -94,7 +96,7 @@ private:
     PerformanceSums<T> sums_;
     Segment<T> segment_;
     T force_phase_{0.0};
-    Vec3<T> q_at_start_ = zero_vector<T>(), tau_at_start_ = zero_vector<T>();  // rad, N m
+    Vec3<T> tau_at_start_ = zero_vector<T>();  // N m
 };
 
 }  // namespace arm3r

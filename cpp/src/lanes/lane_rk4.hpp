@@ -57,11 +57,11 @@ private:
     template <Terms terms>
     ARM3R_INLINE void step_of() {
         t0_ = this->t_;
-        if (Base::lanes == 1 || this->performance_.is_on()) {
+        if (Base::lanes == 1 || this->performance_.samples()) {
             y0_ = this->y_;
             f0_ = this->f_;
         }
-        if (this->performance_.is_on()) this->begin_segment();
+        if (this->performance_.samples()) this->begin_segment();
         before_ = this->in_;
         const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
@@ -71,6 +71,7 @@ private:
         if (has_jump_) apply_jumps(t1);
         const Y y1 = stepped<terms>();
         const Mask finite = Base::is_finite(y1), moved = finite && this->active_;
+        if (this->performance_.is_on()) this->performance_.add_work(work_, moved);
         this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + 4.0;
         if (any(!finite && this->active_)) stop_diverged_lanes(finite);
@@ -80,19 +81,33 @@ private:
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
-        if (this->performance_.is_on())
-            this->plant_.holds_torque && !this->performance_.tracked().motion() ? add_performance(trapezoid, moved)
-                                                                                : add_performance(simpson, moved);
+        if (this->performance_.samples()) add_performance(moved && !eventful_);
         this->check_lanes();
     }
 
+    // The state after the step. The works of the torques are summed as its quadratures are.
     template <Terms terms>
-    ARM3R_INLINE Y stepped() const {
+    ARM3R_INLINE Y stepped() {
         const auto& [rhs, y, f0, h] = std::tie(this->rhs_, this->y_, this->f_, this->h_);
-        if constexpr (terms == Terms::common)
-            return rk4_step_of_first<common_moving>(rhs.template of_terms<terms>(), t0_, y, f0, h);
-        else if constexpr (N == state_size) return rk4_step(rhs, t0_, y, f0, h);
-        else return rk4_step_in_a_loop(rhs, t0_, y, f0, h);
+        const bool sums_work = this->performance_.is_on() && !this->plant_.holds_torque;
+        int stage = 1;  // the derivative of the first is known
+        if (sums_work) work_ = power_of(this->tau_, y);
+        const auto derivative = [&](const T& t, const Y& at, Y& rates) ARM3R_INLINE_LAMBDA {
+            Vec3<T> tau;
+            rhs.template derivative_at<terms>(t, at, rates, tau);
+            ++stage;
+            if (sums_work) work_ = plus(work_, scaled(T(stage < 4 ? 2.0 : 1.0), power_of(tau, at)));
+        };
+        const Y y1 = [&]() ARM3R_INLINE_LAMBDA {
+            if constexpr (terms == Terms::common) return rk4_step_of_first<common_moving>(derivative, t0_, y, f0, h);
+            else if constexpr (N == state_size) return rk4_step(derivative, t0_, y, f0, h);
+            else return rk4_step_in_a_loop(derivative, t0_, y, f0, h);
+        }();
+        if (this->performance_.is_on()) work_ = sums_work ? scaled(T(h / 6.0), work_) : this->work_of_held(y1);
+        return y1;
+    }
+    ARM3R_INLINE static Vec3<T> power_of(const Vec3<T>& tau, const Y& y) {
+        return cwise_product(tau, Vec3<T>(y[3], y[4], y[5]));
     }
 
     // Applies the jumps up to the end of the step; a jump exactly at the end is left to the next step.
@@ -199,12 +214,12 @@ private:
         const double resolution = event_resolution(this->t(lane), h);
         const ContactSignals<double> signals = signals_of(lane);
         DenseOutput dense;
-        if (this->performance_.is_on()) dense = dense_output_of(lane);
+        if (this->performance_.samples()) dense = dense_output_of(lane);
         double from = 0;
         bool is_stale = false;
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
             this->add_contact(lane, signals.depth, t0, from, crossing->theta);
-            if (this->performance_.is_on()) add_lane_performance(lane, dense, from, crossing->theta);
+            if (this->performance_.samples()) add_lane_performance(lane, dense, from, crossing->theta);
             from = crossing->theta;
             const ContactChange change = this->change_of(lane, signals, from, t0 + from * h, crossing->next);
             this->change_mode(lane, change);
@@ -212,7 +227,7 @@ private:
             if (this->outcome(lane) != ARM3R_RUN_OK || from >= 1) break;
         }
         this->add_contact(lane, signals.depth, t0, from, 1.0);
-        if (this->performance_.is_on() && from < 1) add_lane_performance(lane, dense, from, 1.0);
+        if (this->performance_.samples() && from < 1) add_lane_performance(lane, dense, from, 1.0);
         return is_stale;
     }
 
@@ -227,25 +242,28 @@ private:
 
     // Handles the lanes alone in which the reference has a knot within the step, and takes them out of `whole`.
     [[gnu::noinline]] void split_at_knots(Mask& whole) {
-        T alone(0.0);
         for (int lane = 0; lane < Base::lanes; ++lane) {
             const double knot = Lanes<T>::get(this->next_knot_, lane), end = this->t(lane);
             if (!(knot <= end)) continue;
             Lanes<T>::set(this->next_knot_, lane, this->next_metric_knot(lane, end));
             if (!(knot < slightly_before(end)) || !Lanes<T>::is(whole, lane)) continue;
             add_lane_performance(lane, dense_output_of(lane), 0, 1);
-            Lanes<T>::set(alone, lane, 1.0);
+            Lanes<T>::mark(whole, lane, false);
         }
-        whole = whole && alone == T(0.0);
     }
 
-    // The step as one segment, except in lanes where the contact has changed.
-    template <std::size_t n>
-    ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved) {
-        Mask unresolved = false, whole = moved && !eventful_;
+    // The step as one segment in the lanes in which the contact has not changed.
+    ARM3R_INLINE void add_performance(Mask whole) {
         if (any(this->next_knot_ <= this->t_)) split_at_knots(whole);
-        if (n == simpson.node.size()) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
-        this->performance_.end(rule, this->instant(), this->h_, nullptr, whole, unresolved);
+        if (this->plant_.holds_torque && !this->performance_.tracked().motion()) return end_segment(trapezoid, whole);
+        Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
+        end_segment(simpson, whole);
+    }
+
+    template <std::size_t n>
+    ARM3R_INLINE void end_segment(const Rule<n>& rule, const Mask& whole) {
+        Mask unresolved = false;
+        this->performance_.end(rule, this->instant(), this->h_, whole, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 
@@ -288,10 +306,11 @@ private:
             in = tip_indentation(this->plant_, wall, p, qd);
         }
         Vec3<T> tau;
-        if constexpr (N == state_size) {
-            if (!this->plant_.holds_torque) tau = torque_without_memory(this->plant_, q, p);
-        } else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
-        this->performance_.sample(1, {t, p, wall, in, &y[0], &y[3], tau});
+        if (this->performance_.tracked().limits && !this->plant_.holds_torque) {
+            if constexpr (N == state_size) tau = torque_without_memory(this->plant_, q, p);
+            else this->rhs_.derivative(t, wall, p, in, y, rates, tau);
+        }
+        this->performance_.sample(1, {t, p, wall, in, tau});
     }
 
     const bool has_common_terms_;
@@ -300,7 +319,7 @@ private:
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};
     bool has_jump_ = false, was_due_ = false;
     Y y0_{}, f0_{};
-    Vec3<T> torque_before_;
+    Vec3<T> torque_before_, work_;  // N m; J, of each torque in the step
     T assumed_before_{0.0}, latest_before_{infinite};
     Indentation<T> before_{};
 };

@@ -193,10 +193,15 @@ protected:
 
     // ---- performance
 
-    ARM3R_INLINE LaneInstant<T> instant() const { return {t_, p_, wall_, in_, &y_[0], &y_[3], tau_}; }
+    ARM3R_INLINE LaneInstant<T> instant() const { return {t_, p_, wall_, in_, tau_}; }
     ARM3R_INLINE void begin_segment() {
         const T& force_phase = sampled_.is_on() ? sampled_.controller_state().force_phase : rhs_.force_phase;
         performance_.begin(instant(), contact_.touching(), force_phase);
+    }
+
+    // J: of each held torque, in a step from the present state to y1.
+    ARM3R_INLINE Vec3<T> work_of_held(const Y& y1) const {
+        return {tau_[0] * (y1[0] - y_[0]), tau_[1] * (y1[1] - y_[1]), tau_[2] * (y1[2] - y_[2])};
     }
 
     // The next instant after t at which the reference that the metrics compare with has another formula.

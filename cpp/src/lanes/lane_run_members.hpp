@@ -52,7 +52,6 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
     set(next_knot_, next_metric_knot(lane, setup.start));
     outcome_[lane] = ARM3R_RUN_OK;
     is_new_[lane] = true;
-    set_running(lane, false);  // for a run that was in the lane before
     set_running(lane, true);
     set_mode(lane, ContactMode::free);
 }
@@ -138,8 +137,8 @@ void LaneRun<T, N>::clear_lane(int lane) {
 template <class T, std::size_t N>
 void LaneRun<T, N>::set_running(int lane, bool running) {
     running_[lane] = running;
-    active_ = mask_where<T>(running_, true);
-    started_ = started_ && active_;
+    Lanes<T>::mark(active_, lane, running);
+    Lanes<T>::mark(started_, lane, false);  // start_lanes() does that
 }
 
 template <class T, std::size_t N>

@@ -10,6 +10,7 @@ template <class T>
 class LaneTaylor : public LaneRun<T> {
     using Base = LaneRun<T>;
     using Mask = typename Base::Mask;
+    using Y = typename Base::Y;
 
 public:
     explicit LaneTaylor(const Setup& any_lane)
@@ -30,7 +31,7 @@ public:
 
     ARM3R_INLINE void step() {
         t0_ = this->t_;
-        if (this->performance_.is_on()) this->begin_segment();
+        if (this->performance_.samples()) this->begin_segment();
         const bool pressed = this->plant_.acts_on_arm && this->contact_.any_touching();
         expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
@@ -50,15 +51,15 @@ public:
             h = select(theta_ < T(1.0), T(theta_ * h), h);
             t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
         }
-        this->accept(moved, t1, state_after(h));
+        const Y y1 = state_after(h);
+        if (this->performance_.is_on()) add_work(moved, y1, h);
+        this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->observe();
         if (crosses_) apply_changes();
         if (any(this->next_knot_ <= this->t_)) pass_knots();
         this->update_energy_balance();
-        if (this->performance_.is_on())
-            this->performance_.tracked().motion() ? add_performance(lobatto, moved, h)
-                                                  : add_performance(trapezoid, moved, h);
+        if (this->performance_.samples()) add_performance(moved, h);
         this->check_lanes();
     }
 
@@ -228,16 +229,26 @@ private:
 
     // ---- performance: a step is a segment of h seconds, which ends where contact changes
 
+    ARM3R_INLINE void add_work(const Mask& moved, const Y& y1, const T& h) {
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+            Vec3<T> work;
+            if (this->plant_.holds_torque) work = this->work_of_held(y1);
+            else
+                for (int i = 0; i < 3; ++i) work[i] = value(series_, work1 + i, h);
+            this->performance_.add_work(work, moved);
+        });
+    }
+
+    ARM3R_INLINE void add_performance(const Mask& moved, const T& h) {
+        this->performance_.tracked().motion() ? end_segment(lobatto, moved, h) : end_segment(trapezoid, moved, h);
+    }
+
     template <std::size_t n>
-    ARM3R_INLINE void add_performance(const Rule<n>& rule, const Mask& moved, const T& h) {
+    ARM3R_INLINE void end_segment(const Rule<n>& rule, const Mask& moved, const T& h) {
         Mask unresolved = false;
         for (std::size_t j = 1; j + 1 < n; ++j)
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), j); });
-        Vec3<T> work;
-        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
-            for (int i = 0; i < 3; ++i) work[i] = value(series_, work1 + i, h);
-        });
-        this->performance_.end(rule, this->instant(), h, &work, moved, unresolved);
+        this->performance_.end(rule, this->instant(), h, moved, unresolved);
         if (any(unresolved)) refine_segment(rule, unresolved);
     }
 
@@ -252,7 +263,7 @@ private:
             wall = wall_at(this->plant_.wall, t);
             in = tip_indentation(this->plant_, wall, p, qd);
         }
-        this->performance_.sample(j, {t, p, wall, in, q.data(), qd.data(), this->performance_.torque_at_start()});
+        this->performance_.sample(j, {t, p, wall, in, this->performance_.torque_at_start()});
     }
 
     template <std::size_t n>

@@ -388,9 +388,11 @@ private:
                             is_sampled ? sampled_.controller_state().force_phase : inputs_.force_phase,
                             is_sampled ? &setup_.plant.held_torque : nullptr,
                             slightly_before(t1)};
-        if (is_sampled && !tracked_quantities(setup_).motion())
-            add_whole_segment(trapezoid, is_touching(mode_), view, 0, b, sums_);
-        else add_whole_segment(boole, is_touching(mode_), view, 0, b, sums_);
+        const bool touches = is_touching(mode_),
+                   has_constant_samples = is_sampled && !tracked_quantities(setup_).motion();
+        const Vec3<double> work = has_constant_samples ? add_whole_segment(trapezoid, touches, view, 0, b, sums_)
+                                                       : add_whole_segment(boole, touches, view, 0, b, sums_);
+        sums_.work = plus(sums_.work, work);
     }
 
     void set_end_metrics() {

@@ -175,9 +175,16 @@ private:
 }  // namespace
 
 PerformanceSample<double> StepView::operator()(double theta) const {
+    Vec3<double> power;
+    return with_power(theta, power);
+}
+
+PerformanceSample<double> StepView::with_power(double theta, Vec3<double>& power) const {
     const Instant now(setup.plant, time(theta), dense(theta), true);
     PerformanceSample<double> sample = motion_at(*this, now, tracked_quantities(setup));
-    sample_torque(setup.plant.arm, torque_at(*this, now), rates(now.y), sample);
+    const Vec3<double> tau = torque_at(*this, now);
+    power = cwise_product(tau, rates(now.y));
+    sample_saturation(setup.plant.arm, tau, sample);
     return sample;
 }
 
@@ -192,18 +199,21 @@ void refine_segment(const Rule<n>& rule, const Segment<double>& segment, const S
 }
 
 template <std::size_t n>
-void add_whole_segment(const Rule<n>& rule, bool touching, const StepView& view, double a, double b,
-                       PerformanceSums<double>& sums) {
+Vec3<double> add_whole_segment(const Rule<n>& rule, bool touching, const StepView& view, double a, double b,
+                               PerformanceSums<double>& sums) {
     const DenseOutput& dense = view.dense;
-    Segment<double> segment{dense.t0 + a * dense.h, (b - a) * dense.h, touching, {}, {}};
-    for (std::size_t j = 0; j < n; ++j) segment.samples[j] = view(a + (b - a) * rule.node[j]);
-    for (std::size_t i = 0; i < 3; ++i)
-        segment.work[i] =
-            view.held ? (*view.held)[i] * (dense.component(i, b) - dense.component(i, a))
-                      : segment.duration *
-                            mean_of(rule, segment, [i](const PerformanceSample<double>& s) { return s.power[i]; });
+    Segment<double> segment{dense.t0 + a * dense.h, (b - a) * dense.h, touching, {}};
+    Vec3<double> mean_power(0, 0, 0), power;
+    for (std::size_t j = 0; j < n; ++j) {
+        segment.samples[j] = view.with_power(a + (b - a) * rule.node[j], power);
+        mean_power = plus(mean_power, scaled(rule.weight[j], power));
+    }
     if (add_segment(tracked_quantities(view.setup), rule, true, segment, sums))
         refine_segment(rule, segment, view, a, b, sums);
+    if (!view.held) return scaled(segment.duration, mean_power);
+    Vec3<double> way;
+    for (std::size_t i = 0; i < 3; ++i) way[i] = dense.component(i, b) - dense.component(i, a);
+    return cwise_product(*view.held, way);
 }
 
 void write_performance(const PerformanceSums<double>& sums, const Setup& setup, Metrics& m) {
@@ -227,7 +237,8 @@ void write_performance(const PerformanceSums<double>& sums, const Setup& setup, 
 #define ARM3R_RULE(n)                                                                                     \
     template void refine_segment(const Rule<n>&, const Segment<double>&, const StepView&, double, double, \
                                  PerformanceSums<double>&);                                               \
-    template void add_whole_segment(const Rule<n>&, bool, const StepView&, double, double, PerformanceSums<double>&);
+    template Vec3<double> add_whole_segment(const Rule<n>&, bool, const StepView&, double, double,        \
+                                            PerformanceSums<double>&);
 ARM3R_RULE(2)
 ARM3R_RULE(3)
 ARM3R_RULE(5)

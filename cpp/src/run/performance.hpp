@@ -17,10 +17,9 @@ namespace arm3r {
 // The sampled quantities at one instant.
 template <class T>
 struct PerformanceSample {
-    T force{0.0}, desired_force{0.0};       // N, normal
-    T path_error_2{0.0};                    // m^2: of the tip; where force is controlled, along the wall only
-    T saturated{0.0};                       // 1 where a torque is at its limit
-    Vec3<T> power{T(0.0), T(0.0), T(0.0)};  // W, of each torque
+    T force{0.0}, desired_force{0.0};  // N, normal
+    T path_error_2{0.0};               // m^2: of the tip; where force is controlled, along the wall only
+    T saturated{0.0};                  // 1 where a torque is at its limit
 };
 
 // The quantities that metrics need.
@@ -28,6 +27,7 @@ struct TrackedQuantities {
     bool force = false, path = false, limits = false;
 
     bool motion() const { return force || path; }
+    bool anything() const { return motion() || limits; }
 };
 
 // Those that the law tracks, and torque limits if there are any.
@@ -57,7 +57,6 @@ struct Segment {
     T start{0.0}, duration{0.0};  // s
     Mask touching = false;        // in contact during the segment
     std::array<PerformanceSample<T>, max_segment_samples> samples;
-    Vec3<T> work{T(0.0), T(0.0), T(0.0)};  // J, of each torque
 };
 
 // An instant just before t: the end of a segment, where a formula of time may jump, is evaluated before the jump.
@@ -96,9 +95,7 @@ ARM3R_INLINE void sample_motion(const TrackedQuantities& tracked, const Plant<P>
 }
 
 template <class P, class T>
-ARM3R_INLINE void sample_torque(const Arm<P>& arm, const Vec3<T>& tau, const Vec3<T>& qd,
-                                PerformanceSample<T>& sample) {
-    for (int i = 0; i < 3; ++i) sample.power[i] = tau[i] * qd[i];
+ARM3R_INLINE void sample_saturation(const Arm<P>& arm, const Vec3<T>& tau, PerformanceSample<T>& sample) {
     if (!arm.has_torque_limit) return;
     sample.saturated = T(0.0);
     for (int i = 0; i < 3; ++i) sample.saturated = select(abs(tau[i]) >= arm.torque_limit[i], T(1.0), sample.saturated);
@@ -113,7 +110,7 @@ struct PerformanceSums {
     T max_shortfall{0.0}, overshoot{0.0};  // N, below the desired force since then, and above it
     T unsettled_until{-infinite};          // s
     T path_2{0.0}, max_path_2{0.0}, saturated_time{0.0};
-    Vec3<T> work{T(0.0), T(0.0), T(0.0)};
+    Vec3<T> work{T(0.0), T(0.0), T(0.0)};  // J, of each torque
 };
 
 template <class F, class... Sums>
@@ -172,12 +169,12 @@ ARM3R_INLINE T max_of(const Segment<T>& segment, F quantity) {
     return most;
 }
 
-// Adds a segment where `moved`. Returns the lanes in which it must be refined (refine_segment).
+// Adds a segment, without the works of the torques, where `moved`. Returns the lanes in which it must be refined
+// (refine_segment).
 template <std::size_t n, class T, class M>
 ARM3R_INLINE M add_segment(const TrackedQuantities& tracked, const Rule<n>& rule, const M& moved,
                            const Segment<T>& segment, PerformanceSums<T>& sums) {
     const T o(0.0), dt = select(moved, segment.duration, o);
-    for (int i = 0; i < 3; ++i) sums.work[i] = sums.work[i] + select(moved, segment.work[i], o);
     M unresolved = false;
     if (tracked.force) {
         const auto shortfall = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return force_error_of(s); };
@@ -229,6 +226,8 @@ struct StepView {
     double latest = infinite, earliest = -infinite;
 
     PerformanceSample<double> operator()(double theta) const;
+    // The same, and the power of each torque in W.
+    PerformanceSample<double> with_power(double theta, Vec3<double>& power) const;
     // Force and path error alone, those that are wanted.
     PerformanceSample<double> motion(double theta, const TrackedQuantities& wanted) const;
 
@@ -241,10 +240,11 @@ template <std::size_t n>
 void refine_segment(const Rule<n>& rule, const Segment<double>& segment, const StepView& view, double a, double b,
                     PerformanceSums<double>& sums);
 
-// Adds the whole segment from theta = a to b of the step.
+// Adds the whole segment from theta = a to b of the step. Returns the work of each torque in it, in J, which it does not
+// add.
 template <std::size_t n>
-void add_whole_segment(const Rule<n>& rule, bool touching, const StepView& view, double a, double b,
-                       PerformanceSums<double>& sums);
+Vec3<double> add_whole_segment(const Rule<n>& rule, bool touching, const StepView& view, double a, double b,
+                               PerformanceSums<double>& sums);
 
 // Writes the sums into the metrics.
 void write_performance(const PerformanceSums<double>& sums, const Setup& setup, Metrics& metrics);

@@ -228,7 +228,7 @@ std::optional<Setup> check_setup(std::span<const double> params, ProblemList& pr
     check_sampling_keys(params, problem_list);
     if (at<"wall">(params) != 0) check_law(params, problem_list);
     if (!problem_list.empty()) return {};
-    const Setup setup = make_setup(params);
+    Setup setup = make_setup(params);
     check_clock(setup, problem_list);
     check_corners(setup, problem_list);
     check_algorithm(setup, problem_list);
@@ -237,7 +237,7 @@ std::optional<Setup> check_setup(std::span<const double> params, ProblemList& pr
     check_sampling(params, setup, problem_list);
     check_mass_matrix(setup.plant.arm, problem_list);
     if (problem_list.empty() && setup.plant.has_wall) check_start(setup, problem_list);
-    return problem_list.empty() ? std::optional(setup) : std::nullopt;
+    return problem_list.empty() ? std::optional(std::move(setup)) : std::nullopt;
 }
 
 }  // namespace arm3r

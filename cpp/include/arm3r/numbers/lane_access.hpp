@@ -12,6 +12,7 @@ struct Lanes {
     static double get(const T& x, int) { return x; }
     static void set(T& x, int, double value) { x = value; }
     static bool is(bool mask, int) { return mask; }
+    static void mark(bool& mask, int, bool here) { mask = here; }
 };
 
 template <int N>
@@ -21,6 +22,7 @@ struct Lanes<Pack<N>> {
     static double get(const Pack<N>& x, int lane) { return x[lane]; }
     static void set(Pack<N>& x, int lane, double value) { x.set(lane, value); }
     static bool is(const Mask& mask, int lane) { return mask[lane]; }
+    static void mark(Mask& mask, int lane, bool here) { mask.set(lane, here); }
 };
 
 }  // namespace arm3r

@@ -44,6 +44,7 @@ struct PackMask {
     ARM3R_INLINE explicit PackMask(const Vector& lanes) : v(lanes) {}
     ARM3R_INLINE PackMask(bool all_lanes) { Register<std::int64_t, N>::set_all(v, -std::int64_t{all_lanes}); }
     ARM3R_INLINE bool operator[](int lane) const { return v[lane] != 0; }
+    ARM3R_INLINE void set(int lane, bool here) { v[lane] = -std::int64_t{here}; }
 
     ARM3R_INLINE friend PackMask operator&&(const PackMask& a, const PackMask& b) {
         PackMask both;
