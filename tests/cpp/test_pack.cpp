@@ -175,6 +175,24 @@ BOOST_AUTO_TEST_CASE(any_and_all_look_at_every_lane) {
     BOOST_TEST(!any(PackMask<4>(false)));
 }
 
+template <class T>
+static void check_marked_lanes() {
+    typename Lanes<T>::Mask mask = true;
+    for (int lane = 0; lane < Lanes<T>::count; ++lane) {
+        Lanes<T>::mark(mask, lane, false);
+        for (int other = 0; other < Lanes<T>::count; ++other)
+            BOOST_TEST(Lanes<T>::is(mask, other) == (other > lane), "lane " << other);
+    }
+    BOOST_TEST(!any(mask));
+    Lanes<T>::mark(mask, Lanes<T>::count - 1, true);
+    BOOST_TEST(any(mask));
+}
+
+BOOST_AUTO_TEST_CASE(a_lane_is_marked_alone) {
+    check_marked_lanes<double>(), check_marked_lanes<Pack<2>>();
+    check_marked_lanes<Pack<4>>(), check_marked_lanes<Pack<8>>();
+}
+
 BOOST_AUTO_TEST_CASE(a_broadcast_keeps_the_sign_of_zero) {
     BOOST_TEST(std::signbit(Pack<4>(-0.0)[3]));
     BOOST_TEST(!std::signbit(Pack<4>(0.0)[3]));
