@@ -28,7 +28,9 @@ run: $(VENV)/installed
 	$(BIN)/arm3r-plot out/moving_wall.csv --lecture --panels strobe,wall,contact -o out/
 	$(BIN)/arm3r-plot scenarios/force_control/hybrid_first_contact.yaml -o out/
 
-test: $(VENV)/test $(BUILD)/tests
+# The package index is read while compilers work.
+test: $(VENV)/boost
+	@$(MAKE) --no-print-directory -j2 $(VENV)/test $(BUILD)/tests
 	@failed=0; \
 	$(BIN)/ctest --test-dir $(BUILD) --output-on-failure --parallel $(CMAKE_BUILD_PARALLEL_LEVEL) || failed=1; \
 	$(PYTEST) || failed=1; \
@@ -111,7 +113,14 @@ $(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench $(VENV)/wasm $(
 
 page: $(VENV)/page # node and npm come with it
 
+# What the C++ tests are compiled with.
+$(VENV)/boost: pyproject.toml | $(VENV)/installed
+	$(PIP) $$($(BIN)/python cmake/build_requires.py cmeel-boost)
+	@touch $@
+
+$(VENV)/test: | $(VENV)/boost # two at once would write the same files
+
 .PHONY: $(BUILD)/tests
-$(BUILD)/tests: $(VENV)/installed $(VENV)/test
+$(BUILD)/tests: $(VENV)/installed $(VENV)/boost
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_TESTS=ON > /dev/null
 	$(BIN)/cmake --build $(BUILD) --target arm3r_tests
