@@ -18,7 +18,8 @@ SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md $(wildcard docs/*.sch
 CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 # Python compiles what it imports; pip would compile every module of every package, half of the time of an installation.
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --no-compile --quiet
-PYTEST  := $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
+# Each worker has one core; threads of numpy's linear algebra would take turns with those of the other workers.
+PYTEST  := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
 .PHONY: run test gates page docs wheels dist bench format lint clean
 
