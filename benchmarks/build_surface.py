@@ -54,7 +54,8 @@ def pages() -> Results:
     """Everything that the commands print about themselves, and the header of the C interface."""
     for name, calls in PAGES.items():
         for call in calls:
-            yield f"page: {name} {call}", command(name, *call.split()).stdout
+            text = command(name, *call.split()).stdout
+            yield f"page: {name} {call}", text.replace(str(PACKAGE), "PACKAGE")  # of a template's schema
     yield "page: arm3r.h", (PACKAGE / "include" / "arm3r" / "arm3r.h").read_text()
 
 

@@ -55,6 +55,13 @@ def test_the_first_line_that_differs_of_a_page_is_shown(benchmark, capsys: pytes
     assert "    old: two\n    new: zwei\n" in capsys.readouterr().out
 
 
+def test_no_page_depends_on_the_folder_of_the_build(benchmark) -> None:
+    surface = benchmark("build_surface")
+    pages = dict(surface.pages())
+    assert "PACKAGE" in pages["page: arm3r template"]
+    assert [name for name, text in pages.items() if str(surface.PACKAGE) in text] == []
+
+
 def test_what_only_one_build_has_is_named_and_no_difference(benchmark, capsys: pytest.CaptureFixture[str]) -> None:
     assert not benchmark("compare_builds").report({"a: old": "1", "b": "2"}, {"b": "2", "a: new": "3", "c: new": "4"})
     printed = capsys.readouterr().out
