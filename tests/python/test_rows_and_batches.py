@@ -90,7 +90,7 @@ def wrong_in_batch(keys: Keys, rng: np.random.Generator) -> list[str]:
         scenario = arm3r.Scenario(yaml_of({**keys, "solver": {**solver, "max_steps": 20000}}))
         try:
             batch = scenario.batch(values, threads=1)
-        except arm3r.ScenarioError:
+        except (arm3r.ScenarioError, arm3r.BudgetError):
             continue  # the method does not take it
         table = np.array([batch[name] for name in batch])
         for run in np.flatnonzero(batch.outcomes != "invalid"):
