@@ -33,8 +33,8 @@ public:
     // Works until there are no more runs.
     void run();
 
-    // The setup of the next run with the key `batch_key`, and sets its number; runs with other keys are deferred. Empty where
-    // there is none.
+    // Returns the setup of the next run with the key `batch_key` and writes its number into `run`, or returns nothing if there
+    // is none. Runs with other keys are deferred.
     std::optional<Setup> next(const BatchKey& batch_key, std::size_t& run);
     void store(std::size_t run, const Metrics& metrics);
     bool is_stopped() const { return job_.stop.load(std::memory_order_relaxed); }

@@ -138,7 +138,7 @@ template <class T, std::size_t N>
 void LaneRun<T, N>::set_running(int lane, bool running) {
     running_[lane] = running;
     Lanes<T>::mark(active_, lane, running);
-    Lanes<T>::mark(started_, lane, false);  // start_lanes() does that
+    Lanes<T>::mark(started_, lane, false);  // until start_lanes() starts it
 }
 
 template <class T, std::size_t N>
