@@ -25,9 +25,9 @@ constexpr int sections = 29, halvings = 40;  // what golden sections and halves 
 
 // The places where the search begins are known to who searches.
 template <class F>
-Maximum maximum_of(F f, double a, double b) {
+Maximum maximum_of(F f, double a, double b, double noise = 0) {
     const double middle = 0.5 * (a + b);
-    return find_maximum(f, {a, f(a)}, {middle, f(middle)}, {b, f(b)});
+    return find_maximum(f, {a, f(a)}, {middle, f(middle)}, {b, f(b)}, noise);
 }
 template <class F>
 double zero_of(F f, double a, double b) {
@@ -56,6 +56,28 @@ BOOST_AUTO_TEST_CASE(a_smooth_maximum_is_found_in_less_than_half_of_the_sections
         BOOST_TEST(calls - before <= 63);
     }
     BOOST_TEST(calls <= searches * sections / 2);
+}
+
+// Rounding errors far above those of its size, as a small difference of large positions has them, do not lead the search.
+BOOST_AUTO_TEST_CASE(a_noisy_maximum_takes_no_more_than_a_smooth_one) {
+    Random random(95);
+    int calls = 0, searches = 0;
+    double missed_by = 0;  // in noises
+    for (; searches < 2000; ++searches) {
+        const auto [a, b, at] = random_place(random);
+        const double bend = std::exp(random.in(-12, 3)), lean = random.in(-0.3, 0.3);
+        const double noise = bend * std::exp(random.in(-25, -14));
+        const auto smooth = [=, top = at](double x) { return -bend * (x - top) * (x - top) * (1 + lean * (x - top)); };
+        const auto f = [&](double x) {
+            ++calls;
+            return smooth(x) + noise * random.in(-0.5, 0.5);
+        };
+        const Maximum most = maximum_of(f, a, b, noise);
+        BOOST_TEST(-smooth(most.position) <= 200 * noise);  // where the noise hides on which side the maximum lies
+        missed_by += -smooth(most.position) / noise;
+    }
+    BOOST_TEST(missed_by <= 0.2 * searches);
+    BOOST_TEST(calls <= searches * sections / 3);
 }
 
 // A corner and a rise up to the end have no parabola: sections find them.

@@ -161,10 +161,10 @@ def path_error_2(run: arm3r.Run, scenario: arm3r.Scenario) -> Any:
     """The square of the tip's distance from its reference; across a wall of force control it does not count."""
     wanted = run["tip_ref"] if "tip_ref" in run else scenario.arm.tip_position(run["q_ref"])
     away = run["tip"] - wanted
-    across = np.zeros(len(run.t))
     if "force_ref" in run:
-        across = run["force_phase"] * np.sum(away * normals(run, scenario), axis=1)
-    return np.sum(away**2, axis=1) - across**2
+        n = normals(run, scenario)
+        away = away - (run["force_phase"] * np.sum(away * n, axis=1))[:, None] * n
+    return np.sum(away**2, axis=1)
 
 
 def normals(run: arm3r.Run, scenario: arm3r.Scenario) -> Any:
@@ -215,7 +215,8 @@ def numbers_of(run: arm3r.Run) -> dict[str, float]:
 def wrong_numbers(run: arm3r.Run, rel: float) -> dict[str, float]:
     """By how much numbers of the summary are off, relative to their size, where that is more than `rel`.
 
-    The instant of a peak is known to the root of the accuracy of its height only, and is held to 1e-6 s.
+    The instant of a peak is known to the root of the accuracy of its height only, and is held to 1e-6 s; a force that
+    is zero throughout has none.
     """
     told = {**run.summary["metrics"], **{key: run.summary[key] for key in ("peak_force", "impulse", "contact_time")}}
     largest_work = max(abs(told[f"work_{i}"]) for i in (1, 2, 3))
@@ -223,6 +224,8 @@ def wrong_numbers(run: arm3r.Run, rel: float) -> dict[str, float]:
     for key, due in numbers_of(run).items():
         of_force = told["peak_force"] if key in ("overshoot", "force_error_rms") else 0.0
         scale = max(abs(due), largest_work if "work" in key else of_force, 1e-3)
+        if key == "peak_force_time" and told["peak_force"] == 0:
+            continue
         off[key] = abs(told[key] - due) / (1e-6 / rel if key == "peak_force_time" else scale)
     return {key: value for key, value in off.items() if not value <= rel}
 
@@ -283,6 +286,12 @@ def densely_logged(keys: Keys) -> Keys:
     return {**keys, "solver": solver, "time": {**keys["time"], "log_every": every}}
 
 
+def works_off(run: arm3r.Run) -> float:
+    """By how much the works of the torques do not add up to the work in the energy balance, relative to the largest."""
+    works = [run.summary["metrics"][f"work_{i}"] for i in (1, 2, 3)]
+    return abs(sum(works) - run["work_actuators"][-1]) / max(1e-3, *np.abs(works))
+
+
 def check_random_scenarios(count: int) -> None:
     seed = sample_seed()
     print("seed", seed)
@@ -293,16 +302,23 @@ def check_random_scenarios(count: int) -> None:
             run = arm3r.Scenario(yaml_of(keys)).run(time_limit=20)
         except (arm3r.NumericalError, arm3r.BudgetError):
             continue
-        works = [run.summary["metrics"][f"work_{i}"] for i in (1, 2, 3)]
-        assert sum(works) == pytest.approx(run["work_actuators"][-1], abs=1e-8 * max(1e-3, *np.abs(works)))
-        # The rule for the rows is one for smooth functions: it says little of a force that begins as a broken power of
-        # the depth (test_the_impulse_of_a_force_with_a_broken_power), or of torques that jump between two rows, where
-        # the tip meets a virtual wall with damping.
-        rough = {"impulse"} if keys.get("wall", {}).get("contact", {}).get("law") == "hunt_crossley" else set()
-        if keys.get("controller", {}).get("type") == "virtual_wall":
-            rough |= {"work_1", "work_2", "work_3"}
-        wrong = {key: off for key, off in wrong_numbers(run, 2e-7).items() if key not in rough or off > 1e-5}
+        if works_off(run) > 1e-8:  # both are as accurate as the steps, and a torque that reaches its limit has a kink
+            finer = {**keys, "solver": {"method": "dopri5", "rtol": 1e-12, "atol": 1e-15}}
+            assert works_off(arm3r.Scenario(yaml_of(finer)).run()) < 1e-8, yaml_of(keys)
+        if wrong := wrong_numbers(run, 2e-7):
+            wrong = still_wrong(keys, wrong)
         assert not wrong, f"scenario {number} of seed {seed}: {wrong}\n{yaml_of(keys)}"
+
+
+def still_wrong(keys: Keys, wrong: dict[str, float]) -> dict[str, float]:
+    """Those that rows eight times as dense do not bring closer.
+
+    The rule for the rows is one for smooth functions. It says little of torques that jump where the tip meets a virtual
+    wall with damping, or that swing within a few microseconds at a singular pose.
+    """
+    time = {**keys["time"], "log_every": keys["time"]["log_every"] / 8}
+    dense = arm3r.Scenario(yaml_of({**keys, "time": time})).run()
+    return {key: off for key, off in wrong_numbers(dense, 2e-7).items() if not off < wrong.get(key, 0.0) / 2}
 
 
 def test_by_rk4_the_works_of_the_torques_add_up_to_that_of_the_energy_balance() -> None:
@@ -324,10 +340,14 @@ def test_by_rk4_the_works_of_the_torques_add_up_to_that_of_the_energy_balance() 
     assert continuous > 5
 
 
+@pytest.mark.parametrize("acts_on_arm", [True, False])
 @pytest.mark.parametrize("exponent", [1.2, 1.5, 1.8])
 @pytest.mark.parametrize("method", ["dopri5", "rodas4"])
-def test_the_impulse_of_a_force_with_a_broken_power(method: str, exponent: float) -> None:
-    """Rows so dense that the trapezoidal rule has next to no error, at the ends of the contact either."""
+def test_the_impulse_of_a_force_with_a_broken_power(method: str, exponent: float, acts_on_arm: bool) -> None:
+    """Rows so dense that the trapezoidal rule has next to no error, at the ends of the contact either.
+
+    Steps are chosen by the motion, and are long where the arm does not feel the wall.
+    """
     keys: Keys = {
         "format": 1,
         "arm": {"convention": "slide"},
@@ -337,14 +357,15 @@ def test_the_impulse_of_a_force_with_a_broken_power(method: str, exponent: float
             "size": "infinite",
             "motion": {"type": "fixed"},
             "contact": {"law": "hunt_crossley", "stiffness": 3e4, "exponent": exponent, "dissipation": 0.3},
-            "acts_on_arm": True,
+            "acts_on_arm": acts_on_arm,
         },
         "controller": {"type": "gravity_compensation"},
         "solver": {"method": method, "rtol": 1e-10, "atol": 1e-13},
         "time": {"stop": 0.12, "log_every": 2e-6},
     }
     run = arm3r.Scenario(yaml_of(keys)).run()
-    assert run.summary["metrics"]["first_release"] < 0.11
+    if acts_on_arm:
+        assert run.summary["metrics"]["first_release"] < 0.11
     assert run.summary["impulse"] == pytest.approx(np.trapezoid(run["force"], run["t"]), rel=1e-8)
 
 

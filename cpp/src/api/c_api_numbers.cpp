@@ -124,7 +124,6 @@ Error singular(std::size_t i, const char* what) {
 }
 
 void refuse_singular(const Model& model, std::size_t n, const double* q) {
-    const double reach = model.arm.link2.length + model.arm.link3.length;
     constexpr std::size_t most = 512;
     double sine[most], radius[most];
     for (std::size_t first = 0; first < n; first += most) {
@@ -132,7 +131,7 @@ void refuse_singular(const Model& model, std::size_t n, const double* q) {
         evaluate(in_groups::singularity, model, count, {{q + 3 * first}, {{{sine, 1}, {radius, 1}}}});
         for (std::size_t i = 0; i < count; ++i) {
             if (sine[i] < min_sine) throw singular(first + i, "the arm is stretched or folded: the pose is singular");
-            if (radius[i] < min_sine * reach)
+            if (radius[i] < min_sine * reach(model.arm))
                 throw singular(first + i, "the tip is on the axis of joint 1: the pose is singular");
         }
     }

@@ -110,6 +110,28 @@ void ContactSearch::update_peak(const DenseOutput& dense, double a, const Signal
 }
 
 double ContactSearch::impulse(const DenseOutput& dense, double a, double b) const {
+    if (plant_.contact.law != ContactLaw::hunt_crossley) return impulse_by_gauss(dense, a, b);
+    constexpr double negligible = 1e-4;  // a depth, as a share of the largest: less than 1e-8 of the impulse lies below
+    const double depth_a = depth(dense, a), depth_b = depth(dense, b);
+    const double largest = std::max({depth_a, depth(dense, 0.5 * (a + b)), depth_b});
+    return impulse_in_parts(dense, a, depth_a, b, depth_b, negligible * largest);
+}
+
+double ContactSearch::impulse_in_parts(const DenseOutput& dense, double a, double depth_a, double b, double depth_b,
+                                       double negligible) const {
+    constexpr double most_growth = 1.5;  // of the depth in a part
+    const double middle = 0.5 * (a + b), depth_middle = depth(dense, middle);
+    const double low = std::min(depth_a, depth_b), high = std::max({depth_a, depth_middle, depth_b});
+    if (!(high > most_growth * low && high > negligible)) return impulse_by_gauss(dense, a, b);
+    return impulse_in_parts(dense, a, depth_a, middle, depth_middle, negligible) +
+           impulse_in_parts(dense, middle, depth_middle, b, depth_b, negligible);
+}
+
+double ContactSearch::depth(const DenseOutput& dense, double theta) const {
+    return indentation_at(plant_, dense, theta).depth;
+}
+
+double ContactSearch::impulse_by_gauss(const DenseOutput& dense, double a, double b) const {
     constexpr double place[] = {0, 0.53846931010568309, 0.90617984593866399};  // Gauss and Legendre, five points
     constexpr double weight[] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
     const auto force = [&](double x) {

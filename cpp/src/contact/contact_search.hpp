@@ -28,7 +28,8 @@ public:
     // then.
     std::optional<Crossing> next(const DenseOutput& dense, double from, ContactMode mode, Peak& peak) const;
 
-    // Integral of the normal contact force, N s, along the solution from theta = a to b of the step.
+    // Integral of the normal contact force, N s, along the solution from theta = a to b of the step. A force that is a
+    // broken power of the depth is integrated in parts, which are the shorter the nearer the depth is to zero.
     double impulse(const DenseOutput& dense, double a, double b) const;
 
 private:
@@ -52,6 +53,10 @@ private:
     // Includes the largest normal force in contact from a to b in the peak.
     void update_peak(const DenseOutput& dense, double a, const SignalSample& at_a, double b, const SignalSample& at_b,
                      Peak& peak) const;
+    double impulse_by_gauss(const DenseOutput& dense, double a, double b) const;
+    double impulse_in_parts(const DenseOutput& dense, double a, double depth_a, double b, double depth_b,
+                            double negligible) const;
+    double depth(const DenseOutput& dense, double theta) const;  // m
     double root(const DenseOutput& dense, const ZeroCrossing& event, double a, double b) const;
 
     const Plant<double>& plant_;

@@ -9,9 +9,17 @@ void LanePerformance<T>::begin(const LaneInstant<T>& now, const Mask& touching, 
     Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
         segment_.start = now.t;
         segment_.touching = touching;
+        const Mask continues = continues_ && force_phase == force_phase_;
+        continues_ = false;
         force_phase_ = force_phase;
         tau_at_start_ = now.tau;
-        sample(0, now);
+        PerformanceSample<T>& first = segment_.samples[0];
+        if (!all(continues)) {
+            sample(0, now);
+            last_ = select_sample(continues, last_, first);
+        }
+        first = last_;
+        sample_torque(now, first);
     });
 }
 
@@ -23,6 +31,7 @@ void LanePerformance<T>::end(const Rule<n>& rule, const LaneInstant<T>& now, con
         segment_.duration = duration;
         const T t = slightly_before(now.t);
         sample(n - 1, {t, now.p, now.wall, now.in, now.tau});
+        last_ = segment_.samples[n - 1];
         unresolved = add_segment(tracked_, rule, moved, segment_, sums_);
     });
 }

@@ -40,7 +40,10 @@ public:
     ARM3R_INLINE const T& force_phase() const { return force_phase_; }
 
     // The run of the lane has no segments yet.
-    void load_lane(int lane) { set_sums(lane, {}); }
+    void load_lane(int lane) {
+        set_sums(lane, {});
+        Lanes<T>::mark(continues_, lane, false);
+    }
 
     // Starts a segment; contact, phase and a held torque are constant within it.
     void begin(const LaneInstant<T>& now, const Mask& touching, const T& force_phase);
@@ -49,11 +52,14 @@ public:
         PerformanceSample<T>& sample = segment_.samples[j];
         sample_motion(tracked_, plant_, contact_, controller_, now.t, now.p, now.wall, now.in, segment_.touching,
                       force_phase_, sample);
-        sample_saturation(plant_.arm, plant_.holds_torque ? tau_at_start_ : now.tau, sample);
+        sample_torque(now, sample);
     }
     // The segment ends now: adds it to the sums where `moved`, and sets the lanes in which it must be refined.
     template <std::size_t n>
     void end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Mask& moved, Mask& unresolved);
+    // The next segment begins where this one ends, and `here` nothing jumps there: neither the contact nor a formula of
+    // time.
+    ARM3R_INLINE void continue_motion(const Mask& here) { continues_ = here; }
     // Adds the work of each torque in the segment, in J, where `moved`.
     ARM3R_INLINE void add_work(const Vec3<T>& work, const Mask& moved) {
         for (int i = 0; i < 3; ++i) sums_.work[i] = sums_.work[i] + select(moved, work[i], T(0.0));
@@ -85,6 +91,9 @@ public:
     PerformanceSums<double> sums(int lane) const;
 
 private:
+    ARM3R_INLINE void sample_torque(const LaneInstant<T>& now, PerformanceSample<T>& sample) {
+        sample_saturation(plant_.arm, plant_.holds_torque ? tau_at_start_ : now.tau, sample);
+    }
     void set_sums(int lane, const PerformanceSums<double>& sums);
 
     const bool is_on_;
@@ -95,6 +104,8 @@ private:
 
     PerformanceSums<T> sums_;
     Segment<T> segment_;
+    PerformanceSample<T> last_;  // of the segment before
+    Mask continues_ = false;
     T force_phase_{0.0};
     Vec3<T> tau_at_start_ = zero_vector<T>();  // N m
 };

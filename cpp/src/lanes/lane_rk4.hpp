@@ -67,7 +67,8 @@ private:
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
         const T t1 = select(is_last, this->stop_, aim);
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
-        has_jump_ = any(next_jump_ <= t1);
+        const Mask jumps = next_jump_ <= t1;
+        has_jump_ = any(jumps);
         if (has_jump_) apply_jumps(t1);
         const Y y1 = stepped<terms>();
         const Mask finite = Base::is_finite(y1), moved = finite && this->active_;
@@ -81,7 +82,7 @@ private:
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
-        if (this->performance_.samples()) add_performance(moved && !eventful_);
+        if (this->performance_.samples()) add_performance(moved && !eventful_, jumps);
         this->check_lanes();
     }
 
@@ -253,7 +254,8 @@ private:
     }
 
     // The step as one segment in the lanes in which the contact has not changed.
-    ARM3R_INLINE void add_performance(Mask whole) {
+    ARM3R_INLINE void add_performance(Mask whole, const Mask& jumps) {
+        this->performance_.continue_motion(whole && !jumps && this->next_knot_ > this->t_);
         if (any(this->next_knot_ <= this->t_)) split_at_knots(whole);
         if (this->plant_.holds_torque && !this->performance_.tracked().motion()) return end_segment(trapezoid, whole);
         Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });

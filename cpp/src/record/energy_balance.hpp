@@ -21,7 +21,7 @@ struct EnergyTotals {
 };
 
 inline double force_times_reach(const Plant<double>& plant, double peak_force) {
-    return plant.acts_on_arm ? peak_force * (plant.arm.link2.length + plant.arm.link3.length) : 0;
+    return plant.acts_on_arm ? peak_force * reach(plant.arm) : 0;
 }
 
 // The limit of the residual at the end, and whether a larger one is an outcome of the run or only a warning.

@@ -88,9 +88,19 @@ private:
     SearchPoint point(const Quantity& quantity, std::size_t j) const { return {rule_.node[j], sampled(quantity, j)}; }
     SearchPoint point_at(const Quantity& quantity, double place) const { return {place, along(quantity)(place)}; }
 
+    // The rounding errors of a quantity near node j. They are those of the tip's position, times the stiffness of the wall
+    // or, of a squared distance, twice the distance.
+    double noise(const Quantity& quantity, std::size_t j) const {
+        const Plant<double>& plant = view_.setup.plant;
+        const double of_position = 4 * std::numeric_limits<double>::epsilon() * reach(plant.arm);
+        if (quantity.needed.path) return of_position * (2 * std::sqrt(sampled(quantity, j)) + of_position);
+        return of_position * plant.contact.stiffness[0];
+    }
+
     // Around node j.
     Maximum maximum_around(const Quantity& quantity, std::size_t j) const {
-        return find_maximum(along(quantity), point(quantity, j - 1), point(quantity, j), point(quantity, j + 1));
+        return find_maximum(along(quantity), point(quantity, j - 1), point(quantity, j), point(quantity, j + 1),
+                            noise(quantity, j));
     }
     // The same in the part after `from`, which may lie beyond the node.
     Maximum maximum_around(const Quantity& quantity, std::size_t j, double from) const {
@@ -98,7 +108,7 @@ private:
         const SearchPoint last = point(quantity, j + 1);
         const SearchPoint middle =
             from < rule_.node[j] ? point(quantity, j) : point_at(quantity, 0.5 * (from + last.at));
-        return find_maximum(along(quantity), point_at(quantity, from), middle, last);
+        return find_maximum(along(quantity), point_at(quantity, from), middle, last, noise(quantity, j));
     }
 
     // Includes maxima after `from` that exceed the largest value so far.

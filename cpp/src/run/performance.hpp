@@ -22,6 +22,13 @@ struct PerformanceSample {
     T saturated{0.0};                  // 1 where a torque is at its limit
 };
 
+template <class T, class M>
+ARM3R_INLINE PerformanceSample<T> select_sample(const M& here, const PerformanceSample<T>& a,
+                                                const PerformanceSample<T>& b) {
+    return {select(here, a.force, b.force), select(here, a.desired_force, b.desired_force),
+            select(here, a.path_error_2, b.path_error_2), select(here, a.saturated, b.saturated)};
+}
+
 // The quantities that metrics need.
 struct TrackedQuantities {
     bool force = false, path = false, limits = false;
@@ -73,9 +80,9 @@ ARM3R_INLINE T path_error_2(const Arm<P>& arm, const Controller<L>& controller, 
                             const Vec3<T>& n, const T& force_phase) {
     const DesiredMotion<T> desired = desired_motion_at(controller.reference, t);
     const Vec3<T> goal = controller.reference.in_joints ? tip_position(arm, pose(desired.position)) : desired.position;
-    const Vec3<T> off = minus(tip, goal);
-    const T across = tracks_force(controller.type) ? T(force_phase * dot(n, off)) : T(0.0);
-    return max(T(0.0), T(dot(off, off) - across * across));
+    Vec3<T> off = minus(tip, goal);
+    if (tracks_force(controller.type)) off = minus(off, scaled(T(force_phase * dot(n, off)), n));
+    return dot(off, off);
 }
 
 // Force and path error. `pressed`: where the contact law acts.

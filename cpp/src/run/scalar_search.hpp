@@ -74,9 +74,11 @@ inline double share_to_zero(const SearchPoint& newest, const SearchPoint& other,
 
 // The maximum of f between the outer ones of three places, by parabolas through the three best points, or by a golden
 // section where they do not converge (Brent 1973, chapter 5), until two of them in turn have foretold the next value well
-// and promise nothing but rounding errors; f rises from the first place and falls to the last.
+// and promise nothing but rounding errors; f rises from the first place and falls to the last. `noise`: the rounding
+// errors of f that its own size does not show.
 template <class F>
-Maximum find_maximum(F f, const SearchPoint& first, const SearchPoint& middle, const SearchPoint& last) {
+Maximum find_maximum(F f, const SearchPoint& first, const SearchPoint& middle, const SearchPoint& last,
+                     double noise = 0) {
     using namespace scalar_search;
     constexpr double golden_section = 0.3819660112501051, least = maximum_resolution;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -94,7 +96,7 @@ Maximum find_maximum(F f, const SearchPoint& first, const SearchPoint& middle, c
         const double top = best.at + parabola.step;
         const bool converges = std::abs(parabola.step) < 0.5 * std::abs(before) && a < top && top < b;
         // A parabola that missed the last value by so much misses the maximum by its square over the height.
-        const double rounding = epsilon * (std::abs(best.value) + height);
+        const double rounding = epsilon * (std::abs(best.value) + height) + noise;
         const bool was_flat = is_flat;
         is_flat = converges && std::abs(parabola.rise) <= rounding && surprise * surprise <= rounding * height;
         if (is_flat && was_flat) break;

@@ -112,7 +112,7 @@ void check_pose(std::span<const double> params, const Setup& setup, ProblemList&
     const Arm<double>& model = setup.controller().model;
     const Pose<double> p = pose(setup.q);
     const double S3 = sin_q3(p), r = radius(model, p);
-    const double min_r = min_sine * (model.link2.length + model.link3.length);
+    const double min_r = min_sine * reach(model);
     const auto refuse = [&](const std::string& message, const std::string& got, const std::string& allowed) {
         problem_list.add([&] {
             return Problem{.code = "scenario.singular",

@@ -54,7 +54,7 @@ ARM3R_INLINE Vec3<T> inertial_torque(const Arm<P>& model, const Pose<T>& p, cons
 template <class P, class T>
 ARM3R_INLINE T distance_to_singular(const Arm<P>& arm, const Pose<T>& p) {
     const T S3 = sin_q3(p);
-    return min(T(abs(S3)), T(abs(radius(arm, p)) / (arm.link2.length + arm.link3.length)));
+    return min(T(abs(S3)), T(abs(radius(arm, p)) / reach(arm)));
 }
 
 // Errors of the tip, computed with the controller's model, and the desired motion: m, m/s, m/s^2, base axes.

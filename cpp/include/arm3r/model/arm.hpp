@@ -48,6 +48,12 @@ struct Arm {
     bool gravity_is_vertical = false, has_damping = false, has_dry_friction = false, has_torque_limit = false;
 };
 
+// m: the largest distance of the tip from the shoulder.
+template <class P>
+ARM3R_INLINE P reach(const Arm<P>& arm) {
+    return arm.link2.length + arm.link3.length;
+}
+
 template <class P>
 Lumped<P> lump(const Arm<P>& arm) {  // (3.2)
     const Link<P>&l2 = arm.link2, &l3 = arm.link3;
