@@ -21,7 +21,7 @@ PIP     := $(BIN)/python -m pip --disable-pip-version-check install --no-compile
 # Each worker has one core; threads of numpy's linear algebra would take turns with those of the other workers.
 PYTEST  := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
-.PHONY: run test gates page docs wheels dist bench format lint clean
+.PHONY: run test gates page docs wheels dist bench bench-avx2 format lint clean
 
 run: $(VENV)/installed
 	mkdir -p out
@@ -79,6 +79,15 @@ bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake --build $(BUILD) --target arm3r_benchmarks
 	$(BIN)/python benchmarks/run.py $(BUILD)/arm3r_benchmarks
 	$(BIN)/python benchmarks/figures.py
+
+# The same as on a processor without AVX-512. pip's build knows where Eigen is.
+AVX2 := build/avx2
+bench-avx2: $(VENV)/test $(VENV)/bench
+	SKBUILD_BUILD_DIR=$(AVX2) $(PIP) --no-build-isolation --no-deps --upgrade --target $(AVX2)/python .
+	$(BIN)/cmake -S . -B $(AVX2) -DARM3R_BENCHMARKS=ON -DARM3R_PEERS_FOR=x86-64-v3 > /dev/null
+	$(BIN)/cmake --build $(AVX2) --target arm3r_benchmarks arm3r_without_avx512
+	PYTHONPATH=$(AVX2)/python $(BIN)/python benchmarks/run.py $(AVX2)/arm3r_benchmarks \
+	    --without-avx512 $(AVX2)/libarm3r_without_avx512.so
 
 format: $(VENV)/dev
 	$(BIN)/clang-format -i $(CODE)

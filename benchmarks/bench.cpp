@@ -30,7 +30,7 @@ double nanoseconds(const Work& work, int times) {
 class Race {
 public:
     explicit Race(const Contender& contender) : contender_(contender), work_(contender.prepare()) {
-        while (nanoseconds(work_, times_) < batch_ns) times_ *= 2;
+        while (least_of_three() < batch_ns) times_ *= 2;
     }
 
     void run_batch() { work_(times_); }
@@ -45,6 +45,13 @@ public:
     }
 
 private:
+    // An interruption makes a short batch look long.
+    double least_of_three() const {
+        double least = nanoseconds(work_, times_);
+        for (int again = 1; again < 3; ++again) least = std::min(least, nanoseconds(work_, times_));
+        return least;
+    }
+
     const Contender& contender_;
     Work work_;
     int times_ = 1;

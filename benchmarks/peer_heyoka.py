@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from importlib.metadata import version
 from typing import Any
@@ -12,7 +13,7 @@ from peer_arms import STIFFNESS, WALL_FAR, WALL_SPEED, joint_angles, link_angles
 
 BUILD = f"heyoka {version('heyoka')}, its own wheel; compact_mode=False, fast_math=True"
 TUNED = {"compact_mode": False, "high_accuracy": False, "fast_math": True}
-LANES = 8
+LANES = int(os.environ.get("HEYOKA_LANES", 8))
 
 Y = heyoka.make_vars("q1", "p2", "p3", "w1", "w2", "w3")
 DEPTH = reach(heyoka, Y) - (WALL_FAR - WALL_SPEED * heyoka.time)

@@ -75,7 +75,9 @@ def main() -> None:
         reference.run()
         methods = [*ours(text), Method("heyoka, one by one", peer_heyoka.BUILD, runs), scipys(kind)]
         if kind == "Falls":
-            methods.append(Method("heyoka, batch of 8", peer_heyoka.BUILD, peer_heyoka.FallsTogether))
+            methods.append(
+                Method(f"heyoka, batch of {peer_heyoka.LANES}", peer_heyoka.BUILD, peer_heyoka.FallsTogether)
+            )
         race(table, job, "us", [racer for m in methods for racer in m.racers(q, reference.q)], seconds=SECONDS)
 
 

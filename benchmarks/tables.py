@@ -1,6 +1,7 @@
-"""Renew the tables of docs/benchmarks.md from the table of a run: python benchmarks/tables.py [TABLE.csv]
+"""Renew the tables of docs/benchmarks.md: python benchmarks/tables.py [TABLE.csv [WITHOUT_AVX512.csv]]
 
-Each stands between the line <!-- NAME --> and the next empty line.
+Each stands between the line <!-- NAME --> and the next empty line. The table of a processor without AVX-512 holds what
+depends on the width of its registers.
 """
 
 from __future__ import annotations
@@ -58,6 +59,12 @@ def cheapest(rows: list[Row], job: str, goal: float) -> list[Row]:
     return [row | {"job": f"{job}, error at most {goal:.0e} rad"} for row in ranked if firsts[row["who"]] is row]
 
 
+def without_avx512(rows: list[Row]) -> dict[str, list[Row]]:
+    whole = tables(rows)
+    in_ns = [row for row in whole["one after the other"] if row["unit"] == "ns"]
+    return {"without avx512": [*in_ns, *whole["many arms"], *whole["precision"], *whole["lecture runs"]]}
+
+
 def tables(rows: list[Row]) -> dict[str, list[Row]]:
     single = [row for row in rows if not row["setting"]]
     return {
@@ -75,16 +82,22 @@ def tables(rows: list[Row]) -> dict[str, list[Row]]:
 
 
 def main() -> None:
-    source = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "out" / "bench.csv"
-    with source.open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    given = [Path(word) for word in sys.argv[1:]]
+    of_runs = given or sorted((ROOT / "out").glob("bench*.csv"))  # bench.csv before bench_avx2.csv
     page = PAGE.read_text()
-    for name, its in tables(rows).items():
+    for source, chosen in zip(of_runs, (tables, without_avx512), strict=False):
+        with source.open(newline="") as file:
+            page = renewed(page, chosen(list(csv.DictReader(file))))
+    PAGE.write_text(page)
+
+
+def renewed(page: str, of_names: dict[str, list[Row]]) -> str:
+    for name, its in of_names.items():
         place = re.compile(rf"(?<=<!-- {name} -->\n).*?(?=\n\n|\n\Z)", re.DOTALL)
         page, found = place.subn(lambda _, its=its: markdown(its), page)
         if found != 1:
             raise SystemExit(f"{PAGE.name}: {found} places for the table <!-- {name} -->, one is needed")
-    PAGE.write_text(page)
+    return page
 
 
 main()
