@@ -212,14 +212,22 @@ def numbers_of(run: arm3r.Run) -> dict[str, float]:
     return numbers
 
 
+WORKS = ("work_1", "work_2", "work_3")
+
+
+def told_by(run: arm3r.Run) -> dict[str, Any]:
+    """The numbers of the summary, by name."""
+    return {**run.summary["metrics"], **{key: run.summary[key] for key in ("peak_force", "impulse", "contact_time")}}
+
+
 def wrong_numbers(run: arm3r.Run, rel: float) -> dict[str, float]:
     """By how much numbers of the summary are off, relative to their size, where that is more than `rel`.
 
     The instant of a peak is known to the root of the accuracy of its height only, and is held to 1e-6 s; a force that
     is zero throughout has none.
     """
-    told = {**run.summary["metrics"], **{key: run.summary[key] for key in ("peak_force", "impulse", "contact_time")}}
-    largest_work = max(abs(told[f"work_{i}"]) for i in (1, 2, 3))
+    told = told_by(run)
+    largest_work = max(abs(told[key]) for key in WORKS)
     off = {}
     for key, due in numbers_of(run).items():
         of_force = told["peak_force"] if key in ("overshoot", "force_error_rms") else 0.0
@@ -288,7 +296,7 @@ def densely_logged(keys: Keys) -> Keys:
 
 def works_off(run: arm3r.Run) -> float:
     """By how much the works of the torques do not add up to the work in the energy balance, relative to the largest."""
-    works = [run.summary["metrics"][f"work_{i}"] for i in (1, 2, 3)]
+    works = [run.summary["metrics"][key] for key in WORKS]
     return abs(sum(works) - run["work_actuators"][-1]) / max(1e-3, *np.abs(works))
 
 
@@ -302,6 +310,7 @@ def check_random_scenarios(count: int) -> None:
             run = arm3r.Scenario(yaml_of(keys)).run(time_limit=20)
         except (arm3r.NumericalError, arm3r.BudgetError):
             continue
+        assert works_off(run) < 1e-7
         if works_off(run) > 1e-8:  # both are as accurate as the steps, and a torque that reaches its limit has a kink
             finer = {**keys, "solver": {"method": "dopri5", "rtol": 1e-12, "atol": 1e-15}}
             assert works_off(arm3r.Scenario(yaml_of(finer)).run()) < 1e-8, yaml_of(keys)
@@ -311,14 +320,23 @@ def check_random_scenarios(count: int) -> None:
 
 
 def still_wrong(keys: Keys, wrong: dict[str, float]) -> dict[str, float]:
-    """Those that rows eight times as dense do not bring closer.
+    """All but integrals that rows eight times as dense come closer to, and that `rodas4` has too.
 
-    The rule for the rows is one for smooth functions. It says little of torques that jump where the tip meets a virtual
-    wall with damping, or that swing within a few microseconds at a singular pose.
+    The rule for the rows is one for smooth functions. It says little of a force that begins as a broken power of the
+    depth or lasts for a few rows, of torques that jump where the tip meets a virtual wall with damping, or that swing
+    within a few microseconds at a singular pose.
     """
     time = {**keys["time"], "log_every": keys["time"]["log_every"] / 8}
     dense = arm3r.Scenario(yaml_of({**keys, "time": time})).run()
-    return {key: off for key, off in wrong_numbers(dense, 2e-7).items() if not off < wrong.get(key, 0.0) / 2}
+    off, told = wrong_numbers(dense, 2e-7), told_by(dense)
+    other = told_by(arm3r.Scenario(yaml_of({**keys, "solver": {**keys["solver"], "method": "rodas4"}})).run())
+    largest_work = max(abs(told[key]) for key in WORKS)
+    right = set()
+    for key in {"impulse", *WORKS} & set(wrong):
+        scale = max(1e-3, largest_work if key in WORKS else told[key])
+        if off.get(key, 0.0) < wrong[key] / 2 and abs(other[key] - told[key]) <= 2e-7 * scale:
+            right.add(key)
+    return {key: value for key, value in (wrong | off).items() if key not in right}
 
 
 def test_by_rk4_the_works_of_the_torques_add_up_to_that_of_the_energy_balance() -> None:

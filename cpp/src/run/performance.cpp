@@ -89,12 +89,12 @@ private:
     SearchPoint point_at(const Quantity& quantity, double place) const { return {place, along(quantity)(place)}; }
 
     // The rounding errors of a quantity near node j. They are those of the tip's position, times the stiffness of the wall
-    // or, of a squared distance, twice the distance.
+    // or, of a squared distance, twice the distance. A broken power has no one stiffness.
     double noise(const Quantity& quantity, std::size_t j) const {
         const Plant<double>& plant = view_.setup.plant;
         const double of_position = 4 * std::numeric_limits<double>::epsilon() * reach(plant.arm);
         if (quantity.needed.path) return of_position * (2 * std::sqrt(sampled(quantity, j)) + of_position);
-        return of_position * plant.contact.stiffness[0];
+        return plant.contact.law == ContactLaw::hunt_crossley ? 0 : of_position * plant.contact.stiffness[0];
     }
 
     // Around node j.
