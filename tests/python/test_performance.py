@@ -358,6 +358,33 @@ def test_by_rk4_the_works_of_the_torques_add_up_to_that_of_the_energy_balance() 
     assert continuous > 5
 
 
+DAMPED_AND_SAMPLED = """format: 1
+wall:
+  point: [1.66, 0, 0]
+  normal: [-1, 0, 0]
+  acts_on_arm: true
+  contact: {law: hunt_crossley, stiffness: 2.0e+4, exponent: 1.5, restitution: 0.4, impact_speed: 0.1}
+initial: {q: [0.2, 0.5, -1.1]}
+controller: {type: hybrid}
+reference: {type: line, tip: [1.66, 0.42, 0.15], duration: 1, start: 0.3,
+            force: {type: step, value: 15, start: 0.8, initial: 5}}
+sampling: {rate: 500, delay: 1}
+time: {start: -0.2, stop: 1.2, log_every: 0.01}
+"""
+
+
+# The force of a damped contact depends on the rate: where a sample ends a step, its middle must not know the torque
+# that the sample sets.
+def test_a_sampled_torque_that_changes_at_the_end_of_a_step_by_rk4_does_not_move_the_force_before() -> None:
+    exact = arm3r.Scenario(DAMPED_AND_SAMPLED + "solver: {method: dopri5, rtol: 1.0e-10, atol: 1.0e-13}\n").run()
+    by_rk4 = arm3r.Scenario(DAMPED_AND_SAMPLED + "solver: {method: rk4, step: 1.0e-4}\n")
+    single, expected = by_rk4.run().summary["metrics"], exact.summary["metrics"]
+    for name in ("force_error_peak", "force_error_rms"):
+        assert single[name] == pytest.approx(expected[name], rel=1e-8), name
+    batch = by_rk4.batch({"wall.point[0]": [1.66, 1.661, 1.66, 1.659, 1.66]})
+    assert [float(peak) for peak in batch["force_error_peak"][[0, 2, 4]]] == [single["force_error_peak"]] * 3
+
+
 @pytest.mark.parametrize("acts_on_arm", [True, False])
 @pytest.mark.parametrize("exponent", [1.2, 1.5, 1.8])
 @pytest.mark.parametrize("method", ["dopri5", "rodas4"])

@@ -41,16 +41,12 @@ public:
     FullState y0(int lane) const { return Base::state_of(y0_, lane); }
     FullState f0(int lane) const { return Base::state_of(f0_, lane); }
     // Whether a formula may have jumped at the end of the last step, and the derivative there before the jump.
-    bool may_jump_at_end() const { return has_jump_ || was_due_; }
+    bool may_jump_at_end() const { return has_jump_ || any(was_due_); }
     FullState f1()
         requires std::same_as<T, double>
     {
         if (!may_jump_at_end()) return Base::state_of(this->f_, 0);
-        Y f1{};
-        swap_before();
-        this->rhs_(this->t_, this->y_, f1);
-        swap_before();
-        return Base::state_of(f1, 0);
+        return Base::state_of(evaluated_before_jump(), 0);
     }
 
 private:
@@ -76,9 +72,10 @@ private:
         this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + 4.0;
         if (any(!finite && this->active_)) stop_diverged_lanes(finite);
-        if constexpr (Base::lanes == 1) store_end();
+        if (Base::lanes == 1 || this->performance_.samples()) store_end();
         if (has_jump_) this->rhs_.latest = T(infinite);
         this->template observe<terms>();
+        if (this->performance_.samples() && may_jump_at_end()) derive_before_jump(jumps);
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
@@ -126,7 +123,7 @@ private:
 
     // Stores the torque and the law of the step before a sample or an estimate changes them.
     ARM3R_INLINE void store_end() {
-        was_due_ = this->is_controlled_ && any(this->is_due());
+        was_due_ = this->is_controlled_ && this->is_due();
         torque_before_ = this->plant_.held_torque;
         assumed_before_ = this->plant_.controller.gains.assumed_stiffness;
         latest_before_ = this->rhs_.latest;
@@ -136,6 +133,27 @@ private:
         std::swap(this->plant_.controller.gains.assumed_stiffness, assumed_before_);
         std::swap(this->rhs_.latest, latest_before_);
     }
+    Y evaluated_before_jump() {
+        Y f1{};
+        swap_before();
+        this->rhs_(this->t_, this->y_, f1);
+        swap_before();
+        return f1;
+    }
+    // The derivative at the end of the step, for the metrics: before a formula of time jumps, or a sample changes the
+    // torque and with it the acceleration by M^-1 (tau_after - tau_before).
+    [[gnu::noinline]] void derive_before_jump(const Mask& jumps) {
+        f1_before_ = this->f_;
+        if (any(was_due_)) {
+            const Vec3<T> o = zero_vector<T>(), change = minus(this->plant_.held_torque, torque_before_);
+            const Vec3<T> qdd = joint_acceleration(this->plant_.arm, this->p_, o, change, o);
+            for (int i = 0; i < 3; ++i) f1_before_[3 + i] = f1_before_[3 + i] - select(was_due_, qdd[i], T(0.0));
+        }
+        if (!has_jump_) return;
+        const Y before = evaluated_before_jump();
+        for (std::size_t i = 0; i < N; ++i) f1_before_[i] = select(jumps, before[i], f1_before_[i]);
+    }
+    ARM3R_INLINE const Y& derivative_at_end() const { return may_jump_at_end() ? f1_before_ : this->f_; }
 
     [[gnu::noinline]] void stop_diverged_lanes(const Mask& finite) {
         for (int lane = 0; lane < Base::lanes; ++lane)
@@ -236,8 +254,8 @@ private:
 
     DenseOutput dense_output_of(int lane) const {
         DenseOutput dense;
-        dense.assign(
-            hermite(t0(lane), this->h(lane), y0(lane), f0(lane), this->y(lane), Base::state_of(this->f_, lane)));
+        dense.assign(hermite(t0(lane), this->h(lane), y0(lane), f0(lane), this->y(lane),
+                             Base::state_of(derivative_at_end(), lane)));
         return dense;
     }
 
@@ -296,9 +314,10 @@ private:
     // The midpoint lies on the cubic through both ends.
     ARM3R_INLINE void sample_midpoint() {
         const T &h = this->h_, t = t0_ + 0.5 * h;
+        const Y& f1 = derivative_at_end();
         Y y;
         [[maybe_unused]] Y rates;
-        for (std::size_t i = 0; i < N; ++i) y[i] = 0.5 * (y0_[i] + this->y_[i]) + (0.125 * h) * (f0_[i] - this->f_[i]);
+        for (std::size_t i = 0; i < N; ++i) y[i] = 0.5 * (y0_[i] + this->y_[i]) + (0.125 * h) * (f0_[i] - f1[i]);
         const Pose<T> p = this->rhs_.pose_near(y);
         const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
         WallState<T> wall = no_wall<T>();
@@ -319,8 +338,9 @@ private:
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
     T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};
-    bool has_jump_ = false, was_due_ = false;
-    Y y0_{}, f0_{};
+    bool has_jump_ = false;
+    Mask was_due_ = false;
+    Y y0_{}, f0_{}, f1_before_{};
     Vec3<T> torque_before_, work_;  // N m; J, of each torque in the step
     T assumed_before_{0.0}, latest_before_{infinite};
     Indentation<T> before_{};
