@@ -385,6 +385,20 @@ def test_a_sampled_torque_that_changes_at_the_end_of_a_step_by_rk4_does_not_move
     assert [float(peak) for peak in batch["force_error_peak"][[0, 2, 4]]] == [single["force_error_peak"]] * 3
 
 
+# The external force jumps at 0.6001 s, where a step of rk4 ends: its middle must not know the force after the jump.
+@pytest.mark.parametrize("sampling", ["", "sampling: {rate: 500}\n"])
+def test_an_external_force_that_jumps_at_the_end_of_a_step_by_rk4_does_not_move_the_force_before(sampling: str) -> None:
+    before = DAMPED_AND_SAMPLED[: DAMPED_AND_SAMPLED.index("sampling:")]
+    push = "push: {force: [40, 5, -3], start: 0.6001, duration: 0.1}\ntime: {stop: 1, log_every: 0.01}\n"
+    exact = arm3r.Scenario(before + sampling + push + "solver: {method: dopri5, rtol: 1.0e-10, atol: 1.0e-13}\n").run()
+    by_rk4 = arm3r.Scenario(before + sampling + push + "solver: {method: rk4, step: 1.0e-4}\n")
+    single, expected = by_rk4.run().summary["metrics"], exact.summary["metrics"]
+    for name in ("force_error_peak", "force_error_rms"):
+        assert single[name] == pytest.approx(expected[name], rel=2e-8), name
+    batch = by_rk4.batch({"push.start": [0.6001, 0.6, 0.6001, 0.60015, 0.6001]})
+    assert [float(peak) for peak in batch["force_error_peak"][[0, 2, 4]]] == [single["force_error_peak"]] * 3
+
+
 @pytest.mark.parametrize("acts_on_arm", [True, False])
 @pytest.mark.parametrize("exponent", [1.2, 1.5, 1.8])
 @pytest.mark.parametrize("method", ["dopri5", "rodas4"])

@@ -75,7 +75,8 @@ private:
         if (Base::lanes == 1 || this->performance_.samples()) store_end();
         if (has_jump_) this->rhs_.latest = T(infinite);
         this->template observe<terms>();
-        if (this->performance_.samples() && may_jump_at_end()) derive_before_jump(jumps);
+        if (this->performance_.samples() && may_jump_at_end())
+            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { derive_before_jump(jumps); });
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
@@ -133,7 +134,7 @@ private:
         std::swap(this->plant_.controller.gains.assumed_stiffness, assumed_before_);
         std::swap(this->rhs_.latest, latest_before_);
     }
-    Y evaluated_before_jump() {
+    ARM3R_INLINE Y evaluated_before_jump() {
         Y f1{};
         swap_before();
         this->rhs_(this->t_, this->y_, f1);
@@ -142,7 +143,7 @@ private:
     }
     // The derivative at the end of the step, for the metrics: before a formula of time jumps, or a sample changes the
     // torque and with it the acceleration by M^-1 (tau_after - tau_before).
-    [[gnu::noinline]] void derive_before_jump(const Mask& jumps) {
+    ARM3R_INLINE void derive_before_jump(const Mask& jumps) {
         f1_before_ = this->f_;
         if (any(was_due_)) {
             const Vec3<T> o = zero_vector<T>(), change = minus(this->plant_.held_torque, torque_before_);
