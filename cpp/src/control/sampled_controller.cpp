@@ -156,22 +156,24 @@ std::string SampledController<T>::error_message() const {
 // of a delay that is not a whole number of samples, where the accelerations are assumed to be constant.
 template <class T>
 void SampledController<T>::update_reserve(const Mask& due, const Measurement<T>& sensed) {
-    const Controller<T>& controller = digital_.controller;
-    const Vec3<T> desired = desired_tip(sensed), way = minus(sensed.q, last_q_);
-    const T potential = law_potential(controller, sensed.pose, desired);
-    T given = dot(mean_acting_, way) - (potential - last_potential_);
-    if (has_output_delay_) {
-        const T share = 0.5 * early_share_ * (1.0 - early_share_) * digital_.sampling.period;
-        given = given - share * dot(early_torque_, minus(sensed.qd, last_qd_));
-    }
-    if (tracks_path(controller.type)) given = given - work_of_reference(desired);
-    T reserve = state_.memory[0] - given;
-    if (controller.type == ControllerType::energy_tank) reserve = min(reserve, controller.gains.tank_capacity);
-    state_.memory[0] = select(due && count_ > T(0.0), reserve, state_.memory[0]);
-    assign_where(due, sensed.q, last_q_);
-    assign_where(due, sensed.qd, last_qd_);
-    assign_where(due, desired, last_desired_);
-    last_potential_ = select(due, potential, last_potential_);
+    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+        const Controller<T>& controller = digital_.controller;
+        const Vec3<T> desired = desired_tip(sensed), way = minus(sensed.q, last_q_);
+        const T potential = law_potential(controller, sensed.pose, desired);
+        T given = dot(mean_acting_, way) - (potential - last_potential_);
+        if (has_output_delay_) {
+            const T share = 0.5 * early_share_ * (1.0 - early_share_) * digital_.sampling.period;
+            given = given - share * dot(early_torque_, minus(sensed.qd, last_qd_));
+        }
+        if (tracks_path(controller.type)) given = given - work_of_reference(desired);
+        T reserve = state_.memory[0] - given;
+        if (controller.type == ControllerType::energy_tank) reserve = min(reserve, controller.gains.tank_capacity);
+        state_.memory[0] = select(due && count_ > T(0.0), reserve, state_.memory[0]);
+        assign_where(due, sensed.q, last_q_);
+        assign_where(due, sensed.qd, last_qd_);
+        assign_where(due, desired, last_desired_);
+        last_potential_ = select(due, potential, last_potential_);
+    });
 }
 
 // J, from the force at the tip that is equivalent to the torque; a singular pose does not determine that force.
@@ -222,36 +224,40 @@ Prediction<T> SampledController<T>::predict_at_actuation(const Mask& due, const 
 template <class T>
 void SampledController<T>::apply_brake(const Mask& due, const Arm<T>& arm, const Measurement<T>& sensed,
                                        Command<T>& command) {
-    const Controller<T>& controller = digital_.controller;
-    const Vec3<T> output = limited(arm, command.tau, controller.saturation);
-    const Prediction<T> prediction = predict_at_actuation(due, sensed, output);
-    command.tau =
-        plus(command.tau, braking_torque(controller, last_desired_, output, digital_.sampling.period, prediction));
+    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+        const Controller<T>& controller = digital_.controller;
+        const Vec3<T> output = limited(arm, command.tau, controller.saturation);
+        const Prediction<T> prediction = predict_at_actuation(due, sensed, output);
+        command.tau =
+            plus(command.tau, braking_torque(controller, last_desired_, output, digital_.sampling.period, prediction));
+    });
 }
 
 // Each sample is used once, and in contact only. The estimate becomes the assumed stiffness of a law that needs it.
 template <class T>
 void SampledController<T>::estimate(const Mask& due) {
-    const T o(0.0), l(1.0);
-    const Mask counts = due && contact_sample_.counts > o;
-    const Mask first = counts && samples_in_ == o;
-    first_position_ = select(first, contact_sample_.position, first_position_);
-    first_time_ = select(first, contact_sample_.time, first_time_);
-    estimator_.add_where(counts, T(contact_sample_.position - first_position_), T(contact_sample_.time - first_time_),
-                         contact_sample_.force, estimation_.forgetting);
-    contact_sample_.counts = select(due, o, contact_sample_.counts);
-    samples_in_ = samples_in_ + select(counts, l, o);
-    const WallEstimate<T> answer = estimator_.solve();
-    const Mask is_valid = samples_in_ >= T(8.0) && answer.condition < estimation_.max_condition;
-    state_.identifiable = select(due, select(is_valid, l, o), state_.identifiable);
-    state_.stiffness = select(due, select(is_valid, answer.stiffness, o), state_.stiffness);
-    state_.wall_speed = select(due, select(is_valid, answer.speed, o), state_.wall_speed);
-    if (digital_.sampling.on && asks_estimator(digital_.controller)) {
-        T& assumed = digital_.controller.gains.assumed_stiffness;
-        assumed = select(due && is_valid, answer.stiffness, assumed);
-    }
-    estimates_ = estimates_ + select(due, l, o);
-    next_estimate_ = select(due, T(estimation_.start + estimates_ * estimation_.period), next_estimate_);
+    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+        const T o(0.0), l(1.0);
+        const Mask counts = due && contact_sample_.counts > o;
+        const Mask first = counts && samples_in_ == o;
+        first_position_ = select(first, contact_sample_.position, first_position_);
+        first_time_ = select(first, contact_sample_.time, first_time_);
+        estimator_.add_where(counts, T(contact_sample_.position - first_position_),
+                             T(contact_sample_.time - first_time_), contact_sample_.force, estimation_.forgetting);
+        contact_sample_.counts = select(due, o, contact_sample_.counts);
+        samples_in_ = samples_in_ + select(counts, l, o);
+        const WallEstimate<T> answer = estimator_.solve();
+        const Mask is_valid = samples_in_ >= T(8.0) && answer.condition < estimation_.max_condition;
+        state_.identifiable = select(due, select(is_valid, l, o), state_.identifiable);
+        state_.stiffness = select(due, select(is_valid, answer.stiffness, o), state_.stiffness);
+        state_.wall_speed = select(due, select(is_valid, answer.speed, o), state_.wall_speed);
+        if (digital_.sampling.on && asks_estimator(digital_.controller)) {
+            T& assumed = digital_.controller.gains.assumed_stiffness;
+            assumed = select(due && is_valid, answer.stiffness, assumed);
+        }
+        estimates_ = estimates_ + select(due, l, o);
+        next_estimate_ = select(due, T(estimation_.start + estimates_ * estimation_.period), next_estimate_);
+    });
 }
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).

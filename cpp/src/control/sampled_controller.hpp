@@ -297,9 +297,10 @@ private:
     [[gnu::noinline]] void update_reserve(const Mask& due, const Measurement<T>& sensed);
     [[gnu::noinline]] void apply_brake(const Mask& due, const Arm<T>& arm, const Measurement<T>& sensed,
                                        Command<T>& command);
-    T work_of_reference(const Vec3<T>& desired) const;
+    ARM3R_INLINE T work_of_reference(const Vec3<T>& desired) const;
     T pending_torque(const Mask& due, double still, Vec3<T>& acting) const;
-    Prediction<T> predict_at_actuation(const Mask& due, const Measurement<T>& sensed, const Vec3<T>& output) const;
+    ARM3R_INLINE Prediction<T> predict_at_actuation(const Mask& due, const Measurement<T>& sensed,
+                                                    const Vec3<T>& output) const;
 
     ARM3R_INLINE Vec3<T> desired_tip(const Measurement<T>& sensed) const {
         const Controller<T>& controller = digital_.controller;

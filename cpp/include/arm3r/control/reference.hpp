@@ -7,6 +7,7 @@
 
 #include "arm3r/model/scalar_motion.hpp"
 #include "arm3r/numbers/vectors.hpp"
+#include "arm3r/numbers/widths.hpp"
 
 namespace arm3r {
 
@@ -69,10 +70,12 @@ ARM3R_INLINE SinCos<T> turned(const T& cycles) {
 // Not inlined: tables are rare and the code is long.
 template <class P, class T>
 [[gnu::noinline]] void follow_table(const Reference<P>& reference, const T& t, DesiredMotion<T>& desired) {
-    for (int i = 0; i < 3; ++i) {
-        const ScalarMotion<T> along = scalar_motion((*reference.table)[i], t);
-        desired.position[i] = along.s, desired.velocity[i] = along.v, desired.acceleration[i] = along.a;
-    }
+    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+        for (int i = 0; i < 3; ++i) {
+            const ScalarMotion<T> along = scalar_motion((*reference.table)[i], t);
+            desired.position[i] = along.s, desired.velocity[i] = along.v, desired.acceleration[i] = along.a;
+        }
+    });
 }
 
 template <class P, class T>
