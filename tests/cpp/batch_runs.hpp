@@ -2,7 +2,6 @@
 // Batches of the tests and their condition: the numbers of each run are those of the run alone, bit for bit, for every
 // width and number of threads.
 
-#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "arm3r/numbers/widths.hpp"
 
 #include "batch/batch.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 #include "record/metrics.hpp"
 
@@ -66,8 +66,8 @@ inline void check_against_single_runs(const Runs& runs, const std::vector<double
         const Run alone = runs.alone(i).run();
         for (std::size_t c = 0; c < summary_table().size(); ++c) {
             const double together = results[c * runs.count() + i], single = summary_table()[c].of(alone) + 0.0;
-            BOOST_TEST(same(together, single),
-                       "run " << i << ", " << summary_table()[c].name << ": " << together << " and " << single);
+            CHECK(same(together, single),
+                  "run " << i << ", " << summary_table()[c].name << ": " << together << " and " << single);
         }
     }
 }
@@ -78,8 +78,8 @@ inline std::vector<double> check_widths_and_threads(const Runs& runs) {
     for (const int lanes : widths()) {
         for (const int threads : {1, 3}) {
             const std::vector<double> other = runs.together({.threads = threads, .lanes = lanes});
-            BOOST_TEST((std::memcmp(other.data(), reference.data(), reference.size() * sizeof(double)) == 0),
-                       lanes << " lanes, " << threads << " threads");
+            CHECK((std::memcmp(other.data(), reference.data(), reference.size() * sizeof(double)) == 0),
+                  lanes << " lanes, " << threads << " threads");
         }
     }
     return reference;

@@ -1,8 +1,10 @@
 #include "linear_algebra.hpp"
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <complex>
 #include <stdexcept>
+#include <utility>
 
 namespace arm3r {
 namespace {
@@ -39,6 +41,36 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
         values[i + 1] = mean - root;
     }
     return values;
+}
+
+// By Gauss and Jordan, on (A, identity): Eigen's decomposition takes g++ three seconds.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) {
+    const Eigen::Index n = A.rows();
+    Eigen::MatrixXd both(n, 2 * n);
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j < n; ++j) both(i, j) = A(i, j), both(i, n + j) = i == j;
+    for (Eigen::Index step = 0; step < n; ++step) {
+        Eigen::Index pivot = step;
+        for (Eigen::Index i = step + 1; i < n; ++i)
+            if (std::abs(both(i, step)) > std::abs(both(pivot, step))) pivot = i;
+        const double divisor = both(pivot, step);
+        for (Eigen::Index j = 0; j < 2 * n; ++j) {
+            std::swap(both(pivot, j), both(step, j));
+            both(step, j) /= divisor;
+        }
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double factor = both(i, step);
+            if (i == step) continue;
+            for (Eigen::Index j = 0; j < 2 * n; ++j) both(i, j) -= factor * both(step, j);
+        }
+    }
+    return both.rightCols(n);
+}
+
+double determinant(const Mat3<double>& A) { return A.determinant(); }
+Vec3<double> cross_product(const Vec3<double>& a, const Vec3<double>& b) { return a.cross(b); }
+Mat3<double> rotation(double angle, const Vec3<double>& axis) {
+    return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
 
 namespace evaluated {

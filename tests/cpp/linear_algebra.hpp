@@ -9,6 +9,10 @@
 namespace arm3r {
 
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
+double determinant(const Mat3<double>& A);
+Vec3<double> cross_product(const Vec3<double>& a, const Vec3<double>& b);
+Mat3<double> rotation(double angle, const Vec3<double>& axis);
 
 // Vectors and matrices of three numbers; every operation is a function.
 namespace evaluated {

@@ -1,14 +1,14 @@
 #include <algorithm>
-#include <boost/test/unit_test.hpp>
 
 #include "base/error.hpp"
 #include "batch/worker.hpp"
 #include "batch_runs.hpp"
+#include "check.hpp"
 
 namespace arm3r {
 
 // A batch is what its runs are alone, bit for bit: for every width, number of threads and order.
-BOOST_AUTO_TEST_SUITE(batch)
+TEST_SUITE(batch)
 
 // An arm of its own in every lane, and a wall in front of it.
 static Runs pushed_arms(Random& random, std::string_view method, int count) {
@@ -32,7 +32,7 @@ static Runs pushed_arms(Random& random, std::string_view method, int count) {
     return runs;
 }
 
-BOOST_AUTO_TEST_CASE(runs_with_arms_and_walls_of_their_own_have_the_bits_of_the_run_alone) {
+TEST_CASE(runs_with_arms_and_walls_of_their_own_have_the_bits_of_the_run_alone) {
     Random random(31);
     for (const char* method : {"rk4", "dopri5", "taylor"}) {
         const Runs runs = pushed_arms(random, method, 45);
@@ -40,11 +40,11 @@ BOOST_AUTO_TEST_CASE(runs_with_arms_and_walls_of_their_own_have_the_bits_of_the_
         check_against_single_runs(runs, table);
         double contacts = 0;
         for (std::size_t i = 0; i < runs.count(); ++i) contacts += runs.number(table, "contacts", i);
-        BOOST_TEST(contacts > 20);
+        CHECK(contacts > 20);
     }
 }
 
-BOOST_AUTO_TEST_CASE(so_have_random_arms_that_fall_under_any_gravity_beside_an_oscillating_plate) {
+TEST_CASE(so_have_random_arms_that_fall_under_any_gravity_beside_an_oscillating_plate) {
     Random random(32);
     for (const char* method : {"rk4", "dopri5", "taylor"}) {
         Runs runs;
@@ -106,7 +106,7 @@ static Runs against_walls(Random& random, std::string_view law, std::string_view
     return runs;
 }
 
-BOOST_AUTO_TEST_CASE(so_have_runs_against_walls_of_every_law_that_move_in_every_way) {
+TEST_CASE(so_have_runs_against_walls_of_every_law_that_move_in_every_way) {
     Random random(36);
     for (const auto& [law, motion, rotation] : {std::array{"spring", "ramp", "none"},
                                                 {"spring", "table", "constant"},
@@ -128,13 +128,13 @@ BOOST_AUTO_TEST_CASE(so_have_runs_against_walls_of_every_law_that_move_in_every_
                 contacts += runs.number(table, "contacts", i);
                 ok += int(runs.number(table, "outcome", i)) == ARM3R_RUN_OK;
             }
-            BOOST_TEST(contacts > 5, law << ", " << motion << ", " << rotation);
-            BOOST_TEST(ok == 19, law << ", " << motion << ", " << rotation);
+            CHECK(contacts > 5, law << ", " << motion << ", " << rotation);
+            CHECK(ok == 19, law << ", " << motion << ", " << rotation);
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_fails_ends_with_its_outcome_and_disturbs_no_other) {
+TEST_CASE(a_run_that_fails_ends_with_its_outcome_and_disturbs_no_other) {
     Random random(33);
     for (const char* method : {"rk4", "dopri5", "taylor"}) {
         Runs calm = pushed_arms(random, method, 32);
@@ -150,33 +150,33 @@ BOOST_AUTO_TEST_CASE(a_run_that_fails_ends_with_its_outcome_and_disturbs_no_othe
         for (std::size_t i = 0; i < 32; ++i) {
             const auto outcome = int(troubled.number(table, "outcome", i));
             if (i == 1) {
-                BOOST_TEST(outcome == ARM3R_RUN_INVALID);
-                BOOST_TEST(std::isnan(troubled.number(table, "t_end", i)));
+                CHECK(outcome == ARM3R_RUN_INVALID);
+                CHECK(std::isnan(troubled.number(table, "t_end", i)));
             } else if (i == 3) {
-                BOOST_TEST(outcome == ARM3R_RUN_DIVERGED);
+                CHECK(outcome == ARM3R_RUN_DIVERGED);
             } else if (i == 6 || i == 20) {
-                BOOST_TEST(outcome == ARM3R_RUN_BUDGET);
+                CHECK(outcome == ARM3R_RUN_BUDGET);
             } else {
                 for (std::size_t c = 0; c < summary_table().size(); ++c)
-                    BOOST_TEST(same(table[c * 32 + i], quiet[c * 32 + i]));
+                    CHECK(same(table[c * 32 + i], quiet[c * 32 + i]));
             }
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_fails_in_its_first_step_has_the_numbers_of_its_start) {
+TEST_CASE(a_run_that_fails_in_its_first_step_has_the_numbers_of_its_start) {
     Runs runs;
     runs.base = unequal_params();
     runs.base.choose("solver.method", "taylor").set("arm.friction_velocity", 1e-12);
     runs.names = {"arm.friction[0]", "initial.qd[0]"};
     runs.values = {{1e12, 0.1}, {1e-12, 0}};
     const std::vector<double> table = check_widths_and_threads(runs);
-    BOOST_TEST(runs.number(table, "outcome", 0) == ARM3R_RUN_STEP_COLLAPSE);
-    BOOST_TEST(runs.number(table, "q1", 0) == 0.4);
-    BOOST_TEST(runs.number(table, "t_end", 0) == 0);
+    CHECK(runs.number(table, "outcome", 0) == ARM3R_RUN_STEP_COLLAPSE);
+    CHECK(runs.number(table, "q1", 0) == 0.4);
+    CHECK(runs.number(table, "t_end", 0) == 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_in_every_lane) {
+TEST_CASE(a_damped_arm_comes_to_rest_in_every_lane) {
     for (const char* method : {"rk4", "taylor"}) {
         Runs runs;
         runs.base.choose("solver.method", method).set("solver.step", 0.01).set("time.stop", 250);
@@ -186,11 +186,11 @@ BOOST_AUTO_TEST_CASE(a_damped_arm_comes_to_rest_in_every_lane) {
         const std::vector<double> table = check_widths_and_threads(runs);
         const double rest = std::string_view(method) == "taylor" ? 1e-9 : 0;  // to its tolerance
         for (std::size_t i = 0; i < runs.count(); ++i)
-            for (const char* rate : {"qd1", "qd2", "qd3"}) BOOST_TEST(std::abs(runs.number(table, rate, i)) <= rest);
+            for (const char* rate : {"qd1", "qd2", "qd3"}) CHECK(std::abs(runs.number(table, rate, i)) <= rest);
     }
 }
 
-BOOST_AUTO_TEST_CASE(neither_order_nor_the_callers_rounding_of_tiny_numbers_matters) {
+TEST_CASE(neither_order_nor_the_callers_rounding_of_tiny_numbers_matters) {
     Random random(35);
     for (const char* method : {"rk4", "taylor"}) {
         const Runs runs = pushed_arms(random, method, 40);
@@ -199,59 +199,58 @@ BOOST_AUTO_TEST_CASE(neither_order_nor_the_callers_rounding_of_tiny_numbers_matt
         for (std::vector<double>& values : backwards.values) std::reverse(values.begin(), values.end());
         const std::vector<double> reversed = backwards.together({});
         for (std::size_t c = 0; c < summary_table().size(); ++c)
-            for (std::size_t i = 0; i < 40; ++i) BOOST_TEST(same(table[c * 40 + i], reversed[c * 40 + 39 - i]));
+            for (std::size_t i = 0; i < 40; ++i) CHECK(same(table[c * 40 + i], reversed[c * 40 + 39 - i]));
 #if defined(__x86_64__)
         constexpr unsigned flush_to_zero = 0x8040;  // and subnormal operands are zero
         const unsigned usual = __builtin_ia32_stmxcsr();
         __builtin_ia32_ldmxcsr(usual | flush_to_zero);
         const std::vector<double> flushed = runs.together({});
         __builtin_ia32_ldmxcsr(usual);
-        for (std::size_t i = 0; i < table.size(); ++i) BOOST_TEST(same(table[i], flushed[i]));
+        for (std::size_t i = 0; i < table.size(); ++i) CHECK(same(table[i], flushed[i]));
 #endif
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_run_of_no_length_and_a_batch_of_no_runs_are_fine) {
+TEST_CASE(a_run_of_no_length_and_a_batch_of_no_runs_are_fine) {
     Runs runs;
     runs.base.set("time.stop", 0).choose("solver.method", "rk4");
     runs.names = {"initial.q[0]"};
     runs.values = {{0.1, 0.2}};
     check_against_single_runs(runs, check_widths_and_threads(runs));
     runs.values = {{}};
-    BOOST_TEST(runs.together({}).empty());
+    CHECK(runs.together({}).empty());
 }
 
-BOOST_AUTO_TEST_CASE(what_cannot_vary_is_refused_by_name) {
+TEST_CASE(what_cannot_vary_is_refused_by_name) {
     Runs runs;
     runs.values = {{1}};
     for (const char* name : {"solver.method", "wall", "wall.acts_on_arm"}) {
         runs.names = {name};
-        BOOST_CHECK_EXCEPTION(runs.together({}), Error,
-                              [&](const Error& e) { return std::string(e.what()).find(name) != std::string::npos; });
+        CHECK_THROWS(runs.together({}), Error,
+                     [&](const Error& e) { return std::string(e.what()).find(name) != std::string::npos; });
     }
     runs.names = {"initial.q[0]", "initial.q[0]"};
     runs.values = {{1}, {1}};
-    BOOST_CHECK_THROW(runs.together({}), Error);
+    CHECK_THROWS(runs.together({}), Error);
 }
 
 static std::int32_t ask_to_stop(void* user, std::int64_t, std::int64_t) { return *static_cast<std::int32_t*>(user); }
 
-BOOST_AUTO_TEST_CASE(a_batch_that_is_stopped_says_so_in_every_row_that_is_not_finished) {
+TEST_CASE(a_batch_that_is_stopped_says_so_in_every_row_that_is_not_finished) {
     Random random(34);
     Runs runs = pushed_arms(random, "rk4", 300);
     runs.base.set("time.stop", 1000).set("wall.motion.velocity", 0).set("time.log_every", 100);
     for (std::int32_t answer : {1, -1}) {
         BatchOptions options{.progress = ask_to_stop, .user = &answer, .threads = 2};
         if (answer < 0) {
-            BOOST_CHECK_THROW(runs.together(options), Error);
+            CHECK_THROWS(runs.together(options), Error);
             continue;
         }
         const std::vector<double> table = runs.together(options);
-        for (std::size_t i = 0; i < runs.count(); ++i)
-            BOOST_TEST(runs.number(table, "outcome", i) == ARM3R_RUN_STOPPED);
+        for (std::size_t i = 0; i < runs.count(); ++i) CHECK(runs.number(table, "outcome", i) == ARM3R_RUN_STOPPED);
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,16 +1,16 @@
 #include <algorithm>
-#include <boost/test/unit_test.hpp>
 #include <functional>
 #include <numeric>
 #include <utility>
 
 #include "batch_runs.hpp"
+#include "check.hpp"
 
 namespace arm3r {
 
 // Controllers in a batch are what they are alone, bit for bit, all summary numbers included: for every law, sensor and
 // wall, every width, number of threads and order.
-BOOST_AUTO_TEST_SUITE(batch_controllers)
+TEST_SUITE(batch_controllers)
 
 static constexpr int run_count = 9;  // no multiple of a width: lanes are refilled, and run empty
 
@@ -79,8 +79,8 @@ void check_order(const Controlled& runs, const std::vector<double>& table) {
     const std::vector<double> shuffled = runs.in_order(order).together({.threads = 2});
     for (std::size_t c = 0; c < summary_table().size(); ++c)
         for (std::size_t i = 0; i < order.size(); ++i)
-            BOOST_TEST(same(shuffled[c * order.size() + i], table[c * order.size() + order[i]]),
-                       summary_table()[c].name << " in run " << order[i]);
+            CHECK(same(shuffled[c * order.size() + i], table[c * order.size() + order[i]]),
+                  summary_table()[c].name << " in run " << order[i]);
 }
 
 // The table of runs, most of which end well; `contacts` where the wall is to be met by some of them.
@@ -90,8 +90,8 @@ std::vector<double> check(const Controlled& runs, bool contacts = true) {
     check_order(runs, table);
     int ended_well = 0;
     for (std::size_t i = 0; i < runs.count(); ++i) ended_well += int(runs.number(table, "outcome", i)) == ARM3R_RUN_OK;
-    BOOST_TEST(ended_well > 0.6 * run_count);
-    if (contacts) BOOST_TEST(runs.sum(table, "contacts") > 0.2 * run_count);
+    CHECK(ended_well > 0.6 * run_count);
+    if (contacts) CHECK(runs.sum(table, "contacts") > 0.2 * run_count);
     return table;
 }
 
@@ -170,9 +170,9 @@ const std::vector<Case>& laws() {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(every_law_that_computes_continuously) {
+TEST_CASE(every_law_that_computes_continuously) {
     for (const Case& law : laws()) {
-        BOOST_TEST_CONTEXT(law.name) {
+        CONTEXT(law.name) {
             Controlled runs(law.type);
             law.prepare(runs);
             check(runs);
@@ -180,10 +180,10 @@ BOOST_AUTO_TEST_CASE(every_law_that_computes_continuously) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(every_law_that_computes_at_samples) {
+TEST_CASE(every_law_that_computes_at_samples) {
     for (const char* method : {"rk4", "taylor"}) {
         for (const Case& law : laws()) {
-            BOOST_TEST_CONTEXT(law.name << " by " << method) {
+            CONTEXT(law.name << " by " << method) {
                 Controlled runs(law.type, method);
                 law.prepare(runs);
                 check(runs.sampled());
@@ -299,25 +299,25 @@ bool differs(const Controlled& runs, const std::vector<double>& a, const std::ve
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(every_sensor_and_reaction) {
+TEST_CASE(every_sensor_and_reaction) {
     for (const char* method : {"rk4", "taylor"}) {
         Controlled plain("hybrid", method);
         plain.controls_force().sampled();
         const std::vector<double> ideal = plain.together({.threads = 1, .lanes = 1});
         for (const Effect& effect : effects()) {
             if (!effect.by_taylor && std::string_view(method) == "taylor") continue;
-            BOOST_TEST_CONTEXT(effect.name << " by " << method) {
+            CONTEXT(effect.name << " by " << method) {
                 Controlled runs = plain;
                 effect.add(runs);
-                BOOST_TEST(differs(runs, check(runs), ideal) == effect.changes_the_motion);
+                CHECK(differs(runs, check(runs), ideal) == effect.changes_the_motion);
             }
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(all_of_it_at_once) {
+TEST_CASE(all_of_it_at_once) {
     for (const char* method : {"rk4", "taylor", "dopri5"}) {
-        BOOST_TEST_CONTEXT(method) {
+        CONTEXT(method) {
             const bool is_taylor = std::string_view(method) == "taylor";
             Controlled runs("hybrid", method);
             runs.controls_force().sampled();
@@ -326,45 +326,45 @@ BOOST_AUTO_TEST_CASE(all_of_it_at_once) {
             runs.set("solver.step", 0.0005).choose("observer.reaction", "retreat");
             runs.vary("observer.threshold[1]", 15, 30).set("observer.threshold", {20, 20, 20});
             const std::vector<double> table = check(runs);
-            if (!is_taylor) BOOST_TEST(runs.sum(table, "saturation_share") > 0);
+            if (!is_taylor) CHECK(runs.sum(table, "saturation_share") > 0);
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_virtual_wall_that_is_kept_passive) {
+TEST_CASE(a_virtual_wall_that_is_kept_passive) {
     for (const char* method : {"rk4", "taylor", "dopri5"}) {
-        BOOST_TEST_CONTEXT(method) {
+        CONTEXT(method) {
             Controlled runs("virtual_wall", method);
             runs.sampled().set("controller.plane_point", {1.11, 0, 0}).vary("controller.plane_point[0]", 1.09, 1.11);
             runs.vary("controller.stiffness[0]", 5e3, 3e4).set("wall.point[0]", 2).set("initial.qd", {0.1, -0.4, 0.3});
             const std::vector<double> let_go = check(runs, false);
             runs.set("controller.passivity_control", 1);
-            BOOST_TEST(differs(runs, check(runs, false), let_go));
+            CHECK(differs(runs, check(runs, false), let_go));
         }
     }
 }
 
 // The assumed stiffness becomes the estimate: only in runs in contact, from an instant of each run's own.
-BOOST_AUTO_TEST_CASE(an_estimate_that_a_law_goes_by) {
+TEST_CASE(an_estimate_that_a_law_goes_by) {
     for (const char* method : {"rk4", "taylor", "dopri5"}) {
-        BOOST_TEST_CONTEXT(method) {
+        CONTEXT(method) {
             Controlled runs("adaptive_reference", method);
             runs.sampled().choose("controller.adaptation", "indirect").vary("controller.assumed_stiffness", 800, 1500);
             const std::vector<double> assumed = check(runs);
             runs.set("estimator", 1).vary("estimator.start", 0, 0.05).vary("estimator.largest_condition", 1e6, 1e9);
             const std::vector<double> table = check(runs);
-            BOOST_TEST(differs(runs, table, assumed));
+            CHECK(differs(runs, table, assumed));
             int told = 0;
             for (std::size_t i = 0; i < runs.count(); ++i) told += runs.number(table, "stiffness_estimate", i) > 0;
-            BOOST_TEST(told > 0.4 * run_count);
+            CHECK(told > 0.4 * run_count);
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_continuous_controller_with_bias_filter_observer_and_limits) {
+TEST_CASE(a_continuous_controller_with_bias_filter_observer_and_limits) {
     for (const char* saturation : {"clamp", "scale"}) {
         for (const char* anti_windup : {"none", "conditional", "back_calculation"}) {
-            BOOST_TEST_CONTEXT(saturation << ", " << anti_windup) {
+            CONTEXT(saturation << ", " << anti_windup) {
                 Controlled runs("parallel");
                 runs.controls_force().vary("sensors.force.bias[1]", 0.1, 0.4);
                 runs.vary("sensors.force.analog_cutoff", 30, 90)
@@ -373,13 +373,13 @@ BOOST_AUTO_TEST_CASE(a_continuous_controller_with_bias_filter_observer_and_limit
                     .vary("observer.gain[0]", 30, 80);
                 runs.choose("controller.saturation", saturation).choose("controller.anti_windup", anti_windup);
                 runs.set("arm.torque_limit", {6, 17, 5}).vary("arm.torque_limit[1]", 15, 18);
-                BOOST_TEST(runs.sum(check(runs), "saturation_share") > 0);
+                CHECK(runs.sum(check(runs), "saturation_share") > 0);
             }
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(walls_that_damp_rub_and_turn) {
+TEST_CASE(walls_that_damp_rub_and_turn) {
     const auto kelvin_voigt = [](Controlled& runs) {
         runs.choose("wall.contact.law", "kelvin_voigt").vary("wall.contact.damping", 1, 9);
     };
@@ -406,8 +406,7 @@ BOOST_AUTO_TEST_CASE(walls_that_damp_rub_and_turn) {
             };
             for (const char* method : {"rk4", "dopri5"}) {
                 for (int wall = 0; wall < 4; ++wall) {
-                    BOOST_TEST_CONTEXT(type << (is_sampled ? " at samples" : "") << " by " << method << ", wall "
-                                            << wall) {
+                    CONTEXT(type << (is_sampled ? " at samples" : "") << " by " << method << ", wall " << wall) {
                         Controlled runs = prepared(method);
                         if (wall == 0) kelvin_voigt(runs);
                         if (wall == 1) hunt_crossley(runs);
@@ -421,10 +420,10 @@ BOOST_AUTO_TEST_CASE(walls_that_damp_rub_and_turn) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_push_from_outside) {
+TEST_CASE(a_push_from_outside) {
     for (const char* type : {"gravity_compensation", "impedance"}) {
         for (const char* method : {"rk4", "dopri5"}) {
-            BOOST_TEST_CONTEXT(type << " by " << method) {
+            CONTEXT(type << " by " << method) {
                 Controlled runs(type, method);
                 runs.set("push", 1).set("push.force", {5, -3, 2}).vary("push.force[0]", 3, 9);
                 runs.vary("push.start", 0.02, 0.1).vary("push.rise", 0.01, 0.05).vary("push.duration", 0.05, 0.3);
@@ -435,9 +434,9 @@ BOOST_AUTO_TEST_CASE(a_push_from_outside) {
 }
 
 // Structures of which lanes can hold only one at a time: runs of others wait for lanes of their own.
-BOOST_AUTO_TEST_CASE(runs_some_of_which_have_noise_delays_or_an_encoder) {
+TEST_CASE(runs_some_of_which_have_noise_delays_or_an_encoder) {
     for (const char* method : {"rk4", "taylor"}) {
-        BOOST_TEST_CONTEXT(method) {
+        CONTEXT(method) {
             Controlled runs("hybrid", method);
             runs.controls_force().sampled();
             const auto only = [&](const char* name, int every, double value) {
@@ -451,6 +450,6 @@ BOOST_AUTO_TEST_CASE(runs_some_of_which_have_noise_delays_or_an_encoder) {
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,15 +1,14 @@
-#include <Eigen/Dense>
-#include <boost/test/unit_test.hpp>
-
 #include "arm3r/model/dynamics.hpp"
 #include "arm3r/model/recursion.hpp"
 #include "arm3r/plant.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
+#include "linear_algebra.hpp"
 
 namespace arm3r {
 
 // Identities that hold for every arm, and derivatives by Dual.
-BOOST_AUTO_TEST_SUITE(dynamics)
+TEST_SUITE(dynamics)
 
 struct Case {
     Params params;
@@ -56,21 +55,21 @@ static Eigen::Matrix3d gradient(const Vec3<Dual<3>>& v) {
 
 // ---- kinematics
 
-BOOST_AUTO_TEST_CASE(jacobian_is_the_derivative_of_the_tip) {
+TEST_CASE(jacobian_is_the_derivative_of_the_tip) {
     for_random_cases(1, [](const Case& c) {
-        BOOST_TEST(close(gradient(tip_position(c.arm, pose(variables(c.q)))), jacobian(c.arm, c.p)));
+        CHECK(close(gradient(tip_position(c.arm, pose(variables(c.q)))), jacobian(c.arm, c.p)));
     });
 }
 
-BOOST_AUTO_TEST_CASE(jacobian_dot_is_the_derivative_of_the_jacobian) {
+TEST_CASE(jacobian_dot_is_the_derivative_of_the_jacobian) {
     for_random_cases(2, [](const Case& c) {
-        BOOST_TEST(close(linearization(jacobian(c.arm, pose(moving(c.q, c.qd)))), jacobian_dot(c.arm, c.p, c.qd)));
+        CHECK(close(linearization(jacobian(c.arm, pose(moving(c.q, c.qd)))), jacobian_dot(c.arm, c.p, c.qd)));
     });
 }
 
-BOOST_AUTO_TEST_CASE(tip_velocity_is_the_jacobian_times_the_rates) {
-    for_random_cases(
-        3, [](const Case& c) { BOOST_TEST(close(jacobian(c.arm, c.p) * c.qd, tip_velocity(c.arm, c.p, c.qd))); });
+TEST_CASE(tip_velocity_is_the_jacobian_times_the_rates) {
+    for_random_cases(3,
+                     [](const Case& c) { CHECK(close(jacobian(c.arm, c.p) * c.qd, tip_velocity(c.arm, c.p, c.qd))); });
 }
 
 static Mat3<Dual<1>> orientation(const Arm<double>& arm, const Vec3<double>& q, const Vec3<double>& qd, int body) {
@@ -86,22 +85,22 @@ static Vec3<double> angular_velocity(const Mat3<Dual<1>>& R) {  // of Rdot R^T =
     return {skew(2, 1), skew(0, 2), skew(1, 0)};
 }
 
-BOOST_AUTO_TEST_CASE(angular_jacobian_turns_link_3_as_the_rotation_matrices_do) {
+TEST_CASE(angular_jacobian_turns_link_3_as_the_rotation_matrices_do) {
     for_random_cases(4, [](const Case& c) {
-        BOOST_TEST(close(angular_velocity(orientation(c.arm, c.q, c.qd, 2)), angular_jacobian(c.p) * c.qd));
+        CHECK(close(angular_velocity(orientation(c.arm, c.q, c.qd, 2)), angular_jacobian(c.p) * c.qd));
     });
 }
 
-BOOST_AUTO_TEST_CASE(manipulability_is_the_determinant_and_the_inverse_inverts) {
+TEST_CASE(manipulability_is_the_determinant_and_the_inverse_inverts) {
     for_random_cases(5, [](const Case& c) {
         const Eigen::Matrix3d J = jacobian(c.arm, c.p);
-        BOOST_TEST(close(std::abs(J.determinant()), manipulability(c.arm, c.p)));
+        CHECK(close(std::abs(determinant(J)), manipulability(c.arm, c.p)));
         if (manipulability(c.arm, c.p) > 1e-3)
-            BOOST_TEST(close(Eigen::Matrix3d::Identity(), inverse_jacobian(c.arm, c.p) * J, 1e-11));
+            CHECK(close(Eigen::Matrix3d::Identity(), inverse_jacobian(c.arm, c.p) * J, 1e-11));
     });
 }
 
-BOOST_AUTO_TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) {
+TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) {
     for_random_cases(6, [](const Case& c) {
         const Vec3<double> tip = tip_position(c.arm, c.p);
         const double out = std::hypot(tip[0], tip[1]), up = tip[2] - c.arm.base_height;
@@ -112,47 +111,47 @@ BOOST_AUTO_TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) 
                 const Vec3<double> elbow = elbow_position(c.arm, pose(q));
                 const double elbow_out = (elbow[0] * tip[0] + elbow[1] * tip[1]) / out,
                              elbow_at = elbow[2] - c.arm.base_height;
-                BOOST_TEST(std::abs(cos_q3) <= 1 + 1e-14);
-                BOOST_TEST(close(tip, tip_position(c.arm, pose(q))));
-                BOOST_TEST((std::cos(q[0]) * tip[0] + std::sin(q[0]) * tip[1] > 0) == front);
-                BOOST_TEST((elbow_at * out - elbow_out * up > 0) == elbow_up);
+                CHECK(std::abs(cos_q3) <= 1 + 1e-14);
+                CHECK(close(tip, tip_position(c.arm, pose(q))));
+                CHECK((std::cos(q[0]) * tip[0] + std::sin(q[0]) * tip[1] > 0) == front);
+                CHECK((elbow_at * out - elbow_out * up > 0) == elbow_up);
                 came_back |= distance((q - c.q).array().sin(), Vec3<double>(0, 0, 0)) < 1e-7 &&
                              distance((q - c.q).array().cos(), Vec3<double>(1, 1, 1)) < 1e-7;
             }
         }
-        BOOST_TEST(came_back);
+        CHECK(came_back);
     });
 }
 
-BOOST_AUTO_TEST_CASE(inverse_kinematics_distinguishes_points_out_of_reach) {
+TEST_CASE(inverse_kinematics_distinguishes_points_out_of_reach) {
     for_random_cases(7, [](const Case& c) {
         const double a2 = c.arm.link2.length, a3 = c.arm.link3.length;
         const Vec3<double> shoulder(0, 0, c.arm.base_height), direction = c.f.normalized();
         const auto cosine_at = [&](double reach) {
             return inverse_kinematics(c.arm, Vec3<double>(shoulder + reach * direction), true, true).cos_q3;
         };
-        BOOST_TEST(cosine_at((a2 + a3) * (1 + 1e-9)) > 1);
-        BOOST_TEST(std::abs(cosine_at((a2 + a3) * (1 - 1e-9))) < 1);
-        BOOST_TEST(cosine_at(std::abs(a2 - a3) * (1 - 1e-9)) < -1);
-        BOOST_TEST(std::abs(cosine_at(std::abs(a2 - a3) * (1 + 1e-9))) < 1);
+        CHECK(cosine_at((a2 + a3) * (1 + 1e-9)) > 1);
+        CHECK(std::abs(cosine_at((a2 + a3) * (1 - 1e-9))) < 1);
+        CHECK(cosine_at(std::abs(a2 - a3) * (1 - 1e-9)) < -1);
+        CHECK(std::abs(cosine_at(std::abs(a2 - a3) * (1 + 1e-9))) < 1);
     });
 }
 
 // ---- dynamics
 
-BOOST_AUTO_TEST_CASE(the_rate_of_M_is_C_plus_its_transpose) {
+TEST_CASE(the_rate_of_M_is_C_plus_its_transpose) {
     for_random_cases(8, [](const Case& c) {
         const Eigen::Matrix3d Mdot = linearization(mass_matrix(c.arm, pose(moving(c.q, c.qd))));
         const Eigen::Matrix3d C = coriolis_matrix(c.arm, c.p, c.qd);
         const Eigen::Matrix3d N = Mdot - 2 * C;
-        BOOST_TEST(close(Mdot, C + C.transpose()));
-        BOOST_TEST(close(N, -N.transpose()));
-        BOOST_TEST(close(C * c.qd, velocity_product(c.arm, c.p, c.qd)));
+        CHECK(close(Mdot, C + C.transpose()));
+        CHECK(close(N, -N.transpose()));
+        CHECK(close(C * c.qd, velocity_product(c.arm, c.p, c.qd)));
     });
 }
 
 // Christoffel symbols from the derivatives of M: of all C with the same C qd, this one.
-BOOST_AUTO_TEST_CASE(C_is_made_of_christoffel_symbols) {
+TEST_CASE(C_is_made_of_christoffel_symbols) {
     for_random_cases(9, [](const Case& c) {
         const Mat3<Dual<3>> M = mass_matrix(c.arm, pose(variables(c.q)));
         Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
@@ -160,19 +159,19 @@ BOOST_AUTO_TEST_CASE(C_is_made_of_christoffel_symbols) {
             for (int j = 0; j < 3; ++j)
                 for (int k = 0; k < 3; ++k)
                     C(i, j) += 0.5 * (M(i, j).slope[k] + M(i, k).slope[j] - M(j, k).slope[i]) * c.qd[k];
-        BOOST_TEST(close(C, coriolis_matrix(c.arm, c.p, c.qd)));
+        CHECK(close(C, coriolis_matrix(c.arm, c.p, c.qd)));
     });
 }
 
-BOOST_AUTO_TEST_CASE(gravity_torque_is_the_derivative_of_the_potential_energy) {
+TEST_CASE(gravity_torque_is_the_derivative_of_the_potential_energy) {
     for_random_cases(10, [](const Case& c) {
         const Dual<3> U = potential_energy(c.arm, pose(variables(c.q)));
-        BOOST_TEST(close(Vec3<double>(U.slope.data()), gravity_torque(c.arm, c.p)));
+        CHECK(close(Vec3<double>(U.slope.data()), gravity_torque(c.arm, c.p)));
     });
 }
 
 // Both energies once more, summed over bodies: link 3 and the payload apart.
-BOOST_AUTO_TEST_CASE(energies_are_the_sums_over_bodies) {
+TEST_CASE(energies_are_the_sums_over_bodies) {
     Random random(11);
     for (int i = 0; i < 1000; ++i) {
         Case c(random);
@@ -194,13 +193,13 @@ BOOST_AUTO_TEST_CASE(energies_are_the_sums_over_bodies) {
         }
         add_point(payload, 2, {Dual<1>(bare.link3.length), Dual<1>(0.0), Dual<1>(0.0)});
         for (int k = 0; k < 3; ++k) kinetic += 0.5 * bare.armature[k] * c.qd[k] * c.qd[k];
-        BOOST_TEST(close(kinetic, kinetic_energy(c.arm, c.p, c.qd)));
-        BOOST_TEST(close(potential, potential_energy(c.arm, c.p)));
+        CHECK(close(kinetic, kinetic_energy(c.arm, c.p, c.qd)));
+        CHECK(close(potential, potential_energy(c.arm, c.p)));
     }
 }
 
 // A point mass pushes back on the tip with its inertia and its weight.
-BOOST_AUTO_TEST_CASE(payload_is_a_force_on_the_bare_arm) {
+TEST_CASE(payload_is_a_force_on_the_bare_arm) {
     Random random(12);
     for (int i = 0; i < 1000; ++i) {
         Case c(random);
@@ -209,42 +208,42 @@ BOOST_AUTO_TEST_CASE(payload_is_a_force_on_the_bare_arm) {
         const Vec3<double> qdd = c.tau;
         const Vec3<double> acceleration = jacobian(bare, c.p) * qdd + jacobian_dot(bare, c.p, c.qd) * c.qd;
         const Vec3<double> push = c.f - payload * (acceleration - bare.gravity);
-        BOOST_TEST(close(recursion_inverse_dynamics(bare, c.q, c.qd, qdd, push),
-                         inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f)));
+        CHECK(close(recursion_inverse_dynamics(bare, c.q, c.qd, qdd, push),
+                    inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f)));
     }
 }
 
-BOOST_AUTO_TEST_CASE(forward_dynamics_inverts_inverse_dynamics) {
+TEST_CASE(forward_dynamics_inverts_inverse_dynamics) {
     for_random_cases(13, [](const Case& c) {
         const Vec3<double> qdd = forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f);
-        BOOST_TEST(close(c.tau, inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f), 1e-11));
+        CHECK(close(c.tau, inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f), 1e-11));
     });
 }
 
-BOOST_AUTO_TEST_CASE(energy_changes_by_what_flows_in) {
+TEST_CASE(energy_changes_by_what_flows_in) {
     for_random_cases(14, [](const Case& c) {
         const Vec3<double> qdd = forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f);
         const Pose<Dual<1>> p = pose(moving(c.q, c.qd));
         const double rate = (kinetic_energy(c.arm, p, moving(c.qd, qdd)) + potential_energy(c.arm, p)).slope[0];
         const double in =
             dot(c.qd, c.tau) + dot(tip_velocity(c.arm, c.p, c.qd), c.f) - dot(c.qd, friction_torque(c.arm, c.qd));
-        BOOST_TEST(std::abs(rate - in) <= 1e-10 * (1 + std::abs(in)));
+        CHECK(std::abs(rate - in) <= 1e-10 * (1 + std::abs(in)));
     });
 }
 
-BOOST_AUTO_TEST_CASE(friction_always_takes_energy) {
+TEST_CASE(friction_always_takes_energy) {
     for_random_cases(15, [](const Case& c) {
         const Vec3<double> tau_f = friction_torque(c.arm, c.qd);
         for (int i = 0; i < 3; ++i) {
-            BOOST_TEST(tau_f[i] * c.qd[i] > 0);
-            BOOST_TEST(close(tau_f[i], c.arm.damping[i] * c.qd[i] +
-                                           c.arm.friction[i] * std::tanh(c.qd[i] / c.arm.friction_velocity)));
+            CHECK(tau_f[i] * c.qd[i] > 0);
+            CHECK(close(tau_f[i],
+                        c.arm.damping[i] * c.qd[i] + c.arm.friction[i] * std::tanh(c.qd[i] / c.arm.friction_velocity)));
         }
     });
 }
 
 // Plant and controller each with a gravity of its own, upright or oblique.
-BOOST_AUTO_TEST_CASE(the_equation_of_motion_takes_any_gravity) {
+TEST_CASE(the_equation_of_motion_takes_any_gravity) {
     Random random(18);
     const Vec3<double> upright(0, 0, -9), oblique(2, -3, -7);
     for (const auto& [feels, compensates] : {std::pair(upright, oblique), std::pair(oblique, upright)}) {
@@ -258,14 +257,14 @@ BOOST_AUTO_TEST_CASE(the_equation_of_motion_takes_any_gravity) {
             rhs.begin_step(y);
             rhs(0.0, y, dy);
             const Vec3<double> tau = recursion_gravity_torque(plant.controller.model, c.q);
-            BOOST_TEST(close(recursion_forward_dynamics(plant.arm, c.q, c.qd, tau, Vec3<double>(0, 0, 0)),
-                             Vec3<double>(dy[3], dy[4], dy[5]), 1e-11));
+            CHECK(close(recursion_forward_dynamics(plant.arm, c.q, c.qd, tau, Vec3<double>(0, 0, 0)),
+                        Vec3<double>(dy[3], dy[4], dy[5]), 1e-11));
         }
     }
 }
 
 // What a plant of common terms is computed by gives the numbers of the formulas for every plant.
-BOOST_AUTO_TEST_CASE(common_terms_are_the_terms_of_every_plant) {
+TEST_CASE(common_terms_are_the_terms_of_every_plant) {
     Random random(19);
     int pressed = 0;
     for (const std::string controller : {"none", "gravity_compensation", "constant"}) {
@@ -276,7 +275,7 @@ BOOST_AUTO_TEST_CASE(common_terms_are_the_terms_of_every_plant) {
             params.set("wall", 1).set("wall.acts_on_arm", i % 3 != 0).set("controller.torque", random.vector(-20, 20));
             params.choose("controller.type", controller).set("arm.payload.mass", random.in(0, 2));
             const Plant<double> plant = make_setup(params).plant;
-            BOOST_TEST_REQUIRE(has_common_terms(plant));
+            REQUIRE(has_common_terms(plant));
             RightHandSide<double, double> rhs(plant);
             rhs.force_mode = plant.acts_on_arm ? ContactForceMode::each_stage : ContactForceMode::none;
             const State<double, state_size> y{q[0], q[1], q[2], qd[0], qd[1], qd[2]};
@@ -286,36 +285,36 @@ BOOST_AUTO_TEST_CASE(common_terms_are_the_terms_of_every_plant) {
             rhs(t, y, every);
             Vec3<double> tau;
             rhs.derivative_at<Terms::common>(t, y, common, tau);
-            for (std::size_t j = 0; j < state_size; ++j) BOOST_TEST(every[j] == common[j]);
+            for (std::size_t j = 0; j < state_size; ++j) CHECK(every[j] == common[j]);
             pressed += every[work_of_wall] != 0;
         }
     }
-    BOOST_TEST(pressed > 10);
+    CHECK(pressed > 10);
 }
 
 // ---- seen from the tip
 
-BOOST_AUTO_TEST_CASE(a_force_on_the_tip_accelerates_it_by_the_mobility) {
+TEST_CASE(a_force_on_the_tip_accelerates_it_by_the_mobility) {
     for_random_cases(16, [](const Case& c) {
         const auto acceleration = [&](const Vec3<double>& f) -> Vec3<double> {
             return jacobian(c.arm, c.p) * forward_dynamics(c.arm, c.p, c.qd, c.tau, f);
         };
         const Eigen::Vector3d gained = acceleration(c.f) - acceleration({0, 0, 0});
-        BOOST_TEST(close(gained, tip_mobility(c.arm, c.p) * c.f, 1e-11));
+        CHECK(close(gained, tip_mobility(c.arm, c.p) * c.f, 1e-11));
     });
 }
 
-BOOST_AUTO_TEST_CASE(operational_space_inertia_inverts_the_mobility) {
+TEST_CASE(operational_space_inertia_inverts_the_mobility) {
     for_random_cases(17, [](const Case& c) {
         if (manipulability(c.arm, c.p) < 1e-2) return;
         const Eigen::Matrix3d W = tip_mobility(c.arm, c.p), L = operational_space_inertia(c.arm, c.p);
         const Vec3<double> n = c.f.normalized();
-        BOOST_TEST(close(Eigen::Matrix3d::Identity(), L * W, 1e-9));
-        BOOST_TEST(close(L, L.transpose()));
-        BOOST_TEST(close(1 / n.dot(W * n), effective_mass(c.arm, c.p, n)));
+        CHECK(close(Eigen::Matrix3d::Identity(), L * W, 1e-9));
+        CHECK(close(L, L.transpose()));
+        CHECK(close(1 / n.dot(W * n), effective_mass(c.arm, c.p, n)));
     });
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,12 +1,12 @@
 #include <bit>
-#include <boost/test/unit_test.hpp>
 #include <random>
 
 #include "arm3r/numbers/eigen_traits.hpp"
+#include "check.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(expr)
+TEST_SUITE(expr)
 
 // Every operation that can be recorded.
 template <class T>
@@ -31,74 +31,76 @@ struct Recording {
 
 static bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-BOOST_FIXTURE_TEST_CASE(plays_back_to_the_bits_of_the_formula_itself, Recording) {
+TEST_CASE(plays_back_to_the_bits_of_the_formula_itself) {
+    const Recording recording;
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(-3.0, 3.0);
     for (int i = 0; i < 2000; ++i) {
         Pack<4> in[2], out[3];
         for (int lane = 0; lane < 4; ++lane)
             for (Pack<4>& x : in) x.set(lane, unit(random));
-        tape.play<Pack<4>>(in, out);
+        recording.tape.play<Pack<4>>(in, out);
         for (int lane = 0; lane < 4; ++lane) {
             const double numbers[] = {in[0][lane], in[1][lane]};
             double played[3];
-            tape.play<double>(numbers, played);
+            recording.tape.play<double>(numbers, played);
             const auto direct = formula(numbers[0], numbers[1]);
             for (int k = 0; k < 3; ++k)
-                BOOST_REQUIRE(same_bits(played[k], direct[k]) && same_bits(out[k][lane], direct[k]));
+                REQUIRE((same_bits(played[k], direct[k]) && same_bits(out[k][lane], direct[k])));
         }
     }
 }
 
-BOOST_FIXTURE_TEST_CASE(plays_with_derivatives, Recording) {
+TEST_CASE(plays_with_derivatives) {
+    const Recording recording;
     const Dual<2> in[] = {Dual<2>::variable(0.3, 0), Dual<2>::variable(0.7, 1)};
     Dual<2> out[3];
-    tape.play<Dual<2>>(in, out);
+    recording.tape.play<Dual<2>>(in, out);
     const auto direct = formula(in[0], in[1]);
-    for (int k = 0; k < 3; ++k) BOOST_TEST(out[k].slope == direct[k].slope);
+    for (int k = 0; k < 3; ++k) CHECK(out[k].slope == direct[k].slope);
 }
 
-BOOST_AUTO_TEST_CASE(an_equal_expression_is_recorded_once) {
+TEST_CASE(an_equal_expression_is_recorded_once) {
     Tape tape;
     const Expr x = tape.input(), y = tape.input();
     tape.output((x + y) * (x + y));
-    BOOST_TEST(tape.count(Op::input) == 2);
-    BOOST_TEST(tape.count(Op::add) == 1);
-    BOOST_TEST(tape.count(Op::multiply) == 1);
-    BOOST_TEST(tape.nodes().size() == 4u);
+    CHECK(tape.count(Op::input) == 2);
+    CHECK(tape.count(Op::add) == 1);
+    CHECK(tape.count(Op::multiply) == 1);
+    CHECK(tape.nodes().size() == 4u);
 }
 
-BOOST_AUTO_TEST_CASE(constants_are_computed_at_once_and_signed_zeros_kept_apart) {
+TEST_CASE(constants_are_computed_at_once_and_signed_zeros_kept_apart) {
     Tape tape;
     const Expr x = tape.input();
     tape.output(x + sqrt(Expr(4.0)) * 3.0);
     tape.output(copysign(x, 0.0));
     tape.output(copysign(x, -0.0));
-    BOOST_TEST(tape.count(Op::sqrt) == 0);
-    BOOST_TEST(tape.count(Op::constant) == 3);
+    CHECK(tape.count(Op::sqrt) == 0);
+    CHECK(tape.count(Op::constant) == 3);
     double out[3];
     tape.play<double>(std::array{1.0}, out);
-    BOOST_TEST(out[0] == 7.0);
-    BOOST_TEST(out[1] == 1.0);
-    BOOST_TEST(out[2] == -1.0);
+    CHECK(out[0] == 7.0);
+    CHECK(out[1] == 1.0);
+    CHECK(out[2] == -1.0);
 }
 
-BOOST_AUTO_TEST_CASE(sincos_near_records_the_full_sine) {
+TEST_CASE(sincos_near_records_the_full_sine) {
     Tape tape;
     const Expr x = tape.input();
     tape.output(sincos_near(Expr(x - 0.01), sincos(Expr(x - 0.01)), x).sin);
     double out[1];
     tape.play<double>(std::array{0.4}, out);
-    BOOST_TEST(out[0] == sincos(0.4).sin);
+    CHECK(out[0] == sincos(0.4).sin);
 }
 
-BOOST_AUTO_TEST_CASE(wrong_use_is_refused) {
+TEST_CASE(wrong_use_is_refused) {
     Tape one, other;
-    BOOST_CHECK_THROW(one.input() + other.input(), std::invalid_argument);
+    CHECK_THROWS(one.input() + other.input(), std::invalid_argument);
     double none[1];
-    BOOST_CHECK_THROW(one.play<double>({}, none), std::invalid_argument);
+    CHECK_THROWS(one.play<double>({}, none), std::invalid_argument);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

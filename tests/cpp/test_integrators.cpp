@@ -1,11 +1,11 @@
-#include <boost/test/unit_test.hpp>
 
 #include "arm3r/plant.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(integrators)
+TEST_SUITE(integrators)
 
 using Scalar = State<double, 1>;
 
@@ -67,10 +67,10 @@ static double order_on_the_scalar() {
     return order(errors);
 }
 
-BOOST_AUTO_TEST_CASE(order_on_a_scalar_of_known_solution) {
+TEST_CASE(order_on_a_scalar_of_known_solution) {
     const double rk4 = order_on_the_scalar<Rk4>(), dopri5 = order_on_the_scalar<Dp5>();
-    BOOST_TEST(std::abs(rk4 - 4) <= 0.1, "rk4: " << rk4);
-    BOOST_TEST(std::abs(dopri5 - 5) <= 0.1, "dopri5: " << dopri5);
+    CHECK(std::abs(rk4 - 4) <= 0.1, "rk4: " << rk4);
+    CHECK(std::abs(dopri5 - 5) <= 0.1, "dopri5: " << dopri5);
 }
 
 // Largest error within one step that starts on the solution: one order above that of the interpolant.
@@ -90,27 +90,27 @@ static double order_within_a_step() {
     return order(errors);
 }
 
-BOOST_AUTO_TEST_CASE(the_solution_within_a_step_is_of_order_3_for_rk4_and_4_for_dopri5) {
+TEST_CASE(the_solution_within_a_step_is_of_order_3_for_rk4_and_4_for_dopri5) {
     const double rk4 = order_within_a_step<Rk4>(), dopri5 = order_within_a_step<Dp5>();
-    BOOST_TEST(std::abs(rk4 - 4) <= 0.1, "rk4: " << rk4);
-    BOOST_TEST(std::abs(dopri5 - 5) <= 0.1, "dopri5: " << dopri5);
+    CHECK(std::abs(rk4 - 4) <= 0.1, "rk4: " << rk4);
+    CHECK(std::abs(dopri5 - 5) <= 0.1, "dopri5: " << dopri5);
 }
 
-BOOST_AUTO_TEST_CASE(the_solution_within_a_step_meets_both_its_ends_and_their_slopes) {
+TEST_CASE(the_solution_within_a_step_meets_both_its_ends_and_their_slopes) {
     Swell f;
     const double t = 0.7, h = 0.1, d = 1e-6;
     const auto check = [&](const auto& result) {
         const auto& [y1, dense] = result;
-        BOOST_TEST(dense(0.0)[0] == Swell::exact(t));
-        BOOST_TEST(std::abs(dense(1.0)[0] - y1[0]) <= 1e-15);
-        BOOST_TEST(std::abs((dense(d)[0] - dense(-d)[0]) / (2 * d * h) - Swell::exact(t) * std::cos(t)) <= 1e-8);
-        BOOST_TEST(std::abs((dense(1 + d)[0] - dense(1 - d)[0]) / (2 * d * h) - y1[0] * std::cos(t + h)) <= 1e-8);
+        CHECK(dense(0.0)[0] == Swell::exact(t));
+        CHECK(std::abs(dense(1.0)[0] - y1[0]) <= 1e-15);
+        CHECK(std::abs((dense(d)[0] - dense(-d)[0]) / (2 * d * h) - Swell::exact(t) * std::cos(t)) <= 1e-8);
+        CHECK(std::abs((dense(1 + d)[0] - dense(1 - d)[0]) / (2 * d * h) - y1[0] * std::cos(t + h)) <= 1e-8);
     };
     check(Rk4::step(f, t, Scalar{Swell::exact(t)}, h));
     check(Dp5::step(f, t, Scalar{Swell::exact(t)}, h));
 }
 
-BOOST_AUTO_TEST_CASE(the_error_estimate_is_of_order_5_and_counts_the_motion_alone) {
+TEST_CASE(the_error_estimate_is_of_order_5_and_counts_the_motion_alone) {
     std::vector<double> estimates;
     for (double h = 0.2; h > 0.02; h /= 2) {
         Swell f;
@@ -120,25 +120,25 @@ BOOST_AUTO_TEST_CASE(the_error_estimate_is_of_order_5_and_counts_the_motion_alon
         stepper.step(f, 0.3, {Swell::exact(0.3)}, f0, h);
         estimates.push_back(stepper.error({Swell::exact(0.3)}, h, 0.0, 1.0));
     }
-    BOOST_TEST(std::abs(order(estimates) - 5) <= 0.1, "estimate: " << order(estimates));
+    CHECK(std::abs(order(estimates) - 5) <= 0.1, "estimate: " << order(estimates));
 
     const auto rough_book = [](double t, const State<double, 2>& y, State<double, 2>& dy) {
         dy = {y[0], 1e9 * std::sin(1e3 * t)};
     };
     Dopri5<double, 2, 1> stepper;
     stepper.step(rough_book, 0.0, {1.0, 0.0}, {1.0, 0.0}, 0.01);
-    BOOST_TEST(stepper.error({1.0, 0.0}, 0.01, 1e-6, 1e-6) < 1);
+    CHECK(stepper.error({1.0, 0.0}, 0.01, 1e-6, 1e-6) < 1);
 }
 
 // The larger value at the two ends of a step sets the tolerance.
-BOOST_AUTO_TEST_CASE(the_tolerance_is_that_of_the_larger_end) {
+TEST_CASE(the_tolerance_is_that_of_the_larger_end) {
     Dopri5<double, 1, 1> stepper;
     stepper.k = {Scalar{1.0}};
     stepper.f1 = {0.0};
     for (const auto& [y, y1] : {std::pair(1e-6, -4.0), std::pair(-4.0, 1e-6)}) {
         stepper.y1 = {y1};
         const double tolerance = 1e-3 + 1e-2 * 4;
-        BOOST_TEST(std::abs(stepper.error({y}, 0.1, 1e-2, 1e-3) / (0.1 * 71 / 57600 / tolerance) - 1) <= 1e-14);
+        CHECK(std::abs(stepper.error({y}, 0.1, 1e-2, 1e-3) / (0.1 * 71 / 57600 / tolerance) - 1) <= 1e-14);
     }
 }
 
@@ -172,24 +172,24 @@ static double observed_order(int coarsest) {
     return order(errors);
 }
 
-BOOST_AUTO_TEST_CASE(order_on_the_arm) {
+TEST_CASE(order_on_the_arm) {
     const double rk4 = observed_order<Rk4>(200), dopri5 = observed_order<Dp5>(60);
-    BOOST_TEST(std::abs(rk4 - 4) <= 0.1, "rk4: " << rk4);
-    BOOST_TEST(std::abs(dopri5 - 5) <= 0.1, "dopri5: " << dopri5);
+    CHECK(std::abs(rk4 - 4) <= 0.1, "rk4: " << rk4);
+    CHECK(std::abs(dopri5 - 5) <= 0.1, "dopri5: " << dopri5);
 }
 
 // ---- step control
 
-BOOST_AUTO_TEST_CASE(the_next_step_follows_the_fifth_root_of_the_error_between_its_bounds) {
+TEST_CASE(the_next_step_follows_the_fifth_root_of_the_error_between_its_bounds) {
     for (const double error : {1e-4, 1e-2, 0.3, 1.0, 7.0, 1000.0})
-        BOOST_TEST(std::abs(step_factor(error) - 0.9 / std::pow(error, 0.2)) <= 1e-14);
-    BOOST_TEST(step_factor(0.0) == 10);
-    BOOST_TEST(step_factor(1e-300) == 10);
-    BOOST_TEST(step_factor(1e9) == 0.2);
-    BOOST_TEST(step_factor(HUGE_VAL) == 0.2);
+        CHECK(std::abs(step_factor(error) - 0.9 / std::pow(error, 0.2)) <= 1e-14);
+    CHECK(step_factor(0.0) == 10);
+    CHECK(step_factor(1e-300) == 10);
+    CHECK(step_factor(1e9) == 0.2);
+    CHECK(step_factor(HUGE_VAL) == 0.2);
 }
 
-BOOST_AUTO_TEST_CASE(a_tolerance_a_hundred_thousand_times_finer_takes_ten_times_the_steps) {
+TEST_CASE(a_tolerance_a_hundred_thousand_times_finer_takes_ten_times_the_steps) {
     const auto steps = [](double rtol) {
         const Run run = unequal_params()
                             .set("solver.rtol", rtol)
@@ -197,23 +197,23 @@ BOOST_AUTO_TEST_CASE(a_tolerance_a_hundred_thousand_times_finer_takes_ten_times_
                             .set("time.stop", 5)
                             .set("arm.link1.inertia_axial", 0.3)
                             .run();
-        BOOST_TEST(run.steps.rejected < run.steps.accepted / 3);
-        BOOST_TEST(run.steps.evaluations == 2 + 6 * (run.steps.accepted + run.steps.rejected));
+        CHECK(run.steps.rejected < run.steps.accepted / 3);
+        CHECK(run.steps.evaluations == 2 + 6 * (run.steps.accepted + run.steps.rejected));
         return double(run.steps.accepted);
     };
     const double ratio = steps(1e-12) / steps(1e-7);
-    BOOST_TEST(std::abs(ratio - 10) <= 1, ratio);
+    CHECK(std::abs(ratio - 10) <= 1, ratio);
 }
 
 // Stiff friction rejects steps in a row: one that is rejected must not grow again at once.
-BOOST_AUTO_TEST_CASE(a_step_does_not_grow_right_after_a_rejected_one) {
+TEST_CASE(a_step_does_not_grow_right_after_a_rejected_one) {
     Params params = unequal_params().set("initial.qd", {0.5, -0.4, 0.3}).set("arm.link1.inertia_axial", 0.3);
     params.set("arm.friction", {0.5, 0.4, 0.3}).set("arm.friction_velocity", 0.01).set("solver.rtol", 1e-6);
     const Run run = params.set("time.stop", 5).run();
-    BOOST_TEST(run.steps.rejected > run.steps.accepted / 5);
-    BOOST_TEST(run.steps.rejected < run.steps.accepted / 3);
+    CHECK(run.steps.rejected > run.steps.accepted / 5);
+    CHECK(run.steps.rejected < run.steps.accepted / 3);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,12 +1,12 @@
-#include <boost/test/unit_test.hpp>
 #include <numbers>
 
+#include "check.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {
 
 // Three methods, one motion: series and fixed steps against Dormand and Prince, which looks for contact another way.
-BOOST_AUTO_TEST_SUITE(marching)
+TEST_SUITE(marching)
 
 static Params tight(Params params, std::string_view method) {
     params.choose("solver.method", method);
@@ -34,44 +34,43 @@ static Params any_contact(Random& random) {
 
 static bool is_valid(const Params& params) { return problems_of(params).empty(); }
 
-BOOST_AUTO_TEST_CASE(series_find_the_contacts_forces_and_rows_that_dopri5_finds) {
+TEST_CASE(series_find_the_contacts_forces_and_rows_that_dopri5_finds) {
     Random random(41);
     std::size_t events = 0;
     for (int n = 0; n < 400; ++n) {
         const Params params = any_contact(random);
         if (!is_valid(params)) continue;
         const Run truth = tight(params, "dopri5").run(), series = tight(params, "taylor").run();
-        BOOST_REQUIRE_MESSAGE(series.outcome == truth.outcome,
-                              n << ": " << series.message << " against " << truth.message);
-        BOOST_REQUIRE(series.events.size() == truth.events.size());
+        REQUIRE(series.outcome == truth.outcome, n << ": " << series.message << " against " << truth.message);
+        REQUIRE(series.events.size() == truth.events.size());
         events += truth.events.size();
         for (std::size_t i = 0; i < truth.events.size(); ++i) {
-            BOOST_TEST(series.events[i].type == truth.events[i].type);
-            BOOST_TEST(std::abs(series.events[i].t - truth.events[i].t) < 1e-8);
+            CHECK(series.events[i].type == truth.events[i].type);
+            CHECK(std::abs(series.events[i].t - truth.events[i].t) < 1e-8);
         }
-        BOOST_TEST(std::abs(series.impulse - truth.impulse) <= 1e-7 * (1 + truth.impulse));
-        BOOST_TEST(std::abs(series.peak_force - truth.peak_force) <= 1e-7 * (1 + truth.peak_force));
-        BOOST_TEST(std::abs(series.contact_time - truth.contact_time) <= 1e-8);
-        BOOST_TEST(std::abs(series.final_force - truth.final_force) <= 1e-6 * (1 + truth.peak_force));
+        CHECK(std::abs(series.impulse - truth.impulse) <= 1e-7 * (1 + truth.impulse));
+        CHECK(std::abs(series.peak_force - truth.peak_force) <= 1e-7 * (1 + truth.peak_force));
+        CHECK(std::abs(series.contact_time - truth.contact_time) <= 1e-8);
+        CHECK(std::abs(series.final_force - truth.final_force) <= 1e-6 * (1 + truth.peak_force));
         for (const char* name : {"q1", "q2", "q3", "tip_dvx", "energy_dissipated", "work_wall"})
             for (std::size_t row = 0; row < truth.rows; ++row)
-                BOOST_TEST(std::abs(column(series, name)[row] - column(truth, name)[row]) <= 1e-5, name);
+                CHECK(std::abs(column(series, name)[row] - column(truth, name)[row]) <= 1e-5, name);
     }
-    BOOST_TEST(events > 20);
+    CHECK(events > 20);
 }
 
 // Far from rest the torque of dry friction looks constant: its turning over, where a joint stops, must not be jumped.
-BOOST_AUTO_TEST_CASE(series_see_a_joint_stop_in_dry_friction) {
+TEST_CASE(series_see_a_joint_stop_in_dry_friction) {
     Params params;
     params.choose("controller.type", "gravity_compensation").set("arm.friction", {0.1, 0.1, 0.1}).set("wall", 1);
     params.set("wall.point", {1.78, 0, 0}).set("wall.acts_on_arm", 1).set("time.stop", 2.5);
     const Run truth = tight(params, "dopri5").set("solver.rtol", 1e-11).run(), exact = tight(params, "taylor").run(),
               usual = tight(params, "taylor").set("solver.tol", 1e-9).run();
-    BOOST_REQUIRE(truth.events.size() == 11);
+    REQUIRE(truth.events.size() == 11);
     for (const Run* run : {&exact, &usual}) {
-        BOOST_REQUIRE(run->events.size() == 11);
-        for (int i = 0; i < 3; ++i) BOOST_TEST(std::abs(run->q[i] - truth.q[i]) < 1e-7);
-        BOOST_TEST(std::abs(run->peak_force - truth.peak_force) < 1e-7);
+        REQUIRE(run->events.size() == 11);
+        for (int i = 0; i < 3; ++i) CHECK(std::abs(run->q[i] - truth.q[i]) < 1e-7);
+        CHECK(std::abs(run->peak_force - truth.peak_force) < 1e-7);
     }
 }
 
@@ -84,61 +83,61 @@ static Params swinging_wall(double past) {
     return params.set("wall.motion.frequency", 0.5).set("time.stop", 1.9);
 }
 
-BOOST_AUTO_TEST_CASE(grazing_contact_is_found_where_it_is_deeper_than_rounding_and_not_made_up) {
+TEST_CASE(grazing_contact_is_found_where_it_is_deeper_than_rounding_and_not_made_up) {
     for (const char* method : {"dopri5", "taylor"}) {
         for (const double past : {-1e-3, -1e-9, -1e-12})
-            BOOST_TEST(swinging_wall(past).choose("solver.method", method).run().events.empty());
+            CHECK(swinging_wall(past).choose("solver.method", method).run().events.empty());
         for (const double past : {1e-3, 1e-6, 1e-9, 1e-12}) {
             const Run run = swinging_wall(past).choose("solver.method", method).run();
-            BOOST_REQUIRE(run.events.size() == 2);
+            REQUIRE(run.events.size() == 2);
             const double half = std::acos(1 - past / 0.1) / (2 * std::numbers::pi * 0.5);  // around the crest at 0.5 s
             const double close = (1e-3 + 1e-13 / past) * half + 1e-9;
-            BOOST_TEST(std::abs(run.first_contact - (0.5 - half)) < close);
-            BOOST_TEST(std::abs(run.contact_time - 2 * half) < close);
-            BOOST_TEST(std::abs(run.peak_force - 1000 * past) < 1e-12);
-            BOOST_TEST(run.final_force == 0);
+            CHECK(std::abs(run.first_contact - (0.5 - half)) < close);
+            CHECK(std::abs(run.contact_time - 2 * half) < close);
+            CHECK(std::abs(run.peak_force - 1000 * past) < 1e-12);
+            CHECK(run.final_force == 0);
         }
     }
 }
 
 // An arm at rest, a wall that comes steadily: all metrics are known.
-BOOST_AUTO_TEST_CASE(metrics_of_a_steady_press_are_those_of_the_closed_form_by_every_method) {
+TEST_CASE(metrics_of_a_steady_press_are_those_of_the_closed_form_by_every_method) {
     Params params = swinging_wall(0).choose("wall.motion.type", "constant").set("wall.motion.velocity", 0.2);
     params.set("time.stop", 1.3).set("solver.step", 0.01);
     const double t = 1.3 - 0.1 / 0.2, depth = 0.2 * t;
     for (const char* method : {"dopri5", "rk4", "taylor"}) {
         const Run run = params.choose("solver.method", method).run();
-        BOOST_TEST(run.contacts == 1);
-        BOOST_TEST(std::isnan(run.first_release));
-        BOOST_TEST(std::abs(run.first_contact - 0.5) < 1e-9);
-        BOOST_TEST(std::abs(run.contact_time - t) < 1e-9);
-        BOOST_TEST(std::abs(run.final_force - 1000 * depth) < 1e-6);
-        BOOST_TEST(std::abs(run.peak_force - 1000 * depth) < 1e-6);
-        BOOST_TEST(std::abs(run.impulse - 500 * depth * t) < 1e-6);
+        CHECK(run.contacts == 1);
+        CHECK(std::isnan(run.first_release));
+        CHECK(std::abs(run.first_contact - 0.5) < 1e-9);
+        CHECK(std::abs(run.contact_time - t) < 1e-9);
+        CHECK(std::abs(run.final_force - 1000 * depth) < 1e-6);
+        CHECK(std::abs(run.peak_force - 1000 * depth) < 1e-6);
+        CHECK(std::abs(run.impulse - 500 * depth * t) < 1e-6);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_million_steps_are_not_needed_series_take_few) {
+TEST_CASE(a_million_steps_are_not_needed_series_take_few) {
     Params params = unequal_params().choose("solver.method", "taylor").set("time.stop", 2);
     const Run fall = params.run();
-    BOOST_TEST(fall.steps.accepted < 150);
-    BOOST_TEST(fall.ledger_residual < 1e-7);
+    CHECK(fall.steps.accepted < 150);
+    CHECK(fall.ledger_residual < 1e-7);
     params.choose("controller.type", "gravity_compensation").set("time.stop", 1000).set("time.log_every", 100);
-    BOOST_TEST(params.run().steps.accepted < 100);  // at rest, to rounding
+    CHECK(params.run().steps.accepted < 100);  // at rest, to rounding
 }
 
-BOOST_AUTO_TEST_CASE(the_log_changes_nothing_but_the_rows) {
+TEST_CASE(the_log_changes_nothing_but_the_rows) {
     Random random(43);
     for (const char* method : {"rk4", "taylor"}) {
         Params params = swinging_wall(0.02).choose("solver.method", method).set("wall.acts_on_arm", 1);
         const Run often = params.set("time.log_every", 1e-3).run(), seldom = params.set("time.log_every", 5).run();
-        for (int i = 0; i < 3; ++i) BOOST_TEST(same_bits(often.q[i], seldom.q[i]));
-        BOOST_TEST(same_bits(often.impulse, seldom.impulse));
-        BOOST_TEST(often.events.size() == seldom.events.size());
-        BOOST_TEST(last(often, "q2") == last(seldom, "q2"));
+        for (int i = 0; i < 3; ++i) CHECK(same_bits(often.q[i], seldom.q[i]));
+        CHECK(same_bits(often.impulse, seldom.impulse));
+        CHECK(often.events.size() == seldom.events.size());
+        CHECK(last(often, "q2") == last(seldom, "q2"));
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

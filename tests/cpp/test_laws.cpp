@@ -1,9 +1,8 @@
 #include "arm3r/control/control_laws.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/widths.hpp"
+#include "check.hpp"
 #include "control/compiled_laws.hpp"
 #include "fixtures.hpp"
 #include "linear_algebra.hpp"
@@ -11,7 +10,7 @@
 namespace arm3r {
 
 // Each law against its formula in matrices with explicit inverses, and against the motion that it promises.
-BOOST_AUTO_TEST_SUITE(laws)
+TEST_SUITE(laws)
 
 using evaluated::Matrix;
 using evaluated::Vector;
@@ -138,66 +137,66 @@ struct Symbols {
 
 // ---- each law is its formula
 
-BOOST_AUTO_TEST_CASE(joint_pd_is_its_formula) {
+TEST_CASE(joint_pd_is_its_formula) {
     for_scenes(ControllerType::joint_pd, [](RowContext scene) {
         const Symbols y(scene);
         const Vector pd =
             y.diagonal(y.g.joint_stiffness) * (y.x_d - Vector(y.s.q)) - y.diagonal(y.g.joint_damping) * y.qd;
-        BOOST_TEST(close(pd + y.tau_g, scene.tau()));
+        CHECK(close(pd + y.tau_g, scene.tau()));
         scene.controller.compensates_gravity = false;
-        BOOST_TEST(close(pd, scene.tau()));
+        CHECK(close(pd, scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(computed_torque_is_its_formula) {
+TEST_CASE(computed_torque_is_its_formula) {
     for_scenes(ControllerType::computed_torque, [](RowContext scene) {
         const Symbols y(scene);
         const Vector a =
             y.xdd_d + y.diagonal(y.g.velocity) * (y.xd_d - y.qd) + y.diagonal(y.g.position) * (y.x_d - Vector(y.s.q));
         const Vector tau = y.M * a + y.C * y.qd + y.tau_g + y.tau_f;
-        BOOST_TEST(close(tau - y.J.transpose() * y.s.f_cancelled, scene.tau()));
+        CHECK(close(tau - y.J.transpose() * y.s.f_cancelled, scene.tau()));
         scene.controller.cancels_force = false;
-        BOOST_TEST(close(tau, scene.tau()));
+        CHECK(close(tau, scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(resolved_acceleration_is_its_formula) {
+TEST_CASE(resolved_acceleration_is_its_formula) {
     for_scenes(ControllerType::resolved_acceleration, [](RowContext scene) {
         const Symbols y(scene);
-        BOOST_TEST(close(y.ID(y.a_m()), scene.tau()));
+        CHECK(close(y.ID(y.a_m()), scene.tau()));
         scene.controller.cancels_force = false;
-        BOOST_TEST(close(y.ID(y.a_m()) + y.J.transpose() * y.s.f_cancelled, scene.tau()));
+        CHECK(close(y.ID(y.a_m()) + y.J.transpose() * y.s.f_cancelled, scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(stiffness_is_its_formula) {
+TEST_CASE(stiffness_is_its_formula) {
     for_scenes(ControllerType::stiffness, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = y.diagonal(y.g.stiffness) * (y.x_d - y.x) - y.diagonal(y.g.damping) * y.xd;
-        BOOST_TEST(close(y.tau_g + y.J.transpose() * force, scene.tau()));
+        CHECK(close(y.tau_g + y.J.transpose() * force, scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(joint_stiffness_is_its_formula) {
+TEST_CASE(joint_stiffness_is_its_formula) {
     for_scenes(ControllerType::joint_stiffness, [](const RowContext& scene) {
         const Symbols y(scene);
         const Matrix J_d = jacobian(y.controller.model, pose(Vec3<double>(y.x_d)));
         const Matrix K_q = J_d.transpose() * y.diagonal(y.g.stiffness) * J_d;
         const Matrix D_q = J_d.transpose() * y.diagonal(y.g.damping) * J_d;
-        BOOST_TEST(close(y.tau_g + K_q * (y.x_d - Vector(y.s.q)) - D_q * y.qd, scene.tau()));
+        CHECK(close(y.tau_g + K_q * (y.x_d - Vector(y.s.q)) - D_q * y.qd, scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(impedance_is_its_formula) {
+TEST_CASE(impedance_is_its_formula) {
     for_scenes(ControllerType::impedance, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = y.Lambda * y.xdd_d + y.mu * y.xd_d - y.diagonal(y.g.damping) * (y.xd - y.xd_d) -
                              y.diagonal(y.g.stiffness) * (y.x - y.x_d);
-        BOOST_TEST(close(y.tau_g + y.J.transpose() * force, scene.tau()));
+        CHECK(close(y.tau_g + y.J.transpose() * force, scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(impedance_about_a_point_is_stiffness_at_a_singular_pose_too) {
+TEST_CASE(impedance_about_a_point_is_stiffness_at_a_singular_pose_too) {
     for_scenes(ControllerType::impedance, [](RowContext scene) {
         scene.controller.reference.path = Path::point;
         RowContext stretched = scene;
@@ -206,65 +205,65 @@ BOOST_AUTO_TEST_CASE(impedance_about_a_point_is_stiffness_at_a_singular_pose_too
         for (RowContext* it : {&scene, &stretched}) {
             const Vector tau = it->tau();
             it->controller.type = ControllerType::stiffness;
-            BOOST_TEST(close(it->tau(), tau, 1e-14));
+            CHECK(close(it->tau(), tau, 1e-14));
         }
     });
 }
 
-BOOST_AUTO_TEST_CASE(shaped_impedance_is_its_formula) {
+TEST_CASE(shaped_impedance_is_its_formula) {
     for_scenes(ControllerType::shaped_impedance, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = Vector(y.s.f_on_tip) - y.diagonal(y.g.damping) * (y.xd - y.xd_d) -
                              y.diagonal(y.g.stiffness) * (y.x - y.x_d);
-        BOOST_TEST(close(y.ID(y.xdd_d + y.diagonal(y.g.mass).inverse() * force), scene.tau()));
+        CHECK(close(y.ID(y.xdd_d + y.diagonal(y.g.mass).inverse() * force), scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(operational_space_is_its_formula_in_lambda_mu_and_p) {
+TEST_CASE(operational_space_is_its_formula_in_lambda_mu_and_p) {
     for_scenes(ControllerType::operational_space, [](RowContext scene) {
         const Symbols y(scene);
         const Vector inertial = y.Lambda * (y.S_p * y.a_m() + y.S_f * y.a_f()) + y.mu * y.xd + y.p;
-        BOOST_TEST(close(y.J.transpose() * (inertial - Vector(y.s.f_cancelled)) + y.tau_f, scene.tau()));
+        CHECK(close(y.J.transpose() * (inertial - Vector(y.s.f_cancelled)) + y.tau_f, scene.tau()));
         scene.controller.force_term = ForceTerm::feedforward;
-        BOOST_TEST(close(y.J.transpose() * (inertial + y.S_f * y.p_in * y.f_d) + y.tau_f, scene.tau()));
+        CHECK(close(y.J.transpose() * (inertial + y.S_f * y.p_in * y.f_d) + y.tau_f, scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(hybrid_is_its_formula_in_each_variant) {
+TEST_CASE(hybrid_is_its_formula_in_each_variant) {
     for_scenes(ControllerType::hybrid, [](RowContext scene) {
         const Symbols y(scene);
         scene.controller.variant = Variant::dynamic;
-        BOOST_TEST(close(y.ID(y.S_p * y.a_m() + y.S_f * y.a_f()), scene.tau()));
+        CHECK(close(y.ID(y.S_p * y.a_m() + y.S_f * y.a_f()), scene.tau()));
 
         const Vector pressed = y.S_f * y.p_in * (y.f_d + y.correction()) - y.S_f * y.g.force_damping * y.xd;
         const Vector held = y.diagonal(y.g.stiffness) * (y.x_d - y.x) - y.diagonal(y.g.damping) * y.xd;
         scene.controller.variant = Variant::jacobian_transpose;
-        BOOST_TEST(close(y.tau_g + y.J.transpose() * (y.S_p * held + pressed), scene.tau()));
+        CHECK(close(y.tau_g + y.J.transpose() * (y.S_p * held + pressed), scene.tau()));
 
         const Matrix Kp = y.diagonal(y.g.joint_stiffness), Kv = y.diagonal(y.g.joint_damping);
         const auto in_joints = [&](const Matrix& P) -> Vector {
             return y.tau_g + Kp * P * (y.x_d - y.x) - Kv * P * y.xd + y.J.transpose() * pressed;
         };
         scene.controller.variant = Variant::raibert_craig;
-        BOOST_TEST(close(in_joints(y.Ji * y.S_p), scene.tau()));
+        CHECK(close(in_joints(y.Ji * y.S_p), scene.tau()));
 
         const auto [inverse, rank] = pseudo_inverse(y.S_p * y.J);
-        BOOST_TEST(rank == (y.s.force_phase == 1 ? 2 : 3));
+        CHECK(rank == (y.s.force_phase == 1 ? 2 : 3));
         scene.controller.variant = Variant::projected;
-        BOOST_TEST(close(in_joints(inverse), scene.tau()));
+        CHECK(close(in_joints(inverse), scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(parallel_is_its_formula) {
+TEST_CASE(parallel_is_its_formula) {
     for_scenes(ControllerType::parallel, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector force = y.diagonal(y.g.damping) * (y.xd_d - y.xd) + y.diagonal(y.g.stiffness) * (y.x_d - y.x) +
                              y.S_f * y.p_in * y.correction();
-        BOOST_TEST(close(y.ID(y.xdd_d + force / y.g.force_mass), scene.tau()));
+        CHECK(close(y.ID(y.xdd_d + force / y.g.force_mass), scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(admittance_yields_and_follows_by_its_formulas) {
+TEST_CASE(admittance_yields_and_follows_by_its_formulas) {
     for_scenes(ControllerType::admittance, [](RowContext scene) {
         const Symbols y(scene);
         const Vector x_c(scene.memory[0], scene.memory[1], scene.memory[2]);
@@ -273,18 +272,18 @@ BOOST_AUTO_TEST_CASE(admittance_yields_and_follows_by_its_formulas) {
                              y.diagonal(y.g.stiffness) * (x_c - y.x_d);
         const Vector xdd_c = y.xdd_d + y.diagonal(y.g.mass).inverse() * force;
         const Memory rates = scene.command().rates;
-        BOOST_TEST(close(xd_c, Vector(rates[0], rates[1], rates[2])));
-        BOOST_TEST(close(xdd_c, Vector(rates[3], rates[4], rates[5])));
+        CHECK(close(xd_c, Vector(rates[0], rates[1], rates[2])));
+        CHECK(close(xdd_c, Vector(rates[3], rates[4], rates[5])));
 
         const double w = y.g.inner_bandwidth, d = 2 * y.g.inner_damping_ratio * w;
         scene.controller.inner = Inner::exact;
-        BOOST_TEST(close(y.ID(xdd_c + d * (xd_c - y.xd) + w * w * (x_c - y.x)), scene.tau()));
+        CHECK(close(y.ID(xdd_c + d * (xd_c - y.xd) + w * w * (x_c - y.x)), scene.tau()));
         scene.controller.inner = Inner::position;
-        BOOST_TEST(close(y.ID(w * w * (x_c - y.x) - d * y.xd), scene.tau()));
+        CHECK(close(y.ID(w * w * (x_c - y.x) - d * y.xd), scene.tau()));
     });
 }
 
-BOOST_AUTO_TEST_CASE(admittance_by_joint_pd_pulls_the_joints_on_their_branch) {
+TEST_CASE(admittance_by_joint_pd_pulls_the_joints_on_their_branch) {
     int out_of_first_turn = 0;
     Random shift(77);
     for_scenes(ControllerType::admittance, [&](RowContext scene) {
@@ -294,13 +293,13 @@ BOOST_AUTO_TEST_CASE(admittance_by_joint_pd_pulls_the_joints_on_their_branch) {
         std::copy_n(x_c.data(), 3, scene.memory.begin());
         scene.controller.inner = Inner::joint_pd;
         const Vector pd = y.diagonal(y.g.joint_stiffness) * away - y.diagonal(y.g.joint_damping) * y.qd;
-        BOOST_TEST(close(y.tau_g + pd, scene.tau(), 1e-9));
+        CHECK(close(y.tau_g + pd, scene.tau(), 1e-9));
         out_of_first_turn += y.s.q.cwiseAbs().maxCoeff() > 3.2;
     });
-    BOOST_TEST(out_of_first_turn > 50);
+    CHECK(out_of_first_turn > 50);
 }
 
-BOOST_AUTO_TEST_CASE(admittance_beyond_reach_stretches_the_arm_towards_the_point) {
+TEST_CASE(admittance_beyond_reach_stretches_the_arm_towards_the_point) {
     for_scenes(ControllerType::admittance, [&](RowContext scene) {
         const Arm<double>& model = scene.controller.model;
         const Vector base(0, 0, model.base_height);
@@ -311,25 +310,25 @@ BOOST_AUTO_TEST_CASE(admittance_beyond_reach_stretches_the_arm_towards_the_point
         scene.controller.inner = Inner::joint_pd;
         const Vector desired = Vector(scene.sensed.q) + scene.tau() - Symbols(scene).tau_g;
         const Vector reached = Vector(tip_position(model, pose(Vec3<double>(desired)))) - base;
-        BOOST_TEST(std::abs(std::sin(desired[2])) < 1e-12);
-        BOOST_TEST(close(reached.normalized(), (x_c - base).normalized()));
-        BOOST_TEST(close(reached.norm(), model.link2.length + model.link3.length));
+        CHECK(std::abs(std::sin(desired[2])) < 1e-12);
+        CHECK(close(reached.normalized(), (x_c - base).normalized()));
+        CHECK(close(reached.norm(), model.link2.length + model.link3.length));
     });
 }
 
-BOOST_AUTO_TEST_CASE(adaptive_reference_displaces_the_reference_of_shaped_impedance) {
+TEST_CASE(adaptive_reference_displaces_the_reference_of_shaped_impedance) {
     for_scenes(ControllerType::adaptive_reference, [](const RowContext& scene) {
         const Symbols y(scene);
         const Vector e = y.x - y.x_d - y.s.force_phase * scene.memory[0] * y.p_in;
         const Vector force =
             Vector(y.s.f_on_tip) - y.diagonal(y.g.damping) * (y.xd - y.xd_d) - y.diagonal(y.g.stiffness) * e;
-        BOOST_TEST(close(y.ID(y.xdd_d + y.diagonal(y.g.mass).inverse() * force), scene.tau()));
-        BOOST_TEST(close(y.g.reference_gain * y.e_f, scene.command().rates[0]));
+        CHECK(close(y.ID(y.xdd_d + y.diagonal(y.g.mass).inverse() * force), scene.tau()));
+        CHECK(close(y.g.reference_gain * y.e_f, scene.command().rates[0]));
     });
 }
 
 // At rest the spring balances the wall, k_e deep: what force does the reference give?
-BOOST_AUTO_TEST_CASE(adaptive_reference_from_a_wall_stiffness_presses_as_its_closed_form_says) {
+TEST_CASE(adaptive_reference_from_a_wall_stiffness_presses_as_its_closed_form_says) {
     for_scenes(ControllerType::adaptive_reference, [](RowContext scene) {
         scene.controller.adaptation = Adaptation::indirect;
         scene.sensed.force_phase = 1;
@@ -345,24 +344,24 @@ BOOST_AUTO_TEST_CASE(adaptive_reference_from_a_wall_stiffness_presses_as_its_clo
         const Vector a = rest.J * rest.M.inverse() * (scene.tau() - rest.tau_g);
         const Vector displaced = K.inverse() * y.diagonal(y.g.mass) * a - (rest.x_d - rest.x);
         const double x_r = y.p_in.dot(displaced);
-        BOOST_TEST(close(x_r * y.p_in, displaced, 1e-9));
+        CHECK(close(x_r * y.p_in, displaced, 1e-9));
         const double along = 1 / y.p_in.dot(K.inverse() * y.p_in);
         const double f = (y.p_in.dot(y.x_d) + x_r - s_E) / (1 / k_e + 1 / along);
-        BOOST_TEST(close(y.f_d, f, 1e-9));
+        CHECK(close(y.f_d, f, 1e-9));
 
         scene.controller.gains.assumed_stiffness *= 1.2;  // wrong: f = f_d k_e/(K + k_e) (1 + K/k^)
         const Vector wrong =
             K.inverse() * y.diagonal(y.g.mass) * rest.J * rest.M.inverse() * (scene.tau() - rest.tau_g);
         const double x_w = y.p_in.dot(wrong - (rest.x_d - rest.x));
         const double f_w = (y.p_in.dot(y.x_d) + x_w - s_E) / (1 / k_e + 1 / along);
-        BOOST_TEST(close(y.f_d * k_e / (along + k_e) * (1 + along / (1.2 * k_e)), f_w, 1e-9));
-        BOOST_TEST(scene.command().rates[0] == 0);
+        CHECK(close(y.f_d * k_e / (along + k_e) * (1 + along / (1.2 * k_e)), f_w, 1e-9));
+        CHECK(scene.command().rates[0] == 0);
     });
 }
 
-BOOST_AUTO_TEST_CASE(an_axis_across_the_normal_may_have_no_stiffness) {
+TEST_CASE(an_axis_across_the_normal_may_have_no_stiffness) {
     const Vec3<double> K(0, 500, 0), n(0, -1, 0);
-    BOOST_TEST(compliance_along(K, n) == 1.0 / 500);
+    CHECK(compliance_along(K, n) == 1.0 / 500);
 }
 
 static double quintic(double low, double high, double x) {
@@ -370,7 +369,7 @@ static double quintic(double low, double high, double x) {
     return 6 * std::pow(u, 5) - 15 * std::pow(u, 4) + 10 * std::pow(u, 3);
 }
 
-BOOST_AUTO_TEST_CASE(energy_tank_is_its_formula) {
+TEST_CASE(energy_tank_is_its_formula) {
     for_scenes(ControllerType::energy_tank, [](RowContext scene) {
         const Symbols y(scene);
         const Vector e = y.x - y.x_d, ed = y.xd - y.xd_d, damped = y.diagonal(y.g.damping) * ed;
@@ -378,25 +377,25 @@ BOOST_AUTO_TEST_CASE(energy_tank_is_its_formula) {
         const double gamma = quintic(0.2, 0.6, y.z), beta = 1 - quintic(1.1, 1.5, y.z);
         const Vector w = -gamma * dK * e;
         const Vector held = -damped - y.diagonal(y.g.stiffness) * e;
-        BOOST_TEST(close(y.tau_g + y.J.transpose() * (held + w), scene.tau()));
-        BOOST_TEST(close(beta * ed.dot(damped) - ed.dot(w), scene.command().rates[0]));
+        CHECK(close(y.tau_g + y.J.transpose() * (held + w), scene.tau()));
+        CHECK(close(beta * ed.dot(damped) - ed.dot(w), scene.command().rates[0]));
         scene.controller.has_tank = false;
-        BOOST_TEST(close(y.tau_g + y.J.transpose() * (held - dK * e), scene.tau()));
-        BOOST_TEST(scene.command().rates[0] == 0);
+        CHECK(close(y.tau_g + y.J.transpose() * (held - dK * e), scene.tau()));
+        CHECK(scene.command().rates[0] == 0);
     });
 }
 
-BOOST_AUTO_TEST_CASE(equal_levels_of_the_tank_make_the_valves_hard) {
+TEST_CASE(equal_levels_of_the_tank_make_the_valves_hard) {
     Gains<double> gains{};
     gains.tank_low = gains.tank_high = 0.5;
     gains.tank_capacity = 2;
-    BOOST_TEST(tank_gains(gains, 0.4999).out == 0);
-    BOOST_TEST(tank_gains(gains, 0.5001).out == 1);
-    BOOST_TEST(tank_gains(gains, 1.9999).in == 1);
-    BOOST_TEST(tank_gains(gains, 2.0001).in == 0);
+    CHECK(tank_gains(gains, 0.4999).out == 0);
+    CHECK(tank_gains(gains, 0.5001).out == 1);
+    CHECK(tank_gains(gains, 1.9999).in == 1);
+    CHECK(tank_gains(gains, 2.0001).in == 0);
 }
 
-BOOST_AUTO_TEST_CASE(virtual_wall_pushes_one_way) {
+TEST_CASE(virtual_wall_pushes_one_way) {
     int pushed = 0;
     for_scenes(ControllerType::virtual_wall, [&](const RowContext& scene) {
         const Symbols y(scene);
@@ -404,17 +403,17 @@ BOOST_AUTO_TEST_CASE(virtual_wall_pushes_one_way) {
         const double depth = normal.dot(Vector(y.g.plane_point) - y.x), rate = -normal.dot(y.xd);
         const double force = y.g.stiffness[0] * depth + y.g.damping[0] * rate;
         const double pushing = depth > 0 && force > 0 ? force : 0.0;
-        BOOST_TEST(close(y.tau_g + y.J.transpose() * (pushing * normal), scene.tau()));
-        BOOST_TEST(close(pushing, virtual_wall_force(y.g, Vec3<double>(y.x), Vec3<double>(y.xd))));
+        CHECK(close(y.tau_g + y.J.transpose() * (pushing * normal), scene.tau()));
+        CHECK(close(pushing, virtual_wall_force(y.g, Vec3<double>(y.x), Vec3<double>(y.xd))));
         pushed += pushing > 0;
     });
-    BOOST_TEST(pushed > 50);
-    BOOST_TEST(pushed < 250);
+    CHECK(pushed > 50);
+    CHECK(pushed < 250);
 }
 
 // ---- memory
 
-BOOST_AUTO_TEST_CASE(the_integral_grows_in_contact_and_in_the_force_phase_only) {
+TEST_CASE(the_integral_grows_in_contact_and_in_the_force_phase_only) {
     for (const ControllerType type :
          {ControllerType::operational_space, ControllerType::hybrid, ControllerType::parallel})
         for_scenes(type, [](RowContext scene) {
@@ -423,12 +422,12 @@ BOOST_AUTO_TEST_CASE(the_integral_grows_in_contact_and_in_the_force_phase_only) 
                 for (const double phase : {0.0, 1.0}) {
                     scene.sensed.contact = contact;
                     scene.sensed.force_phase = phase;
-                    BOOST_TEST(close(contact * phase * e_f, scene.command().rates[0]));
+                    CHECK(close(contact * phase * e_f, scene.command().rates[0]));
                 }
         });
 }
 
-BOOST_AUTO_TEST_CASE(the_integral_stays_within_its_limit) {
+TEST_CASE(the_integral_stays_within_its_limit) {
     for_scenes(ControllerType::hybrid, [](RowContext scene) {
         scene.sensed.force_phase = 1;
         scene.controller.gains.integral_limit = 3;
@@ -436,12 +435,12 @@ BOOST_AUTO_TEST_CASE(the_integral_stays_within_its_limit) {
         for (const double integral : {-3.5, -3.0, -2.9, 2.9, 3.0, 3.5}) {
             scene.memory[0] = integral;
             const bool further = std::abs(integral) >= 3 && integral * e_f > 0;
-            BOOST_TEST(close(further ? 0.0 : e_f, scene.command().rates[0]));
+            CHECK(close(further ? 0.0 : e_f, scene.command().rates[0]));
         }
     });
 }
 
-BOOST_AUTO_TEST_CASE(per_integral_is_what_the_torque_changes_by) {
+TEST_CASE(per_integral_is_what_the_torque_changes_by) {
     for (const ControllerType type :
          {ControllerType::operational_space, ControllerType::hybrid, ControllerType::parallel})
         for_scenes(type, [](RowContext scene) {
@@ -452,25 +451,25 @@ BOOST_AUTO_TEST_CASE(per_integral_is_what_the_torque_changes_by) {
                 const Command<double> before = scene.command();
                 RowContext after = scene;
                 after.memory[0] += 1;
-                BOOST_TEST(close(after.tau() - Vector(before.tau), before.dtau_dintegral, 1e-9));
+                CHECK(close(after.tau() - Vector(before.tau), before.dtau_dintegral, 1e-9));
             }
         });
 }
 
-BOOST_AUTO_TEST_CASE(memory_starts_where_the_law_needs_it) {
+TEST_CASE(memory_starts_where_the_law_needs_it) {
     Random random(5);
     const RowContext tank(random, ControllerType::energy_tank);
-    BOOST_TEST(memory_at_start(tank.controller, tank.sensed)[0] == tank.controller.gains.tank_energy);
+    CHECK(memory_at_start(tank.controller, tank.sensed)[0] == tank.controller.gains.tank_energy);
 
     const RowContext admitting(random, ControllerType::admittance);
     const Memory at = memory_at_start(admitting.controller, admitting.sensed);
     const Symbols y(admitting);
-    BOOST_TEST(distance(Vector(at[0], at[1], at[2]), y.x_d) == 0);
-    BOOST_TEST(distance(Vector(at[3], at[4], at[5]), y.xd_d) == 0);
+    CHECK(distance(Vector(at[0], at[1], at[2]), y.x_d) == 0);
+    CHECK(distance(Vector(at[3], at[4], at[5]), y.xd_d) == 0);
 
     for (const ControllerType type : {ControllerType::hybrid, ControllerType::adaptive_reference}) {
         const RowContext forcing(random, type);
-        BOOST_TEST((memory_at_start(forcing.controller, forcing.sensed) == Memory{}));
+        CHECK((memory_at_start(forcing.controller, forcing.sensed) == Memory{}));
     }
 }
 
@@ -487,58 +486,58 @@ static Motion3 motion(const RowContext& scene) {
     return {qdd, y.J * qdd + y.Jd * y.qd};
 }
 
-BOOST_AUTO_TEST_CASE(computed_torque_makes_the_joint_errors_linear) {
+TEST_CASE(computed_torque_makes_the_joint_errors_linear) {
     for_scenes(ControllerType::computed_torque, [](RowContext scene) {
         scene.trust_everything();
         const Symbols y(scene);
         const Vector e = y.x_d - Vector(y.s.q), ed = y.xd_d - y.qd;
         const Vector law = y.diagonal(y.g.velocity) * ed + y.diagonal(y.g.position) * e;
         const Vector edd = y.xdd_d - motion(scene).qdd;
-        BOOST_TEST(close(edd, -law, 1e-9));
+        CHECK(close(edd, -law, 1e-9));
         scene.controller.cancels_force = false;
         const Vector felt = y.xdd_d - motion(scene).qdd + law;
-        BOOST_TEST(close(felt, -(y.M.inverse() * y.J.transpose() * Vector(y.s.f_on_tip)), 1e-9));
+        CHECK(close(felt, -(y.M.inverse() * y.J.transpose() * Vector(y.s.f_on_tip)), 1e-9));
     });
 }
 
-BOOST_AUTO_TEST_CASE(resolved_acceleration_and_hybrid_give_the_tip_the_acceleration_that_was_asked_for) {
+TEST_CASE(resolved_acceleration_and_hybrid_give_the_tip_the_acceleration_that_was_asked_for) {
     for (const ControllerType type :
          {ControllerType::resolved_acceleration, ControllerType::hybrid, ControllerType::operational_space})
         for_scenes(type, [&](RowContext scene) {
             scene.trust_everything();
             if (type == ControllerType::resolved_acceleration) scene.sensed.force_phase = 0;
             const Symbols y(scene);
-            BOOST_TEST(close(y.S_p * y.a_m() + y.S_f * y.a_f(), motion(scene).xdd, 1e-9));
+            CHECK(close(y.S_p * y.a_m() + y.S_f * y.a_f(), motion(scene).xdd, 1e-9));
         });
 }
 
-BOOST_AUTO_TEST_CASE(a_force_fed_forward_couples_through_the_mobility) {
+TEST_CASE(a_force_fed_forward_couples_through_the_mobility) {
     for_scenes(ControllerType::operational_space, [](RowContext scene) {
         scene.controller.force_term = ForceTerm::feedforward;
         const Symbols y(scene);
         const Vector extra = y.Lambda.inverse() * (y.S_f * y.p_in * y.f_d + Vector(y.s.f_on_tip));
-        BOOST_TEST(close(y.S_p * y.a_m() + y.S_f * y.a_f() + extra, motion(scene).xdd, 1e-9));
+        CHECK(close(y.S_p * y.a_m() + y.S_f * y.a_f() + extra, motion(scene).xdd, 1e-9));
     });
 }
 
-BOOST_AUTO_TEST_CASE(shaped_impedance_is_a_mass_on_a_spring) {
+TEST_CASE(shaped_impedance_is_a_mass_on_a_spring) {
     for_scenes(ControllerType::shaped_impedance, [](RowContext scene) {
         scene.trust_everything();
         const Symbols y(scene);
         const Vector edd = motion(scene).xdd - y.xdd_d;
         const Vector balance = y.diagonal(y.g.mass) * edd + y.diagonal(y.g.damping) * (y.xd - y.xd_d) +
                                y.diagonal(y.g.stiffness) * (y.x - y.x_d);
-        BOOST_TEST(close(Vector(y.s.f_on_tip), balance, 1e-9));
+        CHECK(close(Vector(y.s.f_on_tip), balance, 1e-9));
     });
 }
 
-BOOST_AUTO_TEST_CASE(parallel_control_is_a_mass_between_spring_and_force_loop) {
+TEST_CASE(parallel_control_is_a_mass_between_spring_and_force_loop) {
     for_scenes(ControllerType::parallel, [](RowContext scene) {
         scene.trust_everything();
         const Symbols y(scene);
         const Vector balance = y.g.force_mass * (motion(scene).xdd - y.xdd_d) +
                                y.diagonal(y.g.damping) * (y.xd - y.xd_d) + y.diagonal(y.g.stiffness) * (y.x - y.x_d);
-        BOOST_TEST(close(y.s.force_phase * y.correction() * y.p_in, balance, 1e-9));
+        CHECK(close(y.s.force_phase * y.correction() * y.p_in, balance, 1e-9));
     });
 }
 
@@ -547,14 +546,14 @@ static void take_friction_away(Arm<double>& arm) {
     arm.has_damping = arm.has_dry_friction = false;
 }
 
-BOOST_AUTO_TEST_CASE(impedance_keeps_the_arms_own_inertia) {
+TEST_CASE(impedance_keeps_the_arms_own_inertia) {
     for_scenes(ControllerType::impedance, [](RowContext scene) {
         take_friction_away(scene.controller.model);
         const Symbols y(scene);
         const Vector edd = motion(scene).xdd - y.xdd_d, ed = y.xd - y.xd_d;
         const Vector balance =
             y.Lambda * edd + (y.mu + y.diagonal(y.g.damping)) * ed + y.diagonal(y.g.stiffness) * (y.x - y.x_d);
-        BOOST_TEST(close(Vector(y.s.f_on_tip), balance, 1e-9));
+        CHECK(close(Vector(y.s.f_on_tip), balance, 1e-9));
     });
 }
 
@@ -573,17 +572,17 @@ static double storage_rate(const RowContext& scene, const Vector& qdd) {
     return (0.5 * (kinetic + elastic)).slope[0];
 }
 
-BOOST_AUTO_TEST_CASE(impedance_stores_what_the_world_gives_less_what_it_damps) {
+TEST_CASE(impedance_stores_what_the_world_gives_less_what_it_damps) {
     for_scenes(ControllerType::impedance, [](RowContext scene) {
         take_friction_away(scene.controller.model);
         const Symbols y(scene);
         const Vector ed = y.xd - y.xd_d;
         const double given = ed.dot(Vector(y.s.f_on_tip)) - ed.dot(y.diagonal(y.g.damping) * ed);
-        BOOST_TEST(close(given, storage_rate(scene, motion(scene).qdd), 1e-9));
+        CHECK(close(given, storage_rate(scene, motion(scene).qdd), 1e-9));
     });
 }
 
-BOOST_AUTO_TEST_CASE(the_tank_pays_for_the_stiffness) {
+TEST_CASE(the_tank_pays_for_the_stiffness) {
     for_scenes(ControllerType::energy_tank, [](RowContext scene) {
         take_friction_away(scene.controller.model);
         scene.controller.reference.path = Path::point;
@@ -591,12 +590,12 @@ BOOST_AUTO_TEST_CASE(the_tank_pays_for_the_stiffness) {
         const double beta = 1 - quintic(1.1, 1.5, y.z);
         const double V = storage_rate(scene, motion(scene).qdd) + scene.command().rates[0];
         const double lost = (1 - beta) * y.xd.dot(y.diagonal(y.g.damping) * y.xd);
-        BOOST_TEST(close(y.xd.dot(Vector(y.s.f_on_tip)) - lost, V, 1e-9));
+        CHECK(close(y.xd.dot(Vector(y.s.f_on_tip)) - lost, V, 1e-9));
     });
 }
 
 // Without its own error the inner loop is the impedance that the outer one asks for.
-BOOST_AUTO_TEST_CASE(admittance_tracked_exactly_is_shaped_impedance) {
+TEST_CASE(admittance_tracked_exactly_is_shaped_impedance) {
     for_scenes(ControllerType::admittance, [](RowContext scene) {
         scene.controller.reference.force_profile = ForceProfile::constant;
         scene.controller.reference.force = 0;
@@ -607,13 +606,13 @@ BOOST_AUTO_TEST_CASE(admittance_tracked_exactly_is_shaped_impedance) {
         }
         const Vector tau = scene.tau();
         scene.controller.type = ControllerType::shaped_impedance;
-        BOOST_TEST(close(scene.tau(), tau));
+        CHECK(close(scene.tau(), tau));
     });
 }
 
 // The lecture's brick arm at (0, -75, 45) degrees: along its unstable direction the joint-space hybrid law pushes away.
 // The eigenvalue is that of M^-1 J^-1 S_p J, from an independent derivation.
-BOOST_AUTO_TEST_CASE(hybrid_of_raibert_and_craig_is_unstable_where_it_is_known_to_be) {
+TEST_CASE(hybrid_of_raibert_and_craig_is_unstable_where_it_is_known_to_be) {
     Random random(3);
     RowContext scene(random, ControllerType::hybrid);
     Controller<double>& controller = scene.controller;
@@ -640,18 +639,18 @@ BOOST_AUTO_TEST_CASE(hybrid_of_raibert_and_craig_is_unstable_where_it_is_known_t
         const Matrix M = mass_matrix(controller.model, pose(q));
         return eigenvalues((-(M.inverse() * slope)).m).real().minCoeff();
     };
-    BOOST_TEST(close(-0.4323820891, min_eigenvalue(Variant::raibert_craig), 1e-9));
-    BOOST_TEST(std::abs(min_eigenvalue(Variant::projected)) < 1e-9);
+    CHECK(close(-0.4323820891, min_eigenvalue(Variant::raibert_craig), 1e-9));
+    CHECK(std::abs(min_eigenvalue(Variant::projected)) < 1e-9);
 }
 
 // ---- where the laws end
 
-BOOST_AUTO_TEST_CASE(distance_to_singular_is_that_of_elbow_or_axis) {
+TEST_CASE(distance_to_singular_is_that_of_elbow_or_axis) {
     Random random(11);
     for (int i = 0; i < 300; ++i) {
         const Arm<double> arm = random_params(random).arm();
         const Vec3<double> q = random.vector(-4, 4);
-        BOOST_TEST(close(farness(q, arm), distance_to_singular(arm, pose(q)), 1e-13));
+        CHECK(close(farness(q, arm), distance_to_singular(arm, pose(q)), 1e-13));
     }
 }
 
@@ -730,11 +729,11 @@ static void check_lanes(Random& random, const Controller<double>& form) {
         }
         for (std::size_t i = 0; i < law_memory; ++i) of_lane.rates[i] = together.rates[i][lane];
         const std::vector<double> alone = numbers(scenes[std::size_t(lane)].command()), packed = numbers(of_lane);
-        BOOST_TEST(std::equal(alone.begin(), alone.end(), packed.begin(), same_bits));
+        CHECK(std::equal(alone.begin(), alone.end(), packed.begin(), same_bits));
     }
 }
 
-BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_each_law_alone) {
+TEST_CASE(lanes_have_the_bits_of_each_law_alone) {
     Random random(21);
     for (const Controller<double>& form : all_laws(random)) {
 #define CHECK_ROWS(T) \
@@ -779,7 +778,7 @@ struct Along {
     }
 };
 
-BOOST_AUTO_TEST_CASE(slopes_of_each_law_are_right) {
+TEST_CASE(slopes_of_each_law_are_right) {
     Random random(31);
     for (const Controller<double>& controller : all_laws(random)) {
         RowContext at(random, controller.type), by(random, controller.type);
@@ -791,11 +790,11 @@ BOOST_AUTO_TEST_CASE(slopes_of_each_law_are_right) {
         const double h = 1e-4;
         const std::vector<double> a = along(-2 * h), b = along(-h), c = along(h), d = along(2 * h);
         for (std::size_t i = 0; i < exact.size(); ++i)
-            BOOST_TEST(close(exact[i].slope[0], (a[i] - 8 * b[i] + 8 * c[i] - d[i]) / (12 * h), 1e-6),
-                       "law " << int(controller.type) << " number " << i << ": " << exact[i].slope[0]);
+            CHECK(close(exact[i].slope[0], (a[i] - 8 * b[i] + 8 * c[i] - d[i]) / (12 * h), 1e-6),
+                  "law " << int(controller.type) << " number " << i << ": " << exact[i].slope[0]);
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

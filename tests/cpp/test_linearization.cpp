@@ -1,12 +1,12 @@
-#include <boost/test/unit_test.hpp>
 
 #include "arm3r/ode/linearization.hpp"
 #include "arm3r/plant.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(linearization)
+TEST_SUITE(linearization)
 
 using Full = State<double, state_size>;
 using Slopes = Linearization<state_size>;
@@ -61,8 +61,8 @@ static Full difference(F f, double h) {
 
 static void check(const Full& slope, const Full& expected, double tolerance, const char* input, std::size_t j) {
     for (std::size_t i = 0; i < state_size; ++i)
-        BOOST_TEST(std::abs(slope[i] - expected[i]) <= tolerance * (1 + std::abs(expected[i])),
-                   "f" << i << " by " << input << j << ": " << slope[i] << ", not " << expected[i]);
+        CHECK(std::abs(slope[i] - expected[i]) <= tolerance * (1 + std::abs(expected[i])),
+              "f" << i << " by " << input << j << ": " << slope[i] << ", not " << expected[i]);
 }
 
 static Full column(const Slopes& linearization, std::size_t j) {
@@ -104,7 +104,7 @@ static void check_plant(const Plant<double>& plant, ContactForceMode force_mode,
     check(linearization.df_dt, difference([&](double by) { return at(t + by, y); }, h), tolerance, "t", 0);
 }
 
-BOOST_AUTO_TEST_CASE(slopes_of_the_plant_are_the_differences) {
+TEST_CASE(slopes_of_the_plant_are_the_differences) {
     Random random(61);
     int limited = 0;
     for (int i = 0; i < 200; ++i) {
@@ -117,12 +117,12 @@ BOOST_AUTO_TEST_CASE(slopes_of_the_plant_are_the_differences) {
         const Vec3<double> q(y[0], y[1], y[2]), tau = feedforward_torque(plant.controller, q, pose(q));
         limited += std::abs(tau[1]) > plant.arm.torque_limit[1] || std::abs(tau[2]) > plant.arm.torque_limit[2];
     }
-    BOOST_TEST(limited > 10);
-    BOOST_TEST(limited < 150);
+    CHECK(limited > 10);
+    CHECK(limited < 150);
 }
 
 // On a point of the grid of angles the pose is not turned at all; it must still turn with the angle.
-BOOST_AUTO_TEST_CASE(slopes_on_the_grid_of_angles) {
+TEST_CASE(slopes_on_the_grid_of_angles) {
     Random random(62);
     for (int i = 0; i < 20; ++i) {
         const Plant<double> plant = random_plant(random, 0.3);
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(slopes_on_the_grid_of_angles) {
 }
 
 // The steepest of friction: what makes a motion stiff. From rest, where it is known: d tau_f/d qd = damping + friction/v.
-BOOST_AUTO_TEST_CASE(slopes_of_sharp_friction) {
+TEST_CASE(slopes_of_sharp_friction) {
     Random random(63);
     for (const double velocity : {1e-3, 1e-6}) {
         const Plant<double> plant = random_plant(random, velocity);
@@ -151,15 +151,15 @@ BOOST_AUTO_TEST_CASE(slopes_of_sharp_friction) {
         const Eigen::Matrix3d steepness = -Eigen::Matrix3d(M) * by_rate;
         for (int i = 0; i < 3; ++i) {
             const double expected = plant.arm.damping[i] + plant.arm.friction[i] / velocity;
-            BOOST_TEST(std::abs(steepness(i, i) / expected - 1) <= 1e-9);
+            CHECK(std::abs(steepness(i, i) / expected - 1) <= 1e-9);
             for (int j = 0; j < 3; ++j)
-                if (i != j) BOOST_TEST(std::abs(steepness(i, j)) <= 1e-9 * expected);
+                if (i != j) CHECK(std::abs(steepness(i, j)) <= 1e-9 * expected);
         }
     }
 }
 
 // A few slopes at a time or all at once; and the derivative itself, as by doubles.
-BOOST_AUTO_TEST_CASE(every_width_gives_the_same_bits_and_those_of_doubles) {
+TEST_CASE(every_width_gives_the_same_bits_and_those_of_doubles) {
     Random random(64);
     for (int i = 0; i < 100; ++i) {
         const Plant<double> plant = random_plant(random, 0.1);
@@ -174,11 +174,10 @@ BOOST_AUTO_TEST_CASE(every_width_gives_the_same_bits_and_those_of_doubles) {
                      by_threes = slopes_of<3>(plant, ContactForceMode::pressed, t, y, f3),
                      singly = slopes_of<1>(plant, ContactForceMode::pressed, t, y, f1);
         for (std::size_t k = 0; k < state_size; ++k) {
-            for (const Full& f0 : {f7, f3, f1}) BOOST_TEST(same_bits(f0[k], plain[k]));
+            for (const Full& f0 : {f7, f3, f1}) CHECK(same_bits(f0[k], plain[k]));
             for (const Slopes& other : {by_threes, singly}) {
-                BOOST_TEST(same_bits(other.df_dt[k], at_once.df_dt[k]));
-                for (std::size_t j = 0; j < motion_size; ++j)
-                    BOOST_TEST(same_bits(other.df_dy[k][j], at_once.df_dy[k][j]));
+                CHECK(same_bits(other.df_dt[k], at_once.df_dt[k]));
+                for (std::size_t j = 0; j < motion_size; ++j) CHECK(same_bits(other.df_dy[k][j], at_once.df_dy[k][j]));
             }
         }
     }
@@ -198,7 +197,7 @@ struct Remembering {
     }
 };
 
-BOOST_AUTO_TEST_CASE(memory_counts_as_far_as_it_is_in_use) {
+TEST_CASE(memory_counts_as_far_as_it_is_in_use) {
     constexpr std::size_t N = 5;  // one motion, one quadrature, three of memory
     const State<double, N> y{0.7, 1e9, -0.3, 1.1, 5.0};
     const double t = 0.6;
@@ -214,13 +213,13 @@ BOOST_AUTO_TEST_CASE(memory_counts_as_far_as_it_is_in_use) {
                                       untouched};
     const State<double, N> df_dt{y[3], y[2] * y[2], -4 * t, 0, -7};
     for (std::size_t i = 0; i < N; ++i) {
-        BOOST_TEST(std::abs(linearization.df_dt[i] - df_dt[i]) <= 1e-15);
-        for (std::size_t j = 0; j < N; ++j) BOOST_TEST(std::abs(linearization.df_dy[i][j] - df_dy[i][j]) <= 1e-15);
+        CHECK(std::abs(linearization.df_dt[i] - df_dt[i]) <= 1e-15);
+        for (std::size_t j = 0; j < N; ++j) CHECK(std::abs(linearization.df_dy[i][j] - df_dy[i][j]) <= 1e-15);
     }
-    BOOST_TEST(f0[4] == -7);
-    BOOST_TEST(f0[3] == y[0] * y[0] * y[0] + y[2]);
+    CHECK(f0[4] == -7);
+    CHECK(f0[3] == y[0] * y[0] * y[0] + y[2]);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,8 +1,8 @@
-#include <boost/test/unit_test.hpp>
 #include <vector>
 
 #include "arm3r/model/recursion.hpp"
 #include "batch/model_batch.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 
 using namespace arm3r;
@@ -176,19 +176,19 @@ void compare(const Model& model, std::size_t n, Random& random, bool with_force)
             std::size_t at = 0;
             for (std::size_t k = 0; k < c.widths.size(); ++k)
                 for (std::size_t j = 0; j < c.widths[k]; ++j, ++at)
-                    BOOST_TEST(same_bits(out[k][i * c.widths[k] + j], expected[at] + 0.0),
-                               c.name << " of state " << i << " of " << n << ", number " << at);
-            BOOST_TEST(at == expected.size());
+                    CHECK(same_bits(out[k][i * c.widths[k] + j], expected[at] + 0.0),
+                          c.name << " of state " << i << " of " << n << ", number " << at);
+            CHECK(at == expected.size());
         }
-        for (std::size_t k = 0; k < c.widths.size(); ++k) BOOST_TEST(out[k].back() == untouched);
+        for (std::size_t k = 0; k < c.widths.size(); ++k) CHECK(out[k].back() == untouched);
     }
 }
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(model_batch)
+TEST_SUITE(model_batch)
 
-BOOST_AUTO_TEST_CASE(every_state_gets_the_bits_of_the_formula_in_double) {
+TEST_CASE(every_state_gets_the_bits_of_the_formula_in_double) {
     Random random(11);
     for (std::size_t n = 0; n <= 25; ++n)
         for (const bool simscape : {false, true}) {
@@ -197,16 +197,16 @@ BOOST_AUTO_TEST_CASE(every_state_gets_the_bits_of_the_formula_in_double) {
         }
 }
 
-BOOST_AUTO_TEST_CASE(an_arm_without_extras_gets_them_too) {
+TEST_CASE(an_arm_without_extras_gets_them_too) {
     Random random(12);
     for (const bool simscape : {false, true}) {
         const Model model{Params().arm(), simscape};
-        BOOST_TEST(model.arm.gravity_is_vertical);
+        CHECK(model.arm.gravity_is_vertical);
         compare(model, 1000, random, simscape);
     }
 }
 
-BOOST_AUTO_TEST_CASE(effective_mass_is_that_of_the_unit_direction) {
+TEST_CASE(effective_mass_is_that_of_the_unit_direction) {
     Random random(13);
     const std::size_t n = 203;
     const Model model{random_params(random).arm(), true};
@@ -219,23 +219,23 @@ BOOST_AUTO_TEST_CASE(effective_mass_is_that_of_the_unit_direction) {
         const double length = std::sqrt(dot(d, d));
         const Vec3<double> unit(d[0] / length, d[1] / length, d[2] / length);
         const double expected = length > 0 ? effective_mass(model.arm, pose(row(q, i, true)), unit) : 0;
-        BOOST_TEST(same_bits(mass[i], expected), "state " << i);
+        CHECK(same_bits(mass[i], expected), "state " << i);
     }
-    BOOST_TEST(mass[20] == 0);
+    CHECK(mass[20] == 0);
 }
 
-BOOST_AUTO_TEST_CASE(one_bad_number_is_found_wherever_it_stands) {
+TEST_CASE(one_bad_number_is_found_wherever_it_stands) {
     for (const std::size_t count : {1, 7, 8, 9, 24, 51}) {
         Numbers data(count, -1e5);
-        BOOST_TEST(all_within(data.data(), count, 1e5));
+        CHECK(all_within(data.data(), count, 1e5));
         for (double& x : data)
             for (const double bad : {100000.00000000001455, -HUGE_VAL, HUGE_VAL, double(NAN)}) {
                 x = bad;
-                BOOST_TEST(!all_within(data.data(), count, 1e5));
+                CHECK(!all_within(data.data(), count, 1e5));
                 x = -0.0;
             }
     }
-    BOOST_TEST(all_within(nullptr, 0, 1e5));
+    CHECK(all_within(nullptr, 0, 1e5));
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()

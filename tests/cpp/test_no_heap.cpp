@@ -1,8 +1,8 @@
 #include <atomic>
-#include <boost/test/unit_test.hpp>
 #include <cstdlib>
 #include <new>
 
+#include "check.hpp"
 #include "fixtures.hpp"
 
 // Every allocation of the program is counted.
@@ -18,13 +18,13 @@ static std::atomic<long> allocations{0};
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(no_heap)
+TEST_SUITE(no_heap)
 
 static long allocations_of(const Params& params) {
     const long before = allocations;
     const Run run = params.run();
-    BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
-    BOOST_TEST(run.events.size() >= 2u);
+    CHECK(run.outcome == ARM3R_RUN_OK, run.message);
+    CHECK(run.events.size() >= 2u);
     return allocations - before;
 }
 
@@ -42,19 +42,19 @@ static Params touched(const char* method, const char* algorithm) {
     return params;
 }
 
-BOOST_AUTO_TEST_CASE(a_run_ten_times_longer_allocates_no_more_often) {
+TEST_CASE(a_run_ten_times_longer_allocates_no_more_often) {
     for (const char* method : {"dopri5", "rk4"}) {
         for (const char* algorithm : {"closed_form", "recursion"}) {
             const Params params = touched(method, algorithm);
             const auto of_length = [&](double stop) { return allocations_of(Params(params).set("time.stop", stop)); };
             of_length(0.5);  // the first run of all makes the tables
             const long brief = of_length(0.5);
-            BOOST_TEST(brief > 0);
-            BOOST_TEST(of_length(5) == brief);
+            CHECK(brief > 0);
+            CHECK(of_length(5) == brief);
         }
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

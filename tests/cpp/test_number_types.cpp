@@ -1,12 +1,12 @@
-#include <boost/test/unit_test.hpp>
 
 #include "arm3r/plant.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {
 
 // Every number type drops into the same formulas: Dual with right slopes, Pack and Expr with the bits of double.
-BOOST_AUTO_TEST_SUITE(number_types)
+TEST_SUITE(number_types)
 
 using Numbers = std::vector<double>;
 
@@ -143,8 +143,7 @@ static void check_lanes(Random& random, F formula) {
     std::vector<Numbers> lanes;
     for (int lane = 0; lane < N; ++lane) lanes.push_back(random_state(random));
     const std::vector<Pack<N>> together = formula(packed<N>(lanes).data());
-    for (int lane = 0; lane < N; ++lane)
-        BOOST_TEST(same(lane_of(together, lane), formula(lanes[std::size_t(lane)].data())));
+    for (int lane = 0; lane < N; ++lane) CHECK(same(lane_of(together, lane), formula(lanes[std::size_t(lane)].data())));
 }
 
 template <class F>
@@ -154,7 +153,7 @@ static void check_all_widths(Random& random, F formula) {
     check_lanes<8>(random, formula);
 }
 
-BOOST_AUTO_TEST_CASE(each_lane_of_the_dynamics_equals_the_double) {
+TEST_CASE(each_lane_of_the_dynamics_equals_the_double) {
     Random random(41);
     for (int i = 0; i < 300; ++i) {
         const Arm<double> arm = random_params(random).arm();
@@ -163,7 +162,7 @@ BOOST_AUTO_TEST_CASE(each_lane_of_the_dynamics_equals_the_double) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(each_lane_of_a_step_with_contact_equals_the_double) {
+TEST_CASE(each_lane_of_a_step_with_contact_equals_the_double) {
     Random random(42);
     int touching = 0;
     for (int i = 0; i < 300; ++i) {
@@ -171,8 +170,8 @@ BOOST_AUTO_TEST_CASE(each_lane_of_a_step_with_contact_equals_the_double) {
         check_all_widths(random, [&]<class T>(const T* x) { return stepped(plant, x); });
         touching += stepped(plant, random_state(random).data())[7] != 0;
     }
-    BOOST_TEST(touching > 30);
-    BOOST_TEST(touching < 270);
+    CHECK(touching > 30);
+    CHECK(touching < 270);
 }
 
 // The arm's own numbers may be packs as well: as many arms as lanes.
@@ -211,7 +210,7 @@ static Arm<Pack<N>> packed_arm(const std::vector<Arm<double>>& arms) {
     return result;
 }
 
-BOOST_AUTO_TEST_CASE(each_lane_may_have_its_own_arm) {
+TEST_CASE(each_lane_may_have_its_own_arm) {
     constexpr int N = 4;
     Random random(43);
     for (int i = 0; i < 300; ++i) {
@@ -225,8 +224,8 @@ BOOST_AUTO_TEST_CASE(each_lane_may_have_its_own_arm) {
         const std::vector<Pack<N>> x = packed<N>(lanes), closed = closed_form(together, x.data()),
                                    recursion = by_recursion(together, x.data());
         for (std::size_t lane = 0; lane < N; ++lane) {
-            BOOST_TEST(same(lane_of(closed, int(lane)), closed_form(arms[lane], lanes[lane].data())));
-            BOOST_TEST(same(lane_of(recursion, int(lane)), by_recursion(arms[lane], lanes[lane].data())));
+            CHECK(same(lane_of(closed, int(lane)), closed_form(arms[lane], lanes[lane].data())));
+            CHECK(same(lane_of(recursion, int(lane)), by_recursion(arms[lane], lanes[lane].data())));
         }
     }
 }
@@ -248,14 +247,14 @@ static void check_slopes(const Numbers& x, F formula, double tolerance) {
         const Numbers high = formula(ahead.data()), low = formula(behind.data());
         for (std::size_t k = 0; k < plain.size(); ++k) {
             const double difference = (high[k] - low[k]) / (2 * h);
-            BOOST_TEST(same_bits(result[k].number, plain[k]));
-            BOOST_TEST(std::abs(result[k].slope[i] - difference) <= tolerance * (1 + std::abs(difference)),
-                       "result " << k << " by input " << i);
+            CHECK(same_bits(result[k].number, plain[k]));
+            CHECK(std::abs(result[k].slope[i] - difference) <= tolerance * (1 + std::abs(difference)),
+                  "result " << k << " by input " << i);
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(slopes_of_the_dynamics_are_the_differences) {
+TEST_CASE(slopes_of_the_dynamics_are_the_differences) {
     Random random(44);
     for (int i = 0; i < 10; ++i) {
         const Arm<double> arm = random_params(random).arm();
@@ -268,7 +267,7 @@ BOOST_AUTO_TEST_CASE(slopes_of_the_dynamics_are_the_differences) {
 }
 
 // Derivatives by position, velocity and time, which a gradient through a moving wall needs.
-BOOST_AUTO_TEST_CASE(slopes_of_a_right_hand_side_with_contact_are_the_differences) {
+TEST_CASE(slopes_of_a_right_hand_side_with_contact_are_the_differences) {
     Random random(45);
     for (int i = 0; i < 30; ++i) {
         const Plant<double> plant = plant_with_wall(random);
@@ -286,7 +285,7 @@ BOOST_AUTO_TEST_CASE(slopes_of_a_right_hand_side_with_contact_are_the_difference
 }
 
 // Slopes by a parameter of the arm.
-BOOST_AUTO_TEST_CASE(slopes_by_a_mass_are_the_differences) {
+TEST_CASE(slopes_by_a_mass_are_the_differences) {
     Random random(46);
     using Slope = Dual<1>;
     for (int i = 0; i < 30; ++i) {
@@ -310,14 +309,14 @@ BOOST_AUTO_TEST_CASE(slopes_by_a_mass_are_the_differences) {
         const Vec3<double> high = acceleration(m + h), low = acceleration(m - h);
         for (int k = 0; k < 3; ++k) {
             const double difference = (high[k] - low[k]) / (2 * h);
-            BOOST_TEST(std::abs(exact[k].slope[0] - difference) <= 1e-5 * (1 + std::abs(difference)));
+            CHECK(std::abs(exact[k].slope[0] - difference) <= 1e-5 * (1 + std::abs(difference)));
         }
     }
 }
 
 // ---- Expr
 
-BOOST_AUTO_TEST_CASE(recorded_dynamics_play_back_to_the_same_bits) {
+TEST_CASE(recorded_dynamics_play_back_to_the_same_bits) {
     Random random(47);
     const Arm<double> arm = random_params(random).arm();
     const auto dynamics = [&]<class T>(const T* x) {
@@ -329,19 +328,19 @@ BOOST_AUTO_TEST_CASE(recorded_dynamics_play_back_to_the_same_bits) {
     std::vector<Expr> inputs;
     for (int i = 0; i < state_numbers; ++i) inputs.push_back(tape.input());
     for (const Expr& result : dynamics(inputs.data())) tape.output(result);
-    BOOST_TEST(tape.count(Op::sine) == 3);
-    BOOST_TEST(tape.count(Op::tanh) == 3);
-    BOOST_TEST(tape.count(Op::select) == 0);
+    CHECK(tape.count(Op::sine) == 3);
+    CHECK(tape.count(Op::tanh) == 3);
+    CHECK(tape.count(Op::select) == 0);
     for (int i = 0; i < 1000; ++i) {
         const Numbers x = random_state(random);
         Numbers played(3);
         tape.play<double>(x, played);
-        BOOST_TEST(same(played, dynamics(x.data())));
+        CHECK(same(played, dynamics(x.data())));
     }
 }
 
 // A whole step with contact can be recorded: its decisions become choices.
-BOOST_AUTO_TEST_CASE(a_recorded_step_with_contact_plays_back_to_the_same_bits_of_full_sines) {
+TEST_CASE(a_recorded_step_with_contact_plays_back_to_the_same_bits_of_full_sines) {
     Random random(48);
     const Plant<double> plant = plant_with_wall(random);
     Tape tape;
@@ -354,17 +353,17 @@ BOOST_AUTO_TEST_CASE(a_recorded_step_with_contact_plays_back_to_the_same_bits_of
     State<Expr, motion_size> f0;
     outlined(inputs[6], y, f0);
     for (const Expr& result : rk4_step(outlined, inputs[6], y, f0, Expr(0.01))) tape.output(result);
-    BOOST_TEST(tape.count(Op::select) > 0);
+    CHECK(tape.count(Op::select) > 0);
     for (int i = 0; i < 300; ++i) {
         const Numbers x = random_state(random);
         Numbers played(motion_size);
         tape.play<double>(x, played);
         const Numbers direct = stepped(plant, x.data());
         for (std::size_t k = 0; k < motion_size; ++k)
-            BOOST_TEST(std::abs(played[k] - direct[state_size + k]) <= 1e-9 * (1 + std::abs(played[k])));
+            CHECK(std::abs(played[k] - direct[state_size + k]) <= 1e-9 * (1 + std::abs(played[k])));
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

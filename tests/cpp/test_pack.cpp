@@ -1,15 +1,16 @@
 #include <bit>
-#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
 #include "arm3r/numbers/eigen_traits.hpp"
+#include "arm3r/numbers/lane_access.hpp"
+#include "check.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(pack)
+TEST_SUITE(pack)
 
 static constexpr int results_per_input = 23;
 
@@ -134,7 +135,7 @@ static std::size_t differing(const Variant& variant, const double* x, const doub
     return count;
 }
 
-BOOST_AUTO_TEST_CASE(each_lane_equals_the_double_bit_for_bit_on_1e6_values) {
+TEST_CASE(each_lane_equals_the_double_bit_for_bit_on_1e6_values) {
     constexpr std::size_t count = 1 << 20, widest = 16;
     const std::vector<double> x = inputs(count + 1), y(x.rbegin(), x.rend());
     const std::vector<Variant> all = variants();
@@ -147,32 +148,32 @@ BOOST_AUTO_TEST_CASE(each_lane_equals_the_double_bit_for_bit_on_1e6_values) {
                 differences[v] += differing(all[v], &x[i + j], &y[i + j], expected + j);
     }
     for (std::size_t v = 0; v < all.size(); ++v)
-        BOOST_TEST(differences[v] == 0u,
-                   all[v].name << " with " << all[v].lanes << " lanes differs in " << differences[v] << " results");
+        CHECK(differences[v] == 0u,
+              all[v].name << " with " << all[v].lanes << " lanes differs in " << differences[v] << " results");
 }
 
-BOOST_AUTO_TEST_CASE(sincos_pair_equals_two_single_calls) {
+TEST_CASE(sincos_pair_equals_two_single_calls) {
     const std::vector<double> x = inputs(100001);
     for (std::size_t i = 0; i + 1 < x.size(); ++i) {
         const auto [first, second] = sincos_pair(x[i], x[i + 1]);
         const auto a = sincos(x[i]), b = sincos(x[i + 1]);
-        BOOST_REQUIRE(same(first.sin, a.sin) && same(first.cos, a.cos));
-        BOOST_REQUIRE(same(second.sin, b.sin) && same(second.cos, b.cos));
+        REQUIRE((same(first.sin, a.sin) && same(first.cos, a.cos)));
+        REQUIRE((same(second.sin, b.sin) && same(second.cos, b.cos)));
     }
 }
 
-BOOST_AUTO_TEST_CASE(any_and_all_look_at_every_lane) {
+TEST_CASE(any_and_all_look_at_every_lane) {
     for (int lane = 0; lane < 8; ++lane) {
         Pack<8> x(0.0);
         x.set(lane, 1.0);
-        BOOST_TEST(any(x > Pack<8>(0.5)));
-        BOOST_TEST(!all(x > Pack<8>(0.5)));
-        BOOST_TEST((x > Pack<8>(0.5))[lane]);
+        CHECK(any(x > Pack<8>(0.5)));
+        CHECK(!all(x > Pack<8>(0.5)));
+        CHECK((x > Pack<8>(0.5))[lane]);
     }
-    BOOST_TEST(all(Pack<8>(1.0) > Pack<8>(0.5)));
-    BOOST_TEST(!any(Pack<8>(1.0) < Pack<8>(0.5)));
-    BOOST_TEST(all(PackMask<4>(true)));
-    BOOST_TEST(!any(PackMask<4>(false)));
+    CHECK(all(Pack<8>(1.0) > Pack<8>(0.5)));
+    CHECK(!any(Pack<8>(1.0) < Pack<8>(0.5)));
+    CHECK(all(PackMask<4>(true)));
+    CHECK(!any(PackMask<4>(false)));
 }
 
 template <class T>
@@ -181,21 +182,21 @@ static void check_marked_lanes() {
     for (int lane = 0; lane < Lanes<T>::count; ++lane) {
         Lanes<T>::mark(mask, lane, false);
         for (int other = 0; other < Lanes<T>::count; ++other)
-            BOOST_TEST(Lanes<T>::is(mask, other) == (other > lane), "lane " << other);
+            CHECK(Lanes<T>::is(mask, other) == (other > lane), "lane " << other);
     }
-    BOOST_TEST(!any(mask));
+    CHECK(!any(mask));
     Lanes<T>::mark(mask, Lanes<T>::count - 1, true);
-    BOOST_TEST(any(mask));
+    CHECK(any(mask));
 }
 
-BOOST_AUTO_TEST_CASE(a_lane_is_marked_alone) {
+TEST_CASE(a_lane_is_marked_alone) {
     check_marked_lanes<double>(), check_marked_lanes<Pack<2>>();
     check_marked_lanes<Pack<4>>(), check_marked_lanes<Pack<8>>();
 }
 
-BOOST_AUTO_TEST_CASE(a_broadcast_keeps_the_sign_of_zero) {
-    BOOST_TEST(std::signbit(Pack<4>(-0.0)[3]));
-    BOOST_TEST(!std::signbit(Pack<4>(0.0)[3]));
+TEST_CASE(a_broadcast_keeps_the_sign_of_zero) {
+    CHECK(std::signbit(Pack<4>(-0.0)[3]));
+    CHECK(!std::signbit(Pack<4>(0.0)[3]));
 }
 
 template <class T>
@@ -207,16 +208,16 @@ static T eigen_formula(const T& x, const T& y) {
     return v.dot(m.transpose() * v) / v.norm() + (Eigen::Matrix3d::Identity() * v).sum();
 }
 
-BOOST_AUTO_TEST_CASE(eigen_matrices_of_packs_round_like_those_of_doubles) {
+TEST_CASE(eigen_matrices_of_packs_round_like_those_of_doubles) {
     Pack<4> x(0.0), y(0.0);
     for (int lane = 0; lane < 4; ++lane) {
         x.set(lane, 0.3 + lane);
         y.set(lane, 0.7 - 2 * lane);
     }
     const Pack<4> result = eigen_formula(x, y);
-    for (int lane = 0; lane < 4; ++lane) BOOST_TEST(result[lane] == eigen_formula(x[lane], y[lane]));
+    for (int lane = 0; lane < 4; ++lane) CHECK(result[lane] == eigen_formula(x[lane], y[lane]));
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -8,10 +7,11 @@
 
 #include "arm3r/numbers/pack.hpp"
 #include "arm3r/numbers/polynomial.hpp"
+#include "check.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(polynomial)
+TEST_SUITE(polynomial)
 
 using Poly = Polynomial<double>;
 using Wide = Polynomial<long double>;
@@ -85,66 +85,66 @@ static bool is_first_fall(const Poly& g, double from, const std::optional<double
 
 static void expect_fall(const Poly& g, double from, double root, double tolerance = resolution) {
     const auto fall = first_crossing(g, from, resolution);
-    BOOST_REQUIRE_MESSAGE(fall, "no fall found at " << root);
-    BOOST_TEST(std::abs(*fall - root) <= tolerance, *fall << " instead of " << root << ", off " << *fall - root);
-    BOOST_TEST(value(g, *fall) <= rounding_of(g));
+    REQUIRE(fall.has_value(), "no fall found at " << root);
+    CHECK(std::abs(*fall - root) <= tolerance, *fall << " instead of " << root << ", off " << *fall - root);
+    CHECK(value(g, *fall) <= rounding_of(g));
 }
 
 static void expect_no_fall(const Poly& g, double from = 0) {
     const auto fall = first_crossing(g, from, resolution);
-    BOOST_TEST(!fall, "fall found at " << fall.value_or(0));
+    CHECK(!fall, "fall found at " << fall.value_or(0));
 }
 
 // ---- values
 
-BOOST_AUTO_TEST_CASE(value_slope_derivative_and_integral_of_a_known_cubic) {
+TEST_CASE(value_slope_derivative_and_integral_of_a_known_cubic) {
     const Poly p = power_form({2, -3, 0.5, 4});
-    BOOST_TEST(value(p, 0.5) == 2 - 1.5 + 0.125 + 0.5);
-    BOOST_TEST(slope(p, 0.5) == -3 + 0.5 + 3);
-    BOOST_TEST(derivative(p).degree == 2);
-    BOOST_TEST(value(derivative(p), 0.5) == slope(p, 0.5));
-    BOOST_TEST(std::abs(integral(p, 0.0, 1.0) - (2 - 1.5 + 0.5 / 3 + 1)) <= 1e-15);
-    BOOST_TEST(integral(p, 1.0, 0.0) == -integral(p, 0.0, 1.0));
-    BOOST_TEST(integral(p, 0.3, 0.3) == 0);
+    CHECK(value(p, 0.5) == 2 - 1.5 + 0.125 + 0.5);
+    CHECK(slope(p, 0.5) == -3 + 0.5 + 3);
+    CHECK(derivative(p).degree == 2);
+    CHECK(value(derivative(p), 0.5) == slope(p, 0.5));
+    CHECK(std::abs(integral(p, 0.0, 1.0) - (2 - 1.5 + 0.5 / 3 + 1)) <= 1e-15);
+    CHECK(integral(p, 1.0, 0.0) == -integral(p, 0.0, 1.0));
+    CHECK(integral(p, 0.3, 0.3) == 0);
 
     const Poly constant = power_form({5});
-    BOOST_TEST(value(constant, 0.3) == 5);
-    BOOST_TEST(slope(constant, 0.3) == 0);
-    BOOST_TEST(derivative(constant).degree == 0);
-    BOOST_TEST(value(derivative(constant), 0.3) == 0);
-    BOOST_TEST(integral(constant, 0.25, 0.75) == 2.5);
+    CHECK(value(constant, 0.3) == 5);
+    CHECK(slope(constant, 0.3) == 0);
+    CHECK(derivative(constant).degree == 0);
+    CHECK(value(derivative(constant), 0.3) == 0);
+    CHECK(integral(constant, 0.25, 0.75) == 2.5);
 }
 
-BOOST_AUTO_TEST_CASE(the_integral_over_a_sliver_keeps_its_digits) {
+TEST_CASE(the_integral_over_a_sliver_keeps_its_digits) {
     for (int degree = 1; degree <= max_degree; ++degree) {
         Poly p{degree, {}};
         for (int i = 0; i <= degree; ++i) p.c[i] = uniform(0.5, 1);
         const double a = uniform(0.1, 0.9), b = a + 0x1p-30;
         const long double middle = a + (b - a) / 2.0L;
-        BOOST_TEST(std::abs(double(integral(p, a, b) / ((b - a) * exact(p, middle)) - 1)) <= 1e-14);
+        CHECK(std::abs(double(integral(p, a, b) / ((b - a) * exact(p, middle)) - 1)) <= 1e-14);
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_hermite_cubic_meets_both_ends_and_their_slopes) {
+TEST_CASE(the_hermite_cubic_meets_both_ends_and_their_slopes) {
     const Poly p = hermite_cubic(1.5, -2.0, 0.25, 4.0);
-    BOOST_TEST(p.degree == 3);
-    BOOST_TEST(value(p, 0.0) == 1.5);
-    BOOST_TEST(slope(p, 0.0) == -2.0);
-    BOOST_TEST(value(p, 1.0) == 0.25);
-    BOOST_TEST(slope(p, 1.0) == 4.0);
+    CHECK(p.degree == 3);
+    CHECK(value(p, 0.0) == 1.5);
+    CHECK(slope(p, 0.0) == -2.0);
+    CHECK(value(p, 1.0) == 0.25);
+    CHECK(slope(p, 1.0) == 4.0);
 }
 
 // Summed up by their basis, C(n, j) theta^j (1 - theta)^(n - j), the coefficients give the polynomial back.
-BOOST_AUTO_TEST_CASE(bernstein_coefficients_give_the_polynomial_back) {
+TEST_CASE(bernstein_coefficients_give_the_polynomial_back) {
     for (int degree = 0; degree <= max_degree; ++degree) {
         const Poly p = random_coefficients(degree);
         const auto b = bernstein(p);
-        BOOST_TEST(b[0] == p.c[0]);
+        CHECK(b[0] == p.c[0]);
         for (const double theta : {0.0, 0.1, 0.37, 0.5, 0.92, 1.0}) {
             long double sum = 0, binomial = 1;
             for (int j = 0; j <= degree; binomial = binomial * (degree - j) / (j + 1), ++j)
                 sum += b[j] * binomial * std::pow((long double)theta, j) * std::pow(1 - (long double)theta, degree - j);
-            BOOST_TEST(std::abs(double(sum - exact(p, theta))) <= epsilon + rounding_of(p));
+            CHECK(std::abs(double(sum - exact(p, theta))) <= epsilon + rounding_of(p));
         }
     }
 }
@@ -221,22 +221,22 @@ static int differences(Run run, int lanes) {
     return count;
 }
 
-BOOST_AUTO_TEST_CASE(each_lane_equals_the_double_bit_for_bit) {
-    BOOST_TEST(differences(baseline<2>, 2) == 0);
-    BOOST_TEST(differences(baseline<4>, 4) == 0);
-    BOOST_TEST(differences(baseline<8>, 8) == 0);
+TEST_CASE(each_lane_equals_the_double_bit_for_bit) {
+    CHECK(differences(baseline<2>, 2) == 0);
+    CHECK(differences(baseline<4>, 4) == 0);
+    CHECK(differences(baseline<8>, 8) == 0);
 #ifdef __x86_64__
     if (__builtin_cpu_supports("avx2")) {
-        BOOST_TEST(differences(avx2<4>, 4) == 0);
-        BOOST_TEST(differences(avx2<8>, 8) == 0);
+        CHECK(differences(avx2<4>, 4) == 0);
+        CHECK(differences(avx2<8>, 8) == 0);
     }
-    if (__builtin_cpu_supports("avx512f")) BOOST_TEST(differences(avx512<8>, 8) == 0);
+    if (__builtin_cpu_supports("avx512f")) CHECK(differences(avx512<8>, 8) == 0);
 #endif
 }
 
 // ---- first_crossing
 
-BOOST_AUTO_TEST_CASE(one_simple_root_of_any_degree_is_found_to_the_resolution) {
+TEST_CASE(one_simple_root_of_any_degree_is_found_to_the_resolution) {
     for (int trial = 0; trial < 5000; ++trial) {
         const double root = uniform(0.001, 1);
         const Poly g = with_roots({root}, uniform_degree(1, max_degree), -1);
@@ -246,19 +246,19 @@ BOOST_AUTO_TEST_CASE(one_simple_root_of_any_degree_is_found_to_the_resolution) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_finest_resolution_ends_and_a_coarse_one_is_kept) {
+TEST_CASE(the_finest_resolution_ends_and_a_coarse_one_is_kept) {
     for (int trial = 0; trial < 1000; ++trial) {
         const double root = uniform(0, 1);
         const Poly g = with_roots({root}, 12, -1);
         for (const double fine : {0.0, 1e-300, 1e-16, -1.0, std::numeric_limits<double>::quiet_NaN()})
-            BOOST_TEST(std::abs(first_crossing(g, 0, fine).value() - root) <= 1e-14);
+            CHECK(std::abs(first_crossing(g, 0, fine).value() - root) <= 1e-14);
         const double coarse = first_crossing(g, 0, 1e-3).value();
-        BOOST_TEST(std::abs(coarse - root) <= 1e-3);
-        BOOST_TEST(value(g, coarse) < 0);
+        CHECK(std::abs(coarse - root) <= 1e-3);
+        CHECK(value(g, coarse) < 0);
     }
 }
 
-BOOST_AUTO_TEST_CASE(several_roots_give_the_first_fall_after_from) {
+TEST_CASE(several_roots_give_the_first_fall_after_from) {
     const Poly g = with_roots({0.2, 0.4, 0.6, 0.8}, 8);  // falls at 0.2 and 0.6
     expect_fall(g, 0, 0.2);
     expect_fall(g, 0.1, 0.2);
@@ -271,7 +271,7 @@ BOOST_AUTO_TEST_CASE(several_roots_give_the_first_fall_after_from) {
 }
 
 // Roots anywhere, clusters of up to four of them, and arbitrary coefficients, against samples in long double.
-BOOST_AUTO_TEST_CASE(random_polynomials_fall_where_samples_say) {
+TEST_CASE(random_polynomials_fall_where_samples_say) {
     int found = 0, none = 0;
     for (int trial = 0; trial < 12000; ++trial) {
         const int degree = uniform_degree(3, max_degree);
@@ -288,15 +288,15 @@ BOOST_AUTO_TEST_CASE(random_polynomials_fall_where_samples_say) {
         if (exact(g, from) < 0)
             for (int i = 0; i <= g.degree; ++i) g.c[i] = -g.c[i];
         const auto fall = first_crossing(g, from, resolution);
-        BOOST_REQUIRE_MESSAGE(is_first_fall(g, from, fall), "trial " << trial << ", degree " << g.degree << ", from "
-                                                                     << from << ": " << fall.value_or(-1));
+        REQUIRE(is_first_fall(g, from, fall),
+                "trial " << trial << ", degree " << g.degree << ", from " << from << ": " << fall.value_or(-1));
         ++(fall ? found : none);
     }
-    BOOST_TEST(found > 3000);
-    BOOST_TEST(none > 1000);
+    CHECK(found > 3000);
+    CHECK(none > 1000);
 }
 
-BOOST_AUTO_TEST_CASE(a_dip_of_any_width_is_found_and_a_touch_is_none) {
+TEST_CASE(a_dip_of_any_width_is_found_and_a_touch_is_none) {
     for (int trial = 0; trial < 3000; ++trial) {
         const int degree = uniform_degree(2, max_degree);
         const double root = uniform(0.01, 0.9), width = std::pow(10.0, uniform(-6, -1.1));
@@ -312,17 +312,17 @@ BOOST_AUTO_TEST_CASE(a_dip_of_any_width_is_found_and_a_touch_is_none) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_width_of_a_dip_decides_not_where_the_halving_cuts) {
+TEST_CASE(the_width_of_a_dip_decides_not_where_the_halving_cuts) {
     for (int trial = 0; trial < 1000; ++trial) {
         const double root = uniform(0.01, 0.9), coarse = std::pow(10.0, uniform(-4, -2));
         const auto fall = first_crossing(with_roots({root, root + 1.01 * coarse}, 6), 0, coarse);
-        BOOST_REQUIRE(fall);
-        BOOST_TEST(std::abs(*fall - root) <= coarse);
+        REQUIRE(fall.has_value());
+        CHECK(std::abs(*fall - root) <= coarse);
         expect_no_fall(with_roots({root, root + 1e-9}, 6));  // not as deep as the rounding of the coefficients
     }
 }
 
-BOOST_AUTO_TEST_CASE(exact_touches_and_roots_at_the_ends) {
+TEST_CASE(exact_touches_and_roots_at_the_ends) {
     expect_no_fall(power_form({0.25, -1, 1}));      // (theta - 1/2)^2
     expect_no_fall(power_form({0.0625, -0.5, 1}));  // (theta - 1/4)^2
     expect_no_fall(power_form({1, -2, 1}));         // (theta - 1)^2
@@ -340,12 +340,12 @@ BOOST_AUTO_TEST_CASE(exact_touches_and_roots_at_the_ends) {
     expect_fall(power_form({0.125, -0.75, 1.5, -1}), 0, 0.5, 1e-5);  // (1/2 - theta)^3, as flat as rounding there
 }
 
-BOOST_AUTO_TEST_CASE(the_place_found_has_fallen_where_the_root_is_a_double_itself) {
-    BOOST_TEST(value(power_form({0.5, -1}), first_crossing(power_form({0.5, -1}), 0, resolution).value()) < 0);
+TEST_CASE(the_place_found_has_fallen_where_the_root_is_a_double_itself) {
+    CHECK(value(power_form({0.5, -1}), first_crossing(power_form({0.5, -1}), 0, resolution).value()) < 0);
 }
 
 // Values drown in rounding as far as |theta - root|^k is below it.
-BOOST_AUTO_TEST_CASE(a_root_of_odd_multiplicity_is_found_as_well_as_rounding_lets) {
+TEST_CASE(a_root_of_odd_multiplicity_is_found_as_well_as_rounding_lets) {
     for (const double root : {0.1, 0.3, 0.7, 0.9})
         for (int k = 3; k <= 9; k += 2) {
             const Poly g = with_roots(std::vector<double>(std::size_t(k), root), k, -1);
@@ -354,7 +354,7 @@ BOOST_AUTO_TEST_CASE(a_root_of_odd_multiplicity_is_found_as_well_as_rounding_let
 }
 
 // Flat starts: theta^k (root - theta), lifted or lowered by less than rounding.
-BOOST_AUTO_TEST_CASE(a_long_flat_start_is_no_fall) {
+TEST_CASE(a_long_flat_start_is_no_fall) {
     for (int k = 1; k < max_degree; ++k)
         for (const double start : {0.0, 1e-18, -1e-18}) {
             Poly g{k + 1, {}};
@@ -365,7 +365,7 @@ BOOST_AUTO_TEST_CASE(a_long_flat_start_is_no_fall) {
         }
 }
 
-BOOST_AUTO_TEST_CASE(a_start_below_zero_falls_at_once_unless_it_comes_up_without_sinking) {
+TEST_CASE(a_start_below_zero_falls_at_once_unless_it_comes_up_without_sinking) {
     for (const double start : {-1e-17, -1e-13, -1e-3}) {
         const bool by_rounding = start > -1e-16;
         expect_no_fall(power_form({start, 1}));
@@ -375,25 +375,25 @@ BOOST_AUTO_TEST_CASE(a_start_below_zero_falls_at_once_unless_it_comes_up_without
         expect_fall(power_form({start, -1, 2}), 0, 0);  // sinks, then comes up
         expect_fall(power_form({start, 0, 0, -1}), 0, 0);
         if (!by_rounding) {
-            BOOST_TEST(first_crossing(power_form({start, -1}), 0, resolution).value() == 0);
-            BOOST_TEST(first_crossing(power_form({start, 0.5 * -start}), 0.25, resolution).value() == 0.25);
+            CHECK(first_crossing(power_form({start, -1}), 0, resolution).value() == 0);
+            CHECK(first_crossing(power_form({start, 0.5 * -start}), 0.25, resolution).value() == 0.25);
         }
     }
-    BOOST_TEST(first_crossing(power_form({-1e-17}), 0, resolution).value() == 0);
+    CHECK(first_crossing(power_form({-1e-17}), 0, resolution).value() == 0);
 }
 
-BOOST_AUTO_TEST_CASE(a_scale_changes_nothing) {
+TEST_CASE(a_scale_changes_nothing) {
     for (int trial = 0; trial < 500; ++trial) {
         const Poly g = random_coefficients(uniform_degree(3, max_degree));
         for (const double scale : {0x1p-900, 0x1p-60, 0x1p60, 0x1p900}) {
             Poly scaled = g;
             for (int i = 0; i <= g.degree; ++i) scaled.c[i] *= scale;
-            BOOST_TEST((first_crossing(scaled, 0.1, resolution) == first_crossing(g, 0.1, resolution)));
+            CHECK((first_crossing(scaled, 0.1, resolution) == first_crossing(g, 0.1, resolution)));
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_is_not_finite_gives_nothing) {
+TEST_CASE(what_is_not_finite_gives_nothing) {
     constexpr double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
     for (int degree = 0; degree <= max_degree; ++degree)
         for (int i = 0; i <= degree; ++i)
@@ -402,23 +402,23 @@ BOOST_AUTO_TEST_CASE(what_is_not_finite_gives_nothing) {
                 g.c[i] = bad;
                 expect_no_fall(g);
                 expect_no_fall(g, 0.5);
-                BOOST_TEST(!std::isfinite(max_value(g, 0, 1)));
+                CHECK(!std::isfinite(max_value(g, 0, 1)));
             }
     expect_no_fall(power_form({1, -2}), nan);
 }
 
 // ---- largest
 
-BOOST_AUTO_TEST_CASE(the_largest_of_known_curves) {
-    BOOST_TEST(max_value(power_form({3}), 0, 1) == 3);
-    BOOST_TEST(max_value(power_form({0, 1, -1}), 0, 1) == 0.25);
-    BOOST_TEST(std::abs(max_value(power_form({0, 1, -1}), 0, 0.25) - 0.1875) <= 1e-16);
-    BOOST_TEST(std::abs(max_value(power_form({0, 1, -1}), 0.75, 1) - 0.1875) <= 1e-16);
-    BOOST_TEST(max_value(power_form({0.25, -1, 1}), 0, 1) == 0.25);
-    BOOST_TEST(max_value(power_form({0.25, -1, 1}), 0.5, 0.5) == 0);
+TEST_CASE(the_largest_of_known_curves) {
+    CHECK(max_value(power_form({3}), 0, 1) == 3);
+    CHECK(max_value(power_form({0, 1, -1}), 0, 1) == 0.25);
+    CHECK(std::abs(max_value(power_form({0, 1, -1}), 0, 0.25) - 0.1875) <= 1e-16);
+    CHECK(std::abs(max_value(power_form({0, 1, -1}), 0.75, 1) - 0.1875) <= 1e-16);
+    CHECK(max_value(power_form({0.25, -1, 1}), 0, 1) == 0.25);
+    CHECK(max_value(power_form({0.25, -1, 1}), 0.5, 0.5) == 0);
 }
 
-BOOST_AUTO_TEST_CASE(the_largest_is_that_of_dense_samples) {
+TEST_CASE(the_largest_is_that_of_dense_samples) {
     constexpr int samples = 2000;
     int inside = 0;
     for (int trial = 0; trial < 3000; ++trial) {
@@ -431,13 +431,13 @@ BOOST_AUTO_TEST_CASE(the_largest_is_that_of_dense_samples) {
         for (int i = 2; i <= p.degree; ++i) bend += i * (i - 1) * std::abs(p.c[i]);
         const double gap = 0.5 * bend / (4.0 * samples * samples), found = max_value(p, a, b);
         const double noise = epsilon + rounding_of(p);
-        BOOST_TEST(found >= double(most) - noise);
-        BOOST_TEST(found <= double(most) + gap + noise);
+        CHECK(found >= double(most) - noise);
+        CHECK(found <= double(most) + gap + noise);
         inside += found > std::max(value(p, a), value(p, b));
     }
-    BOOST_TEST(inside > 500);
+    CHECK(inside > 500);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

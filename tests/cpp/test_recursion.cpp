@@ -1,13 +1,13 @@
-#include <boost/test/unit_test.hpp>
 #include <map>
 
 #include "arm3r/model/dynamics.hpp"
 #include "arm3r/model/recursion.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(recursion)
+TEST_SUITE(recursion)
 
 // The largest error of each quantity, relative to 1 + its largest entry.
 class Worst {
@@ -17,7 +17,7 @@ public:
         note(what, (a - b).cwiseAbs().maxCoeff() / (1 + a.cwiseAbs().maxCoeff()));
     }
     void check(double limit) const {
-        for (const auto& [what, error] : errors_) BOOST_TEST(error <= limit, what << ": " << error);
+        for (const auto& [what, error] : errors_) CHECK(error <= limit, what << ": " << error);
     }
 
 private:
@@ -73,18 +73,18 @@ static void compare_a_million(double limit, F angles) {
     worst.check(limit);
 }
 
-BOOST_AUTO_TEST_CASE(agrees_with_the_closed_form_on_1e6_states) {
+TEST_CASE(agrees_with_the_closed_form_on_1e6_states) {
     compare_a_million(1e-12, [](Random& random) { return random.vector(-100, 100); });
 }
 
 // Most of that difference is the rounding of q2 + q3. On a grid the sum is exact, and the formulas stand alone.
-BOOST_AUTO_TEST_CASE(agrees_four_times_better_where_q2_plus_q3_is_exact) {
+TEST_CASE(agrees_four_times_better_where_q2_plus_q3_is_exact) {
     compare_a_million(2.5e-13, [](Random& random) -> Vec3<double> {
         return (random.vector(-100, 100) * 0x1p40).array().round() * 0x1p-40;
     });
 }
 
-BOOST_AUTO_TEST_CASE(centres_and_elbow_are_where_the_chain_puts_them) {
+TEST_CASE(centres_and_elbow_are_where_the_chain_puts_them) {
     Random random(12);
     Worst worst;
     for (int i = 0; i < 1000; ++i) {
@@ -103,6 +103,6 @@ BOOST_AUTO_TEST_CASE(centres_and_elbow_are_where_the_chain_puts_them) {
     worst.check(1e-14);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

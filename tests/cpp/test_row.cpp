@@ -1,11 +1,11 @@
-#include <boost/test/unit_test.hpp>
 
+#include "check.hpp"
 #include "fixtures.hpp"
 #include "record/row.hpp"
 
 using namespace arm3r;
 
-BOOST_AUTO_TEST_SUITE(sample_rows)
+TEST_SUITE(sample_rows)
 
 namespace {
 
@@ -45,7 +45,7 @@ Setup random_setup(Random& random, int trial, bool has_law) {
 
 // Rows taken eight at once, in whatever instruction set, are those taken one by one; and a column is the same whatever
 // stands beside it.
-BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
+TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
     Random random(7);
     for (int trial = 0; trial < 400; ++trial) {
         const bool has_law = trial % 2;
@@ -76,16 +76,16 @@ BOOST_AUTO_TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
             const double t = rows.t[i], theta = (t - dense.t0) / dense.h;
             const Row row = make_row(context, t, dense(theta), theta);
             for (const std::size_t c : plan.columns)
-                BOOST_TEST(same_bits(row.value[c], rows.value[c][i]),
-                           column_table[c].name << " of row " << i << ", trial " << trial);
+                CHECK(same_bits(row.value[c], rows.value[c][i]),
+                      column_table[c].name << " of row " << i << ", trial " << trial);
             for (const std::size_t c : few.columns)
-                BOOST_TEST(same_bits(row.value[c], few_rows.value[c][i]),
-                           column_table[c].name << " among few, row " << i << ", trial " << trial);
+                CHECK(same_bits(row.value[c], few_rows.value[c][i]),
+                      column_table[c].name << " among few, row " << i << ", trial " << trial);
             if (row.link_behind_wall) first_behind = std::min(first_behind, i);
         }
-        BOOST_TEST(first_behind == rows.first_link_behind_wall);
-        BOOST_TEST((first_behind == few_rows.first_link_behind_wall || trial % 3 != 0));
+        CHECK(first_behind == rows.first_link_behind_wall);
+        CHECK((first_behind == few_rows.first_link_behind_wall || trial % 3 != 0));
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()

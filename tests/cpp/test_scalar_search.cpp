@@ -1,11 +1,11 @@
-#include <boost/test/unit_test.hpp>
 
+#include "check.hpp"
 #include "fixtures.hpp"
 #include "run/scalar_search.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(scalar_searches)
+TEST_SUITE(scalar_searches)
 
 namespace {
 
@@ -36,7 +36,7 @@ double zero_of(F f, double a, double b) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(a_smooth_maximum_is_found_in_less_than_half_of_the_sections) {
+TEST_CASE(a_smooth_maximum_is_found_in_less_than_half_of_the_sections) {
     Random random(91);
     int calls = 0, searches = 0;
     for (; searches < 2000; ++searches) {
@@ -49,17 +49,17 @@ BOOST_AUTO_TEST_CASE(a_smooth_maximum_is_found_in_less_than_half_of_the_sections
             return height - u * u * (1 + lean * u) / (1 + u * u);
         };
         const Maximum most = maximum_of(f, a, b);
-        BOOST_TEST(std::abs(most.position - at) <= 2 * maximum_resolution);
-        BOOST_TEST(most.value == f(most.position));
-        BOOST_TEST(most.value <= height);
-        BOOST_TEST(height - most.value <= std::pow(2 * maximum_resolution / width, 2) + 1e-15);
-        BOOST_TEST(calls - before <= 63);
+        CHECK(std::abs(most.position - at) <= 2 * maximum_resolution);
+        CHECK(most.value == f(most.position));
+        CHECK(most.value <= height);
+        CHECK(height - most.value <= std::pow(2 * maximum_resolution / width, 2) + 1e-15);
+        CHECK(calls - before <= 63);
     }
-    BOOST_TEST(calls <= searches * sections / 2);
+    CHECK(calls <= searches * sections / 2);
 }
 
 // Rounding errors far above those of its size, as a small difference of large positions has them, do not lead the search.
-BOOST_AUTO_TEST_CASE(a_noisy_maximum_takes_no_more_than_a_smooth_one) {
+TEST_CASE(a_noisy_maximum_takes_no_more_than_a_smooth_one) {
     Random random(95);
     int calls = 0, searches = 0;
     double missed_by = 0;  // in noises
@@ -73,29 +73,29 @@ BOOST_AUTO_TEST_CASE(a_noisy_maximum_takes_no_more_than_a_smooth_one) {
             return smooth(x) + noise * random.in(-0.5, 0.5);
         };
         const Maximum most = maximum_of(f, a, b, noise);
-        BOOST_TEST(-smooth(most.position) <= 200 * noise);  // where the noise hides on which side the maximum lies
+        CHECK(-smooth(most.position) <= 200 * noise);  // where the noise hides on which side the maximum lies
         missed_by += -smooth(most.position) / noise;
     }
-    BOOST_TEST(missed_by <= 0.2 * searches);
-    BOOST_TEST(calls <= searches * sections / 3);
+    CHECK(missed_by <= 0.2 * searches);
+    CHECK(calls <= searches * sections / 3);
 }
 
 // A corner and a rise up to the end have no parabola: sections find them.
-BOOST_AUTO_TEST_CASE(a_maximum_without_a_parabola_is_found_too) {
+TEST_CASE(a_maximum_without_a_parabola_is_found_too) {
     Random random(92);
     for (int trial = 0; trial < 500; ++trial) {
         const auto [a, b, at] = random_place(random);
         const double left = random.in(0.1, 5), right = random.in(0.1, 5), top = at;
         const auto corner = [=](double x) { return x < top ? left * (x - top) : right * (top - x); };
-        BOOST_TEST(std::abs(maximum_of(corner, a, b).position - at) <= 4 * maximum_resolution);
-        BOOST_TEST(std::abs(maximum_of([](double x) { return x; }, a, b).position - b) <= 4 * maximum_resolution);
-        BOOST_TEST(std::abs(maximum_of([](double x) { return -x; }, a, b).position - a) <= 4 * maximum_resolution);
+        CHECK(std::abs(maximum_of(corner, a, b).position - at) <= 4 * maximum_resolution);
+        CHECK(std::abs(maximum_of([](double x) { return x; }, a, b).position - b) <= 4 * maximum_resolution);
+        CHECK(std::abs(maximum_of([](double x) { return -x; }, a, b).position - a) <= 4 * maximum_resolution);
         const double level = maximum_of([](double) { return 4.0; }, a, b).value;
-        BOOST_TEST(level == 4.0);
+        CHECK(level == 4.0);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_smooth_zero_is_found_in_a_third_of_the_halvings) {
+TEST_CASE(a_smooth_zero_is_found_in_a_third_of_the_halvings) {
     Random random(93);
     int calls = 0, searches = 0;
     for (; searches < 2000; ++searches) {
@@ -106,14 +106,14 @@ BOOST_AUTO_TEST_CASE(a_smooth_zero_is_found_in_a_third_of_the_halvings) {
             return scale * (root - x) * std::exp(bend * x);
         };
         const double zero = zero_of(f, a, b);
-        BOOST_TEST(f(zero) <= 0);
-        BOOST_TEST(std::abs(zero - at) <= 2 * zero_resolution);
+        CHECK(f(zero) <= 0);
+        CHECK(std::abs(zero - at) <= 2 * zero_resolution);
     }
-    BOOST_TEST(calls <= searches * halvings / 3);
+    CHECK(calls <= searches * halvings / 3);
 }
 
 // Where a torque reaches its limit the function jumps; then it takes halves.
-BOOST_AUTO_TEST_CASE(a_jump_is_found_by_halves) {
+TEST_CASE(a_jump_is_found_by_halves) {
     Random random(94);
     for (int trial = 0; trial < 500; ++trial) {
         const auto [a, b, at] = random_place(random);
@@ -121,13 +121,13 @@ BOOST_AUTO_TEST_CASE(a_jump_is_found_by_halves) {
         int calls = 0;
         const auto jump = [&](double x) { return ++calls, x < place ? 1.0 : -1.0; };
         const double zero = zero_of(jump, a, b);
-        BOOST_TEST(zero >= place);
-        BOOST_TEST(zero - place <= 2 * zero_resolution);
-        BOOST_TEST(calls <= halvings + 5);
-        BOOST_TEST(zero_of([](double) { return -1.0; }, a, a) == a);
+        CHECK(zero >= place);
+        CHECK(zero - place <= 2 * zero_resolution);
+        CHECK(calls <= halvings + 5);
+        CHECK(zero_of([](double) { return -1.0; }, a, a) == a);
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

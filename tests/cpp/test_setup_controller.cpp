@@ -1,8 +1,6 @@
-#include <Eigen/LU>
-#include <boost/test/unit_test.hpp>
-
 #include "arm3r/lanes.hpp"
 #include "arm3r/model/dynamics.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 #include "linear_algebra.hpp"
 #include "setup/make_controller.hpp"
@@ -11,7 +9,7 @@
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(setup_controller)
+TEST_SUITE(setup_controller)
 
 static const std::vector<std::string> laws = {
     "joint_pd",   "computed_torque",    "resolved_acceleration", "stiffness",   "joint_stiffness",
@@ -26,7 +24,7 @@ static Controller<double> controller_of(const Params& params) { return make_setu
 static Reference<double> reference_of(const Params& params) { return controller_of(params).reference; }
 
 static void check_close(const Vec3<double>& a, const Vec3<double>& b, double within) {
-    BOOST_TEST(distance(a, b) <= within, a.transpose() << " and " << b.transpose());
+    CHECK(distance(a, b) <= within, a.transpose() << " and " << b.transpose());
 }
 
 // The tip by plane trigonometry, with the mathematical library's functions.
@@ -51,12 +49,11 @@ static Params along_a_table() {
 template <class Enum>
 static void check_words(const char* path, const std::vector<std::pair<const char*, Enum>>& words,
                         Enum (*chosen)(const Params&), Params params) {
-    BOOST_TEST(words.size() == find_key(path)->choices.size());
-    for (const auto& [word, choice] : words)
-        BOOST_TEST((chosen(params.choose(path, word)) == choice), path << ": " << word);
+    CHECK(words.size() == find_key(path)->choices.size());
+    for (const auto& [word, choice] : words) CHECK((chosen(params.choose(path, word)) == choice), path << ": " << word);
 }
 
-BOOST_AUTO_TEST_CASE(every_word_is_the_choice_of_its_name) {
+TEST_CASE(every_word_is_the_choice_of_its_name) {
     using C = ControllerType;
     const Params params = with_law("hybrid");
     check_words<C>(
@@ -183,7 +180,7 @@ static const std::vector<Place> places = {
     {"tank_capacity", nullptr, &Gains<double>::tank_capacity, false},
 };
 
-BOOST_AUTO_TEST_CASE(every_gain_goes_to_its_place_for_every_law) {
+TEST_CASE(every_gain_goes_to_its_place_for_every_law) {
     for (const std::string& law : laws) {
         Params one = with_law(law), three = one;
         double next = 1;
@@ -200,86 +197,86 @@ BOOST_AUTO_TEST_CASE(every_gain_goes_to_its_place_for_every_law) {
         next = 1;
         for (const Place& place : places) {
             const Vec3<double> spread(next, next + 0.25, next + 0.5), same(next, next, next);
-            if (place.number) BOOST_TEST((of_one.*place.number == next), law << ": " << place.key);
+            if (place.number) CHECK((of_one.*place.number == next), law << ": " << place.key);
             if (place.axes) {
-                BOOST_TEST((of_three.*place.axes == spread), law << ": " << place.key);
-                BOOST_TEST((of_one.*place.axes == (place.one_for_all ? same : spread)), law << ": " << place.key);
+                CHECK((of_three.*place.axes == spread), law << ": " << place.key);
+                CHECK((of_one.*place.axes == (place.one_for_all ? same : spread)), law << ": " << place.key);
             }
             next += 1;
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_plane_has_a_normal_of_length_one) {
+TEST_CASE(a_plane_has_a_normal_of_length_one) {
     const Params params = with_law("virtual_wall").set("controller.plane_normal", {-3, 0, 4});
     check_close(controller_of(params).gains.plane_normal, {-0.6, 0, 0.8}, 1e-16);
 }
 
-BOOST_AUTO_TEST_CASE(flags_are_as_they_were_set) {
+TEST_CASE(flags_are_as_they_were_set) {
     const Params pd = with_law("joint_pd"), tank = with_law("energy_tank"), plane = with_law("virtual_wall");
-    BOOST_TEST(controller_of(pd).compensates_gravity);
-    BOOST_TEST(!controller_of(Params(pd).set("controller.compensate_gravity", 0)).compensates_gravity);
-    BOOST_TEST(controller_of(Params(tank).set("controller.compensate_gravity", 0)).compensates_gravity);
-    BOOST_TEST(controller_of(tank).has_tank);
-    BOOST_TEST(!controller_of(Params(tank).set("controller.tank", 0)).has_tank);
-    BOOST_TEST(!controller_of(plane).controls_passivity);
-    BOOST_TEST(controller_of(Params(plane).set("controller.passivity_control", 1)).controls_passivity);
+    CHECK(controller_of(pd).compensates_gravity);
+    CHECK(!controller_of(Params(pd).set("controller.compensate_gravity", 0)).compensates_gravity);
+    CHECK(controller_of(Params(tank).set("controller.compensate_gravity", 0)).compensates_gravity);
+    CHECK(controller_of(tank).has_tank);
+    CHECK(!controller_of(Params(tank).set("controller.tank", 0)).has_tank);
+    CHECK(!controller_of(plane).controls_passivity);
+    CHECK(controller_of(Params(plane).set("controller.passivity_control", 1)).controls_passivity);
     for (const char* law : {"computed_torque", "resolved_acceleration"}) {
-        BOOST_TEST(!controller_of(with_law(law).set("controller.cancel_force", 0)).cancels_force);
-        BOOST_TEST(controller_of(with_law(law).set("controller.cancel_force", 1)).cancels_force);
+        CHECK(!controller_of(with_law(law).set("controller.cancel_force", 0)).cancels_force);
+        CHECK(controller_of(with_law(law).set("controller.cancel_force", 1)).cancels_force);
     }
-    BOOST_TEST(controller_of(with_law("hybrid")).cancels_force);
-    BOOST_TEST(!controller_of(with_law("hybrid")).ideal_cancellation);
-    BOOST_TEST(controller_of(with_law("hybrid").set("controller.ideal_cancellation", 1)).ideal_cancellation);
+    CHECK(controller_of(with_law("hybrid")).cancels_force);
+    CHECK(!controller_of(with_law("hybrid")).ideal_cancellation);
+    CHECK(controller_of(with_law("hybrid").set("controller.ideal_cancellation", 1)).ideal_cancellation);
 }
 
-BOOST_AUTO_TEST_CASE(every_law_has_its_own_gravity) {
+TEST_CASE(every_law_has_its_own_gravity) {
     for (const std::string& law : laws) {
         const Params params = with_law(law).set("controller.gravity", 5).set("controller.model.link3.length", 0.7);
         const Setup setup = make_setup(params);
-        BOOST_TEST(setup.plant.controller.model.gravity == Vec3<double>(0, 0, -5));
-        BOOST_TEST(setup.plant.controller.model.link3.length == 0.7);
-        BOOST_TEST(setup.plant.arm.gravity[2] == -9.80665);
+        CHECK(setup.plant.controller.model.gravity == Vec3<double>(0, 0, -5));
+        CHECK(setup.plant.controller.model.link3.length == 0.7);
+        CHECK(setup.plant.arm.gravity[2] == -9.80665);
         const Params oblique = Params(params).set("controller.gravity", {1, -2, 3});
-        BOOST_TEST(controller_of(oblique).model.gravity == Vec3<double>(1, -2, 3));
-        BOOST_TEST(!controller_of(oblique).model.gravity_is_vertical);
+        CHECK(controller_of(oblique).model.gravity == Vec3<double>(1, -2, 3));
+        CHECK(!controller_of(oblique).model.gravity_is_vertical);
     }
     for (const char* type : {"none", "constant", "user"})
-        BOOST_TEST(controller_of(with_law(type).set("controller.torque", {1, 2, 3})).model.gravity[2] == -9.80665);
+        CHECK(controller_of(with_law(type).set("controller.torque", {1, 2, 3})).model.gravity[2] == -9.80665);
 }
 
-BOOST_AUTO_TEST_CASE(joint_vectors_are_in_the_arms_convention) {
+TEST_CASE(joint_vectors_are_in_the_arms_convention) {
     Params slide = with_law("joint_pd").choose("reference.type", "point").set("reference.q", {0.1, 0.2, -0.4});
     Params simscape = Params(slide).choose("arm.convention", "simscape").set("reference.q", {0.1, -0.2, 0.4});
     simscape.set("initial.q", {0.4, -0.7, 0.9});
-    BOOST_TEST(reference_of(slide).to == Vec3<double>(0.1, 0.2, -0.4));
-    BOOST_TEST(reference_of(simscape).to == Vec3<double>(0.1, 0.2, -0.4));
-    BOOST_TEST(reference_of(simscape).from == Vec3<double>(0.4, 0.7, -0.9));
+    CHECK(reference_of(slide).to == Vec3<double>(0.1, 0.2, -0.4));
+    CHECK(reference_of(simscape).to == Vec3<double>(0.1, 0.2, -0.4));
+    CHECK(reference_of(simscape).from == Vec3<double>(0.4, 0.7, -0.9));
     for (Params* params : {&slide, &simscape}) {
         params->choose("reference.type", "sinusoid").set("reference.q_amplitude", {0.1, 0.2, 0.3});
         params->choose("controller.type", "computed_torque");
     }
-    BOOST_TEST(reference_of(slide).amplitude == Vec3<double>(0.1, 0.2, 0.3));
-    BOOST_TEST(reference_of(simscape).amplitude == Vec3<double>(0.1, -0.2, -0.3));
+    CHECK(reference_of(slide).amplitude == Vec3<double>(0.1, 0.2, 0.3));
+    CHECK(reference_of(simscape).amplitude == Vec3<double>(0.1, -0.2, -0.3));
     simscape.choose("controller.type", "constant").set("controller.torque", {1, 2, 3});
-    BOOST_TEST(controller_of(simscape).torque == Vec3<double>(1, -2, -3));
+    CHECK(controller_of(simscape).torque == Vec3<double>(1, -2, -3));
 }
 
 // ---- the reference
 
-BOOST_AUTO_TEST_CASE(a_law_holds_what_it_works_in) {
+TEST_CASE(a_law_holds_what_it_works_in) {
     const std::vector<std::string> in_joints = {"joint_pd", "computed_torque", "joint_stiffness"};
     for (const std::string& law : laws) {
         const Params params = with_law(law).set("controller.model.link2.length", 0.9);
         const Reference<double> wanted = reference_of(params);
         const bool is_in_joints = std::find(in_joints.begin(), in_joints.end(), law) != in_joints.end();
-        BOOST_TEST(wanted.in_joints == is_in_joints, law);
+        CHECK(wanted.in_joints == is_in_joints, law);
         const Vec3<double> q(0.4, 0.7, -0.9);
         check_close(desired_motion_at(wanted, 0.37).position, is_in_joints ? q : tip_by_hand(q, 0.3, 0.9, 0.6), 1e-15);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_target_may_be_given_as_joint_angles_of_the_model) {
+TEST_CASE(a_target_may_be_given_as_joint_angles_of_the_model) {
     const Vec3<double> q(-0.3, 0.5, -1.1);
     const Params params = with_law("stiffness").set("controller.model.link3.length", 0.5).set("reference.q", q);
     for (const char* path : {"point", "line", "minimum_jerk"})
@@ -287,7 +284,7 @@ BOOST_AUTO_TEST_CASE(a_target_may_be_given_as_joint_angles_of_the_model) {
                     1e-15);
 }
 
-BOOST_AUTO_TEST_CASE(a_joint_law_finds_the_angles_of_a_tip_on_the_branch_it_starts_on) {
+TEST_CASE(a_joint_law_finds_the_angles_of_a_tip_on_the_branch_it_starts_on) {
     const Vec3<double> tip(0.5, -0.6, 0.7);
     const std::array<Vec3<double>, 4> starts = {
         {{0.4, 0.7, -0.9}, {0.4, -0.4, 0.9}, {2.7, 2.2, 0.9}, {-2.6, 3.4, -0.8}}};  // elbow up, down; the same behind
@@ -298,17 +295,17 @@ BOOST_AUTO_TEST_CASE(a_joint_law_finds_the_angles_of_a_tip_on_the_branch_it_star
         const Vec3<double> q = reference_of(params.set("initial.q", start)).to;
         check_close(tip_by_hand(q, 0.3, 0.9, 0.6), tip, 1e-15);
         const auto side = [](const Vec3<double>& of) { return 0.9 * std::cos(of[1]) + 0.6 * std::cos(of[1] + of[2]); };
-        BOOST_TEST((side(q) > 0) == (side(start) > 0));
-        BOOST_TEST((std::sin(q[2]) > 0) == (std::sin(start[2]) > 0));
-        for (int i = 0; i < 3; ++i) BOOST_TEST(std::abs(q[i] - start[i]) <= M_PI);
-        for (const Vec3<double>& other : found) BOOST_TEST(distance(q, other) > 0.1);
+        CHECK((side(q) > 0) == (side(start) > 0));
+        CHECK((std::sin(q[2]) > 0) == (std::sin(start[2]) > 0));
+        for (int i = 0; i < 3; ++i) CHECK(std::abs(q[i] - start[i]) <= M_PI);
+        for (const Vec3<double>& other : found) CHECK(distance(q, other) > 0.1);
         found.push_back(q);
         const Vec3<double> turns(2 * M_PI, -4 * M_PI, 6 * M_PI);
         check_close(reference_of(params.set("initial.q", Vec3<double>(start + turns))).to, q + turns, 1e-14);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_line_leads_from_the_start_to_the_target_in_its_time) {
+TEST_CASE(a_line_leads_from_the_start_to_the_target_in_its_time) {
     Params params = with_law("hybrid").choose("reference.type", "line").set("reference.tip", {0.6, 0.3, 0.8});
     params.set("reference.start", 0.5).set("reference.duration", 2);
     const Reference<double> wanted = reference_of(params);
@@ -318,7 +315,7 @@ BOOST_AUTO_TEST_CASE(a_line_leads_from_the_start_to_the_target_in_its_time) {
     check_close(desired_motion_at(wanted, 2.6).position, end, 1e-15);
 }
 
-BOOST_AUTO_TEST_CASE(a_circle_lies_on_the_face_and_turns_about_the_pressing_direction) {
+TEST_CASE(a_circle_lies_on_the_face_and_turns_about_the_pressing_direction) {
     Params params = with_law("resolved_acceleration").choose("reference.type", "circle");
     params.set("wall.normal", {-2, 1, 0.5}).set("wall.point", {3, 0, 0}).set("reference.radius", 0.07);
     params.set("reference.period", 3).set("reference.turns", 1.5).set("reference.start", 0.2);
@@ -326,29 +323,29 @@ BOOST_AUTO_TEST_CASE(a_circle_lies_on_the_face_and_turns_about_the_pressing_dire
     const Vec3<double> n = Vec3<double>(-2, 1, 0.5).normalized(), start = desired_motion_at(wanted, 0.0).position;
     check_close(start, tip_by_hand({0.4, 0.7, -0.9}, 0.3, 0.8, 0.6), 1e-15);
     const Vec3<double> centre = 0.5 * (start + desired_motion_at(wanted, 4.7).position);  // half a turn on
-    BOOST_TEST(std::abs((start - centre).norm() - 0.07) < 1e-15);
+    CHECK(std::abs((start - centre).norm() - 0.07) < 1e-15);
     for (const double t : {0.5, 1.1, 2.3, 3.9}) {
         const DesiredMotion<double> at = desired_motion_at(wanted, t);
         const Vec3<double> out = at.position - centre;
-        BOOST_TEST(std::abs(out.norm() - 0.07) < 1e-15);
-        BOOST_TEST(std::abs(n.dot(out)) < 1e-15);
-        BOOST_TEST(out.cross(at.velocity).dot(-n) > 0);
+        CHECK(std::abs(out.norm() - 0.07) < 1e-15);
+        CHECK(std::abs(n.dot(out)) < 1e-15);
+        CHECK(cross_product(out, at.velocity).dot(-n) > 0);
     }
     check_close(desired_motion_at(wanted, 0.2 + 2.25).position - centre, -(start - centre),
                 0.15);  // half way: 3/4 of a turn
-    BOOST_TEST(desired_motion_at(wanted, 4.71).velocity.norm() == 0);
+    CHECK(desired_motion_at(wanted, 4.71).velocity.norm() == 0);
 }
 
-BOOST_AUTO_TEST_CASE(without_a_wall_a_circle_lies_across_the_x_axis) {
+TEST_CASE(without_a_wall_a_circle_lies_across_the_x_axis) {
     Params params =
         with_law("stiffness").set("wall", 0).choose("reference.type", "circle").set("wall.normal", {0, 1, 1});
     const Reference<double> wanted = reference_of(params.set("reference.radius", 0.05));
     const Vec3<double> start = wanted.from;
-    for (const double t : {0.5, 1.0, 2.0}) BOOST_TEST(desired_motion_at(wanted, t).position[0] == start[0]);
+    for (const double t : {0.5, 1.0, 2.0}) CHECK(desired_motion_at(wanted, t).position[0] == start[0]);
     check_close(desired_motion_at(wanted, 2.0).position, start - Vec3<double>(0, 0.1, 0), 1e-15);
 }
 
-BOOST_AUTO_TEST_CASE(a_tip_swings_about_its_start) {
+TEST_CASE(a_tip_swings_about_its_start) {
     Params params = with_law("impedance").choose("reference.type", "sinusoid").set("reference.frequency", 2);
     params.set("reference.tip_amplitude", {0.01, -0.02, 0.03}).set("reference.start", 1);
     const Reference<double> wanted = reference_of(params);
@@ -357,7 +354,7 @@ BOOST_AUTO_TEST_CASE(a_tip_swings_about_its_start) {
 }
 
 // scipy.interpolate.make_interp_spline(t, s, k=5), first and second derivative 0 at both ends, and its derivatives.
-BOOST_AUTO_TEST_CASE(a_table_is_followed_as_smoothly_as_scipy_would) {
+TEST_CASE(a_table_is_followed_as_smoothly_as_scipy_would) {
     const Reference<double> wanted = reference_of(along_a_table());
     const auto check = [&](double t, const Vec3<double>& x, const Vec3<double>& v, const Vec3<double>& a) {
         const DesiredMotion<double> at = desired_motion_at(wanted, t);
@@ -377,7 +374,7 @@ BOOST_AUTO_TEST_CASE(a_table_is_followed_as_smoothly_as_scipy_would) {
     check(9.0, {1.3, -0.5, 1}, {0, 0, 0}, {0, 0, 0});
 }
 
-BOOST_AUTO_TEST_CASE(a_table_of_two_points_is_a_minimum_jerk_motion) {
+TEST_CASE(a_table_of_two_points_is_a_minimum_jerk_motion) {
     Params params = with_law("hybrid").choose("reference.type", "table");
     const Vec3<double> from = tip_by_hand({0.4, 0.7, -0.9}, 0.3, 0.8, 0.6), to(0.6, 0.3, 0.8);
     params.set("reference.t[0]", 0.5).set("reference.t[1]", 2.5);
@@ -395,7 +392,7 @@ BOOST_AUTO_TEST_CASE(a_table_of_two_points_is_a_minimum_jerk_motion) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(every_lane_follows_its_own_table) {
+TEST_CASE(every_lane_follows_its_own_table) {
     const std::array<Controller<double>, 2> alone = {
         controller_of(along_a_table()),
         controller_of(along_a_table().set("reference.t[2]", 1.9).set("reference.z[3]", 0.7))};
@@ -409,53 +406,52 @@ BOOST_AUTO_TEST_CASE(every_lane_follows_its_own_table) {
         for (int lane = 0; lane < 2; ++lane)
             for (int i = 0; i < 3; ++i) {
                 const DesiredMotion<double> one = desired_motion_at(alone[lane].reference, t);
-                BOOST_TEST(same_bits(wanted.position[i][lane], one.position[i]));
-                BOOST_TEST(same_bits(wanted.acceleration[i][lane], one.acceleration[i]));
+                CHECK(same_bits(wanted.position[i][lane], one.position[i]));
+                CHECK(same_bits(wanted.acceleration[i][lane], one.acceleration[i]));
             }
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_force_is_as_wanted) {
+TEST_CASE(the_force_is_as_wanted) {
     Params params = with_law("hybrid").set("reference.force.value", 30).set("reference.force.initial", 10);
     params.set("reference.force.start", 2).set("reference.force.duration", 4);
     params.set("reference.force.amplitude", 3).set("reference.force.frequency", 0.5);
     const auto force = [&](const char* type, double t) {
         return desired_force_at(reference_of(Params(params).choose("reference.force.type", type)), t);
     };
-    BOOST_TEST(force("constant", 0.0) == 30);
-    BOOST_TEST(force("step", 1.99) == 10);
-    BOOST_TEST(force("step", 2.01) == 30);
-    BOOST_TEST(force("ramp", 3.0) == 15);
-    BOOST_TEST(force("ramp", 7.0) == 30);
-    BOOST_TEST(std::abs(force("sinusoid", 0.5) - 33) < 1e-14);
+    CHECK(force("constant", 0.0) == 30);
+    CHECK(force("step", 1.99) == 10);
+    CHECK(force("step", 2.01) == 30);
+    CHECK(force("ramp", 3.0) == 15);
+    CHECK(force("ramp", 7.0) == 30);
+    CHECK(std::abs(force("sinusoid", 0.5) - 33) < 1e-14);
 }
 
 // ---- what stands between arm and controller
 
-BOOST_AUTO_TEST_CASE(sections_that_are_absent_are_off) {
+TEST_CASE(sections_that_are_absent_are_off) {
     const Setup setup = make_setup(with_law("hybrid"));
-    BOOST_TEST(
-        (!setup.digital.sampling.on && !setup.observes() && !setup.estimation.on && !setup.plant.external_force.on));
-    BOOST_TEST((static_cast<const SensorChoices&>(setup.plant.sensors) == SensorChoices{}));
-    BOOST_TEST((static_cast<const SensorChoices&>(setup.digital.sensors) == SensorChoices{}));
-    BOOST_TEST((setup.plant.controller.type == ControllerType::hybrid));
+    CHECK((!setup.digital.sampling.on && !setup.observes() && !setup.estimation.on && !setup.plant.external_force.on));
+    CHECK((static_cast<const SensorChoices&>(setup.plant.sensors) == SensorChoices{}));
+    CHECK((static_cast<const SensorChoices&>(setup.digital.sensors) == SensorChoices{}));
+    CHECK((setup.plant.controller.type == ControllerType::hybrid));
 }
 
-BOOST_AUTO_TEST_CASE(a_digital_controller_gives_the_plant_a_torque) {
+TEST_CASE(a_digital_controller_gives_the_plant_a_torque) {
     const Params params = with_law("hybrid").set("sampling", 1).set("observer", 1).set("controller.gravity", 5);
     const Setup setup = make_setup(params);
-    BOOST_TEST((setup.plant.controller.type == ControllerType::none));
-    BOOST_TEST(setup.plant.holds_torque);
-    BOOST_TEST(setup.plant.held_torque == Vec3<double>(0, 0, 0));
-    BOOST_TEST(setup.plant.controller.model.gravity[2] == -9.80665);
-    BOOST_TEST(!setup.plant.observer.on);
-    BOOST_TEST((setup.digital.controller.type == ControllerType::hybrid));
-    BOOST_TEST(setup.digital.controller.model.gravity[2] == -5);
-    BOOST_TEST(setup.digital.observer.on);
-    BOOST_TEST(make_setup(with_law("hybrid").set("observer", 1)).plant.observer.on);
+    CHECK((setup.plant.controller.type == ControllerType::none));
+    CHECK(setup.plant.holds_torque);
+    CHECK(setup.plant.held_torque == Vec3<double>(0, 0, 0));
+    CHECK(setup.plant.controller.model.gravity[2] == -9.80665);
+    CHECK(!setup.plant.observer.on);
+    CHECK((setup.digital.controller.type == ControllerType::hybrid));
+    CHECK(setup.digital.controller.model.gravity[2] == -5);
+    CHECK(setup.digital.observer.on);
+    CHECK(make_setup(with_law("hybrid").set("observer", 1)).plant.observer.on);
 }
 
-BOOST_AUTO_TEST_CASE(sampling_and_sensors_are_as_they_were_described) {
+TEST_CASE(sampling_and_sensors_are_as_they_were_described) {
     Params params = with_law("hybrid").set("sampling", 1).set("sampling.rate", 250).set("sampling.delay", 1.5);
     params.set("sampling.seed", 9007199254740991).set("sensors", 1).set("sensors.encoder.counts", 4096);
     params.choose("sensors.velocity.estimate", "filtered").set("sensors.velocity.cutoff", 40);
@@ -463,28 +459,28 @@ BOOST_AUTO_TEST_CASE(sampling_and_sensors_are_as_they_were_described) {
     params.set("sensors.force.cutoff", 60).set("sensors.force.delay", 2.5).set("sensors.force.tool_mass", 0.3);
     const Setup setup = make_setup(params);
     const Sampling<double>& sampling = setup.digital.sampling;
-    BOOST_TEST((sampling.on && sampling.has_delay));
-    BOOST_TEST(sampling.period == 0.004);
-    BOOST_TEST(sampling.delay == 1.5);
-    BOOST_TEST(sampling.seed == 9007199254740991);
+    CHECK((sampling.on && sampling.has_delay));
+    CHECK(sampling.period == 0.004);
+    CHECK(sampling.delay == 1.5);
+    CHECK(sampling.seed == 9007199254740991);
     const Sensors<double>& sensors = setup.digital.sensors;
-    BOOST_TEST((sensors.has_encoder && sensors.has_noise && sensors.has_bias && sensors.has_resolution));
-    BOOST_TEST((sensors.has_filter && sensors.has_delay && sensors.has_tool && !sensors.has_analog_filter));
-    BOOST_TEST(sensors.encoder_step == 0.0015339807878856412);                  // 2 pi/4096
-    BOOST_TEST(std::abs(sensors.velocity_share - 0.6340686930587067) < 1e-15);  // 1 - exp(-2 pi 40 0.004)
-    BOOST_TEST(sensors.noise == 0.1);
-    BOOST_TEST(sensors.bias == Vec3<double>(1, 2, 3));
-    BOOST_TEST(sensors.resolution == 0.25);
-    BOOST_TEST(std::abs(sensors.force_share - 0.7786398960093938) < 1e-15);  // 1 - exp(-2 pi 60 0.004)
-    BOOST_TEST(sensors.force_delay == 2.5);
-    BOOST_TEST(sensors.tool_mass == 0.3);
-    BOOST_TEST(!make_setup(params.set("sensors.encoder.counts", 0)).digital.sensors.has_encoder);
+    CHECK((sensors.has_encoder && sensors.has_noise && sensors.has_bias && sensors.has_resolution));
+    CHECK((sensors.has_filter && sensors.has_delay && sensors.has_tool && !sensors.has_analog_filter));
+    CHECK(sensors.encoder_step == 0.0015339807878856412);                  // 2 pi/4096
+    CHECK(std::abs(sensors.velocity_share - 0.6340686930587067) < 1e-15);  // 1 - exp(-2 pi 40 0.004)
+    CHECK(sensors.noise == 0.1);
+    CHECK(sensors.bias == Vec3<double>(1, 2, 3));
+    CHECK(sensors.resolution == 0.25);
+    CHECK(std::abs(sensors.force_share - 0.7786398960093938) < 1e-15);  // 1 - exp(-2 pi 60 0.004)
+    CHECK(sensors.force_delay == 2.5);
+    CHECK(sensors.tool_mass == 0.3);
+    CHECK(!make_setup(params.set("sensors.encoder.counts", 0)).digital.sensors.has_encoder);
     const Sensors<double> filtered = make_setup(params.set("sensors.force.analog_cutoff", 80)).plant.sensors;
-    BOOST_TEST(filtered.has_analog_filter);
-    BOOST_TEST(std::abs(filtered.analog_rate - 502.6548245743669) < 1e-12);  // 2 pi 80
+    CHECK(filtered.has_analog_filter);
+    CHECK(std::abs(filtered.analog_rate - 502.6548245743669) < 1e-12);  // 2 pi 80
 }
 
-BOOST_AUTO_TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
+TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
     Params params = with_law("hybrid").set("observer", 1).set("estimator", 1).set("push", 1);
     params.set("observer.gain", {50, 60, 70}).set("observer.threshold", 0.4).set("observer.hold", 0.1);
     params.set("observer.reflex_gain", 3).set("observer.retreat_gain", 4);
@@ -494,26 +490,26 @@ BOOST_AUTO_TEST_CASE(observer_estimator_and_push_are_as_they_were_described) {
     params.set("push.force", {-1, 2, -3}).set("push.start", 0.5).set("push.rise", 0.25).set("push.duration", 4);
     const Setup setup = make_setup(params);
     const Observer<double>& observer = setup.plant.observer;
-    BOOST_TEST((observer.on && setup.estimation.on && setup.plant.external_force.on));
-    BOOST_TEST(observer.gain == Vec3<double>(50, 60, 70));
-    BOOST_TEST(observer.threshold == Vec3<double>(0.4, 0.4, 0.4));
-    BOOST_TEST(observer.hold == 0.1);
-    BOOST_TEST(observer.reflex_gain == 3);
-    BOOST_TEST(observer.retreat_gain == 4);
-    BOOST_TEST(observer.joint_stiffness == Vec3<double>(5, 6, 7));
-    BOOST_TEST(observer.joint_damping == Vec3<double>(8, 9, 10));
+    CHECK((observer.on && setup.estimation.on && setup.plant.external_force.on));
+    CHECK(observer.gain == Vec3<double>(50, 60, 70));
+    CHECK(observer.threshold == Vec3<double>(0.4, 0.4, 0.4));
+    CHECK(observer.hold == 0.1);
+    CHECK(observer.reflex_gain == 3);
+    CHECK(observer.retreat_gain == 4);
+    CHECK(observer.joint_stiffness == Vec3<double>(5, 6, 7));
+    CHECK(observer.joint_damping == Vec3<double>(8, 9, 10));
     const Estimation<double>& estimation = setup.estimation;
-    BOOST_TEST(estimation.period == 0.005);
-    BOOST_TEST(estimation.forgetting == 0.9);
-    BOOST_TEST(estimation.start == 2);
-    BOOST_TEST(estimation.max_condition == 1e6);
-    BOOST_TEST(!estimation.wall_moves);
-    BOOST_TEST(make_setup(params.choose("estimator.wall", "moving")).estimation.wall_moves);
+    CHECK(estimation.period == 0.005);
+    CHECK(estimation.forgetting == 0.9);
+    CHECK(estimation.start == 2);
+    CHECK(estimation.max_condition == 1e6);
+    CHECK(!estimation.wall_moves);
+    CHECK(make_setup(params.choose("estimator.wall", "moving")).estimation.wall_moves);
     const ExternalForce<double>& external_force = setup.plant.external_force;
-    BOOST_TEST(external_force.force == Vec3<double>(-1, 2, -3));
-    BOOST_TEST(external_force.start == 0.5);
-    BOOST_TEST(external_force.rise == 0.25);
-    BOOST_TEST(external_force.end == 4.5);
+    CHECK(external_force.force == Vec3<double>(-1, 2, -3));
+    CHECK(external_force.start == 0.5);
+    CHECK(external_force.rise == 0.25);
+    CHECK(external_force.end == 4.5);
 }
 
 // ---- limits of loops
@@ -529,23 +525,23 @@ static Eigen::MatrixXd companion(const std::vector<double>& c) {
     return A;
 }
 
-BOOST_AUTO_TEST_CASE(a_cubic_is_stable_where_all_its_roots_decay) {
+TEST_CASE(a_cubic_is_stable_where_all_its_roots_decay) {
     Random random(71);
     int stable = 0;
     for (int i = 0; i < 500; ++i) {
         const double m = random.in(0.1, 3), b = random.in(0.1, 3), c = random.in(0.1, 3), d = random.in(0.1, 6);
         const bool decays = max_real_part(companion({d, c, b, m})) < 0;
-        BOOST_TEST(is_stable(m, b, c, d) == decays);
+        CHECK(is_stable(m, b, c, d) == decays);
         stable += decays;
     }
-    BOOST_TEST((stable > 100 && stable < 400));
-    BOOST_TEST(is_stable(1, 2, 3, 0));
-    BOOST_TEST((!is_stable(1, 0, 3, 0) && !is_stable(1, 2, 0, 0)));
+    CHECK((stable > 100 && stable < 400));
+    CHECK(is_stable(1, 2, 3, 0));
+    CHECK((!is_stable(1, 0, 3, 0) && !is_stable(1, 2, 0, 0)));
 }
 
-BOOST_AUTO_TEST_CASE(an_admittance_bears_a_wall_up_to_where_its_roots_cross) {
+TEST_CASE(an_admittance_bears_a_wall_up_to_where_its_roots_cross) {
     Random random(72);
-    BOOST_TEST(std::abs(admittance_limit(2, 40, 200, 50, 1) - 1440) < 1e-9);
+    CHECK(std::abs(admittance_limit(2, 40, 200, 50, 1) - 1440) < 1e-9);
     for (int i = 0; i < 100; ++i) {
         const double M = random.in(0.5, 4), B = random.in(5, 80), K = random.in(50, 500);
         const double w = random.in(20, 80), z = random.in(0.4, 1.5);
@@ -554,20 +550,20 @@ BOOST_AUTO_TEST_CASE(an_admittance_bears_a_wall_up_to_where_its_roots_cross) {
             return max_real_part(companion(
                 {(K + k_e) * w * w, 2 * z * w * K + w * w * B, K + 2 * z * w * B + w * w * M, B + 2 * z * w * M, M}));
         };
-        BOOST_TEST(growth(limit - 0.001 * (limit + K)) < 0);
-        BOOST_TEST(growth(limit + 0.001 * (limit + K)) > 0);
+        CHECK(growth(limit - 0.001 * (limit + K)) < 0);
+        CHECK(growth(limit + 0.001 * (limit + K)) > 0);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_reference_may_be_moved_by_the_force_error_up_to_where_its_roots_cross) {
+TEST_CASE(a_reference_may_be_moved_by_the_force_error_up_to_where_its_roots_cross) {
     Random random(73);
-    BOOST_TEST(std::abs(reference_gain_limit(2, 80, 200, 5000) - 0.208) < 1e-15);
+    CHECK(std::abs(reference_gain_limit(2, 80, 200, 5000) - 0.208) < 1e-15);
     for (int i = 0; i < 100; ++i) {
         const double M = random.in(0.5, 4), B = random.in(5, 80), K = random.in(50, 500), k_e = random.in(100, 9000);
         const double limit = reference_gain_limit(M, B, K, k_e);
         const auto growth = [&](double k_r) { return max_real_part(companion({K * k_r * k_e, K + k_e, B, M})); };
-        BOOST_TEST(growth(0.999 * limit) < 0);
-        BOOST_TEST(growth(1.001 * limit) > 0);
+        CHECK(growth(0.999 * limit) < 0);
+        CHECK(growth(1.001 * limit) > 0);
     }
 }
 
@@ -578,20 +574,20 @@ static double growth_of_held_acceleration(double Kp, double Kd, double T) {
     return eigenvalues(A).cwiseAbs().maxCoeff();
 }
 
-BOOST_AUTO_TEST_CASE(a_held_acceleration_is_stable_up_to_the_longest_period) {
+TEST_CASE(a_held_acceleration_is_stable_up_to_the_longest_period) {
     Random random(74);
-    BOOST_TEST(std::abs(max_period(400, 40) - 0.05) < 1e-15);
-    BOOST_TEST(std::abs(max_period(400, 20) - 0.1) < 1e-15);
-    BOOST_TEST(std::abs(max_period(400, 12) - 0.06) < 1e-15);
-    BOOST_TEST(max_period(0, 10) == 0.2);
+    CHECK(std::abs(max_period(400, 40) - 0.05) < 1e-15);
+    CHECK(std::abs(max_period(400, 20) - 0.1) < 1e-15);
+    CHECK(std::abs(max_period(400, 12) - 0.06) < 1e-15);
+    CHECK(max_period(0, 10) == 0.2);
     for (int i = 0; i < 100; ++i) {
         const double Kp = random.in(10, 1000), Kd = random.in(1, 100), T = max_period(Kp, Kd);
-        BOOST_TEST(growth_of_held_acceleration(Kp, Kd, 0.999 * T) < 1);
-        BOOST_TEST(growth_of_held_acceleration(Kp, Kd, 1.001 * T) > 1);
+        CHECK(growth_of_held_acceleration(Kp, Kd, 0.999 * T) < 1);
+        CHECK(growth_of_held_acceleration(Kp, Kd, 1.001 * T) > 1);
     }
 }
 
-BOOST_AUTO_TEST_CASE(projected_mobility_is_an_eigenvalue_of_the_oblique_projector) {
+TEST_CASE(projected_mobility_is_an_eigenvalue_of_the_oblique_projector) {
     Random random(75);
     int negative = 0;
     for (int i = 0; i < 400; ++i) {
@@ -601,20 +597,20 @@ BOOST_AUTO_TEST_CASE(projected_mobility_is_an_eigenvalue_of_the_oblique_projecto
         if (manipulability(arm, p) < 0.02) continue;
         const Eigen::Matrix3d J = jacobian(arm, p), M = mass_matrix(arm, p);
         const Eigen::Matrix3d S_p = Eigen::Matrix3d::Identity() - n * n.transpose();
-        const Eigen::Matrix3d loop = M.inverse() * J.inverse() * S_p * J;
+        const Eigen::Matrix3d loop = inverse(M) * inverse(J) * S_p * J;
         const Eigen::Vector3d parts = eigenvalues(loop).real();
         std::vector<double> sorted(parts.data(), parts.data() + 3);
         std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
         const double least = std::min(sorted[0], sorted[1]), size = std::abs(sorted[0]);
-        BOOST_TEST(std::abs(projected_mobility(arm, p, n) - least) <= 1e-9 * size);
+        CHECK(std::abs(projected_mobility(arm, p, n) - least) <= 1e-9 * size);
         negative += least < -1e-6 * size;
     }
-    BOOST_TEST(negative > 5);
+    CHECK(negative > 5);
 }
 
 // ---- any numbers
 
-BOOST_AUTO_TEST_CASE(a_setup_is_made_of_whatever_the_rules_let_through) {
+TEST_CASE(a_setup_is_made_of_whatever_the_rules_let_through) {
     Random random(76);
     for (const std::string& law : laws)
         for (int i = 0; i < 40; ++i) {
@@ -626,13 +622,13 @@ BOOST_AUTO_TEST_CASE(a_setup_is_made_of_whatever_the_rules_let_through) {
             if (!problems_of(params).empty()) continue;
             const Reference<double> wanted = reference_of(params);
             for (const double t : {0.0, 0.3, 1.0, 7.0}) {
-                BOOST_TEST(desired_motion_at(wanted, t).position.allFinite());
-                BOOST_TEST(desired_motion_at(wanted, t).acceleration.allFinite());
-                BOOST_TEST(std::isfinite(desired_force_at(wanted, t)));
+                CHECK(desired_motion_at(wanted, t).position.allFinite());
+                CHECK(desired_motion_at(wanted, t).acceleration.allFinite());
+                CHECK(std::isfinite(desired_force_at(wanted, t)));
             }
         }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

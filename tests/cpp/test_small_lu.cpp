@@ -1,12 +1,11 @@
-#include <Eigen/Dense>
-#include <boost/test/unit_test.hpp>
-
 #include "arm3r/numbers/small_lu.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
+#include "linear_algebra.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(small_lu)
+TEST_SUITE(small_lu)
 
 constexpr std::size_t most = 18;
 using Vector = std::array<double, most>;
@@ -28,7 +27,7 @@ static Eigen::MatrixXd random_matrix(Random& random, Eigen::Index n) {
 static double miss(const Eigen::MatrixXd& m, Random& random) {
     const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(m.rows(), [&] { return random.in(-1, 1); }), b = m * x;
     SmallLu<most> lu = filled(m);
-    BOOST_REQUIRE(lu.factorise());
+    REQUIRE(lu.factorise());
     Vector solution;
     solution.fill(std::nan(""));
     std::copy(b.data(), b.data() + b.size(), solution.begin());
@@ -36,47 +35,47 @@ static double miss(const Eigen::MatrixXd& m, Random& random) {
     return (Eigen::Map<Eigen::VectorXd>(solution.data(), m.rows()) - x).cwiseAbs().maxCoeff();
 }
 
-BOOST_AUTO_TEST_CASE(solves_what_was_multiplied) {
+TEST_CASE(solves_what_was_multiplied) {
     Random random(71);
     for (Eigen::Index n = 1; n <= Eigen::Index(most); ++n) {
         for (int i = 0; i < 100; ++i) {
             const Eigen::MatrixXd m = random_matrix(random, n);
-            BOOST_TEST(miss(m, random) <= 1e-14 * m.norm() * m.inverse().norm());
+            CHECK(miss(m, random) <= 1e-14 * m.norm() * inverse(m).norm());
         }
     }
 }
 
 // Zeros and tiny numbers on the diagonal: without an exchange of rows nothing would be left.
-BOOST_AUTO_TEST_CASE(exchanges_rows) {
+TEST_CASE(exchanges_rows) {
     Random random(72);
     Eigen::MatrixXd cyclic = Eigen::MatrixXd::Zero(6, 6);
     for (Eigen::Index i = 0; i < 6; ++i) cyclic(i, (i + 2) % 6) = double(i + 1);
-    BOOST_TEST(miss(cyclic, random) <= 1e-15);
+    CHECK(miss(cyclic, random) <= 1e-15);
     for (int i = 0; i < 100; ++i) {
         Eigen::MatrixXd m = random_matrix(random, 6);
         m.diagonal() *= 1e-14;
-        BOOST_TEST(miss(m, random) <= 1e-14 * m.norm() * m.inverse().norm());
+        CHECK(miss(m, random) <= 1e-14 * m.norm() * inverse(m).norm());
     }
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_is_singular_or_not_finite) {
+TEST_CASE(refuses_what_is_singular_or_not_finite) {
     Random random(73);
     Eigen::MatrixXd twice = Eigen::MatrixXd::NullaryExpr(5, 5, [&] { return std::round(random.in(-9, 9)); });
     twice.row(3) = twice.row(1);
-    BOOST_TEST(!filled(twice).factorise());
-    BOOST_TEST(!filled(Eigen::MatrixXd::Zero(3, 3)).factorise());
+    CHECK(!filled(twice).factorise());
+    CHECK(!filled(Eigen::MatrixXd::Zero(3, 3)).factorise());
     for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         for (Eigen::Index place = 0; place < 25; ++place) {
             Eigen::MatrixXd m = random_matrix(random, 5);
             m(place) = bad;
-            BOOST_TEST(!filled(m).factorise(), bad << " at " << place);
+            CHECK(!filled(m).factorise(), bad << " at " << place);
         }
         Eigen::MatrixXd upper = Eigen::MatrixXd::Identity(3, 3);
         upper(0, 2) = bad;
-        BOOST_TEST(!filled(upper).factorise(), bad << " beside zeros");
+        CHECK(!filled(upper).factorise(), bad << " beside zeros");
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,27 +1,27 @@
 #include <array>
-#include <boost/test/unit_test.hpp>
 #include <cmath>
 
 #include "base/spline.hpp"
+#include "check.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(splines)
+TEST_SUITE(splines)
 
 // scipy.interpolate.make_interp_spline(t, s, k=5) with first and second derivative 0 at both ends, its derivatives at t.
-BOOST_AUTO_TEST_CASE(five_points_as_scipy_joins_them) {
+TEST_CASE(five_points_as_scipy_joins_them) {
     const std::array t{0.5, 1.1, 1.4, 2.9, 3.3}, s{0.2, -0.1, 0.4, 0.35, 1.3};
     std::array<double, 5> v, a;
     minimum_jerk_through(t, s, v, a);
     const std::array wanted_v{0.0, 7.480050417082027e-01, 1.794528013144971, 4.402397424249933, 0.0};
     const std::array wanted_a{0.0, 9.853141056976163, -4.811078086273149, -0.669041993392308, 0.0};
     for (std::size_t i = 0; i < t.size(); ++i) {
-        BOOST_TEST(std::abs(v[i] - wanted_v[i]) < 1e-13);
-        BOOST_TEST(std::abs(a[i] - wanted_a[i]) < 1e-12);
+        CHECK(std::abs(v[i] - wanted_v[i]) < 1e-13);
+        CHECK(std::abs(a[i] - wanted_a[i]) < 1e-12);
     }
 }
 
-BOOST_AUTO_TEST_CASE(sixteen_points_as_scipy_joins_them) {
+TEST_CASE(sixteen_points_as_scipy_joins_them) {
     const std::array t{0.2170158759300675, 0.7287963637924619, 2.341281570944936,  3.5264975412704533,
                        3.7600483936392317, 4.654645927100356,  5.638795958474982,  6.000286842017285,
                        7.482712287265254,  7.75437272611199,   8.567267697578531,  9.624911053690191,
@@ -65,19 +65,19 @@ BOOST_AUTO_TEST_CASE(sixteen_points_as_scipy_joins_them) {
     std::array<double, 16> v, a;
     minimum_jerk_through(t, s, v, a);
     for (std::size_t i = 0; i < t.size(); ++i) {
-        BOOST_TEST(std::abs(v[i] - wanted_v[i]) < 1e-12);
-        BOOST_TEST(std::abs(a[i] - wanted_a[i]) < 1e-12);
+        CHECK(std::abs(v[i] - wanted_v[i]) < 1e-12);
+        CHECK(std::abs(a[i] - wanted_a[i]) < 1e-12);
     }
 }
 
-BOOST_AUTO_TEST_CASE(two_points_are_joined_from_rest_to_rest) {
+TEST_CASE(two_points_are_joined_from_rest_to_rest) {
     const std::array t{1.0, 3.0}, s{0.2, -0.4};
     std::array v{9.0, 9.0}, a{9.0, 9.0};
     minimum_jerk_through(t, s, v, a);
-    BOOST_TEST((v[0] == 0 && v[1] == 0 && a[0] == 0 && a[1] == 0));
+    CHECK((v[0] == 0 && v[1] == 0 && a[0] == 0 && a[1] == 0));
 }
 
-BOOST_AUTO_TEST_CASE(points_of_one_minimum_jerk_motion_give_it_back) {
+TEST_CASE(points_of_one_minimum_jerk_motion_give_it_back) {
     const std::array t{1.0, 1.7, 2.2, 3.0};
     std::array<double, 4> s, v, a;
     const auto motion = [](double at) {
@@ -88,11 +88,11 @@ BOOST_AUTO_TEST_CASE(points_of_one_minimum_jerk_motion_give_it_back) {
     minimum_jerk_through(t, s, v, a);
     for (const std::size_t i : {1, 2}) {
         const double x = (t[i] - 1) / 2;
-        BOOST_TEST(std::abs(v[i] - 0.8 / 2 * 30 * x * x * (1 - x) * (1 - x)) < 1e-13);
-        BOOST_TEST(std::abs(a[i] - 0.8 / 4 * 60 * x * (1 - x) * (1 - 2 * x)) < 1e-12);
+        CHECK(std::abs(v[i] - 0.8 / 2 * 30 * x * x * (1 - x) * (1 - x)) < 1e-13);
+        CHECK(std::abs(a[i] - 0.8 / 4 * 60 * x * (1 - x) * (1 - 2 * x)) < 1e-12);
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

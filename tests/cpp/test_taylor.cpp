@@ -1,15 +1,15 @@
 #include "integrate/taylor.hpp"
 
-#include <boost/test/unit_test.hpp>
 #include <complex>
 
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/widths.hpp"
+#include "check.hpp"
 #include "fixtures.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(taylor)
+TEST_SUITE(taylor)
 
 using Real80 = long double;
 using Terms = std::vector<Real80>;
@@ -181,7 +181,7 @@ static double distance(const Expansion<double>& e, const std::vector<Terms>& tru
     return worst;
 }
 
-BOOST_AUTO_TEST_CASE(every_kernel_gives_the_series_by_definition) {
+TEST_CASE(every_kernel_gives_the_series_by_definition) {
     Random random(1);
     for (std::size_t i = 0; i < recipes.size(); ++i)
         for (int n = 0; n < 30; ++n) {
@@ -190,16 +190,16 @@ BOOST_AUTO_TEST_CASE(every_kernel_gives_the_series_by_definition) {
             const std::vector<Terms> truth = series_by_definition(plant, recipes[i].force, y);
             const std::size_t compared = recipes[i].signals ? std::size_t(works_at) : std::size_t(state_size);
             const Expansion<double> e = expanded(Kernel(i), plant, y);
-            BOOST_TEST(distance(e, truth, compared) < 1e-12, "recipe " << i);
+            CHECK(distance(e, truth, compared) < 1e-12, "recipe " << i);
             for (int k = 1; k <= order; ++k) {
                 const double* work = e.c[k] + works_at;
                 const double size = std::abs(work[0]) + std::abs(work[1]) + std::abs(work[2]);
-                BOOST_TEST(std::abs(work[0] + work[1] + work[2] - e.c[k][6]) <= 1e-12 * size, "works of recipe " << i);
+                CHECK(std::abs(work[0] + work[1] + work[2] - e.c[k][6]) <= 1e-12 * size, "works of recipe " << i);
             }
         }
 }
 
-BOOST_AUTO_TEST_CASE(the_series_is_the_motion) {
+TEST_CASE(the_series_is_the_motion) {
     Random random(2);
     for (std::size_t i = 0; i < recipes.size(); ++i) {
         const Plant<double> plant = random_plant(recipes[i], random);
@@ -217,13 +217,13 @@ BOOST_AUTO_TEST_CASE(the_series_is_the_motion) {
             y = dopri5.y1;
         }
         for (std::size_t j = 0; j < state_size; ++j)
-            BOOST_TEST(std::abs(value(e, j, span) - y[j]) < 1e-12 * std::max(1.0, std::abs(y[j])), i << ", " << j);
+            CHECK(std::abs(value(e, j, span) - y[j]) < 1e-12 * std::max(1.0, std::abs(y[j])), i << ", " << j);
         if (!recipes[i].signals) continue;
         const Pose<double> p = pose(Vec3<double>(y[0], y[1], y[2]));
         const Indentation<double> in = tip_indentation(plant, wall_at(plant.wall, at + span), p, {0, 0, 0});
         const double seen[] = {in.depth, in.across1, in.across2};
         for (std::size_t j = 0; j < signals_size; ++j)
-            BOOST_TEST(std::abs(value(e, state_size + j, span) - seen[j]) < 1e-12, i << ", signal " << j);
+            CHECK(std::abs(value(e, state_size + j, span) - seen[j]) < 1e-12, i << ", signal " << j);
     }
 }
 
@@ -253,24 +253,24 @@ static void check_lanes() {
             for (int lane = 0; lane < N; ++lane) {
                 Expansion<double> one;
                 expand(Kernel(i), plants[lane], t[lane], y[lane], n, one);
-                BOOST_REQUIRE(same_bits(step_of(one, tol[lane]), h[lane]));
+                REQUIRE(same_bits(step_of(one, tol[lane]), h[lane]));
                 for (std::size_t j = 0; j < quantities; ++j) {
-                    BOOST_REQUIRE(same_bits(value(one, j, 0.01), value(packed, j, Pack<N>(0.01))[lane]));
-                    for (int k = 0; k <= n; ++k) BOOST_REQUIRE(same_bits(one.c[k][j], packed.c[k][j][lane]));
+                    REQUIRE(same_bits(value(one, j, 0.01), value(packed, j, Pack<N>(0.01))[lane]));
+                    for (int k = 0; k <= n; ++k) REQUIRE(same_bits(one.c[k][j], packed.c[k][j][lane]));
                 }
             }
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(lanes_have_the_bits_of_double) {
-    BOOST_TEST(max_lanes() >= 1);
+TEST_CASE(lanes_have_the_bits_of_double) {
+    CHECK(max_lanes() >= 1);
 #define CHECK_LANES(T) \
     if (has_registers_for(Lanes<T>::count)) check_lanes<Lanes<T>::count>();
     ARM3R_LANE_PACKS(CHECK_LANES)
 }
 
-BOOST_AUTO_TEST_CASE(a_lower_order_is_the_beginning_of_a_higher_one) {
+TEST_CASE(a_lower_order_is_the_beginning_of_a_higher_one) {
     Random random(4);
     for (std::size_t i = 0; i < recipes.size(); ++i) {
         const Plant<double> plant = random_plant(recipes[i], random);
@@ -280,12 +280,12 @@ BOOST_AUTO_TEST_CASE(a_lower_order_is_the_beginning_of_a_higher_one) {
             Expansion<double> e;
             expand(Kernel(i), plant, at, y, n, e);
             for (int k = 0; k <= n; ++k)
-                for (std::size_t j = 0; j < quantities; ++j) BOOST_REQUIRE(same_bits(e.c[k][j], long_one.c[k][j]));
+                for (std::size_t j = 0; j < quantities; ++j) REQUIRE(same_bits(e.c[k][j], long_one.c[k][j]));
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_wall_of_no_stiffness_changes_no_bit) {
+TEST_CASE(a_wall_of_no_stiffness_changes_no_bit) {
     Random random(5);
     for (std::size_t i = 0; i < recipes.size(); ++i) {
         if (!recipes[i].force || recipes[i].oblique) continue;
@@ -295,51 +295,51 @@ BOOST_AUTO_TEST_CASE(a_wall_of_no_stiffness_changes_no_bit) {
             const State<double, state_size> y = random_state(random);
             const Expansion<double> pressed = expanded(kernel_of(plant, true), plant, y);
             const Expansion<double> watched = expanded(kernel_of(plant, false), plant, y);
-            BOOST_TEST(bool(kernel_of(plant, true) == Kernel(i)));
-            BOOST_TEST(bool(kernel_of(plant, false) != Kernel(i)));
+            CHECK(bool(kernel_of(plant, true) == Kernel(i)));
+            CHECK(bool(kernel_of(plant, false) != Kernel(i)));
             for (int k = 0; k <= order; ++k)
-                for (std::size_t j = 0; j < quantities; ++j) BOOST_REQUIRE(pressed.c[k][j] == watched.c[k][j]);
+                for (std::size_t j = 0; j < quantities; ++j) REQUIRE(pressed.c[k][j] == watched.c[k][j]);
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_cheapest_kernel_that_suffices_is_taken) {
+TEST_CASE(the_cheapest_kernel_that_suffices_is_taken) {
     Random random(6);
     for (std::size_t i = 0; i < recipes.size(); ++i) {
         const Plant<double> plant = random_plant(recipes[i], random);
-        BOOST_TEST(bool(kernel_of(plant, recipes[i].force) == Kernel(i)), "recipe " << i);
+        CHECK(bool(kernel_of(plant, recipes[i].force) == Kernel(i)), "recipe " << i);
     }
     Plant<double> free_of_control = random_plant(recipes.back(), random);
     free_of_control.controller.type = ControllerType::none;
-    BOOST_TEST(recipes[std::size_t(kernel_of(free_of_control, true))].friction);
+    CHECK(recipes[std::size_t(kernel_of(free_of_control, true))].friction);
 }
 
-BOOST_AUTO_TEST_CASE(the_order_follows_the_tolerance) {
+TEST_CASE(the_order_follows_the_tolerance) {
     const auto formula = [](double tol) { return std::clamp(int(std::ceil(-std::log(tol) / 2)) + 1, 2, max_degree); };
     for (const double tol : {1.0, 0.5, 1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-16, 1e-300})
-        BOOST_TEST(order_of(tol) == formula(tol), tol);
-    BOOST_TEST(order_of(0.0) == max_degree);
+        CHECK(order_of(tol) == formula(tol), tol);
+    CHECK(order_of(0.0) == max_degree);
 }
 
-BOOST_AUTO_TEST_CASE(a_rough_root_is_good_to_a_thousandth) {
+TEST_CASE(a_rough_root_is_good_to_a_thousandth) {
     Random random(7);
     for (int k = 1; k <= max_degree; ++k)
         for (int n = 0; n < 2000; ++n) {
             const double x = std::exp(random.in(-700, 700));
             const double truth = std::pow(x, 1.0 / k);
-            BOOST_REQUIRE(std::abs(approximate_root(x, k) - truth) < 1e-3 * truth);
+            REQUIRE(std::abs(approximate_root(x, k) - truth) < 1e-3 * truth);
         }
 }
 
-BOOST_AUTO_TEST_CASE(a_step_keeps_its_tolerance) {
+TEST_CASE(a_step_keeps_its_tolerance) {
     Expansion<double> e{.order = 10, .c = {}};
-    BOOST_TEST(step_of(e, 1e-9) == HUGE_VAL);
+    CHECK(step_of(e, 1e-9) == HUGE_VAL);
     e.c[0][1] = 100;
     e.c[10][1] = 3;  // relative, to the power of two below: 3/64
-    BOOST_TEST(step_of(e, 1e-9) == std::pow(1e-9 / (3.0 / 64), 0.1), boost::test_tools::tolerance(1e-3));
+    CHECK_CLOSE(step_of(e, 1e-9), std::pow(1e-9 / (3.0 / 64), 0.1), 1e-3);
     e.c[0][state_size] = 100;
     e.c[9][state_size] = 5;  // a signal: absolute
-    BOOST_TEST(step_of(e, 1e-9) == std::pow(1e-9 / 5, 1.0 / 9), boost::test_tools::tolerance(1e-3));
+    CHECK_CLOSE(step_of(e, 1e-9), std::pow(1e-9 / 5, 1.0 / 9), 1e-3);
 
     Random random(8);
     for (int n = 0; n < 100; ++n) {
@@ -352,11 +352,10 @@ BOOST_AUTO_TEST_CASE(a_step_keeps_its_tolerance) {
         expand(kernel, plant, at, y, max_degree, better);
         const double h = step_of(e, 1e-9);
         for (std::size_t j = 0; j < quantities; ++j)
-            BOOST_TEST(std::abs(value(e, j, h) - value(better, j, h)) <
-                       3e-9 * std::max(1.0, std::abs(y[j % state_size])));
+            CHECK(std::abs(value(e, j, h) - value(better, j, h)) < 3e-9 * std::max(1.0, std::abs(y[j % state_size])));
     }
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

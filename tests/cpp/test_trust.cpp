@@ -1,14 +1,14 @@
-#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "check.hpp"
 #include "fixtures.hpp"
 #include "trust/enclosure.hpp"
 #include "trust/linear_impact.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(trust)
+TEST_SUITE(trust)
 
 // ---- intervals
 
@@ -19,28 +19,28 @@ static bool holds(const Interval& x, double value) {
     return x.low - rounding <= value && value <= x.high + rounding;
 }
 
-BOOST_AUTO_TEST_CASE(an_interval_holds_every_value_of_a_formula) {
+TEST_CASE(an_interval_holds_every_value_of_a_formula) {
     Random random(41);
     for (int i = 0; i < 10'000; ++i) {
         const double place = random.in(-8, 8), width = random.in(0, 7), at = random.in(0.1, 3);
         const Interval x(place, place + width), y(at, at + random.in(0, 2));
         const double a = within(random, x), b = within(random, y);
-        BOOST_TEST(holds(x + y, a + b));
-        BOOST_TEST(holds(x - y, a - b));
-        BOOST_TEST(holds(x * y, a * b));
-        BOOST_TEST(holds(x / y, a / b));
-        BOOST_TEST(holds(tanh(x), std::tanh(a)));
-        BOOST_TEST(holds(sincos(x).sin, std::sin(a)));
-        BOOST_TEST(holds(sincos(x).cos, std::cos(a)));
+        CHECK(holds(x + y, a + b));
+        CHECK(holds(x - y, a - b));
+        CHECK(holds(x * y, a * b));
+        CHECK(holds(x / y, a / b));
+        CHECK(holds(tanh(x), std::tanh(a)));
+        CHECK(holds(sincos(x).sin, std::sin(a)));
+        CHECK(holds(sincos(x).cos, std::cos(a)));
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_sine_reaches_its_tops_and_no_further) {
+TEST_CASE(a_sine_reaches_its_tops_and_no_further) {
     const SinCos<Interval> half = sincos(Interval(-0.1, 2.0));
-    BOOST_TEST(half.sin.high == 1);
-    BOOST_TEST(std::abs(half.sin.low + std::sin(0.1)) < 1e-15);
-    BOOST_TEST(half.cos.high == 1);
-    BOOST_TEST(std::abs(half.cos.low - std::cos(2.0)) < 1e-15);
+    CHECK(half.sin.high == 1);
+    CHECK(std::abs(half.sin.low + std::sin(0.1)) < 1e-15);
+    CHECK(half.cos.high == 1);
+    CHECK(std::abs(half.cos.low - std::cos(2.0)) < 1e-15);
 }
 
 // ---- the impact of a mass
@@ -77,30 +77,30 @@ static LinearImpact random_impact(Random& random) {
     return {m, k, 2 * std::sqrt(k * m) * std::max(0.0, random.in(-0.3, 0.7)), v, 0.1 * typical * random.in(-1, 1)};
 }
 
-BOOST_AUTO_TEST_CASE(the_closed_forms_are_those_of_the_motion_in_small_steps) {
+TEST_CASE(the_closed_forms_are_those_of_the_motion_in_small_steps) {
     Random random(42);
     for (int i = 0; i < 8; ++i) {
         const LinearImpact impact = random_impact(random);
         const Flight due = flown(impact, [&](double) { return std::pair(0.0, 1 / impact.m); });
         const ImpactNumbers found = numbers_of(impact).value();
-        BOOST_TEST(std::abs(found.peak_force / due.peak - 1) < 1e-8);
-        BOOST_TEST(std::abs(found.duration / due.time - 1) < 1e-4);
-        BOOST_TEST(std::abs(found.impulse / due.impulse - 1) < 1e-4);
+        CHECK(std::abs(found.peak_force / due.peak - 1) < 1e-8);
+        CHECK(std::abs(found.duration / due.time - 1) < 1e-4);
+        CHECK(std::abs(found.impulse / due.impulse - 1) < 1e-4);
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_spring_alone_has_the_textbooks_numbers) {
+TEST_CASE(a_spring_alone_has_the_textbooks_numbers) {
     const ImpactNumbers found = numbers_of({0.55, 1000, 0, 0.05, 0}).value();
-    BOOST_TEST(std::abs(found.peak_force - 0.05 * std::sqrt(550)) < 1e-12);
-    BOOST_TEST(std::abs(found.duration - std::numbers::pi * std::sqrt(0.55e-3)) < 1e-12);
-    BOOST_TEST(std::abs(found.impulse - 2 * 0.55 * 0.05) < 1e-12);
+    CHECK(std::abs(found.peak_force - 0.05 * std::sqrt(550)) < 1e-12);
+    CHECK(std::abs(found.duration - std::numbers::pi * std::sqrt(0.55e-3)) < 1e-12);
+    CHECK(std::abs(found.impulse - 2 * 0.55 * 0.05) < 1e-12);
 }
 
-BOOST_AUTO_TEST_CASE(a_mass_that_is_pressed_on_through_a_damper_does_not_come_back) {
-    BOOST_TEST(!numbers_of({1, 1000, 40, 0.01, 10}).has_value());
+TEST_CASE(a_mass_that_is_pressed_on_through_a_damper_does_not_come_back) {
+    CHECK(!numbers_of({1, 1000, 40, 0.01, 10}).has_value());
 }
 
-BOOST_AUTO_TEST_CASE(no_disturbed_motion_departs_further_than_derived) {
+TEST_CASE(no_disturbed_motion_departs_further_than_derived) {
     Random random(43);
     int bounded = 0;
     double largest_share = 0;
@@ -125,39 +125,39 @@ BOOST_AUTO_TEST_CASE(no_disturbed_motion_departs_further_than_derived) {
                                   share(flight.time, form.duration, bounds->most.duration),
                                   share(flight.impulse, form.impulse, bounds->most.impulse)});
     }
-    BOOST_TEST(bounded > 20);
-    BOOST_TEST(largest_share <= 1);
-    BOOST_TEST(largest_share > 0.3);  // the bounds are not far beyond what happens
+    CHECK(bounded > 20);
+    CHECK(largest_share <= 1);
+    CHECK(largest_share > 0.3);  // the bounds are not far beyond what happens
 }
 
 // ---- the motion of the arm
 
-BOOST_AUTO_TEST_CASE(an_enclosure_holds_the_motion_and_what_the_tip_shows) {
+TEST_CASE(an_enclosure_holds_the_motion_and_what_the_tip_shows) {
     const Setup setup = make_setup(unequal_params().set("initial.q", {0.3, 0.4, -0.9}));
     const Vec3<double> n(0.6, 0, 0.8), qd(0.2, -0.1, 0.3);
     const Enclosure start = at_instant(setup.plant, n, setup.q, qd);
     const Enclosure box = enclose(setup.plant, n, setup.q, qd, {0.01, 0.02}).value();
     for (int i = 0; i < 3; ++i) {
-        BOOST_TEST(box.q[i].contains(start.q[i]));
-        BOOST_TEST(box.qd[i].contains(start.qd[i]));
-        BOOST_TEST(box.q[i].contains(Interval(setup.q[i] + 0.01 * qd[i])));
+        CHECK(box.q[i].contains(start.q[i]));
+        CHECK(box.qd[i].contains(start.qd[i]));
+        CHECK(box.q[i].contains(Interval(setup.q[i] + 0.01 * qd[i])));
     }
-    BOOST_TEST(box.acceleration.contains(start.acceleration));
+    CHECK(box.acceleration.contains(start.acceleration));
     const double mass = effective_mass(setup.plant.arm, pose(setup.q), n), h = 1e-6;
     const Vec3<double> later(setup.q[0] + h * qd[0], setup.q[1] + h * qd[1], setup.q[2] + h * qd[2]);
     const double rate = (1 / effective_mass(setup.plant.arm, pose(later), n) - 1 / mass) / h;
-    BOOST_TEST(std::abs(start.mobility_rate.low - rate) < 1e-4 * std::abs(rate));
-    BOOST_TEST(start.mobility_rate.low == start.mobility_rate.high);
-    BOOST_TEST(!enclose(setup.plant, n, setup.q, qd, {10, 1}).has_value());
+    CHECK(std::abs(start.mobility_rate.low - rate) < 1e-4 * std::abs(rate));
+    CHECK(start.mobility_rate.low == start.mobility_rate.high);
+    CHECK(!enclose(setup.plant, n, setup.q, qd, {10, 1}).has_value());
 }
 
-BOOST_AUTO_TEST_CASE(a_compensated_arm_at_rest_stays_for_ever) {
+TEST_CASE(a_compensated_arm_at_rest_stays_for_ever) {
     const Setup setup = make_setup(
         unequal_params().choose("controller.type", "gravity_compensation").set("controller.gravity", {0, 0, -9.80665}));
     const Enclosure box = enclose(setup.plant, {1, 0, 0}, setup.q, {0, 0, 0}, {1e6, 0}).value();
-    for (int i = 0; i < 3; ++i) BOOST_TEST(box.q[i].low == box.q[i].high);
+    for (int i = 0; i < 3; ++i) CHECK(box.q[i].low == box.q[i].high);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,9 +1,9 @@
-#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <vector>
 
 #include "base/error.hpp"
 #include "batch/simulation.hpp"
+#include "check.hpp"
 #include "control/controller_view.hpp"
 #include "fixtures.hpp"
 #include "run/adaptive_run.hpp"
@@ -11,7 +11,7 @@
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(user_law)
+TEST_SUITE(user_law)
 
 namespace {
 
@@ -30,7 +30,7 @@ struct Pushing {
     static int ask(void* self, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
                    const ControllerState<double>&, Vec3<double>& tau) {
         Pushing& law = *static_cast<Pushing*>(self);
-        BOOST_TEST(truth.qd[1] == sensed.qd[1]);
+        CHECK(truth.qd[1] == sensed.qd[1]);
         law.times.push_back(sensed.t);
         law.ticks.push_back(tick);
         tau = {0.1 + sensed.t, -0.3 * sensed.qd[1], tick == law.break_at ? NAN : 0.2};
@@ -54,40 +54,40 @@ bool same(const Run& one, const Run& other) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(is_asked_at_its_samples_only) {
+TEST_CASE(is_asked_at_its_samples_only) {
     for (const char* method : {"dopri5", "rodas4", "auto", "rk4", "taylor"}) {
         Pushing law;
         const Run run = law.run(controlled(method));
-        BOOST_TEST(run.outcome == ARM3R_RUN_OK, run.message);
-        BOOST_TEST(run.has_user_law);
-        BOOST_REQUIRE(law.ticks.size() == 101u);
+        CHECK(run.outcome == ARM3R_RUN_OK, run.message);
+        CHECK(run.has_user_law);
+        REQUIRE(law.ticks.size() == 101u);
         for (std::size_t i = 0; i < law.ticks.size(); ++i) {
-            BOOST_TEST(law.ticks[i] == double(i));
-            BOOST_TEST(law.times[i] == double(i) / 500, boost::test_tools::tolerance(1e-15));
+            CHECK(law.ticks[i] == double(i));
+            CHECK_CLOSE(law.times[i], double(i) / 500, 1e-15);
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(its_failure_ends_the_run_at_that_tick) {
+TEST_CASE(its_failure_ends_the_run_at_that_tick) {
     for (const char* method : {"dopri5", "rk4", "taylor"}) {
         Pushing refuses, breaks;
         refuses.refuse_at = 0, breaks.break_at = 17;
         const Run none = refuses.run(controlled(method)), some = breaks.run(controlled(method));
-        BOOST_TEST(none.outcome == ARM3R_RUN_CONTROLLER);
-        BOOST_TEST(some.outcome == ARM3R_RUN_CONTROLLER);
-        BOOST_TEST(refuses.ticks.size() == 1u);
-        BOOST_TEST(breaks.ticks.size() == 18u);
-        BOOST_TEST(none.message == "the controller asked to stop with -3 at tick 0, t = 0 s");
-        BOOST_TEST(some.message.find("at tick 17, t = 0.034 s") != some.message.npos, some.message);
-        BOOST_TEST(some.rows >= 1u);
+        CHECK(none.outcome == ARM3R_RUN_CONTROLLER);
+        CHECK(some.outcome == ARM3R_RUN_CONTROLLER);
+        CHECK(refuses.ticks.size() == 1u);
+        CHECK(breaks.ticks.size() == 18u);
+        CHECK(none.message == "the controller asked to stop with -3 at tick 0, t = 0 s");
+        CHECK(some.message.find("at tick 17, t = 0.034 s") != some.message.npos, some.message);
+        CHECK(some.rows >= 1u);
         for (std::size_t i = 0; i < some.columns.size(); ++i)
-            for (const double value : some.column(i)) BOOST_TEST(std::isfinite(value));
+            for (const double value : some.column(i)) CHECK(std::isfinite(value));
     }
 }
 
-BOOST_AUTO_TEST_CASE(there_is_no_run_without_it) { BOOST_CHECK_THROW(controlled("dopri5").run(), Error); }
+TEST_CASE(there_is_no_run_without_it) { CHECK_THROWS(controlled("dopri5").run(), Error); }
 
-BOOST_AUTO_TEST_CASE(a_copy_goes_on_as_the_original) {
+TEST_CASE(a_copy_goes_on_as_the_original) {
     Pushing law, again;
     const Params params = controlled("dopri5");
     const Run whole = law.run(params);
@@ -98,12 +98,12 @@ BOOST_AUTO_TEST_CASE(a_copy_goes_on_as_the_original) {
     for (InteractiveRun* one : {copy.get(), run.get()}) {
         one->set_user_law({Pushing::ask, &again});
         while (!one->is_over()) one->advance();
-        BOOST_TEST(same(one->snapshot(), whole));
+        CHECK(same(one->snapshot(), whole));
     }
-    BOOST_TEST(same(run->conclude(), whole));
+    CHECK(same(run->conclude(), whole));
 }
 
-BOOST_AUTO_TEST_CASE(a_rehearsal_changes_nothing) {
+TEST_CASE(a_rehearsal_changes_nothing) {
     Pushing law, shown;
     const Params params = controlled("auto");
     const Run whole = law.run(params);
@@ -113,10 +113,10 @@ BOOST_AUTO_TEST_CASE(a_rehearsal_changes_nothing) {
         run->preview({Pushing::ask, &shown});
         run->advance();
     }
-    BOOST_TEST(same(run->conclude(), whole));
-    BOOST_TEST(shown.ticks.size() == 101u);
+    CHECK(same(run->conclude(), whole));
+    CHECK(shown.ticks.size() == 101u);
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -1,12 +1,12 @@
-#include <boost/test/unit_test.hpp>
 
+#include "check.hpp"
 #include "fixtures.hpp"
 #include "schema/param_access.hpp"
 #include "validate/validate.hpp"
 
 namespace arm3r {
 
-BOOST_AUTO_TEST_SUITE(validating)
+TEST_SUITE(validating)
 
 using Numbers = std::vector<double>;
 
@@ -103,7 +103,7 @@ static std::vector<std::size_t> places(const std::vector<Varied>& varied) {
     return numbers;
 }
 
-BOOST_AUTO_TEST_CASE(the_quick_verdict_is_that_of_validate_for_any_numbers) {
+TEST_CASE(the_quick_verdict_is_that_of_validate_for_any_numbers) {
     Random random(31);
     std::size_t valid = 0, invalid = 0;
     for (const Params& base : bases()) {
@@ -116,13 +116,13 @@ BOOST_AUTO_TEST_CASE(the_quick_verdict_is_that_of_validate_for_any_numbers) {
                     if (random.in(0, 1) < 0.4) params[v.number] = hostile(*v.key, random);
                 const std::vector<Problem> problems = problems_of(params);
                 (problems.empty() ? valid : invalid) += 1;
-                BOOST_REQUIRE_MESSAGE(is_valid(params).has_value() == problems.empty(),
-                                      (problems.empty() ? "valid, yet refused" : describe(problems.front())));
+                REQUIRE(is_valid(params).has_value() == problems.empty(),
+                        (problems.empty() ? "valid, yet refused" : describe(problems.front())));
             }
         }
     }
-    BOOST_TEST(valid > 3000u);
-    BOOST_TEST(invalid > 3000u);
+    CHECK(valid > 3000u);
+    CHECK(invalid > 3000u);
 }
 
 // Each rule once: a number that breaks it, and the key whose rule it is.
@@ -159,25 +159,25 @@ static std::vector<Breach> breaches() {
     };
 }
 
-BOOST_AUTO_TEST_CASE(each_rule_is_seen_through_the_number_that_breaks_it) {
+TEST_CASE(each_rule_is_seen_through_the_number_that_breaks_it) {
     for (const Breach& breach : breaches()) {
-        BOOST_TEST_CONTEXT(param_name(breach.number) << " = " << breach.broken) {
+        CONTEXT(param_name(breach.number) << " = " << breach.broken) {
             Numbers fine = numbers_of(breach.base), broken = fine;
             fine[breach.number] = breach.fine;
             broken[breach.number] = breach.broken;
-            BOOST_TEST(problems_of(fine).empty());
-            BOOST_REQUIRE(!problems_of(broken).empty());
-            BOOST_TEST(problems_of(broken).front().code == breach.code);
+            CHECK(problems_of(fine).empty());
+            REQUIRE(!problems_of(broken).empty());
+            CHECK(problems_of(broken).front().code == breach.code);
             for (const Numbers& base : {fine, broken}) {
                 const Checker is_valid(base, std::array{breach.number});
-                BOOST_TEST(is_valid(fine).has_value());
-                BOOST_TEST(!is_valid(broken).has_value());
+                CHECK(is_valid(fine).has_value());
+                CHECK(!is_valid(broken).has_value());
             }
         }
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_is_wrong_in_the_base_and_never_varied_is_wrong_in_all) {
+TEST_CASE(what_is_wrong_in_the_base_and_never_varied_is_wrong_in_all) {
     const std::array varied{place("initial.q")};
     for (const Params& base :
          {Params().set("arm.payload.mass", -1), Params().set("solver.rtol", 1),
@@ -185,37 +185,37 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_in_the_base_and_never_varied_is_wrong_in_all)
           Params().choose("arm.link3.shape", "slender"), Params().set("arm.link2.inertia", {1, 0, 0}),
           Params().choose("controller.type", "gravity_compensation").set("controller.model.payload.mass", -1),
           Params().choose("controller.type", "gravity_compensation").set("controller.model.link1.shape", -1)})
-        BOOST_TEST(!Checker(base, varied)(base).has_value());
-    BOOST_TEST(Checker(Params(), varied)(Params()).has_value());
+        CHECK(!Checker(base, varied)(base).has_value());
+    CHECK(Checker(Params(), varied)(Params()).has_value());
     const Numbers short_of_one(param_count() - 1);
-    BOOST_TEST(!Checker(short_of_one, varied)(short_of_one).has_value());
+    CHECK(!Checker(short_of_one, varied)(short_of_one).has_value());
 }
 
-BOOST_AUTO_TEST_CASE(what_the_controller_does_not_use_is_no_matter) {
+TEST_CASE(what_the_controller_does_not_use_is_no_matter) {
     const Params base = Params().set("controller.model.link2.inertia", {1, 0, 0});
-    BOOST_TEST(Checker(base, std::array{place("controller.model.link2.inertia")})(base).has_value());
+    CHECK(Checker(base, std::array{place("controller.model.link2.inertia")})(base).has_value());
 }
 
 // ---- names that the compiler knows
 
-BOOST_AUTO_TEST_CASE(a_name_that_the_compiler_knows_reads_what_the_schema_says) {
+TEST_CASE(a_name_that_the_compiler_knows_reads_what_the_schema_says) {
     const Params params = unequal_params().choose("solver.method", "rk4");
-    BOOST_TEST(at<"initial.q">(params, 2) == param(params, "initial.q", 2));
-    BOOST_TEST((at<Name("arm.link2") + ".length">(params)) == 0.8);
-    BOOST_TEST(vector_at<"initial.q">(params)[1] == 0.7);
-    BOOST_TEST((is<"solver.method", "rk4">(params)));
-    BOOST_TEST((!is<"solver.method", "taylor">(params)));
+    CHECK(at<"initial.q">(params, 2) == param(params, "initial.q", 2));
+    CHECK((at<Name("arm.link2") + ".length">(params)) == 0.8);
+    CHECK(vector_at<"initial.q">(params)[1] == 0.7);
+    CHECK((is<"solver.method", "rk4">(params)));
+    CHECK((!is<"solver.method", "taylor">(params)));
 }
 
-BOOST_AUTO_TEST_CASE(a_name_that_is_not_in_the_schema_is_a_bug_that_is_named) {
+TEST_CASE(a_name_that_is_not_in_the_schema_is_a_bug_that_is_named) {
     const Params params;
     const auto names = [](const char* part) {
         return [part](const Error& error) { return std::string(error.what()).find(part) != std::string::npos; };
     };
-    BOOST_CHECK_EXCEPTION(at<"wall.pointe">(params), Error, names("wall.pointe"));
-    BOOST_CHECK_EXCEPTION((is<"solver.method", "rk5">(params)), Error, names("rk5"));
+    CHECK_THROWS(at<"wall.pointe">(params), Error, names("wall.pointe"));
+    CHECK_THROWS((is<"solver.method", "rk5">(params)), Error, names("rk5"));
 }
 
-BOOST_AUTO_TEST_SUITE_END()
+TEST_SUITE_END()
 
 }  // namespace arm3r
