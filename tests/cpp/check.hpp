@@ -6,8 +6,8 @@
 //     CHECK(a <= b, "at " << t)  prints the message as well
 //     REQUIRE(a <= b)            ends the test case where it fails
 //
-// The two sides are numbers, texts, or rows of numbers. A condition of any other kind is one truth value, in parentheses if it has an
-// operator: CHECK((a == b && c < d)).
+// The two sides are numbers, texts, or rows of numbers. A condition of any other kind is one truth value, in parentheses
+// if it has an operator: CHECK((a == b && c < d)).
 
 #include <compare>
 #include <concepts>
