@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -296,6 +297,35 @@ TEST_CASE(random_polynomials_fall_where_samples_say) {
     CHECK(none > 1000);
 }
 
+// What the lanes of Taylor's method do for all at once, against the search of one.
+TEST_CASE(polynomials_side_by_side_fall_where_each_falls_alone_to_the_bit) {
+    using namespace zero_crossing;
+    using T = Pack<2>;
+    int once = 0, never = 0;
+    for (int trial = 0; trial < 4000; ++trial) {
+        const int degree = uniform_degree(2, max_degree);
+        const double fine = std::pow(10.0, uniform(-15, -3));
+        std::array<Poly, 2> alone;
+        Polynomial<T> p{degree, {}};
+        for (int lane = 0; lane < 2; ++lane) {
+            alone[lane] = trial % 2 ? random_coefficients(degree) : with_roots({uniform(-0.5, 1.5)}, degree);
+            alone[lane].degree = degree;
+            if (alone[lane].c[0] < 0) alone[lane] = negative(alone[lane]);
+            for (int i = 0; i <= degree; ++i) p.c[i].set(lane, alone[lane].c[i]);
+        }
+        const Falls<T> falls = falls_of(bernstein(p), degree, rounding(p));
+        const T root = refine_root(p, Bracket<T>{T(0.0), T(1.0), falls.guess}, attainable(T(fine)), falls.one);
+        for (int lane = 0; lane < 2; ++lane) {
+            const auto fall = first_crossing(alone[lane], 0, fine);
+            if (falls.one[lane]) CHECK((fall && *fall == root[lane]), "degree " << degree << ", trial " << trial);
+            if (falls.none[lane]) CHECK(!fall, "degree " << degree << ", trial " << trial);
+            once += falls.one[lane], never += falls.none[lane];
+        }
+    }
+    CHECK(once > 1000);
+    CHECK(never > 1000);
+}
+
 TEST_CASE(a_dip_of_any_width_is_found_and_a_touch_is_none) {
     for (int trial = 0; trial < 3000; ++trial) {
         const int degree = uniform_degree(2, max_degree);
@@ -305,10 +335,10 @@ TEST_CASE(a_dip_of_any_width_is_found_and_a_touch_is_none) {
         expect_fall(dip, 0, root, resolution + rounding_of(dip) / steep);
 
         const double lowest = double(exact(dip, root + 0.5 * width));
-        Poly force_mode = with_roots({root, root}, degree);
-        expect_no_fall(force_mode);
-        force_mode.c[0] += std::abs(lowest);
-        expect_no_fall(force_mode);
+        Poly touch = with_roots({root, root}, degree);
+        expect_no_fall(touch);
+        touch.c[0] += std::abs(lowest);
+        expect_no_fall(touch);
     }
 }
 

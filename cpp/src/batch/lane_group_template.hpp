@@ -1,14 +1,16 @@
 #pragma once
 // Groups of runs with the same batch key, in lanes, by one method; each method is compiled in a file of its own.
 
+#include <array>
 #include <memory>
+#include <optional>
 
 #include "arm3r/numbers/widths.hpp"
 #include "batch/lane_group.hpp"
 
 namespace arm3r {
 
-// Integrates runs with the same batch key until there are no more.
+// Integrates runs with the same batch key until there are no more; the first one stays with its caller.
 template <class Integrator>
 class LaneGroup {
 public:
@@ -31,9 +33,9 @@ public:
 
 private:
     bool fill(int lane) {
-        const std::optional<Setup> setup = worker_.next(batch_key_, run_[lane]);
-        if (setup) lane_run_.load_lane(lane, *setup);
-        return setup.has_value();
+        if (!worker_.next(batch_key_, run_[lane], setup_[lane])) return false;
+        lane_run_.load_lane(lane, *setup_[lane]);
+        return true;
     }
 
     // Runs that have ended are stored and their lanes refilled; returns whether there are new runs.
@@ -55,6 +57,7 @@ private:
     const BatchKey batch_key_;
     Integrator lane_run_;
     std::array<std::size_t, Integrator::lanes> run_{};
+    std::array<std::optional<Setup>, Integrator::lanes> setup_;
 };
 
 // Packs as wide as the registers; wider packs are slow.

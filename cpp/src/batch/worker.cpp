@@ -28,12 +28,16 @@ auto lane_group_of(const Setup& first) {
 }  // namespace
 
 BatchWorker::BatchWorker(BatchJob& job)
-    : job_(job), params_(job.variation.params.begin(), job.variation.params.end()) {}
+    : job_(job),
+      params_(job.variation.params.begin(), job.variation.params.end()),
+      summaries_(job.results, job.variation.runs) {}
 
 void BatchWorker::run() {
     std::size_t run;
+    std::optional<Setup> first;
     while (fetch(run))
-        if (const std::optional<Setup> setup = prepare(run)) run_group(*setup, run);
+        if (prepare(run, first)) run_group(*first, run);
+    summaries_.write();
 }
 
 void BatchWorker::run_group(const Setup& first, std::size_t run) {
@@ -70,16 +74,13 @@ void BatchWorker::run_alone(const Setup& setup, RunOptions options, std::size_t 
     store(run, done);
 }
 
-std::optional<Setup> BatchWorker::next(const BatchKey& batch_key, std::size_t& run) {
-    std::optional<Setup> setup;
+bool BatchWorker::next(const BatchKey& batch_key, std::size_t& run, std::optional<Setup>& setup) {
     while (deferred_.size() < max_deferred && fetch(run)) {
-        setup = prepare(run);
-        if (!setup) continue;
-        if (batch_key_of(*setup) == batch_key) return setup;
+        if (!prepare(run, setup)) continue;
+        if (batch_key_of(*setup) == batch_key) return true;
         deferred_.push_back(run);
     }
-    setup.reset();
-    return setup;
+    return false;
 }
 
 bool BatchWorker::fetch(std::size_t& run) {
@@ -100,24 +101,16 @@ bool BatchWorker::fetch(std::size_t& run) {
     return true;
 }
 
-std::optional<Setup> BatchWorker::prepare(std::size_t run) {
+bool BatchWorker::prepare(std::size_t run, std::optional<Setup>& setup) {
     job_.variation.put(run, params_);
-    std::optional<Setup> setup = job_.check(params_);
-    if (!setup) {
-        refuse(run, run + 1, ARM3R_RUN_INVALID);
-    } else if (has_too_many_steps(*setup)) {
-        refuse(run, run + 1, ARM3R_RUN_BUDGET);
-        setup.reset();
-    }
-    return setup;
+    job_.check(params_, setup);
+    if (setup && !has_too_many_steps(*setup)) return true;
+    refuse(run, run + 1, setup ? ARM3R_RUN_BUDGET : ARM3R_RUN_INVALID);
+    return false;
 }
 
 void BatchWorker::store(std::size_t run, const Metrics& metrics) {
-    double* cell = job_.results + run;
-    for (const SummaryNumber& number : summary_table()) {
-        *cell = number.of(metrics) + 0.0;
-        cell += job_.variation.runs;
-    }
+    summaries_.add(run, metrics);
     job_.done.fetch_add(1, std::memory_order_relaxed);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "batch/batch.hpp"
+#include "batch/summary_buffer.hpp"
 #include "lanes/lane_run.hpp"
 #include "validate/validate.hpp"
 
@@ -33,16 +34,16 @@ public:
     // Works until there are no more runs.
     void run();
 
-    // Returns the setup of the next run with the key `batch_key` and writes its number into `run`, or returns nothing if there
-    // is none. Runs with other keys are deferred.
-    std::optional<Setup> next(const BatchKey& batch_key, std::size_t& run);
+    // Makes the setup of the next run with the key `batch_key` in place and writes its number into `run`; returns whether
+    // there is one. Runs with other keys are deferred.
+    bool next(const BatchKey& batch_key, std::size_t& run, std::optional<Setup>& setup);
     void store(std::size_t run, const Metrics& metrics);
     bool is_stopped() const { return job_.stop.load(std::memory_order_relaxed); }
 
 private:
     bool fetch(std::size_t& run);
-    // The setup of a run; empty if there is nothing to simulate, and its row is complete.
-    std::optional<Setup> prepare(std::size_t run);
+    // Makes the setup of a run in place; returns false if there is nothing to simulate, and its row is complete.
+    bool prepare(std::size_t run, std::optional<Setup>& setup);
     void run_group(const Setup& first, std::size_t run);
     void run_with_law(const Setup& setup, std::size_t run);
     void run_alone(const Setup& setup, RunOptions options, std::size_t run);
@@ -52,6 +53,7 @@ private:
 
     BatchJob& job_;
     std::vector<double> params_;
+    SummaryBuffer summaries_;
     std::size_t first_ = 0, last_ = 0;  // the runs that were fetched and not yet started
     std::vector<std::size_t> retry_, deferred_;
 };

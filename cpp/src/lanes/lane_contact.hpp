@@ -59,6 +59,7 @@ public:
 
     // ---- a step
 
+    const T& max_depth() const { return max_depth_; }  // m, of the run so far, of an elastic contact
     // Whether the face may be crossed at depths between low and high.
     ARM3R_INLINE Mask may_cross(const T& low, const T& high) const {
         const T o(0.0);
@@ -74,6 +75,12 @@ public:
     ARM3R_INLINE void add_elastic(const Mask& here, const T& end, const T& mean, const T& h, const T& t) {
         update_peak(here, end, t, max_depth_);
         depth_time_ = depth_time_ + select(here, T(h * mean), T(0.0));
+    }
+    // The same of a step, or its part until a change, where `here`: `depth_time` is the integral of its depth. Where
+    // `is_known`, its largest depth is `most`, at t; elsewhere it is not larger than the depths before.
+    ARM3R_INLINE void add_part(const Mask& here, const Mask& is_known, const T& most, const T& t, const T& depth_time) {
+        update_peak(is_known, most, t, max_depth_);
+        depth_time_ = depth_time_ + select(here, depth_time, T(0.0));
     }
     // The same for a damped contact; a lane in which the force may have a maximum within the step is handled alone.
     ARM3R_INLINE void add_damped(const Mask& here, const Polynomial<T>& depth, const T& t0, const T& h, const T& t) {

@@ -48,8 +48,9 @@ struct BatchKey {
 BatchKey batch_key_of(const Setup& setup);
 
 // The resolution in theta of an instant near t in a step of h.
-inline double event_resolution(double t, double h) {
-    return std::max(event_time_tolerance, 4 * std::numeric_limits<double>::epsilon() * std::abs(t)) / h;
+template <class T>
+ARM3R_INLINE T event_resolution(const T& t, const T& h) {
+    return max(T(event_time_tolerance), T(4 * std::numeric_limits<double>::epsilon() * abs(t))) / h;
 }
 
 // N: state_size, or full_size where a continuous controller remembers something.
@@ -62,7 +63,8 @@ public:
 
     explicit LaneRun(const Setup& any_lane);
 
-    // Loads a run into a lane. The lanes loaded since the last call of start_lanes() start with the next one.
+    // Loads a run into a lane; the setup must stay where it is until the next one is loaded. The lanes loaded since the
+    // last call of start_lanes() start with the next one.
     void load_lane(int lane, const Setup& setup);
     ARM3R_INLINE void start_lanes() {
         observe_outlined();
@@ -101,7 +103,7 @@ public:
     }
     Metrics metrics(int lane) const;
     EnergyTotals totals(int lane) const {
-        return balance_.totals(lane, force_times_reach(setups_[lane].plant, contact_.peak_force(lane)));
+        return balance_.totals(lane, force_times_reach(setups_[lane]->plant, contact_.peak_force(lane)));
     }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
@@ -206,17 +208,17 @@ protected:
 
     // The next instant after t at which the reference that the metrics compare with has another formula.
     double next_metric_knot(int lane, double t) const {
-        return performance_.tracked().motion() ? next_knot(setups_[lane].controller().reference, t) : infinite;
+        return performance_.tracked().motion() ? next_knot(setups_[lane]->controller().reference, t) : infinite;
     }
 
     // The step of one lane in doubles, as a function of theta; the torque of a sampled controller is that of the step.
     template <class Visit>
     void visit_step(int lane, const DenseOutput& dense, Visit visit) const {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-        const Setup* setup = &setups_[lane];
+        const Setup* setup = setups_[lane];
         std::optional<Setup> of_estimate;
         if (asks_estimator(plant_.controller)) {
-            setup = &of_estimate.emplace(setups_[lane]);
+            setup = &of_estimate.emplace(*setup);
             of_estimate->plant.controller.gains.assumed_stiffness = get(plant_.controller.gains.assumed_stiffness);
         }
         const Vec3<T>& tau = performance_.torque_at_start();
@@ -268,11 +270,11 @@ protected:
 
     // Adds the contact from a to b of the step that began at t0.
     void add_contact(int lane, const Polynomial<double>& depth, double t0, double a, double b) {
-        contact_.add(lane, setups_[lane].plant.contact, depth, {t0, h(lane), a, b});
+        contact_.add(lane, setups_[lane]->plant.contact, depth, {t0, h(lane), a, b});
     }
     void change_mode(int lane, const ContactChange& change);
 
-    const Setup& setup(int lane) const { return setups_[lane]; }
+    const Setup& setup(int lane) const { return *setups_[lane]; }
 
     // Evaluates the derivative again after change_mode().
     void reevaluate();
@@ -282,7 +284,16 @@ protected:
                             ContactMode next) const {
         const Indentation<double> in{value(signals.depth, theta),   0, value(signals.across1, theta),
                                      value(signals.across2, theta), 0, 0};
-        return change_at(setups_[lane].plant, in, theta, t, mode(lane), next);
+        return change_at(setups_[lane]->plant, in, theta, t, mode(lane), next);
+    }
+
+    // The change of a lane at theta, at t seconds, where the tip meets the face or leaves it.
+    ContactChange change_to_other(int lane, const Indentation<double>& in, double theta, double t) const {
+        const Plant<double>& plant = setups_[lane]->plant;
+        const bool within =
+            !plant.wall.has_outline || (abs(in.across1) <= plant.wall.half1 && abs(in.across2) <= plant.wall.half2);
+        const ContactMode met = within ? ContactMode::contact : ContactMode::embedded;
+        return change_at(plant, in, theta, t, mode(lane), mode(lane) == ContactMode::free ? met : ContactMode::free);
     }
 
     void fail_lanes(const Mask& bad);
@@ -321,7 +332,8 @@ private:
     double force_of(int lane) const;  // N, normal
     void set_running(int lane, bool running);
 
-    std::array<Setup, lanes> setups_;
+    Setup rest_;  // a run of no duration, at rest: in empty lanes
+    std::array<const Setup*, lanes> setups_{};
     std::array<bool, lanes> running_{}, is_new_{};
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;

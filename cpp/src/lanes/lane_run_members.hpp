@@ -17,18 +17,18 @@ LaneRun<T, N>::LaneRun(const Setup& any_lane)
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
       contact_(plant_.contact, is_damped(any_lane.plant.contact.law)),
       performance_(any_lane, plant_, contact_.law(),
-                   any_lane.digital.sampling.on ? sampled_.controller() : plant_.controller) {
+                   any_lane.digital.sampling.on ? sampled_.controller() : plant_.controller),
+      rest_(any_lane) {
     rhs_.law_function = compiled_law<T, T>();
-    for (int lane = 0; lane < lanes; ++lane) {
-        setups_[lane] = any_lane;
-        clear_lane(lane);
-    }
+    rest_.stop = rest_.start;
+    rest_.qd = {0, 0, 0};
+    for (int lane = 0; lane < lanes; ++lane) clear_lane(lane);
 }
 
 template <class T, std::size_t N>
 void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
     const auto set = [&](T& x, double value) { Lanes<T>::set(x, lane, value); };
-    setups_[lane] = setup;
+    setups_[lane] = &setup;
     each_number(set, plant_, setup.plant);
     if (plant_.wall.motion == Motion::table) each_table_number(set, *plant_.wall.table, *setup.plant.wall.table);
     for (int i = 0; i < 3; ++i) {
@@ -58,14 +58,14 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
 
 template <class T, std::size_t N>
 void LaneRun<T, N>::start_lane(int lane) {
-    const Wall<double>& wall = setups_[lane].plant.wall;
+    const Wall<double>& wall = setups_[lane]->plant.wall;
     const double depth = plant_.has_wall ? Lanes<T>::get(in_.depth, lane) : 0;
     if (depth > 0) {
         const bool within =
             abs(Lanes<T>::get(in_.across1, lane)) <= wall.half1 && abs(Lanes<T>::get(in_.across2, lane)) <= wall.half2;
         set_mode(lane, within ? ContactMode::contact : ContactMode::embedded);
     }
-    if (mode(lane) == ContactMode::contact) contact_.begin(lane, setups_[lane].start, depth, force_of(lane));
+    if (mode(lane) == ContactMode::contact) contact_.begin(lane, setups_[lane]->start, depth, force_of(lane));
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
     balance_.start(lane, {get(kinetic_), get(potential_), get(stored())});
     Lanes<T>::set(evaluations_, lane, needs_derivative_ ? 1.0 : 0.0);
@@ -126,10 +126,7 @@ void LaneRun<T, N>::update_inputs(int lane) {
 // An empty lane is at the end of a run of no duration and does not move.
 template <class T, std::size_t N>
 void LaneRun<T, N>::clear_lane(int lane) {
-    Setup rest = setups_[lane];
-    rest.stop = rest.start;
-    rest.qd = {0, 0, 0};
-    load_lane(lane, rest);
+    load_lane(lane, rest_);
     is_new_[lane] = false;
     set_running(lane, false);
 }
@@ -146,7 +143,7 @@ void LaneRun<T, N>::set_mode(int lane, ContactMode mode) {
     contact_.set_mode(lane, mode);
     const bool feels =
         only_contact_is_felt_ ? mode == ContactMode::contact && plant_.acts_on_arm : mode != ContactMode::embedded;
-    const Contact<double>& own = setups_[lane].plant.contact;
+    const Contact<double>& own = setups_[lane]->plant.contact;
     const auto set = [&](T& strength, double value) { Lanes<T>::set(strength, lane, feels ? value : 0.0); };
     for (int i = 0; i < 3; ++i) set(plant_.contact.stiffness[i], own.stiffness[i]);
     set(plant_.contact.damping, own.damping);
@@ -155,7 +152,7 @@ void LaneRun<T, N>::set_mode(int lane, ContactMode mode) {
 template <class T, std::size_t N>
 double LaneRun<T, N>::force_of(int lane) const {
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-    return normal_force(setups_[lane].plant.contact, Indentation<double>{get(in_.depth), get(in_.rate), 0, 0, 0, 0});
+    return normal_force(setups_[lane]->plant.contact, Indentation<double>{get(in_.depth), get(in_.rate), 0, 0, 0, 0});
 }
 
 template <class T, std::size_t N>
@@ -185,7 +182,7 @@ void LaneRun<T, N>::fail_lanes(const Mask& bad) {
 template <class T, std::size_t N>
 Metrics LaneRun<T, N>::metrics(int lane) const {
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-    const Setup& setup = setups_[lane];
+    const Setup& setup = *setups_[lane];
     const bool touches = is_touching(mode(lane));
 
     Metrics m;

@@ -150,13 +150,20 @@ private:
             mean = mean + reciprocals[i + 1] * term;
         }
         auto& contact = this->contact_;
-        Mask eventful = moved && is_eventful(low, high, high, end);
-        if (any(eventful)) eventful = eventful && is_eventful_by_bernstein(over_step);
+        Mask eventful = moved && is_eventful(low, high, high, end), beside_edge = false;
+        Coefficients<T> b;
+        if (any(eventful)) {
+            b = bernstein(over_step);
+            eventful = eventful && is_eventful_by_bernstein(b);
+        }
         if (contact.any_touching()) {
-            if (this->plant_.wall.has_outline) eventful = eventful || (moved && contact.touching() && is_near_edge());
-            const Mask uneventful = contact.touching() && !eventful && moved;
+            if (this->plant_.wall.has_outline) beside_edge = moved && contact.touching() && is_near_edge();
+            const Mask uneventful = contact.touching() && !eventful && !beside_edge && moved;
             contact.add_elastic(uneventful, end, mean, this->h_, T(t0_ + this->h_));
         }
+        eventful = eventful && !beside_edge;
+        if (any(eventful)) Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { resolve_once(eventful, over_step, b, high); });
+        eventful = eventful || beside_edge;
         if (any(eventful)) resolve_contacts(eventful);
     }
 
@@ -167,8 +174,7 @@ private:
     }
 
     // The same with the sharper bounds of the Bernstein coefficients.
-    ARM3R_INLINE Mask is_eventful_by_bernstein(const Polynomial<T>& p) const {
-        const Coefficients<T> b = bernstein(p);
+    ARM3R_INLINE Mask is_eventful_by_bernstein(const Coefficients<T>& b) const {
         T low = min(b[0], b[order_]), before_end = b[0];
         for (int i = 1; i < order_; ++i) {
             low = min(low, b[i]);
@@ -188,6 +194,85 @@ private:
             most = most + abs(series_.c[i][signal]) * power;
         }
         return most;
+    }
+
+    // What the depth does in a step of each lane.
+    struct DepthEvents {
+        Mask crosses, turns;  // once, where g has its only zero crossing: g is the distance to the other mode, or
+        Polynomial<T> g;      // the rate of the depth
+        T guess, resolution;  // of that place, as theta
+        Mask has_maximum, is_simple;  // the largest depth of the run lies in the step; all is known but that place
+    };
+
+    ARM3R_INLINE DepthEvents depth_events(const Mask& eventful, const Polynomial<T>& p, const Coefficients<T>& b,
+                                          const T& high) const {
+        using namespace zero_crossing;
+        const auto& contact = this->contact_;
+        const Mask touching = contact.touching() && eventful;
+        const Mask free = eventful && !contact.touching() && !contact.embedded();
+        const T sign = select(free, T(-1.0), T(1.0));
+        Coefficients<T> distance;
+        for (int i = 0; i <= order_; ++i) distance[i] = sign * b[i];
+        const Falls<T> ends = falls_of(distance, order_, rounding(p));
+        const Mask deeper = touching && high > contact.max_depth();
+
+        const Polynomial<T> rate = derivative(p);
+        const Falls<T> peaks = falls_of(bernstein(rate), rate.degree, rounding(rate));
+        const Mask may_turn = deeper && ends.none && rate.c[0] >= T(0.0);
+
+        DepthEvents e;
+        e.crosses = ends.one && (free || (touching && !deeper));
+        e.turns = may_turn && peaks.one;
+        e.has_maximum = may_turn && (peaks.one || peaks.none);
+        e.is_simple = e.crosses || (ends.none && (free || e.has_maximum || (touching && !deeper)));
+        e.g.degree = order_;
+        for (int i = 0; i <= order_; ++i) e.g.c[i] = select(e.turns, i < order_ ? rate.c[i] : T(0.0), T(sign * p.c[i]));
+        e.guess = select(e.turns, peaks.guess, ends.guess);
+        const T finest = event_resolution(T(t0_ + this->h_), this->h_);
+        e.resolution = attainable(T(select(e.turns, T(turning_resolution), finest)));
+        return e;
+    }
+
+    // Contact in the lanes in which the depth p, with the Bernstein coefficients b and of at most `high`, crosses zero
+    // once or has one maximum: in all of them at once, with the same bits as resolve_lane(). Takes them out of
+    // `eventful`.
+    ARM3R_INLINE void resolve_once(Mask& eventful, const Polynomial<T>& p, const Coefficients<T>& b, const T& high) {
+        const DepthEvents e = depth_events(eventful, p, b, high);
+        const zero_crossing::Bracket<T> step{T(0.0), T(1.0), e.guess};
+        const T place = zero_crossing::refine_root(e.g, step, e.resolution, e.crosses || e.turns);
+        if (this->contact_.any_touching()) add_depths(e, p, place);
+        if (any(e.crosses)) change_once(e.crosses, p, place);
+        eventful = eventful && !e.is_simple;
+    }
+
+    // Adds the contact of these lanes, until it ends at `place` or to the end of the step.
+    ARM3R_INLINE void add_depths(const DepthEvents& e, const Polynomial<T>& p, const T& place) {
+        const T zero(0.0), one(1.0), until = select(e.crosses, place, one);
+        T most = p.c[0], theta = zero;
+        const auto include = [&](const Mask& here, const T& at) ARM3R_INLINE_LAMBDA {
+            const T depth = value(p, at);
+            const Mask is_deeper = here && depth > most;
+            theta = select(is_deeper, at, theta);
+            most = select(is_deeper, depth, most);
+        };
+        include(e.has_maximum, one);
+        include(e.turns, place);
+        this->contact_.add_part(this->contact_.touching() && e.is_simple, e.has_maximum, most,
+                                T(t0_ + this->h_ * theta), T(this->h_ * integral(p, zero, until)));
+    }
+
+    // The changes of contact at theta, after which the tip is free where it was not.
+    ARM3R_INLINE void change_once(const Mask& changes, const Polynomial<T>& p, const T& theta) {
+        const T after = theta * this->h_, depths = value(p, theta);
+        const T place1 = value(series_, across1, after), place2 = value(series_, across2, after);
+        theta_ = select(changes, theta, theta_);
+        crosses_ = true;
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            if (!Lanes<T>::is(changes, lane)) continue;
+            const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
+            const Indentation<double> in{get(depths), 0, get(place1), get(place2), 0, 0};
+            pending_changes_[lane] = {true, this->change_to_other(lane, in, get(theta), get(T(t0_ + this->h_)))};
+        }
     }
 
     [[gnu::noinline]] void resolve_contacts(const Mask& eventful) {

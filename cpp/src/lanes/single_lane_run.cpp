@@ -27,7 +27,8 @@ FullState initial_derivative(const FullState& y) { return {y[3], y[4], y[5]}; }
 template <class Integrator>
 class SingleLaneRun : RunRecorder {
 public:
-    SingleLaneRun(const Setup& setup, const RunOptions& options) : RunRecorder(setup, options), lane_run_(setup_) {}
+    SingleLaneRun(const Setup& setup, const RunOptions& options)
+        : RunRecorder(setup, options), loaded_(setup_), lane_run_(setup_) {}
 
     Run run() {
         lane_run_.set_user_law(options_.user_law);
@@ -35,7 +36,7 @@ public:
             update_dense_output();
             record_contact_change(change, dense_(change.theta));
         });
-        lane_run_.load_lane(0, setup_);
+        lane_run_.load_lane(0, loaded_);
         lane_run_.start_lanes();
         update_row_context();
         start_contact(lane_run_.mode(0));
@@ -97,6 +98,7 @@ private:
         }
     }
 
+    const Setup loaded_;  // while setup_ follows the torque that is held
     Integrator lane_run_;
     double theta_ = 0;
     bool has_dense_output_ = true;

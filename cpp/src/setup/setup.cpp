@@ -271,29 +271,27 @@ static void wire_sampling(std::span<const double> params, Setup& setup) {
                           setup.estimation.on || plant.external_force.on;
 }
 
-Setup make_setup(std::span<const double> params) {
-    Setup setup;
-    setup.simscape = is_simscape(params);
-    setup.start = at<"time.start">(params);
-    setup.plant.arm = make_arm(params);
-    set_controller(params, setup.plant.controller);
-    set_model(params, setup.plant.arm, setup.plant.controller.model);
-    setup.plant.has_wall = at<"wall">(params) != 0;
-    setup.plant.wall = make_wall(params);
-    setup.q = to_slide(params, vector_at<"initial.q">(params));
-    setup.plant.contact = make_contact(params, mass_at_start(setup));
-    setup.plant.acts_on_arm = setup.plant.has_wall && at<"wall.acts_on_arm">(params) != 0;
-    setup.qd = to_slide(params, vector_at<"initial.qd">(params));
-    if (has_law(setup.plant.controller.type)) set_reference(params, setup, setup.plant.controller.reference);
-    setup.solver = make_solver(params);
-    setup.stop = at<"time.stop">(params);
-    setup.log_every = at<"time.log_every">(params);
-    setup.logged = logged_columns(params);
-    if (at<"push">(params) != 0) setup.plant.external_force = make_external_force(params);
-    if (at<"estimator">(params) != 0) setup.estimation = make_estimation(params);
-    wire_sampling(params, setup);
-    set_jumps_on_clock(setup);
-    return setup;
+Setup::Setup(std::span<const double> params) : Setup() {
+    simscape = is_simscape(params);
+    start = at<"time.start">(params);
+    plant.arm = make_arm(params);
+    set_controller(params, plant.controller);
+    set_model(params, plant.arm, plant.controller.model);
+    plant.has_wall = at<"wall">(params) != 0;
+    plant.wall = make_wall(params);
+    q = to_slide(params, vector_at<"initial.q">(params));
+    plant.contact = make_contact(params, mass_at_start(*this));
+    plant.acts_on_arm = plant.has_wall && at<"wall.acts_on_arm">(params) != 0;
+    qd = to_slide(params, vector_at<"initial.qd">(params));
+    if (has_law(plant.controller.type)) set_reference(params, *this, plant.controller.reference);
+    solver = make_solver(params);
+    stop = at<"time.stop">(params);
+    log_every = at<"time.log_every">(params);
+    logged = logged_columns(params);
+    if (at<"push">(params) != 0) plant.external_force = make_external_force(params);
+    if (at<"estimator">(params) != 0) estimation = make_estimation(params);
+    wire_sampling(params, *this);
+    set_jumps_on_clock(*this);
 }
 
 }  // namespace arm3r

@@ -38,6 +38,10 @@ struct Setup {
     bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }
     bool has_performance() const { return controller().type != ControllerType::none; }
 
+    // From parameters whose choices are in order; what their numbers must keep to is said by validate() (validate.hpp),
+    // of which check_setup() is the last part.
+    explicit Setup(std::span<const double> params);
+
     // Copied in many files, compiled in one.
     Setup();
     Setup(const Setup&);
@@ -50,10 +54,8 @@ struct Setup {
     double clock_rounding() const;
 };
 
-// The choices in `params` must be in order; what their numbers must keep to is said by validate() (schema.hpp), of
-// which `check_setup` is the last part.
 Arm<double> make_arm(std::span<const double> params);
-Setup make_setup(std::span<const double> params);
+inline Setup make_setup(std::span<const double> params) { return Setup(params); }
 
 // Every number of controller.model, and the number of the plant's arm that it replaces where it is given.
 struct Replacement {

@@ -216,7 +216,8 @@ WorstPose min_lower_determinant(const Lumped<double>& l) {  // (3.10)
     return {(l.B2 + l.J3) * (l.B3 + l.J3) - coupling * coupling, 0, l.B > 0 ? pi : 0};
 }
 
-std::optional<Setup> check_setup(std::span<const double> params, ProblemList& problem_list) {
+void check_setup(std::span<const double> params, std::optional<Setup>& setup, ProblemList& problem_list) {
+    setup.reset();
     check_time(params, problem_list);
     check_direction<"wall.normal">(params, problem_list);
     check_direction<"wall.motion.direction">(params, problem_list);
@@ -227,17 +228,17 @@ std::optional<Setup> check_setup(std::span<const double> params, ProblemList& pr
     check_controller_keys(params, problem_list);
     check_sampling_keys(params, problem_list);
     if (at<"wall">(params) != 0) check_law(params, problem_list);
-    if (!problem_list.empty()) return {};
-    Setup setup = make_setup(params);
-    check_clock(setup, problem_list);
-    check_corners(setup, problem_list);
-    check_algorithm(setup, problem_list);
-    check_series(setup, problem_list);
-    check_controller(params, setup, problem_list);
-    check_sampling(params, setup, problem_list);
-    check_mass_matrix(setup.plant.arm, problem_list);
-    if (problem_list.empty() && setup.plant.has_wall) check_start(setup, problem_list);
-    return problem_list.empty() ? std::optional(std::move(setup)) : std::nullopt;
+    if (!problem_list.empty()) return;
+    setup.emplace(params);
+    check_clock(*setup, problem_list);
+    check_corners(*setup, problem_list);
+    check_algorithm(*setup, problem_list);
+    check_series(*setup, problem_list);
+    check_controller(params, *setup, problem_list);
+    check_sampling(params, *setup, problem_list);
+    check_mass_matrix(setup->plant.arm, problem_list);
+    if (problem_list.empty() && setup->plant.has_wall) check_start(*setup, problem_list);
+    if (!problem_list.empty()) setup.reset();
 }
 
 }  // namespace arm3r

@@ -11,8 +11,8 @@
 namespace arm3r {
 
 // What no single key can break: the mass matrix over the whole workspace (3.10), the start, what a method cannot do.
-// The setup, where no rule is broken.
-std::optional<Setup> check_setup(std::span<const double> params, ProblemList& problem_list);
+// Makes the setup in place; it is empty where a rule is broken.
+void check_setup(std::span<const double> params, std::optional<Setup>& setup, ProblemList& problem_list);
 
 // Smallest M11 and smallest determinant of the lower block over all poses, and the link angles where they occur (3.10).
 struct WorstPose {

@@ -152,12 +152,13 @@ void check_model(std::span<const double> params, const std::vector<const Key*>& 
         problem.path.replace(0, std::string_view("arm").size(), "controller.model");
 }
 
-std::optional<Setup> check_all(std::span<const double> params, const NumberKeys& keys, ProblemList& problem_list) {
+void check_all(std::span<const double> params, const NumberKeys& keys, std::optional<Setup>& setup,
+               ProblemList& problem_list) {
     check_arm(params, keys.arm, problem_list);
     for (const Key* key : keys.others) check_numbers(*key, params, problem_list);
     if (problem_list.empty() && has_model(controller_type_of(params)) && model_differs(params))
         check_model(params, keys.model, problem_list);
-    return problem_list.empty() ? check_setup(params, problem_list) : std::nullopt;
+    if (problem_list.empty()) check_setup(params, setup, problem_list);
 }
 
 bool is_choice(const Key& key) {
@@ -221,7 +222,7 @@ Validation validate(std::span<const double> params) {
     ProblemList problem_list(ProblemList::messages);
     check_choices(params, problem_list);
     std::optional<Setup> setup;
-    if (problem_list.empty()) setup = check_all(params, number_keys(params), problem_list);
+    if (problem_list.empty()) check_all(params, number_keys(params), setup, problem_list);
     return {std::move(problem_list.problems), std::move(setup)};
 }
 
@@ -243,9 +244,16 @@ Checker::Checker(std::span<const double> params, std::span<const std::size_t> va
 }
 
 std::optional<Setup> Checker::operator()(std::span<const double> params) const {
-    if (!readable_) return {};
+    std::optional<Setup> setup;
+    (*this)(params, setup);
+    return setup;
+}
+
+void Checker::operator()(std::span<const double> params, std::optional<Setup>& setup) const {
+    setup.reset();
+    if (!readable_) return;
     ProblemList problem_list(ProblemList::count_only);
-    return check_all(params, keys_, problem_list);
+    check_all(params, keys_, setup, problem_list);
 }
 
 }  // namespace arm3r

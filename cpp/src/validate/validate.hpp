@@ -37,8 +37,9 @@ public:
     // The arrays will differ from `params` in the numbers `varied` only, none of them a choice, a flag or a section.
     Checker(std::span<const double> params, std::span<const std::size_t> varied);
 
-    // The setup of parameters that keep every rule.
+    // The setup of parameters; empty where they break a rule. The second form makes it in place.
     std::optional<Setup> operator()(std::span<const double> params) const;
+    void operator()(std::span<const double> params, std::optional<Setup>& setup) const;
 
 private:
     bool readable_;    // the choices are words

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "arm3r/numbers/lane_access.hpp"
 #include "arm3r/numbers/real.hpp"
 
 namespace arm3r {
@@ -145,15 +146,23 @@ inline Halves split(const Bernstein& b, int degree, double at) {
 
 // A bound on the rounding error of value() and bernstein(). If the polynomial is not finite, it is not finite either,
 // and no crossing is found.
-inline double rounding(const Polynomial<double>& p) {
-    double sum = 0;
-    for (int i = 0; i <= p.degree; ++i) sum += abs(p.c[i]);
+template <class T>
+ARM3R_INLINE T rounding(const Polynomial<T>& p) {
+    T sum(0.0);
+    for (int i = 0; i <= p.degree; ++i) sum = sum + abs(p.c[i]);
     return (p.degree * std::numeric_limits<double>::epsilon()) * sum;
 }
 
+template <class T>
 struct Bracket {
-    double low, high, guess;
+    T low, high, guess;
 };
+
+// Where the polygon through two neighbouring Bernstein coefficients, the second of which is number `below`, crosses zero.
+template <class T>
+ARM3R_INLINE T crossing_of_polygon(const T& before, const T& after, const T& below, int degree) {
+    return ((below - 1.0) + before / (before - after)) / double(degree);
+}
 
 struct Search {
     int degree;
@@ -174,43 +183,69 @@ struct Search {
 
     // The first interval with exactly one downward crossing; b belongs to [low, high], and the polynomial is not
     // negative at the start.
-    std::optional<Bracket> isolate(const Bernstein& b, double low, double high) const {
+    std::optional<Bracket<double>> isolate(const Bernstein& b, double low, double high) const {
         const int j = first_below(b);
         if (j > degree) return std::nullopt;
-        if (stays_below(b, j)) return Bracket{low, high, low + (high - low) * crossing_of_polygon(b, j)};
+        if (stays_below(b, j)) {
+            const double at = j == 0 ? 0 : crossing_of_polygon<double>(b[j - 1], b[j], j, degree);
+            return Bracket<double>{low, high, low + (high - low) * at};
+        }
         if (high - low <= resolution) return std::nullopt;
         const Halves halves = split(b, degree, 0.5);
         const double middle = 0.5 * (low + high);
         if (const auto bracket = isolate(halves.left, low, middle)) return bracket;
         return isolate(halves.right, middle, high);
     }
-
-    double crossing_of_polygon(const Bernstein& b, int below) const {
-        if (below == 0) return 0;
-        return ((below - 1) + b[below - 1] / (b[below - 1] - b[below])) / degree;
-    }
 };
 
+// The resolution of a search: no finer than numbers near 1.
+template <class T>
+ARM3R_INLINE T attainable(const T& resolution) {
+    return max(T(std::numeric_limits<double>::epsilon()), resolution);
+}
+
 // Newton's method with steps that are slightly too long, so that the bracket closes from both sides; bisection where a
-// step leaves the bracket or does not shrink. Returns the end of the bracket at which p is negative.
-inline double refine_root(const Polynomial<double>& p, const Bracket& bracket, double resolution) {
-    auto [low, high, next] = bracket;
-    double here = low, stride = 2 * (high - low);
-    while (high - low > resolution) {
-        if (!(low < next && next < high && abs(next - here) <= 0.5 * stride)) next = 0.5 * (low + high);
+// step leaves the bracket or does not shrink. Returns the end of the bracket at which p is negative, where `wanted`.
+template <class T>
+ARM3R_INLINE T refine_root(const Polynomial<T>& p, const Bracket<T>& bracket, const T& resolution,
+                           const typename Lanes<T>::Mask& wanted) {
+    T low = bracket.low, high = bracket.high, next = bracket.guess;
+    T here = low, stride = 2.0 * (high - low);
+    for (auto open = wanted && high - low > resolution; any(open); open = open && high - low > resolution) {
+        const auto shrinks = low < next && next < high && abs(next - here) <= 0.5 * stride;
+        next = select(shrinks, next, T(0.5 * (low + high)));
         stride = abs(next - here);
         here = next;
-        const double at = value(p, here);
-        const double step = -at / slope(p, here);
-        if (at < 0) {
-            high = here;
-            next = here + step - 0.4 * resolution;
-        } else {
-            low = here;
-            next = here + step + 0.4 * resolution;
-        }
+        const T at = value(p, here), step = -at / slope(p, here), beyond = 0.4 * resolution;
+        const auto below = at < T(0.0);
+        high = select(open && below, here, high);
+        low = select(open && !below, here, low);
+        next = select(below, T(here + step - beyond), T(here + step + beyond));
     }
     return high;
+}
+
+// The downward zero crossings of polynomials with the Bernstein coefficients b, one in each lane.
+template <class T>
+struct Falls {
+    typename Lanes<T>::Mask none;  // no coefficient is negative, except by rounding
+    typename Lanes<T>::Mask one;   // the coefficients become negative once, and not at the start: there is one crossing
+    T guess;                       // in [0, 1], where `one`
+};
+
+template <class T>
+ARM3R_INLINE Falls<T> falls_of(const Coefficients<T>& b, int degree, const T& noise) {
+    typename Lanes<T>::Mask has_fallen = b[0] < -noise, rises = has_fallen;
+    T before(1.0), after(0.0), below(1.0);
+    for (int j = 1; j <= degree; ++j) {
+        const auto is_below = b[j] < -noise, falls = is_below && !has_fallen;
+        rises = rises || (has_fallen && !is_below);
+        has_fallen = has_fallen || is_below;
+        before = select(falls, b[j - 1], before);
+        after = select(falls, b[j], after);
+        below = select(falls, T(double(j)), below);
+    }
+    return {!has_fallen, has_fallen && !rises, crossing_of_polygon(before, after, below, degree)};
 }
 
 struct Root {
@@ -221,14 +256,14 @@ struct Root {
 // The first downward zero crossing of p in (from, to]; p is not negative at `from`, except by rounding.
 inline std::optional<Root> first_root(const Polynomial<double>& p, double from, double to, double resolution) {
     if (!(from < to)) return std::nullopt;
-    const Search search{p.degree, rounding(p), max(std::numeric_limits<double>::epsilon(), resolution)};
+    const Search search{p.degree, rounding(p), attainable(resolution)};
     Bernstein b = bernstein(p);
     if (search.first_below(b) > p.degree) return std::nullopt;
     if (from > 0) b = split(b, p.degree, from).right;
     if (to < 1) b = split(b, p.degree, (to - from) / (1 - from)).left;
     const auto bracket = search.isolate(b, from, to);
     if (!bracket) return std::nullopt;
-    return Root{refine_root(p, *bracket, search.resolution), bracket->high == to};
+    return Root{refine_root(p, *bracket, search.resolution, true), bracket->high == to};
 }
 
 inline std::optional<double> first(const Polynomial<double>& p, double from, double to, double resolution) {
@@ -255,6 +290,8 @@ inline std::optional<double> first_crossing(const Polynomial<double>& g, double 
     return zero_crossing::first(g, *up, 1.0, resolution);
 }
 
+inline constexpr double turning_resolution = 0x1p-32;  // a polynomial is flat at its maximum
+
 struct Maximum {
     double position, value;
 
@@ -266,12 +303,11 @@ struct Maximum {
 
 // The maximum of p on [a, b], part of [0, 1]: at an end or where the derivative is zero, exact to rounding.
 inline Maximum maximum(const Polynomial<double>& p, double a, double b) {
-    constexpr double resolution = 0x1p-32;  // p is flat at its maximum
     Maximum most{a, value(p, a)};
     most.include(p, b);
     Polynomial<double> signed_slope = derivative(p);
     if (value(signed_slope, a) < 0) signed_slope = negative(signed_slope);
-    while (const auto turn = zero_crossing::first_root(signed_slope, a, b, resolution)) {
+    while (const auto turn = zero_crossing::first_root(signed_slope, a, b, turning_resolution)) {
         most.include(p, turn->at);
         if (turn->is_last) break;
         signed_slope = negative(signed_slope);
