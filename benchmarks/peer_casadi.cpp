@@ -1,16 +1,18 @@
 #include "casadi_arm.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "peers.hpp"
 
 namespace peers {
 
-std::string Casadi::build() {
+const char* Casadi::build() {
     int major, minor, patch;
     casadi_arm_casadi_version(&major, &minor, &patch);
-    return "CasADi " + std::to_string(major) + '.' + std::to_string(minor) + '.' + std::to_string(patch) + ", " +
-           PEER_BUILD;
+    static char text[256];
+    std::snprintf(text, sizeof text, "CasADi %d.%d.%d, %s", major, minor, patch, PEER_BUILD);
+    return text;
 }
 
 void Casadi::forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd) {

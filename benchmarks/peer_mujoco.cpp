@@ -1,9 +1,11 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include "peers.hpp"
 
@@ -50,9 +52,9 @@ mjModel* model_of(const std::string& xml) {
 
 }  // namespace
 
-struct Mujoco::DenseOutput {
-    explicit DenseOutput(const std::string& xml) : model(model_of(xml)), data(mj_makeData(model)) {}
-    ~DenseOutput() {
+struct Mujoco::Implementation {
+    explicit Implementation(const std::string& xml) : model(model_of(xml)), data(mj_makeData(model)) {}
+    ~Implementation() {
         mj_deleteData(data);
         mj_deleteModel(model);
     }
@@ -60,9 +62,13 @@ struct Mujoco::DenseOutput {
     mjData* data;
 };
 
-std::string Mujoco::build() { return "MuJoCo " + std::string(mj_versionString()) + ", its own wheel"; }
+const char* Mujoco::build() {
+    static char text[64];
+    std::snprintf(text, sizeof text, "MuJoCo %s, its own wheel", mj_versionString());
+    return text;
+}
 
-Mujoco::Mujoco(const Numbers& numbers, double step) : in_(std::make_unique<DenseOutput>(mjcf(numbers, step))) {}
+Mujoco::Mujoco(const Numbers& numbers, double step) : in_(std::make_unique<Implementation>(mjcf(numbers, step))) {}
 Mujoco::~Mujoco() = default;
 
 void Mujoco::forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd) {

@@ -32,15 +32,15 @@ pin::Model model_of(const Numbers& numbers) {
 
 }  // namespace
 
-struct Pinocchio::DenseOutput {
-    explicit DenseOutput(const Numbers& numbers) : model(model_of(numbers)), data(model) {}
+struct Pinocchio::Implementation {
+    explicit Implementation(const Numbers& numbers) : model(model_of(numbers)), data(model) {}
     pin::Model model;
     pin::Data data;
 };
 
-std::string Pinocchio::build() { return "Pinocchio " PINOCCHIO_VERSION ", " PEER_BUILD; }
+const char* Pinocchio::build() { return "Pinocchio " PINOCCHIO_VERSION ", " PEER_BUILD; }
 
-Pinocchio::Pinocchio(const Numbers& numbers) : in_(std::make_unique<DenseOutput>(numbers)) {}
+Pinocchio::Pinocchio(const Numbers& numbers) : in_(std::make_unique<Implementation>(numbers)) {}
 Pinocchio::~Pinocchio() = default;
 
 void Pinocchio::forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd) {

@@ -3,7 +3,6 @@
 // and includes nothing of arm3r but this file. Slide convention.
 
 #include <memory>
-#include <string>
 
 namespace peers {
 
@@ -21,19 +20,21 @@ struct Numbers {
 
 class [[gnu::visibility("default")]] Pinocchio {
 public:
-    static std::string build();  // version, compiler and flags
+    // Version, compiler and flags. No std::string: its code would be compiled for this processor too, and valgrind, which
+    // knows fewer instructions, could not even list the jobs.
+    static const char* build();
     explicit Pinocchio(const Numbers& numbers);
     ~Pinocchio();
     void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);
 
 private:
-    struct DenseOutput;
-    std::unique_ptr<DenseOutput> in_;
+    struct Implementation;
+    std::unique_ptr<Implementation> in_;
 };
 
 class [[gnu::visibility("default")]] Mujoco {
 public:
-    static std::string build();
+    static const char* build();
     Mujoco(const Numbers& numbers, double step);
     ~Mujoco();
     void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);
@@ -43,14 +44,14 @@ public:
     const double* qd() const;
 
 private:
-    struct DenseOutput;
-    std::unique_ptr<DenseOutput> in_;
+    struct Implementation;
+    std::unique_ptr<Implementation> in_;
 };
 
 // Generated for the lecture's arm alone.
 class [[gnu::visibility("default")]] Casadi {
 public:
-    static std::string build();
+    static const char* build();
     // pushed: compensated, with the wall; else in free fall.
     Casadi(double step, bool pushed) : step_(step), pushed_(pushed) {}
     void forward_dynamics(const double* q, const double* qd, const double* tau, double* qdd);

@@ -64,7 +64,7 @@ private:
 
     // The values that hold from the end of the step on: a new torque, a new phase.
     void update_row_context() {
-        store_controller_state(lane_run_.controller_state());
+        if (setup_.digital.sampling.on || setup_.estimation.on) store_controller_state(lane_run_.controller_state());
         inputs_ = lane_run_.inputs(0);
         if (!setup_.digital.sampling.on) return;
         setup_.plant.held_torque = lane_run_.torque(0);
