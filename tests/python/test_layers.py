@@ -207,6 +207,31 @@ def test_files_and_yaml_stay_where_they_belong(root: Path) -> None:
     assert misplaced == []
 
 
+def _read_by(root: Path, path: Path, seen: set[str]) -> set[str]:
+    """The headers of ours that a file includes, and those that they include."""
+    for kind, name in _includes(path):
+        header = next(
+            (place / name for place in (root / "cpp/include", root / "cpp/src") if (place / name).exists()), None
+        )
+        if kind == '"' and header and name not in seen:
+            seen.add(name)
+            _read_by(root, header, seen)
+    return seen
+
+
+def test_a_change_of_a_law_compiles_the_files_of_the_laws_alone(root: Path) -> None:
+    readers = {
+        path.name
+        for path in _sources(root)
+        if path.suffix == ".cpp" and "arm3r/control/control_laws.hpp" in _read_by(root, path, set())
+    }
+    assert readers == {f"laws_of_{numbers}.cpp" for numbers in ("lanes", "numbers", "rows", "slopes")}
+    laws = {name for _, name in _includes(root / "cpp/include/arm3r/control/control_laws.hpp")}
+    for path in _sources(root):
+        if path.suffix == ".cpp" and path.name not in readers:
+            assert laws & _read_by(root, path, set()) == set(), path.name
+
+
 def test_the_executable_knows_only_the_c_interface(root: Path) -> None:
     for path in (root / "cpp/src/cli").iterdir():
         own = (

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "arm3r/control/control_laws.hpp"
+#include "arm3r/control/law_memory.hpp"
 #include "arm3r/model/contact.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "arm3r/ode/integrators.hpp"

@@ -2,7 +2,7 @@
 // The control laws (control_laws.hpp) as function pointers, compiled for the widest registers. The right-hand sides of
 // all methods call them.
 
-#include "arm3r/control/control_laws.hpp"
+#include "arm3r/control/controllers.hpp"
 #include "arm3r/numbers/dual.hpp"
 #include "arm3r/numbers/pack.hpp"
 #include "arm3r/numbers/widths.hpp"

@@ -1,5 +1,6 @@
 // One controller per lane.
 
+#include "arm3r/control/control_laws.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "control/compiled_laws.hpp"

@@ -1,5 +1,6 @@
 // One controller at several instants, one row per lane: the laws of the lanes, with the same controller in every lane.
 
+#include "arm3r/control/control_laws.hpp"
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/widths.hpp"

@@ -2,6 +2,7 @@
 
 #include "control/compiled_laws.hpp"
 
+#include "arm3r/control/control_laws.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
 
 namespace arm3r {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "arm3r/control/task_space.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "base/number_text.hpp"
 #include "control/compiled_laws.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 // One row, or several in a pack, of any number type: for the files that compile it.
 
+#include "arm3r/control/task_space.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/pack.hpp"
 #include "control/compiled_laws.hpp"
