@@ -62,6 +62,8 @@ public:
     static constexpr int lanes = Lanes<T>::count;
 
     explicit LaneRun(const Setup& any_lane);
+    LaneRun(const LaneRun&) = delete;  // an empty lane points to rest_
+    LaneRun& operator=(const LaneRun&) = delete;
 
     // Loads a run into a lane; the setup must stay where it is until the next one is loaded. The lanes loaded since the
     // last call of start_lanes() start with the next one.

@@ -198,10 +198,12 @@ private:
 
     // What the depth does in a step of each lane.
     struct DepthEvents {
-        Mask crosses, turns;  // once, where g has its only zero crossing: g is the distance to the other mode, or
-        Polynomial<T> g;      // the rate of the depth
-        T guess, resolution;  // of that place, as theta
-        Mask has_maximum, is_simple;  // the largest depth of the run lies in the step; all is known but that place
+        Mask crosses;  // It crosses zero once, where g does: g is the depth then, with the other sign for a free tip.
+        Mask turns;    // It has one maximum, where g crosses zero: g is its rate then.
+        Mask has_maximum;  // The largest depth of the run lies in the step: at an end, or where the depth turns.
+        Mask is_simple;    // Nothing but these happens in the step.
+        Polynomial<T> g;
+        T guess, resolution;  // of the zero crossing of g, as theta
     };
 
     ARM3R_INLINE DepthEvents depth_events(const Mask& eventful, const Polynomial<T>& p, const Coefficients<T>& b,
