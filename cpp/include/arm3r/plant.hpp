@@ -93,8 +93,7 @@ bool has_common_terms(const Plant<P>& plant) {
         return arm.gravity_is_vertical && !arm.has_damping && !arm.has_dry_friction && !arm.has_torque_limit;
     };
     const Wall<P>& wall = plant.wall;
-    const bool moves_evenly = wall.motion == Motion::fixed || wall.motion == Motion::constant;
-    const bool has_common_wall = moves_evenly && is_plain_spring(wall, plant.contact);
+    const bool has_common_wall = moves_evenly(wall) && is_plain_spring(wall, plant.contact);
     const bool has_known_torque = plant.holds_torque || plant.controller.type == ControllerType::none ||
                                   plant.controller.type == ControllerType::gravity_compensation;
     return is_common(plant.arm) && is_common(plant.controller.model) && (!plant.has_wall || has_common_wall) &&

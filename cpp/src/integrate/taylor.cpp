@@ -16,14 +16,16 @@ Recipe needs(const Plant<double>& plant, bool pressed) {
             .signals = plant.has_wall,
             .force = pressed,
             .oblique = !arm.gravity_is_vertical || (compensates && !controller.model.gravity_is_vertical),
-            .friction = arm.has_dry_friction};
+            .friction = arm.has_dry_friction,
+            .even_wall = moves_evenly(plant.wall)};
 }
 
 bool covers(const Recipe& recipe, const Recipe& needed) {
     const bool has_torque =
         recipe.torque == needed.torque || (needed.torque == TorqueSource::none && recipe.torque == TorqueSource::held);
     return has_torque && recipe.damping >= needed.damping && recipe.oblique >= needed.oblique &&
-           recipe.signals >= needed.signals && recipe.force >= needed.force && recipe.friction >= needed.friction;
+           recipe.even_wall <= needed.even_wall && recipe.signals >= needed.signals && recipe.force >= needed.force &&
+           recipe.friction >= needed.friction;
 }
 
 }  // namespace
@@ -33,8 +35,8 @@ Kernel kernel_of(const Plant<double>& plant, bool pressed) {
     return Kernel(std::find_if(recipes.begin(), recipes.end(), fits) - recipes.begin());
 }
 
-template void expand(Kernel, const Plant<double>&, const double&, const State<double, state_size>&, int,
-                     Expansion<double>&);
+template void expand(Kernel, const Plant<double>&, const double&, const State<double, state_size>&, const Pose<double>&,
+                     int, Expansion<double>&);
 
 int order_of(double tol) {
     constexpr double each_order = 0x1.152aaa3bf81ccp-3;  // exp(-2)

@@ -25,11 +25,11 @@ enum class Kernel : std::size_t {};  // a place in the list of recipes
 // force.
 Kernel kernel_of(const Plant<double>& plant, bool pressed);
 
-// 1 <= order <= max_degree. The plant has no more than the kernel; a control of type none has torque zero.
+// y at t, whose pose is p. 1 <= order <= max_degree. The plant has no more than the kernel; a control of type none has torque zero.
 // T: double, or Pack<2>, Pack<4>, Pack<8> up to max_lanes().
 template <class T>
-void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
-            Expansion<T>& expansion);
+void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, const Pose<T>& p,
+            int order, Expansion<T>& expansion);
 
 // The order that costs least for a tolerance of each step, 2 to max_degree.
 int order_of(double tol);
@@ -39,6 +39,16 @@ template <class T>
 ARM3R_INLINE T inverse_power(const T& x) {
     return with_bits(
         x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (std::int64_t{2046} << 52) - (i & (std::int64_t{2047} << 52)); });
+}
+
+// The step after which coefficients of two sizes, of the last two orders, are within the tolerance.
+template <class T>
+ARM3R_INLINE T trusted_step(const T& before, const T& last, const T& tol, int order) {
+    const T unbounded(infinite);
+    const auto trusted = [&](const T& size, int k) ARM3R_INLINE_LAMBDA {
+        return select(size > T(0.0), approximate_root(T(tol / size), k), unbounded);
+    };
+    return min(trusted(last, order), order > 1 ? trusted(before, order - 1) : unbounded);
 }
 
 // The step for which the last two orders are within the tolerance, s: infinite if they are zero. tol is relative where
@@ -51,11 +61,25 @@ ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
         before = max(before, T(abs(e.c[e.order - 1][j]) * scale));
         last = max(last, T(abs(e.c[e.order][j]) * scale));
     }
-    const T unbounded(infinite);
-    const auto trusted = [&](const T& size, int k) ARM3R_INLINE_LAMBDA {
-        return select(size > T(0.0), approximate_root(T(tol / size), k), unbounded);
-    };
-    return min(trusted(last, e.order), e.order > 1 ? trusted(before, e.order - 1) : unbounded);
+    return trusted_step(before, last, tol, e.order);
+}
+
+// Whether all coefficients that a step depends on are finite.
+template <class T>
+ARM3R_INLINE auto is_finite(const Expansion<T>& e) {
+    T zero(0.0);
+    for (std::size_t j = 0; j < works_at; ++j) zero = zero + e.c[e.order][j] * 0.0;
+    return zero == T(0.0);
+}
+
+// value() of each quantity of the state, all at once: their sums stay in registers.
+template <class T>
+ARM3R_INLINE State<T, state_size> state_after(const Expansion<T>& e, const T& h) {
+    State<T, state_size> sum;
+    for (std::size_t j = 0; j < state_size; ++j) sum[j] = e.c[e.order][j];
+    for (int i = e.order - 1; i >= 0; --i)
+        for (std::size_t j = 0; j < state_size; ++j) sum[j] = sum[j] * h + e.c[i][j];
+    return sum;
 }
 
 template <class T>

@@ -12,7 +12,12 @@
 namespace arm3r {
 namespace {
 
-#include <taylor_kernels.hpp>  // made by derive_taylor
+// Made by derive_taylor; it names what only some of the kernels use.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-variable"
+#pragma GCC diagnostic ignored "-Wunused-but-set-variable"
+#include <taylor_kernels.hpp>
+#pragma GCC diagnostic pop
 
 // The squared angular frequency of the wall, 1/s^2.
 template <class T>
@@ -22,11 +27,11 @@ ARM3R_INLINE T frequency_2(const Wall<T>& wall) {
 }
 
 template <class T>
-using Expand = void (*)(const Plant<T>&, const T&, const State<T, state_size>&, int, T (*)[quantities]);
+using Expand = void (*)(const Plant<T>&, const T&, const State<T, state_size>&, const Pose<T>&, int, T (*)[quantities]);
 
 template <std::size_t recipe, class T>
-ARM3R_INLINE void expand_here(const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
-                              T (*c)[quantities]) {
+ARM3R_INLINE void expand_here(const Plant<T>& plant, const T& t, const State<T, state_size>& y, const Pose<T>& p,
+                              int order, T (*c)[quantities]) {
     alignas(64) T given[9 + state_size];
     if constexpr (recipes[recipe].signals) {
         const WallState<T> wall = wall_at(plant.wall, t);
@@ -37,35 +42,40 @@ ARM3R_INLINE void expand_here(const Plant<T>& plant, const T& t, const State<T, 
         }
     }
     for (std::size_t i = 0; i < state_size; ++i) given[9 + i] = y[i];
-    Recurrence<recipe, T>::expand(plant, frequency_2(plant.wall), given, order, c);
+    Recurrence<recipe, T>::expand(plant, frequency_2(plant.wall), given, p, order, c);
 }
 
 template <std::size_t recipe>
 struct ExpandBy {
     template <class T>
-    ARM3R_INLINE void operator()(const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
-                                 T (*c)[quantities]) const {
-        expand_here<recipe>(plant, t, y, order, c);
+    ARM3R_INLINE void operator()(const Plant<T>& plant, const T& t, const State<T, state_size>& y, const Pose<T>& p,
+                                 int order, T (*c)[quantities]) const {
+        expand_here<recipe>(plant, t, y, p, order, c);
     }
 };
 
-template <std::size_t recipe>
-ARM3R_WIDEST_SCALARS void expand_scalars(const Plant<double>& plant, const double& t,
-                                         const State<double, state_size>& y, int order, double (*c)[quantities]) {
-    expand_here<recipe>(plant, t, y, order, c);
-}
+// The kernel of a recipe, compiled for the registers that hold `Widest`.
+template <std::size_t recipe, class T, class Widest>
+constexpr Expand<T> expand_for =
+    Outlined<Widest>::template call<ExpandBy<recipe>, const Plant<T>&, const T&, const State<T, state_size>&,
+                                    const Pose<T>&, int, T (*)[quantities]>;
 
 template <std::size_t recipe, class T>
-constexpr Expand<T> expand_by() {
-    if constexpr (std::same_as<T, double>) return expand_scalars<recipe>;
-    else
-        return Outlined<T>::template call<ExpandBy<recipe>, const Plant<T>&, const T&, const State<T, state_size>&, int,
-                                          T(*)[quantities]>;
+Expand<T> expand_by() {
+    if constexpr (std::same_as<T, double>) {
+#if ARM3R_HAS_EIGHT
+        if (has_registers_for(8)) return expand_for<recipe, T, Pack<8>>;
+#endif
+#if ARM3R_HAS_FOUR
+        if (has_registers_for(4)) return expand_for<recipe, T, Pack<4>>;
+#endif
+    }
+    return expand_for<recipe, T, T>;
 }
 
 template <class T>
 Expand<T> expand_of(Kernel kernel) {
-    static constexpr auto table = []<std::size_t... i>(std::index_sequence<i...>) {
+    static const auto table = []<std::size_t... i>(std::index_sequence<i...>) {
         return std::array<Expand<T>, sizeof...(i)>{expand_by<i, T>()...};
     }(std::make_index_sequence<recipes.size()>());
     return table[static_cast<std::size_t>(kernel)];
@@ -74,10 +84,10 @@ Expand<T> expand_of(Kernel kernel) {
 }  // namespace
 
 template <class T>
-void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, int order,
-            Expansion<T>& expansion) {
+void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, const Pose<T>& p,
+            int order, Expansion<T>& expansion) {
     expansion.order = order;
-    expand_of<T>(kernel)(plant, t, y, order, expansion.c);
+    expand_of<T>(kernel)(plant, t, y, p, order, expansion.c);
 }
 
 }  // namespace arm3r

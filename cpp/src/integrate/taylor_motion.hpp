@@ -32,8 +32,9 @@ public:
         pose_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
 
         for (const Expr& x : wall_.velocity) tape_.output(x);
-        for (const Expr& x : wall_.acceleration) tape_.output(x);
-        for (const Expr& x : wall_.velocity) tape_.output(-(frequency_2 * x));  // zero unless the wall oscillates
+        for (const Expr& x : wall_.acceleration) tape_.output(recipe.even_wall ? Expr(0.0) : x);
+        for (const Expr& x : wall_.velocity)  // zero unless the wall oscillates
+            tape_.output(recipe.even_wall ? Expr(0.0) : -(frequency_2 * x));
         for (const Expr& x : qd_) tape_.output(x);
         for (const Expr& x : {pose_.S2, pose_.C2, pose_.S23, pose_.C23}) tape_.output(x);
         if (recipe.force) press();

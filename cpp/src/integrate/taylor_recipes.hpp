@@ -17,11 +17,12 @@ enum class TorqueSource { none, held, gravity_compensation };
 // The features of a motion.
 struct Recipe {
     TorqueSource torque = TorqueSource::none;
-    bool damping = false;   // and the quadratures of torque and damping
-    bool signals = false;   // where the tip is on the plate
-    bool force = false;     // the contact law acts
-    bool oblique = false;   // gravity
-    bool friction = false;  // dry
+    bool damping = false;    // and the quadratures of torque and damping
+    bool signals = false;    // where the tip is on the plate
+    bool force = false;      // the contact law acts
+    bool oblique = false;    // gravity
+    bool friction = false;   // dry
+    bool even_wall = false;  // it stands still or moves at one velocity
 };
 
 // The cheapest first. With oblique gravity or friction a wall that does not press is one of no stiffness.
@@ -31,8 +32,10 @@ inline constexpr std::array recipes = [] {
         Recipe{},
         Recipe{held, true},
         Recipe{gravity, true},
+        Recipe{.torque = gravity, .signals = true, .even_wall = true},
         Recipe{held, true, true},
         Recipe{gravity, true, true},
+        Recipe{.torque = gravity, .signals = true, .force = true, .even_wall = true},
         Recipe{held, true, true, true},
         Recipe{gravity, true, true, true},
         Recipe{held, true, false, false, true},

@@ -148,6 +148,7 @@ struct System {
     int frequency_2 = -1;
     std::vector<int> given;             // states; a quadrature is -1
     std::vector<int> rates;             // the derivatives of the wall and of the angles
+    std::vector<int> angles;            // of the links
     std::vector<int> directions;        // of the links: states
     std::vector<int> accelerations;     // of q1 and of the link angles
     int inertia = -1;                   // about the first axis
@@ -161,7 +162,7 @@ struct System {
     std::vector<int> states;         // those of them with a derivative
     std::map<int, int> derivatives;  // of the states
 
-    explicit System(const Tape& tape) {
+    System(const Tape& tape, bool even_wall) : even_wall_(even_wall) {
         std::vector<int> place;
         for (const TapeNode& node : tape.nodes()) place.push_back(translated(node, place));
         for (const int output : tape.outputs()) list_of_output().push_back(place[output]);
@@ -208,7 +209,8 @@ private:
     // In the order of the recording.
     int input() {
         if (frequency_2 < 0) return frequency_2 = series.input(false);
-        if (given.size() < wall_size + motion_size) return given.emplace_back(series.input(true));
+        const bool is_number = even_wall_ && given.size() >= 3 && given.size() < wall_size;
+        if (given.size() < wall_size + motion_size) return given.emplace_back(series.input(!is_number));
         if (products.size() < directions_size) return products.emplace_back(series.input(true)).node;
         return numbers.emplace_back(series.input(false));
     }
@@ -230,6 +232,8 @@ private:
         for (std::size_t i = 0; i < rates.size(); ++i) derivatives[given[i]] = rates[i];
         for (int i = 0; i < 2; ++i) derivatives[qd[i]] = accelerations[i];
         derivatives[qd[2]] = series.subtract(accelerations[2], accelerations[1]);
+        const int* const q = &given[wall_size];
+        angles = {q[0], q[1], series.add(q[1], q[2])};
         series.differentiate(derivatives);
 
         for (std::size_t i = 0; i < directions_size; ++i)
@@ -253,10 +257,12 @@ private:
             for (const int i : *list) reach(i);
         reach(inertia);
         for (const int i : given)
-            if (live.contains(i)) states.push_back(i);
+            if (live.contains(i) && series.is_series(i)) states.push_back(i);
         for (const Series::Function& f : series.functions())
             if (live.contains(f.state)) states.push_back(f.state);
     }
+
+    const bool even_wall_;  // its velocity is a number
 
     void reach(int i) {
         if (i < 0 || !live.insert(i).second) return;

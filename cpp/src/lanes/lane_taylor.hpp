@@ -33,13 +33,13 @@ public:
         t0_ = this->t_;
         if (this->performance_.samples()) this->begin_segment();
         const bool pressed = this->plant_.acts_on_arm && this->contact_.any_touching();
-        expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, order_, series_);
+        expand(pressed ? pressed_kernel_ : free_kernel_, this->plant_, t0_, this->y_, this->p_, order_, series_);
         T wanted = min(step_of(series_, tol_), max_step_);
         if (this->plant_.arm.has_dry_friction) slow_before_friction(wanted);
         const T until = min(this->next_instant(), this->next_knot_), rest = until - t0_;
         is_last_ = wanted >= rest;
         this->h_ = select(is_last_, rest, wanted);
-        const Mask finite = is_finite(), stalls = !is_last_ && this->h_ < min_step(t0_);
+        const Mask finite = is_finite(series_), stalls = !is_last_ && this->h_ < min_step(t0_);
         const Mask moved = this->active_ && finite && !stalls;
         if (any(this->active_ && !moved)) stop_failed_lanes(finite, stalls);
 
@@ -51,7 +51,7 @@ public:
             h = select(theta_ < T(1.0), T(theta_ * h), h);
             t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
         }
-        const Y y1 = state_after(h);
+        const Y y1 = state_after(series_, h);
         if (this->performance_.is_on()) add_work(moved, y1, h);
         this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
@@ -90,23 +90,8 @@ public:
 private:
     enum Signal : std::size_t { depth = state_size, across1, across2, work1 };
 
-    // As value() of each, all at once: their sums stay in registers.
-    ARM3R_INLINE State<T, state_size> state_after(const T& h) const {
-        State<T, state_size> sum;
-        for (std::size_t j = 0; j < state_size; ++j) sum[j] = series_.c[order_][j];
-        for (int i = order_ - 1; i >= 0; --i)
-            for (std::size_t j = 0; j < state_size; ++j) sum[j] = sum[j] * h + series_.c[i][j];
-        return sum;
-    }
-
     ARM3R_INLINE static T min_step(const T& t) {
         return 16 * std::numeric_limits<double>::epsilon() * max(abs(t), T(1e-3));
-    }
-
-    ARM3R_INLINE Mask is_finite() const {
-        T zero(0.0);
-        for (std::size_t j = 0; j < works_at; ++j) zero = zero + series_.c[order_][j] * 0.0;
-        return zero == T(0.0);
     }
 
     // Far from rest dry friction is nearly constant, and no coefficient shows how suddenly it reverses where a joint

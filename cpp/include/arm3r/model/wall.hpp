@@ -77,6 +77,12 @@ bool is_plain_motion(const Wall<P>& wall) {
     return wall.motion != Motion::ramp && wall.motion != Motion::table && wall.rotation == Rotation::none;
 }
 
+// Whether the plate stands still or moves at one velocity.
+template <class P>
+bool moves_evenly(const Wall<P>& wall) {
+    return (wall.motion == Motion::fixed || wall.motion == Motion::constant) && wall.rotation == Rotation::none;
+}
+
 // A plate that stands still or moves at one velocity.
 template <class P, class T>
 ARM3R_INLINE WallState<T> even_wall_at(const Wall<P>& wall, const T& t) {

@@ -216,6 +216,16 @@ static_assert(Real<Pack<2>> && Real<Pack<8>>);
 
 ARM3R_INLINE Pack<2> side_by_side(double first, double second) { return Pack<2>(Pack<2>::Vector{first, second}); }
 
+// g++ 12 may put four numbers together in memory, and wait for them.
+ARM3R_INLINE Pack<4> side_by_side(double first, double second, double third, double fourth) {
+#if __has_builtin(__builtin_shufflevector)
+    const Pack<2>::Vector low{first, second}, high{third, fourth};
+    return Pack<4>(__builtin_shufflevector(low, high, 0, 1, 2, 3));
+#else
+    return Pack<4>(Pack<4>::Vector{first, second, third, fourth});
+#endif
+}
+
 ARM3R_INLINE std::array<SinCos<double>, 2> split(const SinCos<Pack<2>>& both) {
     return {SinCos<double>{both.sin[0], both.cos[0]}, SinCos<double>{both.sin[1], both.cos[1]}};
 }

@@ -9,26 +9,33 @@
 
 // Functions with ARM3R_FOR_FOUR and ARM3R_FOR_EIGHT may be called only if the processor has registers for packs of 4 or 8
 // (has_registers_for); all functions that they call are inlined. Without such variants (ARM3R_WIDE_PACKS 0) packs have 2
-// lanes. ARM3R_WIDEST_SCALARS: g++ compiles the function for AVX2 as well, and the processor decides.
+// lanes. ARM3R_HAS_FOUR and ARM3R_HAS_EIGHT: whether this build has them.
 //
 // ARM3R_LANES, where it is defined: the only width of packs that a batch has in this build (1: no packs), which compiles
 // faster. Otherwise a build has packs of 2, 4 and 8.
 #if defined(__x86_64__) && defined(__GNUC__) && defined(__OPTIMIZE__) && !(defined(ARM3R_LANES) && ARM3R_LANES <= 2)
 #if defined(__clang__)  // by their names, because options of the command line win over an architecture
-#define ARM3R_WIDEST_SCALARS
 #define ARM3R_FOR_FOUR __attribute__((target("avx2,bmi,bmi2,fma")))
 #define ARM3R_FOR_EIGHT __attribute__((target("avx512f,avx512bw,avx512cd,avx512dq,avx512vl,bmi,bmi2,fma")))
 #else
-#define ARM3R_WIDEST_SCALARS __attribute__((target_clones("default", "arch=x86-64-v3")))
 #define ARM3R_FOR_FOUR __attribute__((target("arch=x86-64-v3")))
 #define ARM3R_FOR_EIGHT __attribute__((target("arch=x86-64-v4")))
 #endif
 #define ARM3R_WIDE_PACKS 1
 #else
-#define ARM3R_WIDEST_SCALARS
 #define ARM3R_FOR_FOUR
 #define ARM3R_FOR_EIGHT
 #define ARM3R_WIDE_PACKS 0
+#endif
+#if ARM3R_WIDE_PACKS && !(defined(ARM3R_LANES) && ARM3R_LANES == 8)
+#define ARM3R_HAS_FOUR 1
+#else
+#define ARM3R_HAS_FOUR 0
+#endif
+#if ARM3R_WIDE_PACKS && !(defined(ARM3R_LANES) && ARM3R_LANES == 4)
+#define ARM3R_HAS_EIGHT 1
+#else
+#define ARM3R_HAS_EIGHT 0
 #endif
 
 // X(T) for each pack of the lanes of a batch; of a row block, which has at most four lanes, because eight take twice as
@@ -128,10 +135,10 @@ struct Outlined<Pack<8>> {
 // that f calls are inlined.
 template <class F>
 void run_at_widest(F f) {
-#if ARM3R_WIDE_PACKS && !(defined(ARM3R_LANES) && ARM3R_LANES == 4)
+#if ARM3R_HAS_EIGHT
     if (has_registers_for(8)) return Outlined<Pack<8>>::run(f);
 #endif
-#if ARM3R_WIDE_PACKS && !(defined(ARM3R_LANES) && ARM3R_LANES == 8)
+#if ARM3R_HAS_FOUR
     if (has_registers_for(4)) return Outlined<Pack<4>>::run(f);
 #endif
     Outlined<double>::run(f);
