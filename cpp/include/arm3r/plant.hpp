@@ -126,7 +126,11 @@ public:
     explicit RightHandSide(const Plant<P>& plant)
         : plant_(plant),
           needs_azimuth_(!plant.arm.gravity_is_vertical || !plant.controller.model.gravity_is_vertical ||
-                         plant.has_wall || plant.needs_azimuth) {}
+                         plant.has_wall || plant.needs_azimuth),
+          common_(plant) {}
+
+    // Called when numbers of the plant have changed.
+    ARM3R_INLINE void update_common_numbers() { common_ = CommonNumbers(plant_); }
 
     ContactForceMode force_mode = ContactForceMode::none;
     T contact{0.0}, force_phase{0.0};          // inputs of a continuous controller, constant within a step
@@ -139,11 +143,13 @@ public:
     // the state only.
     template <std::size_t N>
     ARM3R_INLINE void begin_step(const State<T, N>& y) {
-        const Vec3<T> nearest(on_grid(y[0]), on_grid(y[1]), on_grid(T(y[1] + y[2])));
-        auto is_kept = nearest[1] == cached_q_[1] && nearest[2] == cached_q_[2];
-        if (needs_azimuth_) is_kept = is_kept && nearest[0] == cached_q_[0];
-        if (all(is_kept)) return;
-        update_cached_pose(nearest);
+        const Vec3<T> nearest(needs_azimuth_ ? on_grid(y[0]) : cached_q_[0], on_grid(y[1]), on_grid(T(y[1] + y[2])));
+        const T moved =
+            abs(nearest[0] - cached_q_[0]) + (abs(nearest[1] - cached_q_[1]) + abs(nearest[2] - cached_q_[2]));
+        if (all(moved == T(0.0))) return;
+        update_cached(0, nearest[0], cached_pose_.S1, cached_pose_.C1);
+        update_cached(1, nearest[1], cached_pose_.S2, cached_pose_.C2);
+        update_cached(2, nearest[2], cached_pose_.S23, cached_pose_.C23);
     }
 
     template <std::size_t N>
@@ -158,15 +164,11 @@ public:
     ARM3R_INLINE void derivative_at(const T& t, const State<T, N>& y, State<T, N>& dy, Vec3<T>& tau) const {
         const T seen = min(t, latest);
         const Pose<T> p = pose_near(y);
-        WallState<T> wall;  // left uninitialised if unused, as the indentation
-        Indentation<T> in;
         if constexpr (terms == Terms::common) {
-            if (plant_.acts_on_arm) {
-                wall = even_wall_at(plant_.wall, seen);
-                in = indentation_at_rest(plant_.wall, wall, tip_position(plant_.arm, p));
-            }
-            common_derivative(wall, p, in, y, dy, tau);
+            common_derivative(seen, p, y, dy, tau);
         } else {
+            WallState<T> wall;  // left uninitialised if unused, as the indentation
+            Indentation<T> in;
             if (senses_wall(plant_) || (plant_.acts_on_arm && force_mode != ContactForceMode::none))
                 wall = wall_state_at(seen);
             if (needs_contact()) in = indentation_of(wall, p, Vec3<T>(y[3], y[4], y[5]));
@@ -217,38 +219,37 @@ public:
     // The same for a plant of common terms, whose contact is decided at each stage, if there is any. Nothing dissipates,
     // and these components of dy are not set.
     template <std::size_t N>
-    ARM3R_INLINE void common_derivative(const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
-                                        const State<T, N>& y, State<T, N>& dy, Vec3<T>& tau) const {
+    ARM3R_INLINE void common_derivative(const T& t, const Pose<T>& p, const State<T, N>& y, State<T, N>& dy,
+                                        Vec3<T>& tau) const {
+        const T o(0.0);
         const Vec3<T> qd(y[3], y[4], y[5]);
-        const Arm<P>& arm = plant_.arm;
-        const bool compensates = plant_.controller.type == ControllerType::gravity_compensation;
-        Vec3<T> weight = vertical_weight(arm, p), drive = zero_vector<T>();
-        tau = zero_vector<T>();
+        Vec3<T> torque(o, common_.weight2 * p.C2, common_.weight3 * p.C23);  // on q1, q2, q2 + q3
+        T power(0.0), outer_power(0.0);
         if (plant_.holds_torque) {
-            drive = tau = broadcast<T>(plant_.held_torque);
-        } else if (compensates) {
+            tau = broadcast<T>(plant_.held_torque);
+            torque = {tau[0], torque[1] + (tau[1] - tau[2]), torque[2] + tau[2]};
+            power = dot(tau, qd);
+        } else if (plant_.controller.type == ControllerType::gravity_compensation) {
             const Vec3<T> assumed = vertical_weight(plant_.controller.model, p);
-            tau = {assumed[0], assumed[1] + assumed[2], assumed[2]};
-            weight = minus(weight, assumed);
+            tau = {o, assumed[1] + assumed[2], assumed[2]};
+            power = tau[1] * qd[1] + tau[2] * qd[2];
+        } else {
+            tau = zero_vector<T>();
         }
-        T outer_power(0.0);
         if (plant_.acts_on_arm) {
-            auto where = in.depth > T(0.0);
-            if (any(where)) {
-                if (plant_.wall.has_outline) where = where && inside_outline(plant_.wall, in) >= T(0.0);
-                const T depth = select(where, in.depth, T(0.0));
-                const Vec3<T> on_tip = plain_spring_force(plant_.wall, plant_.contact, depth).on_tip;
-                drive = plus(drive, tip_force_torque(arm, p, on_tip));
-                outer_power = dot(on_tip, wall.velocity);
+            const PlateForce push = plate_force(t, p);
+            if (push.acts) {
+                for (int i = 0; i < 3; ++i) torque[i] = torque[i] + push.torque[i];
+                outer_power = push.power;
             }
         }
-        const Vec3<T> qdd = joint_acceleration(arm, p, qd, drive, weight);
+        const Vec3<T> qdd = acceleration_by_link_torques(plant_.arm.lumped, common_.inertia, p, qd, torque);
         for (int i = 0; i < 3; ++i) {
             dy[i] = qd[i];
             dy[3 + i] = qdd[i];
         }
         if constexpr (N >= state_size) {
-            dy[work_of_actuators] = dot(tau, qd);
+            dy[work_of_actuators] = power;
             dy[work_of_wall] = outer_power;
         }
     }
@@ -325,17 +326,79 @@ public:
     // The pose from the sines and cosines that begin_step() has cached.
     template <std::size_t N>
     ARM3R_INLINE Pose<T> pose_near(const State<T, N>& y) const {
-        const auto [second, third] =
-            sincos_near_pair(cached_q_[1], SinCos<T>{cached_pose_.S2, cached_pose_.C2}, y[1], cached_q_[2],
-                             SinCos<T>{cached_pose_.S23, cached_pose_.C23}, T(y[1] + y[2]));
-        if (!needs_azimuth_) return {T(0.0), T(1.0), second.sin, second.cos, third.sin, third.cos};
-        const SinCos<T> first = sincos_near(cached_q_[0], SinCos<T>{cached_pose_.S1, cached_pose_.C1}, y[0]);
-        return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
+        const Vec3<T>& base = cached_q_;
+        const SinCos<T> at1{cached_pose_.S1, cached_pose_.C1}, at2{cached_pose_.S2, cached_pose_.C2},
+            at3{cached_pose_.S23, cached_pose_.C23};
+        const T third_angle = y[1] + y[2];
+        if constexpr (Lanes<T>::count > 1) {
+            if (needs_azimuth_) {
+                using std::array;
+                const auto [first, second, third] = sincos_near_each(
+                    array<T, 3>{base[0], base[1], base[2]}, array{at1, at2, at3}, array<T, 3>{y[0], y[1], third_angle});
+                return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
+            }
+            const auto [second, third] = sincos_near_each(std::array<T, 2>{base[1], base[2]}, std::array{at2, at3},
+                                                          std::array<T, 2>{y[1], third_angle});
+            return {T(0.0), T(1.0), second.sin, second.cos, third.sin, third.cos};
+        } else {
+            const auto [second, third] = sincos_near_pair(base[1], at2, y[1], base[2], at3, third_angle);
+            if (!needs_azimuth_) return {T(0.0), T(1.0), second.sin, second.cos, third.sin, third.cos};
+            const SinCos<T> first = sincos_near(base[0], at1, y[0]);
+            return {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
+        }
     }
 
 private:
     ARM3R_INLINE static Vec3<T> vertical_weight(const Arm<P>& arm, const Pose<T>& p) {
         return link_weight(arm.lumped, arm.gravity, true, p);
+    }
+
+    // What the terms of a plant of common terms need and does not depend on the state.
+    struct CommonNumbers {
+        LinkInertia<P> inertia;
+        P weight2, weight3;  // N m: of link 2 and 3 along gravity, less what the actuators compensate
+        P face, speed;       // m, m/s: the face along the normal, from above the base in the height of the shoulder
+
+        ARM3R_INLINE explicit CommonNumbers(const Plant<P>& plant)
+            : inertia(plant.arm.lumped),
+              weight2(plant.arm.lumped.G2 * plant.arm.gravity[2]),
+              weight3(plant.arm.lumped.G3 * plant.arm.gravity[2]),
+              face(plant.wall.face_offset +
+                   (dot(plant.wall.n, plant.wall.point) - plant.wall.n[2] * plant.arm.base_height)),
+              speed(plant.wall.motion == Motion::constant ? P(dot(plant.wall.n, plant.wall.velocity)) : P(0.0)) {
+            if (plant.holds_torque || plant.controller.type != ControllerType::gravity_compensation) return;
+            const Arm<P>& model = plant.controller.model;
+            weight2 = weight2 - model.lumped.G2 * model.gravity[2];
+            weight3 = weight3 - model.lumped.G3 * model.gravity[2];
+        }
+    };
+
+    // The push of an even plate with a plain spring on q1, q2, q2 + q3, N m, and its power, W.
+    struct PlateForce {
+        bool acts;
+        Vec3<T> torque;
+        T power;
+    };
+
+    // In the plane of the links, whose horizontal direction is the radial one: (2.1) and (4.3).
+    ARM3R_INLINE PlateForce plate_force(const T& t, const Pose<T>& p) const {
+        const Wall<P>& wall = plant_.wall;
+        const Arm<P>& arm = plant_.arm;
+        const P &a2 = arm.link2.length, &a3 = arm.link3.length;
+        const T radial = p.C1 * wall.n[0] + p.S1 * wall.n[1], around = p.C1 * wall.n[1] - p.S1 * wall.n[0];
+        const T r = a2 * p.C2 + a3 * p.C23, h = a2 * p.S2 + a3 * p.S23;
+        const T depth = (common_.face + common_.speed * t) - (radial * r + wall.n[2] * h);
+        auto where = depth > T(0.0);
+        if (!any(where)) return {false, {}, {}};
+        if (wall.has_outline) {
+            const WallState<T> state = even_wall_at(wall, t);
+            where = where && inside_outline(wall, indentation_at_rest(wall, state, tip_position(arm, p))) >= T(0.0);
+        }
+        const T force = plant_.contact.stiffness[0] * select(where, depth, T(0.0));
+        return {true,
+                {(r * around) * force, (a2 * (p.C2 * wall.n[2] - p.S2 * radial)) * force,
+                 (a3 * (p.C23 * wall.n[2] - p.S23 * radial)) * force},
+                force * common_.speed};
     }
 
     // Whether the actuators only compensate the weight of the controller's model. Both weights are then subtracted from
@@ -421,14 +484,14 @@ private:
     }
 
     ARM3R_INLINE static T on_grid(const T& angle) {
-        constexpr double points_per_radian = 32;
+        constexpr double points_per_radian = 16;
         return nearest_integer(T(angle * points_per_radian)) * (1 / points_per_radian);
     }
 
-    ARM3R_INLINE void update_cached_pose(const Vec3<T>& nearest) {
-        const SinCos<T> first = sincos(nearest[0]), second = sincos(nearest[1]), third = sincos(nearest[2]);
-        cached_q_ = nearest;
-        cached_pose_ = {first.sin, first.cos, second.sin, second.cos, third.sin, third.cos};
+    ARM3R_INLINE void update_cached(int i, const T& nearest, T& sine, T& cosine) {
+        if (all(nearest == cached_q_[i])) return;
+        const SinCos<T> there = sincos(nearest);
+        cached_q_[i] = nearest, sine = there.sin, cosine = there.cos;
     }
 
     ARM3R_INLINE Clamping clamping() const {
@@ -443,6 +506,7 @@ private:
 
     const Plant<P>& plant_;
     bool needs_azimuth_;
+    CommonNumbers common_;
     Vec3<T> cached_q_{T(0.0), T(0.0), T(0.0)};
     Pose<T> cached_pose_{T(0.0), T(1.0), T(0.0), T(1.0), T(0.0), T(1.0)};
 };

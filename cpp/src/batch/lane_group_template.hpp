@@ -15,49 +15,64 @@ template <class Integrator>
 class LaneGroup {
 public:
     LaneGroup(BatchWorker& worker, const Setup& first, std::size_t run)
-        : worker_(worker), batch_key_(batch_key_of(first)), lane_run_(first) {
-        lane_run_.load_lane(0, first);
-        run_[0] = run;
-        for (int lane = 1; lane < Integrator::lanes; ++lane) fill(lane);
+        : worker_(worker), batch_key_(batch_key_of(first)) {
+        for (Part& part : parts_) part.lane_run.emplace(first);
+        parts_[0].lane_run->load_lane(0, first);
+        parts_[0].run[0] = run;
+        for (Part& part : parts_)
+            for (int lane = &part == &parts_[0] ? 1 : 0; lane < Integrator::lanes; ++lane) fill(part, lane);
     }
 
     ARM3R_INLINE void run() {
-        lane_run_.start_lanes();
+        for (Part& part : parts_) part.lane_run->start_lanes();
         while (true) {
-            while ((lane_run_.any_ended() || worker_.is_stopped()) && refill()) lane_run_.start_lanes();
-            if (!lane_run_.any_running()) return;
-            if constexpr (Integrator::lanes == 1) lane_run_.step_outlined();
-            else lane_run_.step();
+            Integrator* running[Integrator::together];
+            int count = 0;
+            for (Part& part : parts_) {
+                Integrator& lane_run = *part.lane_run;
+                while ((lane_run.any_ended() || worker_.is_stopped()) && refill(part)) lane_run.start_lanes();
+                if (lane_run.any_running()) running[count++] = &lane_run;
+            }
+            if (count == 0) return;
+            if constexpr (Integrator::lanes == 1) running[0]->step_outlined();
+            else if constexpr (Integrator::together == 1) running[0]->step();
+            else Integrator::step_together(running, count);
         }
     }
 
 private:
-    bool fill(int lane) {
-        if (!worker_.next(batch_key_, run_[lane], setup_[lane])) return false;
-        lane_run_.load_lane(lane, *setup_[lane]);
+    // A lane run and the setups of its lanes, which stay where they are.
+    struct Part {
+        std::optional<Integrator> lane_run;
+        std::array<std::size_t, Integrator::lanes> run{};
+        std::array<std::optional<Setup>, Integrator::lanes> setup;
+    };
+
+    bool fill(Part& part, int lane) {
+        if (!worker_.next(batch_key_, part.run[lane], part.setup[lane])) return false;
+        part.lane_run->load_lane(lane, *part.setup[lane]);
         return true;
     }
 
     // Runs that have ended are stored and their lanes refilled; returns whether there are new runs.
-    [[gnu::noinline]] bool refill() {
+    [[gnu::noinline]] bool refill(Part& part) {
         bool any_new = false;
-        lane_run_.clear_failures();
+        Integrator& lane_run = *part.lane_run;
+        lane_run.clear_failures();
         for (int lane = 0; lane < Integrator::lanes; ++lane) {
-            if (!lane_run_.is_running(lane)) continue;
-            if (worker_.is_stopped() && !lane_run_.has_ended(lane)) lane_run_.stop_lane(lane, ARM3R_RUN_STOPPED);
-            if (!lane_run_.has_ended(lane)) continue;
-            worker_.store(run_[lane], lane_run_.metrics(lane));
-            if (fill(lane)) any_new = true;
-            else lane_run_.clear_lane(lane);
+            if (!lane_run.is_running(lane)) continue;
+            if (worker_.is_stopped() && !lane_run.has_ended(lane)) lane_run.stop_lane(lane, ARM3R_RUN_STOPPED);
+            if (!lane_run.has_ended(lane)) continue;
+            worker_.store(part.run[lane], lane_run.metrics(lane));
+            if (fill(part, lane)) any_new = true;
+            else lane_run.clear_lane(lane);
         }
         return any_new;
     }
 
     BatchWorker& worker_;
     const BatchKey batch_key_;
-    Integrator lane_run_;
-    std::array<std::size_t, Integrator::lanes> run_{};
-    std::array<std::optional<Setup>, Integrator::lanes> setup_;
+    std::array<Part, Integrator::together> parts_;
 };
 
 // Packs as wide as the registers; wider packs are slow.

@@ -14,7 +14,7 @@ class LaneRk4 : public LaneRun<T, N> {
     using Y = typename Base::Y;
 
 public:
-    explicit LaneRk4(const Setup& any_lane) : Base(any_lane), has_common_terms_(has_common_terms(any_lane.plant)) {
+    explicit LaneRk4(const Setup& any_lane) : Base(any_lane) {
         if (this->plant_.acts_on_arm || senses_wall(this->plant_)) this->rhs_.force_mode = ContactForceMode::each_stage;
     }
 
@@ -23,12 +23,25 @@ public:
         Lanes<T>::set(start_, lane, setup.start);
         Lanes<T>::set(step_, lane, setup.solver.step);
         Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
-        Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
+        const double jump = next_jump(setup, setup.start);
+        Lanes<T>::set(next_jump_, lane, jump);
+        may_jump_ = may_jump_ || jump < infinite;
+        if (this->has_common_terms_)
+            Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { this->rhs_.update_common_numbers(); });
     }
 
+    // How many lane runs with the same batch key a group steps together: a step is one chain of operations, and the
+    // processor works on both at once.
+    static constexpr int together = N == state_size && Base::lanes > 1 ? 2 : 1;
+
+    // A step of `count` lane runs with the same batch key, stage by stage.
+    ARM3R_INLINE static void step_together(LaneRk4* const* runs, int count) {
+        if (N == state_size && runs[0]->has_common_terms_) step_of<Terms::common>(runs, count);
+        else step_of<Terms::any>(runs, count);
+    }
     ARM3R_INLINE void step() {
-        if (N == state_size && has_common_terms_) step_of<Terms::common>();
-        else step_of<Terms::any>();
+        LaneRk4* const alone = this;
+        step_together(&alone, 1);
     }
     // step() as a function call: the long code is compiled once (single_lane_run.cpp).
     void step_outlined()
@@ -51,7 +64,17 @@ public:
 
 private:
     template <Terms terms>
-    ARM3R_INLINE void step_of() {
+    ARM3R_INLINE static void step_of(LaneRk4* const* runs, int count) {
+        for (int i = 0; i < count; ++i) runs[i]->begin_step();
+        if constexpr (N == state_size) {
+            for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 0>();
+            for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 1>();
+            for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 2>();
+        }
+        for (int i = 0; i < count; ++i) runs[i]->template end_step<terms>();
+    }
+
+    ARM3R_INLINE void begin_step() {
         t0_ = this->t_;
         if (Base::lanes == 1 || this->performance_.samples()) {
             y0_ = this->y_;
@@ -61,50 +84,79 @@ private:
         before_ = this->in_;
         const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
         const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
-        const T t1 = select(is_last, this->stop_, aim);
+        t1_ = select(is_last, this->stop_, aim);
         this->h_ = select(is_last, T(this->stop_ - t0_), step_);
-        const Mask jumps = next_jump_ <= t1;
-        has_jump_ = any(jumps);
-        if (has_jump_) apply_jumps(t1);
-        const Y y1 = stepped<terms>();
-        const Mask finite = Base::is_finite(y1), moved = finite && this->active_;
+        if (may_jump_) {
+            jumps_ = next_jump_ <= t1_;
+            has_jump_ = any(jumps_);
+            if (has_jump_) apply_jumps(t1_);
+        }
+        if (sums_work()) work_ = power_of(this->tau_, this->y_);
+    }
+
+    // The works of the torques are summed as the quadratures are.
+    bool sums_work() const { return this->performance_.is_on() && !this->plant_.holds_torque; }
+
+    // Stage n + 2 of 4, from the derivative of the one before; that of the first is known.
+    template <Terms terms, int n>
+    ARM3R_INLINE void next_stage() {
+        const Y& before = n == 0 ? this->f_ : stages_[n == 0 ? 0 : n - 1];
+        const T offset = n < 2 ? T(0.5 * this->h_) : this->h_;
+        Y at;
+        for (std::size_t i = 0; i < motion_size; ++i) at[i] = this->y_[i] + offset * before[i];
+        Vec3<T> tau;
+        this->rhs_.template derivative_at<terms>(t0_ + offset, at, stages_[n], tau);
+        if (sums_work()) work_ = plus(work_, scaled(T(n < 2 ? 2.0 : 1.0), power_of(tau, at)));
+    }
+
+    // The state after the step (5.1).
+    template <Terms terms>
+    ARM3R_INLINE Y stepped() {
+        constexpr std::size_t moving = terms == Terms::common ? common_moving : N;
+        const T sixth = this->h_ / 6.0;
+        Y y1 = this->y_;
+        for (std::size_t i = 0; i < moving; ++i)
+            y1[i] = y1[i] + sixth * ((this->f_[i] + stages_[2][i]) + 2.0 * (stages_[0][i] + stages_[1][i]));
+        return y1;
+    }
+    // The same with a single call of a long derivative in the code.
+    ARM3R_INLINE Y stepped_in_a_loop() {
+        int stage = 1;
+        const auto derivative = [&](const T& t, const Y& at, Y& rates) ARM3R_INLINE_LAMBDA {
+            Vec3<T> tau;
+            this->rhs_.template derivative_at<Terms::any>(t, at, rates, tau);
+            ++stage;
+            if (sums_work()) work_ = plus(work_, scaled(T(stage < 4 ? 2.0 : 1.0), power_of(tau, at)));
+        };
+        return rk4_step_in_a_loop(derivative, t0_, this->y_, this->f_, this->h_);
+    }
+
+    template <Terms terms>
+    ARM3R_INLINE void end_step() {
+        Y y1;
+        if constexpr (N == state_size) y1 = stepped<terms>();
+        else y1 = stepped_in_a_loop();
+        if (this->performance_.is_on()) work_ = sums_work() ? scaled(T(this->h_ / 6.0), work_) : this->work_of_held(y1);
+        const Mask finite = Base::template is_finite<terms>(y1);
+        const bool all_finite = all(finite);
+        const Mask moved = all_finite ? this->active_ : finite && this->active_;
         if (this->performance_.is_on()) this->performance_.add_work(work_, moved);
-        this->accept(moved, t1, y1);
+        // An empty lane is at the end of its run, where a step does not move it.
+        if (all_finite) this->accept_all(t1_, y1);
+        else this->accept(moved, t1_, y1), stop_diverged_lanes(finite);
         this->evaluations_ = this->evaluations_ + 4.0;
-        if (any(!finite && this->active_)) stop_diverged_lanes(finite);
         if (Base::lanes == 1 || this->performance_.samples()) store_end();
         if (has_jump_) this->rhs_.latest = T(infinite);
         this->template observe<terms>();
         if (this->performance_.samples() && may_jump_at_end())
-            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { derive_before_jump(jumps); });
+            Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { derive_before_jump(jumps_); });
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
-        if (this->performance_.samples()) add_performance(moved && !eventful_, jumps);
+        if (this->performance_.samples()) add_performance(moved && !eventful_, jumps_);
         this->check_lanes();
     }
 
-    // The state after the step. The works of the torques are summed as its quadratures are.
-    template <Terms terms>
-    ARM3R_INLINE Y stepped() {
-        const auto& [rhs, y, f0, h] = std::tie(this->rhs_, this->y_, this->f_, this->h_);
-        const bool sums_work = this->performance_.is_on() && !this->plant_.holds_torque;
-        int stage = 1;  // the derivative of the first is known
-        if (sums_work) work_ = power_of(this->tau_, y);
-        const auto derivative = [&](const T& t, const Y& at, Y& rates) ARM3R_INLINE_LAMBDA {
-            Vec3<T> tau;
-            rhs.template derivative_at<terms>(t, at, rates, tau);
-            ++stage;
-            if (sums_work) work_ = plus(work_, scaled(T(stage < 4 ? 2.0 : 1.0), power_of(tau, at)));
-        };
-        const Y y1 = [&]() ARM3R_INLINE_LAMBDA {
-            if constexpr (terms == Terms::common) return rk4_step_of_first<common_moving>(derivative, t0_, y, f0, h);
-            else if constexpr (N == state_size) return rk4_step(derivative, t0_, y, f0, h);
-            else return rk4_step_in_a_loop(derivative, t0_, y, f0, h);
-        }();
-        if (this->performance_.is_on()) work_ = sums_work ? scaled(T(h / 6.0), work_) : this->work_of_held(y1);
-        return y1;
-    }
     ARM3R_INLINE static Vec3<T> power_of(const Vec3<T>& tau, const Y& y) {
         return cwise_product(tau, Vec3<T>(y[3], y[4], y[5]));
     }
@@ -199,12 +251,10 @@ private:
 
     ARM3R_INLINE Mask is_near_edge() const {
         const Indentation<T>&a = before_, &b = this->in_;
-        const T& h = this->h_;
-        const Cubic across1(a.across1, T(h * a.slip1), b.across1, T(h * b.slip1));
-        const Cubic across2(a.across2, T(h * a.slip2), b.across2, T(h * b.slip2));
-        const Wall<T>& wall = this->plant_.wall;
-        return max(across1.high(), T(-across1.low())) >= wall.half1 ||
-               max(across2.high(), T(-across2.low())) >= wall.half2;
+        const T third = (1.0 / 3) * this->h_;  // the cubic's Bernstein coefficients lie within these sizes
+        const T across1 = max(abs(a.across1), abs(b.across1)) + third * max(abs(a.slip1), abs(b.slip1));
+        const T across2 = max(abs(a.across2), abs(b.across2)) + third * max(abs(a.slip2), abs(b.slip2));
+        return across1 >= this->plant_.wall.half1 || across2 >= this->plant_.wall.half2;
     }
 
     [[gnu::noinline]] void resolve_contacts(const Mask& eventful) {
@@ -335,11 +385,12 @@ private:
         this->performance_.sample(1, {t, p, wall, in, tau});
     }
 
-    const bool has_common_terms_;
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
-    T start_{0.0}, step_{1.0}, t0_{0.0}, next_jump_{infinite};
-    bool has_jump_ = false;
+    T start_{0.0}, step_{1.0}, t0_{0.0}, t1_{0.0}, next_jump_{infinite};
+    bool may_jump_ = false, has_jump_ = false;  // in the run of a lane, in the step
+    Mask jumps_ = false;
+    std::array<Y, 3> stages_{};  // the derivatives of the second, third and fourth
     Mask was_due_ = false;
     Y y0_{}, f0_{}, f1_before_{};
     Vec3<T> torque_before_, work_;  // N m; J, of each torque in the step

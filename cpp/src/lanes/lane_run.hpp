@@ -94,7 +94,7 @@ public:
 
     void clear_lane(int lane);
     bool is_running(int lane) const { return running_[lane]; }
-    bool any_running() const { return any(active_); }
+    bool any_running() const { return any_running_; }
     bool has_ended(int lane) const { return running_[lane] && (outcome_[lane] != ARM3R_RUN_OK || at_stop(lane)); }
     ARM3R_INLINE bool any_ended() const { return failed_ || any(active_ && t_ >= stop_); }
     void clear_failures() { failed_ = false; }
@@ -140,11 +140,11 @@ protected:
         }
         const Vec3<T> qd(y_[3], y_[4], y_[5]);
         if (plant_.has_wall) locate_wall<terms>(qd);
-        kinetic_ = kinetic_energy(plant_.arm, p_, qd);
-        potential_ = potential_energy(plant_.arm, p_);
         if (is_controlled_ && any(is_due())) update_controller();
         if (needs_derivative_) derive<terms>();
         else if (performance_.is_on()) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
+        kinetic_ = kinetic_energy(plant_.arm, p_, qd);
+        potential_ = potential_energy(plant_.arm, p_);
     }
     void observe_outlined();
 
@@ -167,12 +167,16 @@ protected:
         }
     }
 
-    // With a controller's memory the code is long, and is compiled once.
+    // All lanes by the same formula, whoever asks. With a controller's memory the code is long, and is compiled once.
     template <Terms terms = Terms::any>
     ARM3R_INLINE void derive() {
-        if constexpr (terms == Terms::common) rhs_.common_derivative(wall_, p_, in_, y_, f_, tau_);
-        else if constexpr (N == state_size) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
-        else Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_); });
+        if constexpr (N != state_size) {
+            Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_); });
+        } else {
+            if (terms == Terms::common || has_common_terms_)
+                rhs_.common_derivative(min(t_, rhs_.latest), p_, y_, f_, tau_);
+            else if constexpr (terms == Terms::any) rhs_.derivative(t_, wall_, p_, in_, y_, f_, tau_);
+        }
     }
 
     // ---- digital controllers
@@ -244,17 +248,23 @@ protected:
 
     // Moves to `t1`, `y1` where `moved`.
     ARM3R_INLINE void accept(const Mask& moved, const T& t1, const Y& y1) {
-        if (all(moved)) y_ = y1;
-        else
-            for (std::size_t i = 0; i < N; ++i) y_[i] = select(moved, y1[i], y_[i]);
+        if (all(moved)) return accept_all(t1, y1);
+        for (std::size_t i = 0; i < N; ++i) y_[i] = select(moved, y1[i], y_[i]);
         for (std::size_t i = 3; i < motion_size; ++i) y_[i] = without_tiny_rate(y_[i]);
         t_ = select(moved, t1, t_);
         accepted_ = accepted_ + select(moved, T(1.0), T(0.0));
     }
+    ARM3R_INLINE void accept_all(const T& t1, const Y& y1) {
+        y_ = y1;
+        for (std::size_t i = 3; i < motion_size; ++i) y_[i] = without_tiny_rate(y_[i]);
+        t_ = t1;
+        accepted_ = accepted_ + 1.0;
+    }
 
+    template <Terms terms = Terms::any>
     ARM3R_INLINE static Mask is_finite(const Y& y) {
         T sum = y[0];
-        for (std::size_t i = 1; i < N; ++i) sum = sum + y[i];
+        for (std::size_t i = 1; i < (terms == Terms::common ? common_moving : N); ++i) sum = sum + y[i];
         return sum * 0.0 == T(0.0);
     }
 
@@ -305,6 +315,7 @@ protected:
         // only_contact_is_felt_, in free ones
         plant_;
     RightHandSide<T, T> rhs_;
+    const bool has_common_terms_;
     bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
 
     bool is_controlled_;
@@ -337,6 +348,7 @@ private:
     Setup rest_;  // a run of no duration, at rest: in empty lanes
     std::array<const Setup*, lanes> setups_{};
     std::array<bool, lanes> running_{}, is_new_{};
+    bool any_running_ = false;
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;
     std::function<void(int, const ContactChange&)> on_change_;

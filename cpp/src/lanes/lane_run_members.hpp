@@ -13,6 +13,7 @@ namespace arm3r {
 template <class T, std::size_t N>
 LaneRun<T, N>::LaneRun(const Setup& any_lane)
     : rhs_((copy_choices(any_lane.plant, plant_), plant_)),
+      has_common_terms_(has_common_terms(any_lane.plant)),
       may_be_ill_conditioned_(batch_key_of(any_lane).may_be_ill_conditioned),
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
       contact_(plant_.contact, is_damped(any_lane.plant.contact.law)),
@@ -134,6 +135,7 @@ void LaneRun<T, N>::clear_lane(int lane) {
 template <class T, std::size_t N>
 void LaneRun<T, N>::set_running(int lane, bool running) {
     running_[lane] = running;
+    any_running_ = std::any_of(running_.begin(), running_.end(), [](bool is) { return is; });
     Lanes<T>::mark(active_, lane, running);
     Lanes<T>::mark(started_, lane, false);  // until start_lanes() starts it
 }

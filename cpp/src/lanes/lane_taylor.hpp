@@ -29,6 +29,8 @@ public:
         Lanes<T>::set(this->slack_, lane, setup.clock_rounding());
     }
 
+    static constexpr int together = 1;  // lane runs that a group steps together
+
     ARM3R_INLINE void step() {
         t0_ = this->t_;
         if (this->performance_.samples()) this->begin_segment();

@@ -82,9 +82,14 @@ ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& arm, const Vec3<T>& qd) {
 
 template <class P, class T>
 ARM3R_INLINE T kinetic_energy(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // T (3.7)
-    const Mat3<T> M = mass_matrix(arm, p);
-    return 0.5 * (M(0, 0) * qd[0] * qd[0] + M(1, 1) * qd[1] * qd[1] + M(2, 2) * qd[2] * qd[2]) +
-           M(1, 2) * qd[1] * qd[2];
+    const Lumped<P>& l = arm.lumped;
+    const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
+    const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
+    const T BC23 = l.B * p.C23, BC2 = l.B * p.C2;
+    const T M11 = l.A1 + p.C2 * (l.A2 * p.C2 + BC23) + p.C23 * (l.A3 * p.C23 + BC2);
+    const P Mb22 = l.B2 + l.J3, Mb33 = l.B3 + l.J3;  // of the link angles (3.8)
+    const T Mb23 = l.B * C3 - l.J3;
+    return 0.5 * (M11 * (w1 * w1) + Mb22 * (w2 * w2) + Mb33 * (w3 * w3)) + Mb23 * (w2 * w3);
 }
 
 template <class P, class T>
@@ -93,6 +98,7 @@ ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, ze
     const T radial = l.G2 * p.C2 + l.G3 * p.C23;
     const T up = l.G2 * p.S2 + l.G3 * p.S23;
     const P fixed = arm.link1.mass * arm.link1.com + (arm.link2.mass + arm.link3.mass + arm.payload) * arm.base_height;
+    if (arm.gravity_is_vertical) return -(arm.gravity[2] * (fixed + up));
     return -(arm.gravity[0] * p.C1 * radial + arm.gravity[1] * p.S1 * radial + arm.gravity[2] * (fixed + up));
 }
 
@@ -106,12 +112,19 @@ ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const
     return {radius(arm, p) * around, second + third, third};
 }
 
-// qdd from the torques that drive the joints (actuators less friction plus J^T f) and from the weight on the link
-// angles, or the part of it that a controller does not compensate. Solved in the absolute link angles (3.8).
+// The mass matrix of the link angles (3.8), as far as it does not depend on the pose, and the product of its diagonal.
+template <class P>
+struct LinkInertia {
+    P Mb22, Mb33, product;
+
+    ARM3R_INLINE explicit LinkInertia(const Lumped<P>& l)
+        : Mb22(l.B2 + l.J3), Mb33(l.B3 + l.J3), product(Mb22 * Mb33) {}
+};
+
+// qdd from the torques on the three angles q1, q2, q2 + q3 (3.8).
 template <class P, class T>
-ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive,
-                                        const Vec3<T>& weight) {
-    const Lumped<P>& l = arm.lumped;
+ARM3R_INLINE Vec3<T> acceleration_by_link_torques(const Lumped<P>& l, const LinkInertia<P>& inertia, const Pose<T>& p,
+                                                  const Vec3<T>& qd, const Vec3<T>& torque) {
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T w1_2 = w1 * w1;
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
@@ -121,16 +134,24 @@ ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, con
     const T S2P = p.S2 * Pc, S23Q = p.S23 * Q;
 
     const T M11 = l.A1 + p.C2 * Pc + p.C23 * Q;
-    const T R1 = drive[0] - weight[0] + 2.0 * (S2P * w2 + S23Q * w3) * w1;
-    const T R2 = (drive[1] - drive[2]) - weight[1] - S2P * w1_2 + BS3 * (w3 * w3);
-    const T R3 = drive[2] - weight[2] - S23Q * w1_2 - BS3 * (w2 * w2);
+    const T R1 = torque[0] + (S2P * w2 + S23Q * w3) * (w1 + w1);
+    const T R2 = torque[1] - S2P * w1_2 + BS3 * (w3 * w3);
+    const T R3 = torque[2] - S23Q * w1_2 - BS3 * (w2 * w2);
 
-    const P Mb22 = l.B2 + l.J3, Mb33 = l.B3 + l.J3;
     const T Mb23 = l.B * C3 - l.J3;
-    const T inverse_det = 1.0 / (Mb22 * Mb33 - Mb23 * Mb23);
-    const T phi2_dd = (Mb33 * R2 - Mb23 * R3) * inverse_det;
-    const T phi3_dd = (Mb22 * R3 - Mb23 * R2) * inverse_det;
+    const T inverse_det = 1.0 / (inertia.product - Mb23 * Mb23);
+    const T phi2_dd = (inertia.Mb33 * R2 - Mb23 * R3) * inverse_det;
+    const T phi3_dd = (inertia.Mb22 * R3 - Mb23 * R2) * inverse_det;
     return {R1 / M11, phi2_dd, phi3_dd - phi2_dd};
+}
+
+// qdd from the torques that drive the joints (actuators less friction plus J^T f) and from the weight on the link
+// angles, or the part of it that a controller does not compensate.
+template <class P, class T>
+ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive,
+                                        const Vec3<T>& weight) {
+    const Vec3<T> torque(drive[0] - weight[0], (drive[1] - drive[2]) - weight[1], drive[2] - weight[2]);
+    return acceleration_by_link_torques(arm.lumped, LinkInertia<P>(arm.lumped), p, qd, torque);
 }
 
 template <class P, class T>

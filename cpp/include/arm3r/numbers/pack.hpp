@@ -247,18 +247,21 @@ ARM3R_INLINE std::array<SinCos<T>, 2> sincos_near_pair(const T& first_base, cons
     return {sincos_near(first_base, at_first, first), sincos_near(second_base, at_second, second)};
 }
 
-// A single test decides for both angles.
-template <int N>
-ARM3R_INLINE std::array<SinCos<Pack<N>>, 2> sincos_near_pair(const Pack<N>& first_base, const SinCos<Pack<N>>& at_first,
-                                                             const Pack<N>& first, const Pack<N>& second_base,
-                                                             const SinCos<Pack<N>>& at_second, const Pack<N>& second) {
-    const Pack<N> first_delta = first - first_base, second_delta = second - second_base, near_limit(sincos_near_limit);
-    const PackMask<N> first_near = abs(first_delta) <= near_limit, second_near = abs(second_delta) <= near_limit;
-    const SinCos<Pack<N>> a = sincos_rotated(at_first, first_delta), b = sincos_rotated(at_second, second_delta);
-    if (all(first_near && second_near)) return {a, b};
-    const SinCos<Pack<N>> full_a = sincos(first), full_b = sincos(second);
-    return {SinCos<Pack<N>>{select(first_near, a.sin, full_a.sin), select(first_near, a.cos, full_a.cos)},
-            SinCos<Pack<N>>{select(second_near, b.sin, full_b.sin), select(second_near, b.cos, full_b.cos)}};
+// Of packs a single test decides for all angles.
+template <int N, std::size_t count>
+ARM3R_INLINE std::array<SinCos<Pack<N>>, count> sincos_near_each(const std::array<Pack<N>, count>& base_angle,
+                                                                 const std::array<SinCos<Pack<N>>, count>& base,
+                                                                 const std::array<Pack<N>, count>& angle) {
+    std::array<SinCos<Pack<N>>, count> result;
+    Pack<N> farthest(0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Pack<N> delta = angle[i] - base_angle[i];
+        farthest = i == 0 ? abs(delta) : max(farthest, abs(delta));
+        result[i] = sincos_rotated(base[i], delta);
+    }
+    if (!all(farthest <= Pack<N>(sincos_near_limit)))
+        for (std::size_t i = 0; i < count; ++i) result[i] = sincos_near(base_angle[i], base[i], angle[i]);
+    return result;
 }
 
 ARM3R_INLINE std::array<SinCos<double>, 2> sincos_near_pair(double first_base, const SinCos<double>& at_first,
