@@ -167,7 +167,7 @@ protected:
         }
     }
 
-    // All lanes by the same formula, whoever asks. With a controller's memory the code is long, and is compiled once.
+    // All lanes by the same formula, whatever asks for it. With a controller's memory the code is long, and is compiled once.
     template <Terms terms = Terms::any>
     ARM3R_INLINE void derive() {
         if constexpr (N != state_size) {
