@@ -430,7 +430,7 @@ def test_lanes_are_single_runs() -> None:
     for lane in range(11):
         alone = batch.run(lane)
         assert alone.summary["metrics"]["final_force"] == batch["final_force"][lane]
-        assert alone["force"][-1] == pytest.approx(batch["final_force"][lane], abs=1e-11)  # at 5000 N/m, of a rounded position
+        assert alone["force"][-1] == pytest.approx(batch["final_force"][lane], abs=1e-11)
         assert np.array_equal(alone["q"][-1], [batch[f"q{i}"][lane] for i in (1, 2, 3)])
 
 

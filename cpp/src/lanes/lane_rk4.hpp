@@ -66,7 +66,7 @@ private:
     template <Terms terms>
     ARM3R_INLINE static void step_of(LaneRk4* const* runs, int count) {
         for (int i = 0; i < count; ++i) runs[i]->begin_step();
-        if constexpr (N == state_size) {
+        if constexpr (together > 1) {
             for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 0>();
             for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 1>();
             for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 2>();
@@ -119,23 +119,26 @@ private:
             y1[i] = y1[i] + sixth * ((this->f_[i] + stages_[2][i]) + 2.0 * (stages_[0][i] + stages_[1][i]));
         return y1;
     }
-    // The same with a single call of a long derivative in the code.
-    ARM3R_INLINE Y stepped_in_a_loop() {
+    // The same of a lane run that steps alone, whose stages stay in registers. The code holds a long derivative once.
+    template <Terms terms>
+    ARM3R_INLINE Y stepped_alone() {
         int stage = 1;
         const auto derivative = [&](const T& t, const Y& at, Y& rates) ARM3R_INLINE_LAMBDA {
             Vec3<T> tau;
-            this->rhs_.template derivative_at<Terms::any>(t, at, rates, tau);
+            this->rhs_.template derivative_at<terms>(t, at, rates, tau);
             ++stage;
             if (sums_work()) work_ = plus(work_, scaled(T(stage < 4 ? 2.0 : 1.0), power_of(tau, at)));
         };
-        return rk4_step_in_a_loop(derivative, t0_, this->y_, this->f_, this->h_);
+        const auto& [y, f0, h] = std::tie(this->y_, this->f_, this->h_);
+        if constexpr (N != state_size) return rk4_step_in_a_loop(derivative, t0_, y, f0, h);
+        else return rk4_step_of_first<terms == Terms::common ? common_moving : N>(derivative, t0_, y, f0, h);
     }
 
     template <Terms terms>
     ARM3R_INLINE void end_step() {
         Y y1;
-        if constexpr (N == state_size) y1 = stepped<terms>();
-        else y1 = stepped_in_a_loop();
+        if constexpr (together > 1) y1 = stepped<terms>();
+        else y1 = stepped_alone<terms>();
         if (this->performance_.is_on()) work_ = sums_work() ? scaled(T(this->h_ / 6.0), work_) : this->work_of_held(y1);
         const Mask finite = Base::template is_finite<terms>(y1);
         const bool all_finite = all(finite);
