@@ -25,8 +25,8 @@ enum class Kernel : std::size_t {};  // a place in the list of recipes
 // force.
 Kernel kernel_of(const Plant<double>& plant, bool pressed);
 
-// y at t, whose pose is p. 1 <= order <= max_degree. The plant has no more than the kernel; a control of type none has torque zero.
-// T: double, or Pack<2>, Pack<4>, Pack<8> up to max_lanes().
+// The series about the state y at t, whose pose is p. 1 <= order <= max_degree. The plant has no more than the kernel; a
+// control of type none has torque zero. T: double, or Pack<2>, Pack<4>, Pack<8> up to max_lanes().
 template <class T>
 void expand(Kernel kernel, const Plant<T>& plant, const T& t, const State<T, state_size>& y, const Pose<T>& p,
             int order, Expansion<T>& expansion);
@@ -41,16 +41,6 @@ ARM3R_INLINE T inverse_power(const T& x) {
         x, [](auto& i) ARM3R_INLINE_LAMBDA { i = (std::int64_t{2046} << 52) - (i & (std::int64_t{2047} << 52)); });
 }
 
-// The step after which coefficients of two sizes, of the last two orders, are within the tolerance.
-template <class T>
-ARM3R_INLINE T trusted_step(const T& before, const T& last, const T& tol, int order) {
-    const T unbounded(infinite);
-    const auto trusted = [&](const T& size, int k) ARM3R_INLINE_LAMBDA {
-        return select(size > T(0.0), approximate_root(T(tol / size), k), unbounded);
-    };
-    return min(trusted(last, order), order > 1 ? trusted(before, order - 1) : unbounded);
-}
-
 // The step for which the last two orders are within the tolerance, s: infinite if they are zero. tol is relative where
 // a quantity of the state exceeds 1, else absolute, and absolute for the signals.
 template <class T>
@@ -61,7 +51,11 @@ ARM3R_INLINE T step_of(const Expansion<T>& e, const T& tol) {
         before = max(before, T(abs(e.c[e.order - 1][j]) * scale));
         last = max(last, T(abs(e.c[e.order][j]) * scale));
     }
-    return trusted_step(before, last, tol, e.order);
+    const T unbounded(infinite);
+    const auto trusted = [&](const T& size, int k) ARM3R_INLINE_LAMBDA {
+        return select(size > T(0.0), approximate_root(T(tol / size), k), unbounded);
+    };
+    return min(trusted(last, e.order), e.order > 1 ? trusted(before, e.order - 1) : unbounded);
 }
 
 // Whether all coefficients that a step depends on are finite.

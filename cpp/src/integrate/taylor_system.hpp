@@ -262,14 +262,14 @@ private:
             if (live.contains(f.state)) states.push_back(f.state);
     }
 
-    const bool even_wall_;  // its velocity is a number
-
     void reach(int i) {
         if (i < 0 || !live.insert(i).second) return;
         reach(series[i].a), reach(series[i].b);
         const auto rate = derivatives.find(i);
         if (rate != derivatives.end()) reach(rate->second);
     }
+
+    const bool even_wall_;  // then the wall's velocity is a number
 };
 
 }  // namespace arm3r

@@ -113,11 +113,7 @@ private:
     template <Terms terms>
     ARM3R_INLINE Y stepped() {
         constexpr std::size_t moving = terms == Terms::common ? common_moving : N;
-        const T sixth = this->h_ / 6.0;
-        Y y1 = this->y_;
-        for (std::size_t i = 0; i < moving; ++i)
-            y1[i] = y1[i] + sixth * ((this->f_[i] + stages_[2][i]) + 2.0 * (stages_[0][i] + stages_[1][i]));
-        return y1;
+        return rk4_end<moving>(this->y_, this->f_, stages_[0], stages_[1], stages_[2], this->h_);
     }
     // The same of a lane run that steps alone, whose stages stay in registers. The code holds a long derivative once.
     template <Terms terms>

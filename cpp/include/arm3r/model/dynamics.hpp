@@ -80,6 +80,15 @@ ARM3R_INLINE Vec3<T> friction_torque(const Arm<P>& arm, const Vec3<T>& qd) {
     return {tau_f[0] + dry(0), tau_f[1] + dry(1), tau_f[2] + dry(2)};
 }
 
+// The mass matrix of the link angles (3.8), as far as it does not depend on the pose, and the product of its diagonal.
+template <class P>
+struct LinkInertia {
+    P Mb22, Mb33, product;
+
+    ARM3R_INLINE explicit LinkInertia(const Lumped<P>& l)
+        : Mb22(l.B2 + l.J3), Mb33(l.B3 + l.J3), product(Mb22 * Mb33) {}
+};
+
 template <class P, class T>
 ARM3R_INLINE T kinetic_energy(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // T (3.7)
     const Lumped<P>& l = arm.lumped;
@@ -87,9 +96,9 @@ ARM3R_INLINE T kinetic_energy(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
     const T BC23 = l.B * p.C23, BC2 = l.B * p.C2;
     const T M11 = l.A1 + p.C2 * (l.A2 * p.C2 + BC23) + p.C23 * (l.A3 * p.C23 + BC2);
-    const P Mb22 = l.B2 + l.J3, Mb33 = l.B3 + l.J3;  // of the link angles (3.8)
+    const LinkInertia<P> inertia(l);
     const T Mb23 = l.B * C3 - l.J3;
-    return 0.5 * (M11 * (w1 * w1) + Mb22 * (w2 * w2) + Mb33 * (w3 * w3)) + Mb23 * (w2 * w3);
+    return 0.5 * (M11 * (w1 * w1) + inertia.Mb22 * (w2 * w2) + inertia.Mb33 * (w3 * w3)) + Mb23 * (w2 * w3);
 }
 
 template <class P, class T>
@@ -111,15 +120,6 @@ ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const
     const T second = arm.link2.length * (p.C2 * f_on_tip[2] - p.S2 * radial);
     return {radius(arm, p) * around, second + third, third};
 }
-
-// The mass matrix of the link angles (3.8), as far as it does not depend on the pose, and the product of its diagonal.
-template <class P>
-struct LinkInertia {
-    P Mb22, Mb33, product;
-
-    ARM3R_INLINE explicit LinkInertia(const Lumped<P>& l)
-        : Mb22(l.B2 + l.J3), Mb33(l.B3 + l.J3), product(Mb22 * Mb33) {}
-};
 
 // qdd from the torques on the three angles q1, q2, q2 + q3 (3.8).
 template <class P, class T>

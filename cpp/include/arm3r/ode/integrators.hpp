@@ -56,12 +56,23 @@ Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const S
     return dense;
 }
 
+// The end of a step of the classical method (5.1) from the derivatives of its four stages. Components from `Moving` on stay
+// as they are.
+template <std::size_t Moving, class T, std::size_t N>
+ARM3R_INLINE State<T, N> rk4_end(const State<T, N>& y, const State<T, N>& k1, const State<T, N>& k2,
+                                 const State<T, N>& k3, const State<T, N>& k4, const T& h) {
+    State<T, N> y1 = y;
+    const T sixth = h / 6.0;
+    for (std::size_t i = 0; i < Moving; ++i) y1[i] = y[i] + sixth * ((k1[i] + k4[i]) + 2.0 * (k2[i] + k3[i]));
+    return y1;
+}
+
 // One step of the classical method (5.1). f0 is the derivative at (t, y), with f.begin_step(y) done. Components from
 // `Moving` on stay as they are; f need not set their rates.
 template <std::size_t Moving, class T, std::size_t N, class F>
 ARM3R_INLINE State<T, N> rk4_step_of_first(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0,
                                            const T& h) {
-    State<T, N> stage = y, k2, k3, k4, y1 = y;
+    State<T, N> stage = y, k2, k3, k4;
     const T half = 0.5 * h;
     for (std::size_t i = 0; i < Moving; ++i) stage[i] = y[i] + half * f0[i];
     f(t + half, stage, k2);
@@ -69,9 +80,7 @@ ARM3R_INLINE State<T, N> rk4_step_of_first(const F& f, const T& t, const State<T
     f(t + half, stage, k3);
     for (std::size_t i = 0; i < Moving; ++i) stage[i] = y[i] + h * k3[i];
     f(t + h, stage, k4);
-    const T sixth = h / 6.0;
-    for (std::size_t i = 0; i < Moving; ++i) y1[i] = y[i] + sixth * ((f0[i] + k4[i]) + 2.0 * (k2[i] + k3[i]));
-    return y1;
+    return rk4_end<Moving>(y, f0, k2, k3, k4, h);
 }
 template <class T, std::size_t N, class F>
 ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
@@ -82,7 +91,7 @@ ARM3R_INLINE State<T, N> rk4_step(const F& f, const T& t, const State<T, N>& y, 
 template <class T, std::size_t N, class F>
 ARM3R_INLINE State<T, N> rk4_step_in_a_loop(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0,
                                             const T& h) {
-    State<T, N> stage, k[3], y1;
+    State<T, N> stage, k[3];
     const T half = 0.5 * h;
     const State<T, N>* before = &f0;
 #pragma GCC unroll 1
@@ -92,9 +101,7 @@ ARM3R_INLINE State<T, N> rk4_step_in_a_loop(const F& f, const T& t, const State<
         f(t + offset, stage, k[i]);
         before = &k[i];
     }
-    const T sixth = h / 6.0;
-    for (std::size_t i = 0; i < N; ++i) y1[i] = y[i] + sixth * ((f0[i] + k[2][i]) + 2.0 * (k[0][i] + k[1][i]));
-    return y1;
+    return rk4_end<N>(y, f0, k[0], k[1], k[2], h);
 }
 
 // Dormand and Prince, order 5(4) (5.2). The last stage is the first of the next step. The `Quadratures` components
