@@ -5,6 +5,7 @@
 
 #include "arm3r/control/law_memory.hpp"
 #include "arm3r/model/contact.hpp"
+#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "arm3r/ode/integrators.hpp"
 #include "arm3r/sensing/observer.hpp"
@@ -146,8 +147,8 @@ public:
         const Vec3<T> nearest(needs_azimuth_ ? on_grid(y[0]) : cached_q_[0], on_grid(y[1]), on_grid(T(y[1] + y[2])));
         const T moved =
             abs(nearest[0] - cached_q_[0]) + (abs(nearest[1] - cached_q_[1]) + abs(nearest[2] - cached_q_[2]));
-        if (all(moved == T(0.0))) return;
-        update_cached(0, nearest[0], cached_pose_.S1, cached_pose_.C1);
+        if (in_all_lanes(moved == T(0.0))) return;
+        if (needs_azimuth_) update_cached(0, nearest[0], cached_pose_.S1, cached_pose_.C1);
         update_cached(1, nearest[1], cached_pose_.S2, cached_pose_.C2);
         update_cached(2, nearest[2], cached_pose_.S23, cached_pose_.C23);
     }
@@ -214,6 +215,11 @@ public:
             dy[dissipated_in_joints] = joint_loss;
             dy[dissipated_in_friction] = friction_loss;
         }
+    }
+
+    // Whether anything does work on the arm but gravity.
+    ARM3R_INLINE bool does_work() const {
+        return plant_.holds_torque || plant_.acts_on_arm || plant_.controller.type != ControllerType::none;
     }
 
     // The same for a plant of common terms, whose contact is decided at each stage, if there is any. Nothing dissipates,
@@ -389,7 +395,7 @@ private:
         const T r = a2 * p.C2 + a3 * p.C23, h = a2 * p.S2 + a3 * p.S23;
         const T depth = (common_.face + common_.speed * t) - (radial * r + wall.n[2] * h);
         auto where = depth > T(0.0);
-        if (!any(where)) return {false, {}, {}};
+        if (!in_any_lane(where)) return {false, {}, {}};
         if (wall.has_outline) {
             const WallState<T> state = even_wall_at(wall, t);
             where = where && inside_outline(wall, indentation_at_rest(wall, state, tip_position(arm, p))) >= T(0.0);
@@ -429,7 +435,7 @@ private:
                                        ContactLoad& contact_load) const {
         if (force_mode == ContactForceMode::each_stage) {
             contact_load.where = in.depth > T(0.0);
-            if (!any(contact_load.where)) return;
+            if (!in_any_lane(contact_load.where)) return;
             contact_load.where = contact_load.where && within(in);
         }
         const ContactForce<T> force = contact_force_at(wall, in);
@@ -489,7 +495,8 @@ private:
     }
 
     ARM3R_INLINE void update_cached(int i, const T& nearest, T& sine, T& cosine) {
-        if (all(nearest == cached_q_[i])) return;
+        // Of packs all at once: which of them has another point is as good as random.
+        if (Lanes<T>::count == 1 && in_all_lanes(nearest == cached_q_[i])) return;
         const SinCos<T> there = sincos(nearest);
         cached_q_[i] = nearest, sine = there.sin, cosine = there.cos;
     }

@@ -12,6 +12,7 @@
 #include "arm3r/control/energy_reserve.hpp"
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/lane_access.hpp"
+#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/random.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "arm3r/sensing/estimator.hpp"
@@ -98,10 +99,10 @@ public:
         const T until = now.measurement.t + slack;
         if (estimation_.on) estimate_if_due(due && next_estimate_ < next_sample_ - slack, until, arm, now.measurement);
         const Mask samples = due && next_sample_ <= until;
-        if (any(samples)) sample(samples, arm, now, acting);
+        if (in_any_lane(samples)) sample(samples, arm, now, acting);
         if (has_output_delay_) {
             const Mask outputs = due && next_output_ <= until;
-            if (any(outputs)) apply_queued(outputs, acting);
+            if (in_any_lane(outputs)) apply_queued(outputs, acting);
         }
         if (estimation_.on) estimate_if_due(due, until, arm, now.measurement);
     }
@@ -221,7 +222,7 @@ private:
     ARM3R_INLINE void start_memory(const Mask& due, const Measurement<T>& sensed) {
         if (!has_law(digital_.controller.type)) return;
         const Mask first = due && count_ == T(0.0);
-        if (!any(first)) return;
+        if (!in_any_lane(first)) return;
         const std::array<T, law_memory> start = memory_at_start(digital_.controller, sensed);
         for (std::size_t i = 0; i < law_memory; ++i) state_.memory[i] = select(first, start[i], state_.memory[i]);
     }
@@ -331,7 +332,7 @@ private:
     // The estimator comes before the sample if it is due before it: a step of rk4 may end after both.
     ARM3R_INLINE void estimate_if_due(const Mask& due, const T& until, const Arm<T>& arm, const Measurement<T>& seen) {
         const Mask estimates = due && next_estimate_ <= until;
-        if (!any(estimates)) return;
+        if (!in_any_lane(estimates)) return;
         if (!is_on()) sample_contact(estimates, arm, seen);
         estimate(estimates);
     }

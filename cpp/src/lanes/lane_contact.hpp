@@ -6,6 +6,7 @@
 #include <array>
 
 #include "arm3r/numbers/polynomial.hpp"
+#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "contact/contact_change.hpp"
 #include "record/contact_tally.hpp"
@@ -90,7 +91,7 @@ public:
         const Mask rises = here && !turns;
         update_peak(rises, force[4], t, peak_);
         impulse_ = impulse_ + select(rises, T(h * mean_of_five(force)), o);
-        if (!any(turns)) return;
+        if (!in_any_lane(turns)) return;
         for (int lane = 0; lane < lanes; ++lane) {
             if (!Lanes<T>::is(turns, lane)) continue;
             std::array<double, 5> alone;

@@ -14,7 +14,7 @@ void LanePerformance<T>::begin(const LaneInstant<T>& now, const Mask& touching, 
         force_phase_ = force_phase;
         tau_at_start_ = now.tau;
         PerformanceSample<T>& first = segment_.samples[0];
-        if (!all(continues)) {
+        if (!in_all_lanes(continues)) {
             sample(0, now);
             last_ = select_sample(continues, last_, first);
         }

@@ -14,7 +14,7 @@ class LaneRk4 : public LaneRun<T, N> {
     using Y = typename Base::Y;
 
 public:
-    explicit LaneRk4(const Setup& any_lane) : Base(any_lane) {
+    explicit LaneRk4(const Setup& any_lane) : Base(any_lane), start_(this->t_) {
         if (this->plant_.acts_on_arm || senses_wall(this->plant_)) this->rhs_.force_mode = ContactForceMode::each_stage;
     }
 
@@ -23,12 +23,24 @@ public:
         Lanes<T>::set(start_, lane, setup.start);
         Lanes<T>::set(step_, lane, setup.solver.step);
         Lanes<T>::set(this->slack_, lane, 1e-6 * setup.solver.step);
-        const double jump = next_jump(setup, setup.start);
-        Lanes<T>::set(next_jump_, lane, jump);
-        may_jump_ = may_jump_ || jump < infinite;
+        Lanes<T>::set(next_jump_, lane, next_jump(setup, setup.start));
         if (this->has_common_terms_)
             Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { this->rhs_.update_common_numbers(); });
     }
+
+    void clear_lane(int lane) {
+        Base::clear_lane(lane);
+        Lanes<T>::set(start_, lane, this->t(lane));
+        Lanes<T>::set(step_, lane, 0);  // a step does not move it
+    }
+
+    ARM3R_INLINE void start_lanes() {
+        Base::start_lanes();
+        count_whole_steps();
+        is_whole_ = false;
+    }
+    // A whole step is not the last one of any lane.
+    ARM3R_INLINE bool any_ended() const { return is_whole_ ? this->has_failed() : Base::any_ended(); }
 
     // How many lane runs with the same batch key a group steps together: a step is one chain of operations, and the
     // processor works on both at once.
@@ -54,7 +66,7 @@ public:
     FullState y0(int lane) const { return Base::state_of(y0_, lane); }
     FullState f0(int lane) const { return Base::state_of(f0_, lane); }
     // Whether a formula may have jumped at the end of the last step, and the derivative there before the jump.
-    bool may_jump_at_end() const { return has_jump_ || any(was_due_); }
+    bool may_jump_at_end() const { return has_jump_ || any_was_due_; }
     FullState f1()
         requires std::same_as<T, double>
     {
@@ -82,16 +94,40 @@ private:
         }
         if (this->performance_.samples()) this->begin_segment();
         before_ = this->in_;
-        const T aim = min(this->stop_, T(start_ + (this->accepted_ + 1.0) * step_));
-        const Mask is_last = aim >= this->stop_ - 1e-9 * step_;
-        t1_ = select(is_last, this->stop_, aim);
-        this->h_ = select(is_last, T(this->stop_ - t0_), step_);
-        if (may_jump_) {
-            jumps_ = next_jump_ <= t1_;
-            has_jump_ = any(jumps_);
-            if (has_jump_) apply_jumps(t1_);
-        }
+        t1_ = start_ + (this->accepted_ + 1.0) * step_;
+        this->h_ = step_;
+        is_whole_ = whole_steps_ > 0;
+        if (is_whole_) --whole_steps_, forget_jumps();
+        else limit_step();
         if (sums_work()) work_ = power_of(this->tau_, this->y_);
+    }
+
+    // The step ends with the run, or at a jump.
+    ARM3R_INLINE void limit_step() {
+        t1_ = min(this->stop_, t1_);
+        const Mask is_last = t1_ >= this->stop_ - 1e-9 * step_;
+        t1_ = select(is_last, this->stop_, t1_);
+        this->h_ = select(is_last, T(this->stop_ - t0_), step_);
+        jumps_ = next_jump_ <= t1_;
+        has_jump_ = in_any_lane(jumps_);
+        if (has_jump_) apply_jumps(t1_);
+    }
+
+    ARM3R_INLINE void forget_jumps() {
+        if (has_jump_) jumps_ = has_jump_ = false;
+    }
+
+    // Counts the steps after this one that are surely whole.
+    void count_whole_steps() {
+        double count = std::numeric_limits<int>::max();
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            if (!this->is_running(lane)) continue;
+            const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
+            const double until = std::min(get(this->stop_), get(next_jump_));
+            const double left = get(this->max_steps_) - get(this->accepted_);
+            count = std::min({count, (until - this->t(lane)) / get(step_) - 2, left - 2});
+        }
+        whole_steps_ = int(std::max(count, 0.0));
     }
 
     // The works of the torques are summed as the quadratures are.
@@ -112,8 +148,12 @@ private:
     // The state after the step (5.1).
     template <Terms terms>
     ARM3R_INLINE Y stepped() {
-        constexpr std::size_t moving = terms == Terms::common ? common_moving : N;
-        return rk4_end<moving>(this->y_, this->f_, stages_[0], stages_[1], stages_[2], this->h_);
+        const auto end = [this]<std::size_t moving>() ARM3R_INLINE_LAMBDA {
+            return rk4_end<moving>(this->y_, this->f_, stages_[0], stages_[1], stages_[2], this->h_);
+        };
+        if constexpr (terms == Terms::any) return end.template operator()<N>();
+        else if (this->rhs_.does_work()) return end.template operator()<common_moving>();
+        else return end.template operator()<motion_size>();
     }
     // The same of a lane run that steps alone, whose stages stay in registers. The code holds a long derivative once.
     template <Terms terms>
@@ -137,7 +177,7 @@ private:
         else y1 = stepped_alone<terms>();
         if (this->performance_.is_on()) work_ = sums_work() ? scaled(T(this->h_ / 6.0), work_) : this->work_of_held(y1);
         const Mask finite = Base::template is_finite<terms>(y1);
-        const bool all_finite = all(finite);
+        const bool all_finite = in_all_lanes(finite);
         const Mask moved = all_finite ? this->active_ : finite && this->active_;
         if (this->performance_.is_on()) this->performance_.add_work(work_, moved);
         // An empty lane is at the end of its run, where a step does not move it.
@@ -153,7 +193,7 @@ private:
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
         if (this->performance_.samples()) add_performance(moved && !eventful_, jumps_);
-        this->check_lanes();
+        this->check_lanes(!is_whole_);
     }
 
     ARM3R_INLINE static Vec3<T> power_of(const Vec3<T>& tau, const Y& y) {
@@ -171,11 +211,13 @@ private:
             if (jump == end) Lanes<T>::set(this->rhs_.latest, lane, just_before(end));
             Lanes<T>::set(next_jump_, lane, next_jump(this->setup(lane), end));
         }
+        count_whole_steps();
     }
 
     // Stores the torque and the law of the step before a sample or an estimate changes them.
     ARM3R_INLINE void store_end() {
         was_due_ = this->is_controlled_ && this->is_due();
+        any_was_due_ = in_any_lane(was_due_);
         torque_before_ = this->plant_.held_torque;
         assumed_before_ = this->plant_.controller.gains.assumed_stiffness;
         latest_before_ = this->rhs_.latest;
@@ -196,7 +238,7 @@ private:
     // torque and with it the acceleration by M^-1 (tau_after - tau_before).
     ARM3R_INLINE void derive_before_jump(const Mask& jumps) {
         f1_before_ = this->f_;
-        if (any(was_due_)) {
+        if (any_was_due_) {
             const Vec3<T> o = zero_vector<T>(), change = minus(this->plant_.held_torque, torque_before_);
             const Vec3<T> qdd = joint_acceleration(this->plant_.arm, this->p_, o, change, o);
             for (int i = 0; i < 3; ++i) f1_before_[3 + i] = f1_before_[3 + i] - select(was_due_, qdd[i], T(0.0));
@@ -238,7 +280,7 @@ private:
             else Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { add_damped(uneventful); });
         }
         eventful_ = eventful && moved;
-        if (any(eventful_)) resolve_contacts(eventful_);
+        if (in_any_lane(eventful_)) resolve_contacts(eventful_);
     }
 
     ARM3R_INLINE void add_damped(const Mask& uneventful) {
@@ -324,7 +366,7 @@ private:
     // The step as one segment in the lanes in which the contact has not changed.
     ARM3R_INLINE void add_performance(Mask whole, const Mask& jumps) {
         this->performance_.continue_motion(whole && !jumps && this->next_knot_ > this->t_);
-        if (any(this->next_knot_ <= this->t_)) split_at_knots(whole);
+        if (in_any_lane(this->next_knot_ <= this->t_)) split_at_knots(whole);
         if (this->plant_.holds_torque && !this->performance_.tracked().motion()) return end_segment(trapezoid, whole);
         Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
         end_segment(simpson, whole);
@@ -334,7 +376,7 @@ private:
     ARM3R_INLINE void end_segment(const Rule<n>& rule, const Mask& whole) {
         Mask unresolved = false;
         this->performance_.end(rule, this->instant(), this->h_, whole, unresolved);
-        if (any(unresolved)) refine_segment(rule, unresolved);
+        if (in_any_lane(unresolved)) refine_segment(rule, unresolved);
     }
 
     template <std::size_t n>
@@ -386,11 +428,15 @@ private:
 
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
-    T start_{0.0}, step_{1.0}, t0_{0.0}, t1_{0.0}, next_jump_{infinite};
-    bool may_jump_ = false, has_jump_ = false;  // in the run of a lane, in the step
+    T start_{0.0}, step_{0.0}, t0_{0.0}, t1_{0.0}, next_jump_{infinite};
+    // A step is whole if in no lane the run, its budget or a formula of time ends with it: then it is not tested for them.
+    int whole_steps_ = 0;
+    bool is_whole_ = false;
+    bool has_jump_ = false;
     Mask jumps_ = false;
     std::array<Y, 3> stages_{};  // the derivatives of the second, third and fourth
     Mask was_due_ = false;
+    bool any_was_due_ = false;
     Y y0_{}, f0_{}, f1_before_{};
     Vec3<T> torque_before_, work_;  // N m; J, of each torque in the step
     T assumed_before_{0.0}, latest_before_{infinite};

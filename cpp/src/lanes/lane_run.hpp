@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "arm3r/numbers/eigen_traits.hpp"
+#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "control/compiled_laws.hpp"
 #include "control/continuous_inputs.hpp"
@@ -96,7 +97,7 @@ public:
     bool is_running(int lane) const { return running_[lane]; }
     bool any_running() const { return any_running_; }
     bool has_ended(int lane) const { return running_[lane] && (outcome_[lane] != ARM3R_RUN_OK || at_stop(lane)); }
-    ARM3R_INLINE bool any_ended() const { return failed_ || any(active_ && t_ >= stop_); }
+    ARM3R_INLINE bool any_ended() const { return failed_ || in_any_lane(active_ && t_ >= stop_); }
     void clear_failures() { failed_ = false; }
 
     void stop_lane(int lane, arm3r_outcome outcome) {
@@ -140,7 +141,7 @@ protected:
         }
         const Vec3<T> qd(y_[3], y_[4], y_[5]);
         if (plant_.has_wall) locate_wall<terms>(qd);
-        if (is_controlled_ && any(is_due())) update_controller();
+        if (is_controlled_ && in_any_lane(is_due())) update_controller();
         if (needs_derivative_) derive<terms>();
         else if (performance_.is_on()) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
         kinetic_ = kinetic_energy(plant_.arm, p_, qd);
@@ -195,7 +196,7 @@ protected:
     ARM3R_INLINE Vec3<T> force_on_tip() const {
         Mask pressed = in_.depth > T(0.0) && !contact_.embedded();
         if (plant_.wall.has_outline) pressed = pressed && inside_outline(plant_.wall, in_) >= T(0.0);
-        if (!any(pressed)) return zero_vector<T>();
+        if (!in_any_lane(pressed)) return zero_vector<T>();
         return only_where(pressed, contact_force(plant_.wall, wall_, contact_.law(), in_, Clamping::clamped)).on_tip;
     }
 
@@ -248,7 +249,7 @@ protected:
 
     // Moves to `t1`, `y1` where `moved`.
     ARM3R_INLINE void accept(const Mask& moved, const T& t1, const Y& y1) {
-        if (all(moved)) return accept_all(t1, y1);
+        if (in_all_lanes(moved)) return accept_all(t1, y1);
         for (std::size_t i = 0; i < N; ++i) y_[i] = select(moved, y1[i], y_[i]);
         for (std::size_t i = 3; i < motion_size; ++i) y_[i] = without_tiny_rate(y_[i]);
         t_ = select(moved, t1, t_);
@@ -270,12 +271,14 @@ protected:
 
     ARM3R_INLINE void update_energy_balance() { balance_.update(Energies<T>{kinetic_, potential_, stored()}, y_); }
 
-    ARM3R_INLINE void check_lanes() {
+    bool has_failed() const { return failed_; }
+
+    ARM3R_INLINE void check_lanes(bool may_end_budget = true) {
         Mask bad = max(max(abs(y_[0]), abs(y_[1])), abs(y_[2])) > T(sincos_limit);
         if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned(plant_.arm, p_);
-        bad = bad || (accepted_ >= max_steps_ && t_ < stop_);
+        if (may_end_budget) bad = bad || (accepted_ >= max_steps_ && t_ < stop_);
         bad = bad && active_;
-        if (any(bad)) fail_lanes(bad);
+        if (in_any_lane(bad)) fail_lanes(bad);
     }
 
     // ---- contact

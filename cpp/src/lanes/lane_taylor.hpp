@@ -43,7 +43,7 @@ public:
         this->h_ = select(is_last_, rest, wanted);
         const Mask finite = is_finite(series_), stalls = !is_last_ && this->h_ < min_step(t0_);
         const Mask moved = this->active_ && finite && !stalls;
-        if (any(this->active_ && !moved)) stop_failed_lanes(finite, stalls);
+        if (in_any_lane(this->active_ && !moved)) stop_failed_lanes(finite, stalls);
 
         crosses_ = false;
         theta_ = T(1.0);
@@ -59,7 +59,7 @@ public:
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->observe();
         if (crosses_) apply_changes();
-        if (any(this->next_knot_ <= this->t_)) pass_knots();
+        if (in_any_lane(this->next_knot_ <= this->t_)) pass_knots();
         this->update_energy_balance();
         if (this->performance_.samples()) add_performance(moved, h);
         this->check_lanes();
@@ -87,7 +87,7 @@ public:
     }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
     // Whether a sample may have changed the torque at the end of the last step.
-    bool may_jump_at_end() const { return this->is_controlled_ && any(is_last_); }
+    bool may_jump_at_end() const { return this->is_controlled_ && in_any_lane(is_last_); }
 
 private:
     enum Signal : std::size_t { depth = state_size, across1, across2, work1 };
@@ -110,7 +110,7 @@ private:
                 }
                 is_long = is_long || change > 0.5 * abs(series_.c[0][i]) + this->plant_.arm.friction_velocity;
             }
-            if (!any(is_long)) return;
+            if (!in_any_lane(is_long)) return;
             h = select(is_long, T(0.5 * h), h);
         }
     }
@@ -139,7 +139,7 @@ private:
         auto& contact = this->contact_;
         Mask eventful = moved && is_eventful(low, high, high, end), beside_edge = false;
         Coefficients<T> b;
-        if (any(eventful)) {
+        if (in_any_lane(eventful)) {
             b = bernstein(over_step);
             eventful = eventful && is_eventful_by_bernstein(b);
         }
@@ -149,9 +149,9 @@ private:
             contact.add_elastic(uneventful, end, mean, this->h_, T(t0_ + this->h_));
         }
         eventful = eventful && !beside_edge;
-        if (any(eventful)) Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { resolve_once(eventful, over_step, b, high); });
+        if (in_any_lane(eventful)) Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { resolve_once(eventful, over_step, b, high); });
         eventful = eventful || beside_edge;
-        if (any(eventful)) resolve_contacts(eventful);
+        if (in_any_lane(eventful)) resolve_contacts(eventful);
     }
 
     // Whether a depth between low and high, which is below `before_end` except at its end, may change the contact or
@@ -230,7 +230,7 @@ private:
         const zero_crossing::Bracket<T> step{T(0.0), T(1.0), e.guess};
         const T place = zero_crossing::refine_root(e.g, step, e.resolution, e.crosses || e.turns);
         if (this->contact_.any_touching()) add_depths(e, p, place);
-        if (any(e.crosses)) change_once(e.crosses, p, place);
+        if (in_any_lane(e.crosses)) change_once(e.crosses, p, place);
         eventful = eventful && !e.is_simple;
     }
 
@@ -323,7 +323,7 @@ private:
         for (std::size_t j = 1; j + 1 < n; ++j)
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), j); });
         this->performance_.end(rule, this->instant(), h, moved, unresolved);
-        if (any(unresolved)) refine_segment(rule, unresolved);
+        if (in_any_lane(unresolved)) refine_segment(rule, unresolved);
     }
 
     ARM3R_INLINE void sample_at(const T& seconds, std::size_t j) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "arm3r/numbers/lane_access.hpp"
+#include "arm3r/numbers/lane_tests.hpp"
 #include "record/row.hpp"
 #include "record/run_data.hpp"
 #include "setup/setup.hpp"
@@ -150,7 +151,7 @@ ARM3R_INLINE T peak_bound_around(const Rule<n>& rule, const Segment<T>& segment,
     const T bend = (fall - rise) * (1 / (before + after));
     const T slope = rise - bend * before;  // at the first of the three nodes
     const auto turns = slope > T(0.0) && fall + bend * after < T(0.0);
-    if (!any(turns)) return T(-infinite);  // without the division
+    if (!in_any_lane(turns)) return T(-infinite);  // without the division
     const T top = a - slope * slope / (4.0 * select(turns, bend, T(-1.0)));
     return select(turns, T(2.0 * top - max(a, max(b, c))), T(-infinite));
 }

@@ -247,23 +247,6 @@ ARM3R_INLINE std::array<SinCos<T>, 2> sincos_near_pair(const T& first_base, cons
     return {sincos_near(first_base, at_first, first), sincos_near(second_base, at_second, second)};
 }
 
-// Of packs a single test decides for all angles.
-template <int N, std::size_t count>
-ARM3R_INLINE std::array<SinCos<Pack<N>>, count> sincos_near_each(const std::array<Pack<N>, count>& base_angle,
-                                                                 const std::array<SinCos<Pack<N>>, count>& base,
-                                                                 const std::array<Pack<N>, count>& angle) {
-    std::array<SinCos<Pack<N>>, count> result;
-    Pack<N> farthest(0.0);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Pack<N> delta = angle[i] - base_angle[i];
-        farthest = i == 0 ? abs(delta) : max(farthest, abs(delta));
-        result[i] = sincos_rotated(base[i], delta);
-    }
-    if (!all(farthest <= Pack<N>(sincos_near_limit)))
-        for (std::size_t i = 0; i < count; ++i) result[i] = sincos_near(base_angle[i], base[i], angle[i]);
-    return result;
-}
-
 ARM3R_INLINE std::array<SinCos<double>, 2> sincos_near_pair(double first_base, const SinCos<double>& at_first,
                                                             double first, double second_base,
                                                             const SinCos<double>& at_second, double second) {
