@@ -6,6 +6,7 @@
 
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/lane_access.hpp"
+#include "arm3r/numbers/lane_tests.hpp"
 #include "check.hpp"
 
 namespace arm3r {
@@ -174,6 +175,29 @@ TEST_CASE(any_and_all_look_at_every_lane) {
     CHECK(!any(Pack<8>(1.0) < Pack<8>(0.5)));
     CHECK(all(PackMask<4>(true)));
     CHECK(!any(PackMask<4>(false)));
+}
+
+// In functions for the registers of a mask, as any() and all() say elsewhere.
+template <class T>
+static void check_lane_tests() {
+    using Mask = typename Lanes<T>::Mask;
+    constexpr int lanes = Lanes<T>::count;
+    for (int pattern = 0; pattern < 1 << lanes; ++pattern) {
+        Mask mask = false;
+        for (int lane = 0; lane < lanes; ++lane) Lanes<T>::mark(mask, lane, (pattern >> lane & 1) != 0);
+        bool in_any = false, in_all = false;
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { in_any = in_any_lane(mask), in_all = in_all_lanes(mask); });
+        CHECK(in_any == (pattern != 0), lanes << " lanes, pattern " << pattern);
+        CHECK(in_all == (pattern == (1 << lanes) - 1), lanes << " lanes, pattern " << pattern);
+    }
+}
+
+TEST_CASE(lane_tests_look_at_every_lane) {
+    check_lane_tests<double>();
+#define ARM3R_CHECK(T) \
+    if (has_registers_for(Lanes<T>::count)) check_lane_tests<T>();
+    ARM3R_PACKS(ARM3R_CHECK)
+#undef ARM3R_CHECK
 }
 
 template <class T>

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "arm3r/numbers/polynomial.hpp"
 #include "arm3r/numbers/lane_tests.hpp"
+#include "arm3r/numbers/polynomial.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "contact/contact_change.hpp"
 #include "record/contact_tally.hpp"

@@ -149,7 +149,8 @@ private:
             contact.add_elastic(uneventful, end, mean, this->h_, T(t0_ + this->h_));
         }
         eventful = eventful && !beside_edge;
-        if (in_any_lane(eventful)) Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { resolve_once(eventful, over_step, b, high); });
+        if (in_any_lane(eventful))
+            Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { resolve_once(eventful, over_step, b, high); });
         eventful = eventful || beside_edge;
         if (in_any_lane(eventful)) resolve_contacts(eventful);
     }

@@ -98,7 +98,7 @@ inline int max_lanes() { return widest(LaneTypes{}, 8); }
 template <class T>
 struct Outlined {
     template <class F>
-    [[gnu::noinline]] static void run(F f) {
+    [[gnu::noinline]] static void run(const F& f) {
         f();
     }
     template <class F, class... A>
@@ -110,7 +110,7 @@ struct Outlined {
 template <>
 struct Outlined<Pack<4>> {
     template <class F>
-    [[gnu::noinline]] ARM3R_FOR_FOUR static void run(F f) {
+    [[gnu::noinline]] ARM3R_FOR_FOUR static void run(const F& f) {
         f();
     }
     template <class F, class... A>
@@ -122,7 +122,7 @@ struct Outlined<Pack<4>> {
 template <>
 struct Outlined<Pack<8>> {
     template <class F>
-    [[gnu::noinline]] ARM3R_FOR_EIGHT static void run(F f) {
+    [[gnu::noinline]] ARM3R_FOR_EIGHT static void run(const F& f) {
         f();
     }
     template <class F, class... A>
