@@ -33,7 +33,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     list(APPEND _numeric -fno-thread-jumps) # else g++ 12 breaks off at -O2 with an internal error: a mask of 8 on two ways
   endif()
   # A state of eight lanes is copied and cleared by the registers for it; else g++ takes instructions that begin slowly
-  # (rep movs), seven a step.
+  # (rep movs).
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
     set(_strategy vector_loop:4096:noalign,libcall:-1:noalign)
     set(_copies -mmemcpy-strategy=${_strategy} -mmemset-strategy=${_strategy})
