@@ -6,7 +6,7 @@
 
 #include "arm3r/numbers/eigen_traits.hpp"
 #include "arm3r/numbers/lane_access.hpp"
-#include "arm3r/numbers/lane_tests.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "check.hpp"
 
 namespace arm3r {

@@ -5,7 +5,6 @@
 
 #include "arm3r/control/law_memory.hpp"
 #include "arm3r/model/contact.hpp"
-#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "arm3r/ode/integrators.hpp"
 #include "arm3r/sensing/observer.hpp"
@@ -355,6 +354,23 @@ public:
     }
 
 private:
+    // sincos_near of several angles; a single test decides for all of them.
+    template <std::size_t count>
+    ARM3R_INLINE static std::array<SinCos<T>, count> sincos_near_each(const std::array<T, count>& base_angle,
+                                                                      const std::array<SinCos<T>, count>& base,
+                                                                      const std::array<T, count>& angle) {
+        std::array<SinCos<T>, count> result;
+        T farthest(0.0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const T delta = angle[i] - base_angle[i];
+            farthest = i == 0 ? abs(delta) : max(farthest, abs(delta));
+            result[i] = sincos_rotated(base[i], delta);
+        }
+        if (!in_all_lanes(farthest <= T(sincos_near_limit)))
+            for (std::size_t i = 0; i < count; ++i) result[i] = sincos_near(base_angle[i], base[i], angle[i]);
+        return result;
+    }
+
     ARM3R_INLINE static Vec3<T> vertical_weight(const Arm<P>& arm, const Pose<T>& p) {
         return link_weight(arm.lumped, arm.gravity, true, p);
     }

@@ -12,7 +12,6 @@
 #include "arm3r/control/energy_reserve.hpp"
 #include "arm3r/lanes.hpp"
 #include "arm3r/numbers/lane_access.hpp"
-#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/random.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "arm3r/sensing/estimator.hpp"

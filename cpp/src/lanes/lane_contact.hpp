@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 
-#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/polynomial.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "contact/contact_change.hpp"

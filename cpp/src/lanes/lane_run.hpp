@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "arm3r/numbers/eigen_traits.hpp"
-#include "arm3r/numbers/lane_tests.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "control/compiled_laws.hpp"
 #include "control/continuous_inputs.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "arm3r/numbers/lane_access.hpp"
-#include "arm3r/numbers/lane_tests.hpp"
+#include "arm3r/numbers/widths.hpp"
 #include "record/row.hpp"
 #include "record/run_data.hpp"
 #include "setup/setup.hpp"

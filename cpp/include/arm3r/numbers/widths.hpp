@@ -167,4 +167,37 @@ ARM3R_INLINE OutlinedFunction<T, F> outlined(const F& f) {
     return {f};
 }
 
+// Whether a mask holds in any lane or in all, as any() and all() say: by the one instruction for it, which g++ 12 does not
+// find (it takes eight or ten), and so in functions alone that are compiled for the registers of the mask (Outlined).
+ARM3R_INLINE bool in_any_lane(bool mask) { return mask; }
+ARM3R_INLINE bool in_all_lanes(bool mask) { return mask; }
+
+template <class Mask>
+ARM3R_INLINE bool in_any_lane(const Mask& mask) {
+    return any(mask);
+}
+template <class Mask>
+ARM3R_INLINE bool in_all_lanes(const Mask& mask) {
+    return all(mask);
+}
+
+#if ARM3R_WIDE_PACKS && !defined(__clang__)
+// The highest bit of each lane.
+ARM3R_INLINE unsigned high_bits(const PackMask<4>& mask) {
+    unsigned bits;
+    asm("vmovmskpd %1, %0" : "=r"(bits) : "x"(mask.v));
+    return bits;
+}
+ARM3R_INLINE unsigned high_bits(const PackMask<8>& mask) {
+    unsigned char bits;
+    asm("vpmovq2m %1, %0" : "=Yk"(bits) : "v"(mask.v));
+    return bits;
+}
+
+ARM3R_INLINE bool in_any_lane(const PackMask<4>& mask) { return high_bits(mask) != 0; }
+ARM3R_INLINE bool in_all_lanes(const PackMask<4>& mask) { return high_bits(mask) == 0xf; }
+ARM3R_INLINE bool in_any_lane(const PackMask<8>& mask) { return high_bits(mask) != 0; }
+ARM3R_INLINE bool in_all_lanes(const PackMask<8>& mask) { return high_bits(mask) == 0xff; }
+#endif
+
 }  // namespace arm3r
