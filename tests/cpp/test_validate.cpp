@@ -1,4 +1,7 @@
+#include <cstring>
+#include <functional>
 
+#include "arm3r/lanes.hpp"
 #include "check.hpp"
 #include "fixtures.hpp"
 #include "schema/param_access.hpp"
@@ -123,6 +126,48 @@ TEST_CASE(the_quick_verdict_is_that_of_validate_for_any_numbers) {
     }
     CHECK(valid > 3000u);
     CHECK(invalid > 3000u);
+}
+
+// The numbers of a setup that a variation may change, and the choices that follow from them.
+static Numbers numbers_of(const Setup& setup) {
+    Numbers numbers{double(setup.plant.contact.has_friction), setup.start, setup.stop};
+    each_number([&](double x) { numbers.push_back(x); }, setup.plant);
+    for (const Vec3<double>& v : {setup.q, setup.qd}) numbers.insert(numbers.end(), v.data(), v.data() + 3);
+    return numbers;
+}
+
+static bool same_bits(const Numbers& a, const Numbers& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+TEST_CASE(a_setup_made_of_the_one_before_is_that_made_anew) {
+    Random random(32);
+    const auto is_of_start = [](const Varied& v) {
+        return v.key->path.starts_with("initial.") || v.key->path.starts_with("wall.contact.");
+    };
+    std::size_t made = 0, refused = 0;
+    for (const Params& base : bases()) {
+        std::vector<std::vector<Varied>> variations{some_numbers(0.1, random)};
+        for (const Varied& v : some_numbers(1, random)) variations.push_back({v});
+        for (int i = 0; i < 20; ++i)
+            std::erase_if(variations.emplace_back(some_numbers(0.7, random)), std::not_fn(is_of_start));
+        for (const std::vector<Varied>& varied : variations) {
+            const Checker check(base, places(varied));
+            std::optional<Setup> setup;
+            for (int j = 0; j < 8; ++j) {
+                Numbers params = numbers_of(base);
+                for (const Varied& v : varied)
+                    if (random.in(0, 1) < 0.5) params[v.number] = hostile(*v.key, random);
+                const std::optional<Setup> anew = check(params);
+                check(params, setup);
+                (anew ? made : refused) += 1;
+                REQUIRE(setup.has_value() == anew.has_value(), varied.front().key->path);
+                if (anew) REQUIRE(same_bits(numbers_of(*setup), numbers_of(*anew)), varied.front().key->path);
+            }
+        }
+    }
+    CHECK(made > 10000u);
+    CHECK(refused > 3000u);
 }
 
 // Each rule once: a number that breaks it, and the key whose rule it is.

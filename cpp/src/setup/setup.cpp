@@ -279,10 +279,8 @@ Setup::Setup(std::span<const double> params) : Setup() {
     set_model(params, plant.arm, plant.controller.model);
     plant.has_wall = at<"wall">(params) != 0;
     plant.wall = make_wall(params);
-    q = to_slide(params, vector_at<"initial.q">(params));
-    plant.contact = make_contact(params, mass_at_start(*this));
+    set_start_and_contact(params);
     plant.acts_on_arm = plant.has_wall && at<"wall.acts_on_arm">(params) != 0;
-    qd = to_slide(params, vector_at<"initial.qd">(params));
     if (has_law(plant.controller.type)) set_reference(params, *this, plant.controller.reference);
     solver = make_solver(params);
     stop = at<"time.stop">(params);
@@ -292,6 +290,12 @@ Setup::Setup(std::span<const double> params) : Setup() {
     if (at<"estimator">(params) != 0) estimation = make_estimation(params);
     wire_sampling(params, *this);
     set_jumps_on_clock(*this);
+}
+
+void Setup::set_start_and_contact(std::span<const double> params) {
+    q = to_slide(params, vector_at<"initial.q">(params));
+    qd = to_slide(params, vector_at<"initial.qd">(params));
+    plant.contact = make_contact(params, mass_at_start(*this));
 }
 
 }  // namespace arm3r

@@ -41,6 +41,9 @@ struct Setup {
     // From parameters whose choices are in order; what their numbers must keep to is said by validate() (validate.hpp),
     // of which check_setup() is the last part.
     explicit Setup(std::span<const double> params);
+    // Sets again what the numbers of `initial` and `wall.contact` say, but for the reference of a law, which may begin at
+    // the initial pose.
+    void set_start_and_contact(std::span<const double> params);
 
     // Copied in many files, compiled in one.
     Setup();

@@ -241,4 +241,12 @@ void check_setup(std::span<const double> params, std::optional<Setup>& setup, Pr
     if (!problem_list.empty()) setup.reset();
 }
 
+void check_start_and_contact(std::span<const double> params, std::optional<Setup>& setup, ProblemList& problem_list) {
+    if (setup->plant.has_wall) check_law(params, problem_list);
+    if (problem_list.empty()) setup->set_start_and_contact(params);
+    check_series(*setup, problem_list);
+    if (problem_list.empty() && setup->plant.has_wall) check_start(*setup, problem_list);
+    if (!problem_list.empty()) setup.reset();
+}
+
 }  // namespace arm3r

@@ -13,6 +13,8 @@ namespace arm3r {
 // What no single key can break: the mass matrix over the whole workspace (3.10), the start, what a method cannot do.
 // Makes the setup in place; it is empty where a rule is broken.
 void check_setup(std::span<const double> params, std::optional<Setup>& setup, ProblemList& problem_list);
+// The same where `setup` is that of parameters that differ in numbers of `initial` and `wall.contact` only, without a law.
+void check_start_and_contact(std::span<const double> params, std::optional<Setup>& setup, ProblemList& problem_list);
 
 // Smallest M11 and smallest determinant of the lower block over all poses, and the link angles where they occur (3.10).
 struct WorstPose {

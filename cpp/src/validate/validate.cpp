@@ -210,6 +210,11 @@ void drop_decided(std::vector<const Key*>& keys, std::span<const double> params,
     });
 }
 
+bool is_of_start_or_contact(std::size_t number) {
+    const std::string& path = key_at(number).path;
+    return path.starts_with("initial.") || path.starts_with("wall.contact.");
+}
+
 }  // namespace
 
 void refuse_unknown_choices(std::span<const double> params) {
@@ -241,6 +246,8 @@ Checker::Checker(std::span<const double> params, std::span<const std::size_t> va
     drop_decided(keys_.arm, params, varied);
     drop_decided(keys_.others, params, varied);
     drop_decided(keys_.model, with_model(params), in_plant(varied));
+    only_start_and_contact_vary_ =
+        !has_law(controller_type_of(params)) && std::ranges::all_of(varied, is_of_start_or_contact);
 }
 
 std::optional<Setup> Checker::operator()(std::span<const double> params) const {
@@ -250,10 +257,16 @@ std::optional<Setup> Checker::operator()(std::span<const double> params) const {
 }
 
 void Checker::operator()(std::span<const double> params, std::optional<Setup>& setup) const {
-    setup.reset();
-    if (!readable_) return;
+    if (!readable_) return setup.reset();
     ProblemList problem_list(ProblemList::count_only);
-    check_all(params, keys_, setup, problem_list);
+    if (setup && only_start_and_contact_vary_) {
+        for (const Key* key : keys_.others) check_numbers(*key, params, problem_list);
+        if (problem_list.empty()) check_start_and_contact(params, setup, problem_list);
+        else setup.reset();
+    } else {
+        setup.reset();
+        check_all(params, keys_, setup, problem_list);
+    }
 }
 
 }  // namespace arm3r

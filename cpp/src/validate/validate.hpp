@@ -37,13 +37,15 @@ public:
     // The arrays will differ from `params` in the numbers `varied` only, none of them a choice, a flag or a section.
     Checker(std::span<const double> params, std::span<const std::size_t> varied);
 
-    // The setup of parameters; empty where they break a rule. The second form makes it in place.
+    // The setup of parameters; empty where they break a rule. The second form makes it in place, of what this Checker left
+    // there before: what cannot differ stays.
     std::optional<Setup> operator()(std::span<const double> params) const;
     void operator()(std::span<const double> params, std::optional<Setup>& setup) const;
 
 private:
     bool readable_;    // the choices are words
     NumberKeys keys_;  // what varies, and what is wrong in all
+    bool only_start_and_contact_vary_ = false;
 };
 
 }  // namespace arm3r
