@@ -74,6 +74,70 @@ public:
         return Base::state_of(evaluated_before_jump(), 0);
     }
 
+protected:
+    // ---- a step from values that are given
+
+    // A signal over the step: the cubic through its values and rates at both ends, by its Bernstein coefficients.
+    struct Cubic {
+        T first, second, third, fourth;
+
+        ARM3R_INLINE Cubic(const T& y0, const T& d0, const T& y1, const T& d1)
+            : first(y0), second(y0 + (1.0 / 3) * d0), third(y1 - (1.0 / 3) * d1), fourth(y1) {}
+        ARM3R_INLINE T low() const { return min(min(first, second), min(third, fourth)); }
+        ARM3R_INLINE T high() const { return max(max(first, second), max(third, fourth)); }
+        ARM3R_INLINE T mean() const { return 0.25 * ((first + fourth) + (second + third)); }
+    };
+
+    // The works of the torques are summed as the quadratures are.
+    ARM3R_INLINE bool sums_work() const { return this->performance_.is_on() && !this->plant_.holds_torque; }
+
+    ARM3R_INLINE static Vec3<T> power_of(const Vec3<T>& tau, const Y& y) {
+        return cwise_product(tau, Vec3<T>(y[3], y[4], y[5]));
+    }
+
+    // The state h seconds after y at t, with the derivative f0 there, of a lane run that steps alone: its stages stay in
+    // registers, and the code holds a long derivative once.
+    template <Terms terms>
+    ARM3R_INLINE Y stepped_alone(const T& t, const Y& y, const Y& f0, const T& h, Vec3<T>& work) const {
+        int stage = 1;
+        const bool sums = sums_work();
+        const auto derivative = [&](const T& now, const Y& at, Y& rates) ARM3R_INLINE_LAMBDA {
+            Vec3<T> tau;
+            this->rhs_.template derivative_at<terms>(now, at, rates, tau);
+            ++stage;
+            if (sums) work = plus(work, scaled(T(stage < 4 ? 2.0 : 1.0), power_of(tau, at)));
+        };
+        if constexpr (N != state_size) return rk4_step_in_a_loop(derivative, t, y, f0, h);
+        else return rk4_step_of_first<terms == Terms::common ? common_moving : N>(derivative, t, y, f0, h);
+    }
+    // J: of each torque, from the sum of its powers over the stages, or of what is held.
+    ARM3R_INLINE Vec3<T> work_in_step(const Vec3<T>& tau, const Y& y0, const Y& y1, const T& h,
+                                      const Vec3<T>& sum) const {
+        return sums_work() ? scaled(T(h / 6.0), sum) : Base::work_of_held(tau, y0, y1);
+    }
+
+    // Whether the contact may change in a step from a to b, or the depth may have its greatest value of the run within it.
+    ARM3R_INLINE Mask may_be_eventful(const Cubic& depth, const Indentation<T>& a, const Indentation<T>& b, const T& h,
+                                      bool is_elastic) const {
+        const auto& contact = this->contact_;
+        Mask eventful = contact.may_cross(depth.low(), depth.high());
+        if (!contact.any_touching()) return eventful;
+        if (is_elastic) eventful = eventful || contact.may_peak(depth.high(), depth.fourth);
+        if (this->plant_.wall.has_outline) eventful = eventful || (contact.touching() && is_near_edge(a, b, h));
+        return eventful;
+    }
+
+    ARM3R_INLINE Mask is_near_edge(const Indentation<T>& a, const Indentation<T>& b, const T& h) const {
+        const T third = (1.0 / 3) * h;  // the cubic's Bernstein coefficients lie within these sizes
+        const T across1 = max(abs(a.across1), abs(b.across1)) + third * max(abs(a.slip1), abs(b.slip1));
+        const T across2 = max(abs(a.across2), abs(b.across2)) + third * max(abs(a.slip2), abs(b.slip2));
+        return across1 >= this->plant_.wall.half1 || across2 >= this->plant_.wall.half2;
+    }
+
+    T start_{0.0}, step_{0.0};
+    // A step is whole if in no lane the run, its budget or a formula of time ends with it: then it is not tested for them.
+    int whole_steps_ = 0;
+
 private:
     template <Terms terms>
     ARM3R_INLINE static void step_of(LaneRk4* const* runs, int count) {
@@ -130,9 +194,6 @@ private:
         whole_steps_ = int(std::max(count, 0.0));
     }
 
-    // The works of the torques are summed as the quadratures are.
-    bool sums_work() const { return this->performance_.is_on() && !this->plant_.holds_torque; }
-
     // Stage n + 2 of 4, from the derivative of the one before; that of the first is known.
     template <Terms terms, int n>
     ARM3R_INLINE void next_stage() {
@@ -155,27 +216,12 @@ private:
         else if (this->rhs_.does_work()) return end.template operator()<common_moving>();
         else return end.template operator()<motion_size>();
     }
-    // The same of a lane run that steps alone, whose stages stay in registers. The code holds a long derivative once.
-    template <Terms terms>
-    ARM3R_INLINE Y stepped_alone() {
-        int stage = 1;
-        const auto derivative = [&](const T& t, const Y& at, Y& rates) ARM3R_INLINE_LAMBDA {
-            Vec3<T> tau;
-            this->rhs_.template derivative_at<terms>(t, at, rates, tau);
-            ++stage;
-            if (sums_work()) work_ = plus(work_, scaled(T(stage < 4 ? 2.0 : 1.0), power_of(tau, at)));
-        };
-        const auto& [y, f0, h] = std::tie(this->y_, this->f_, this->h_);
-        if constexpr (N != state_size) return rk4_step_in_a_loop(derivative, t0_, y, f0, h);
-        else return rk4_step_of_first<terms == Terms::common ? common_moving : N>(derivative, t0_, y, f0, h);
-    }
-
     template <Terms terms>
     ARM3R_INLINE void end_step() {
         Y y1;
         if constexpr (together > 1) y1 = stepped<terms>();
-        else y1 = stepped_alone<terms>();
-        if (this->performance_.is_on()) work_ = sums_work() ? scaled(T(this->h_ / 6.0), work_) : this->work_of_held(y1);
+        else y1 = stepped_alone<terms>(t0_, this->y_, this->f_, this->h_, work_);
+        if (this->performance_.is_on()) work_ = work_in_step(this->tau_, this->y_, y1, this->h_, work_);
         const Mask finite = Base::template is_finite<terms>(y1);
         const bool all_finite = in_all_lanes(finite);
         const Mask moved = all_finite ? this->active_ : finite && this->active_;
@@ -194,10 +240,6 @@ private:
         this->update_energy_balance();
         if (this->performance_.samples()) add_performance(moved && !eventful_, jumps_);
         this->check_lanes(!is_whole_);
-    }
-
-    ARM3R_INLINE static Vec3<T> power_of(const Vec3<T>& tau, const Y& y) {
-        return cwise_product(tau, Vec3<T>(y[3], y[4], y[5]));
     }
 
     // Applies the jumps up to the end of the step; a jump exactly at the end is left to the next step.
@@ -254,27 +296,14 @@ private:
             if (this->is_running(lane) && !Lanes<T>::is(finite, lane)) this->stop_lane(lane, ARM3R_RUN_DIVERGED);
     }
 
-    // A signal over the step: the cubic through its values and rates at both ends, by its Bernstein coefficients.
-    struct Cubic {
-        T first, second, third, fourth;
-
-        ARM3R_INLINE Cubic(const T& y0, const T& d0, const T& y1, const T& d1)
-            : first(y0), second(y0 + (1.0 / 3) * d0), third(y1 - (1.0 / 3) * d1), fourth(y1) {}
-        ARM3R_INLINE T low() const { return min(min(first, second), min(third, fourth)); }
-        ARM3R_INLINE T high() const { return max(max(first, second), max(third, fourth)); }
-        ARM3R_INLINE T mean() const { return 0.25 * ((first + fourth) + (second + third)); }
-    };
-
     template <Terms terms>
     ARM3R_INLINE void detect_contact(const Mask& moved) {
         const T& h = this->h_;
         const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
         auto& contact = this->contact_;
         const bool is_elastic = terms == Terms::common || contact.is_elastic();
-        Mask eventful = contact.may_cross(depth.low(), depth.high());
+        const Mask eventful = may_be_eventful(depth, before_, this->in_, h, is_elastic);
         if (contact.any_touching()) {
-            if (is_elastic) eventful = eventful || contact.may_peak(depth.high(), depth.fourth);
-            if (this->plant_.wall.has_outline) eventful = eventful || (contact.touching() && is_near_edge());
             const Mask uneventful = contact.touching() && !eventful && moved;
             if (is_elastic) contact.add_elastic(uneventful, depth.fourth, depth.mean(), h, this->t_);
             else Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { add_damped(uneventful); });
@@ -288,14 +317,6 @@ private:
         this->contact_.add_damped(
             uneventful, hermite_cubic(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate)), t0_,
             h, this->t_);
-    }
-
-    ARM3R_INLINE Mask is_near_edge() const {
-        const Indentation<T>&a = before_, &b = this->in_;
-        const T third = (1.0 / 3) * this->h_;  // the cubic's Bernstein coefficients lie within these sizes
-        const T across1 = max(abs(a.across1), abs(b.across1)) + third * max(abs(a.slip1), abs(b.slip1));
-        const T across2 = max(abs(a.across2), abs(b.across2)) + third * max(abs(a.slip2), abs(b.slip2));
-        return across1 >= this->plant_.wall.half1 || across2 >= this->plant_.wall.half2;
     }
 
     [[gnu::noinline]] void resolve_contacts(const Mask& eventful) {
@@ -428,9 +449,7 @@ private:
 
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
-    T start_{0.0}, step_{0.0}, t0_{0.0}, t1_{0.0}, next_jump_{infinite};
-    // A step is whole if in no lane the run, its budget or a formula of time ends with it: then it is not tested for them.
-    int whole_steps_ = 0;
+    T t0_{0.0}, t1_{0.0}, next_jump_{infinite};
     bool is_whole_ = false;
     bool has_jump_ = false;
     Mask jumps_ = false;

@@ -152,19 +152,24 @@ protected:
     template <Terms terms>
     ARM3R_INLINE void locate_wall(const Vec3<T>& qd) {
         if constexpr (terms == Terms::common) {
-            const Wall<T>& plate = plant_.wall;
-            const WallState<T> now = even_wall_at(plate, t_);
+            const WallState<T> now = even_wall_at(plant_.wall, t_);
             wall_.position = now.position, wall_.velocity = now.velocity;
-            const Vec3<T> x = minus(tip_position(plant_.arm, p_), now.position);
-            const Vec3<T> v = minus(tip_velocity(plant_.arm, p_, qd), now.velocity);
-            in_.depth = plate.face_offset - dot(plate.n, x), in_.rate = -dot(plate.n, v);
-            if (!plate.has_outline) return;
-            in_.across1 = dot(plate.e1, x), in_.across2 = dot(plate.e2, x);
-            in_.slip1 = dot(plate.e1, v), in_.slip2 = dot(plate.e2, v);
+            set_indentation(now, p_, qd, in_);
         } else {
             wall_ = wall_at(plant_.wall, t_);
             in_ = tip_indentation(plant_, wall_, p_, qd);
         }
+    }
+    // Of a wall that does not turn: what is needed of it.
+    ARM3R_INLINE void set_indentation(const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd,
+                                      Indentation<T>& in) const {
+        const Wall<T>& plate = plant_.wall;
+        const Vec3<T> x = minus(tip_position(plant_.arm, p), wall.position);
+        const Vec3<T> v = minus(tip_velocity(plant_.arm, p, qd), wall.velocity);
+        in.depth = plate.face_offset - dot(plate.n, x), in.rate = -dot(plate.n, v);
+        if (!plate.has_outline) return;
+        in.across1 = dot(plate.e1, x), in.across2 = dot(plate.e2, x);
+        in.slip1 = dot(plate.e1, v), in.slip2 = dot(plate.e2, v);
     }
 
     // All lanes by the same formula, whatever asks for it. With a controller's memory the code is long, and is compiled once.
@@ -207,9 +212,9 @@ protected:
         performance_.begin(instant(), contact_.touching(), force_phase);
     }
 
-    // J: of each held torque, in a step from the present state to y1.
-    ARM3R_INLINE Vec3<T> work_of_held(const Y& y1) const {
-        return {tau_[0] * (y1[0] - y_[0]), tau_[1] * (y1[1] - y_[1]), tau_[2] * (y1[2] - y_[2])};
+    // J: of each held torque, in a step from y0 to y1.
+    ARM3R_INLINE static Vec3<T> work_of_held(const Vec3<T>& tau, const Y& y0, const Y& y1) {
+        return {tau[0] * (y1[0] - y0[0]), tau[1] * (y1[1] - y0[1]), tau[2] * (y1[2] - y0[2])};
     }
 
     // The next instant after t at which the reference that the metrics compare with has another formula.
@@ -235,13 +240,13 @@ protected:
                        plant_.holds_torque ? &held : nullptr, slightly_before(t(lane))});
     }
 
-    ARM3R_INLINE T stored() const {
+    ARM3R_INLINE T stored(const Indentation<T>& in) const {
         if (!plant_.acts_on_arm) return T(0.0);
         const Contact<T>& law = contact_.law();
-        const auto pressed = contact_.touching() && in_.depth > T(0.0);
+        const auto pressed = contact_.touching() && in.depth > T(0.0);
         if (law.law == ContactLaw::spring)
-            return select(pressed, T(0.5 * law.stiffness[0] * in_.depth * in_.depth), T(0.0));
-        return select(pressed, T(normal_force_law(law, in_).stored + stored_tangential(law, in_)), T(0.0));
+            return select(pressed, T(0.5 * law.stiffness[0] * in.depth * in.depth), T(0.0));
+        return select(pressed, T(normal_force_law(law, in).stored + stored_tangential(law, in)), T(0.0));
     }
 
     // ---- after a step
@@ -250,15 +255,19 @@ protected:
     ARM3R_INLINE void accept(const Mask& moved, const T& t1, const Y& y1) {
         if (in_all_lanes(moved)) return accept_all(t1, y1);
         for (std::size_t i = 0; i < N; ++i) y_[i] = select(moved, y1[i], y_[i]);
-        for (std::size_t i = 3; i < motion_size; ++i) y_[i] = without_tiny_rate(y_[i]);
+        drop_tiny_rates(y_);
         t_ = select(moved, t1, t_);
         accepted_ = accepted_ + select(moved, T(1.0), T(0.0));
     }
     ARM3R_INLINE void accept_all(const T& t1, const Y& y1) {
         y_ = y1;
-        for (std::size_t i = 3; i < motion_size; ++i) y_[i] = without_tiny_rate(y_[i]);
+        drop_tiny_rates(y_);
         t_ = t1;
         accepted_ = accepted_ + 1.0;
+    }
+
+    ARM3R_INLINE static void drop_tiny_rates(Y& y) {
+        for (std::size_t i = 3; i < motion_size; ++i) y[i] = without_tiny_rate(y[i]);
     }
 
     template <Terms terms = Terms::any>
@@ -268,12 +277,15 @@ protected:
         return sum * 0.0 == T(0.0);
     }
 
-    ARM3R_INLINE void update_energy_balance() { balance_.update(Energies<T>{kinetic_, potential_, stored()}, y_); }
+    ARM3R_INLINE void update_energy_balance() { balance_.update(Energies<T>{kinetic_, potential_, stored(in_)}, y_); }
 
     bool has_failed() const { return failed_; }
 
+    ARM3R_INLINE static Mask is_out_of_range(const Y& y) {
+        return max(max(abs(y[0]), abs(y[1])), abs(y[2])) > T(sincos_limit);
+    }
     ARM3R_INLINE void check_lanes(bool may_end_budget = true) {
-        Mask bad = max(max(abs(y_[0]), abs(y_[1])), abs(y_[2])) > T(sincos_limit);
+        Mask bad = is_out_of_range(y_);
         if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned(plant_.arm, p_);
         if (may_end_budget) bad = bad || (accepted_ >= max_steps_ && t_ < stop_);
         bad = bad && active_;

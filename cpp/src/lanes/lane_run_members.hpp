@@ -68,7 +68,7 @@ void LaneRun<T, N>::start_lane(int lane) {
     }
     if (mode(lane) == ContactMode::contact) contact_.begin(lane, setups_[lane]->start, depth, force_of(lane));
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-    balance_.start(lane, {get(kinetic_), get(potential_), get(stored())});
+    balance_.start(lane, {get(kinetic_), get(potential_), get(stored(in_))});
     Lanes<T>::set(evaluations_, lane, needs_derivative_ ? 1.0 : 0.0);
 }
 

@@ -307,7 +307,7 @@ private:
     ARM3R_INLINE void add_work(const Mask& moved, const Y& y1, const T& h) {
         Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
             Vec3<T> work;
-            if (this->plant_.holds_torque) work = this->work_of_held(y1);
+            if (this->plant_.holds_torque) work = Base::work_of_held(this->tau_, this->y_, y1);
             else
                 for (int i = 0; i < 3; ++i) work[i] = value(series_, work1 + i, h);
             this->performance_.add_work(work, moved);

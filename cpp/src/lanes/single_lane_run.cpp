@@ -1,8 +1,8 @@
 // Runs by the methods of lane_run.hpp, with a single lane.
 
 #include "lanes/single_lane_run.hpp"
-#include "lanes/lane_rk4.hpp"
 #include "lanes/lane_taylor.hpp"
+#include "lanes/single_rk4.hpp"
 #include "record/end_messages.hpp"
 #include "run/run_recorder.hpp"
 
@@ -24,6 +24,8 @@ double end_theta(const LaneTaylor<double>& lane_run) { return lane_run.theta(0);
 
 FullState initial_derivative(const FullState& y) { return {y[3], y[4], y[5]}; }
 
+constexpr int steps_together = 64;  // at most: a request to stop waits for them
+
 template <class Integrator>
 class SingleLaneRun : RunRecorder {
 public:
@@ -41,15 +43,22 @@ public:
         update_row_context();
         start_contact(lane_run_.mode(0));
         start_rows(lane_run_.y(0), initial_derivative(lane_run_.y(0)), lane_run_.energy_at_start(0));
-        while (is_running() && !lane_run_.has_ended(0))
-            if (poll()) step();
+        std::int64_t polled = run_.steps.accepted - 1;
+        while (is_running() && !lane_run_.has_ended(0)) {
+            const std::int64_t taken = run_.steps.accepted;
+            if (poll(taken - polled)) step();
+            polled = taken;
+        }
         update_dense_output();
         return finish(lane_run_.y(0), theta_, set_end_metrics());
     }
 
 private:
+    // Steps are taken together as far as nothing happens in them; the last of them leaves its dense output.
     void step() {
         has_dense_output_ = false;
+        if constexpr (std::same_as<Integrator, SingleRk4>)
+            lane_run_.take_event_free_steps(next_row(), steps_together - 1);
         lane_run_.step_outlined();
         theta_ = end_theta(lane_run_);
         run_.t_end = lane_run_.t(0);
@@ -113,7 +122,7 @@ template void LaneTaylor<double>::step_outlined();
 Run run_in_lane(const Setup& setup, const RunOptions& options) {
     if (setup.solver.method == SolverMethod::taylor) return SingleLaneRun<LaneTaylor<double>>(setup, options).run();
     if (has_memory(setup.plant)) return SingleLaneRun<LaneRk4<double, full_size>>(setup, options).run();
-    return SingleLaneRun<LaneRk4<double>>(setup, options).run();
+    return SingleLaneRun<SingleRk4>(setup, options).run();
 }
 
 }  // namespace arm3r

@@ -13,6 +13,8 @@
 namespace arm3r {
 namespace {
 
+constexpr std::int64_t steps_per_reading = 256;  // of the clock
+
 const Setup& small_enough(const Setup& setup, bool rows) {
     refuse_too_large(setup, rows);
     if (std::vector<Problem> problems = missing_columns(setup); rows && !problems.empty())
@@ -74,10 +76,11 @@ void RunRecorder::end(arm3r_outcome outcome, std::string message) {
     run_.message = std::move(message);
 }
 
-bool RunRecorder::poll() {
+bool RunRecorder::poll(std::int64_t steps) {
     const bool stop = (options_.stop && *options_.stop) || (options_.should_stop && *options_.should_stop);
     if (stop) end(ARM3R_RUN_STOPPED, "stopped" + at_time(run_.t_end));
-    if (++polls_ % 256 == 0) read_clock();
+    steps_since_reading_ += steps;
+    if (steps_since_reading_ >= steps_per_reading) steps_since_reading_ = 0, read_clock();
     return is_running();
 }
 

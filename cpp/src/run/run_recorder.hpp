@@ -37,6 +37,8 @@ protected:
 
     // Whether there is a row before t that is not written yet.
     bool is_row_due(double t) { return options_.rows && row_log().is_due(t); }
+    // The instant of the next row, s: it is due once a step ends behind it.
+    double next_row() const { return options_.rows ? time_of(setup_, run_.rows) : infinite; }
     // Writes all rows before t, from the dense output of the last step.
     void log_until(double t) {
         if (options_.rows) row_log().log_until(t, row_context(), [this] { return poll(); });
@@ -59,8 +61,8 @@ protected:
 
     void end(arm3r_outcome outcome, std::string message);
     bool is_running() const { return run_.outcome == ARM3R_RUN_OK; }
-    // Whether the run continues; the clock is read now and then only.
-    bool poll();
+    // Whether the run continues, so many steps after the last time; the clock is read now and then only.
+    bool poll(std::int64_t steps = 1);
     void read_clock();
 
     // Writes the last row, checks the energy balance, and adds messages and warnings.
@@ -98,7 +100,7 @@ private:
     RowPlan plan_;
     TorqueOscillation oscillation_;
     double energy_at_start_ = 0;
-    unsigned polls_ = 0;
+    std::int64_t steps_since_reading_ = 0;  // of the clock
     double next_report_ = 0;
 };
 
