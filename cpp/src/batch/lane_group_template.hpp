@@ -34,7 +34,7 @@ public:
                 if (lane_run.any_running()) running[count++] = &lane_run;
             }
             if (count == 0) return;
-            if constexpr (Integrator::lanes == 1) running[0]->step_outlined();
+            if constexpr (Integrator::lanes == 1) advance(*running[0], infinite);
             else if constexpr (Integrator::together == 1) running[0]->step();
             else Integrator::step_together(running, count);
         }

@@ -368,4 +368,10 @@ private:
     std::function<void(int, const ContactChange&)> on_change_;
 };
 
+// A step of a single run, which may take more of them as long as they end before `until`, s.
+template <class SingleRun>
+void advance(SingleRun& run, double) {
+    run.step_outlined();
+}
+
 }  // namespace arm3r

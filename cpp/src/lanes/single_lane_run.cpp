@@ -24,8 +24,6 @@ double end_theta(const LaneTaylor<double>& lane_run) { return lane_run.theta(0);
 
 FullState initial_derivative(const FullState& y) { return {y[3], y[4], y[5]}; }
 
-constexpr int steps_together = 64;  // at most: a request to stop waits for them
-
 template <class Integrator>
 class SingleLaneRun : RunRecorder {
 public:
@@ -54,12 +52,10 @@ public:
     }
 
 private:
-    // Steps are taken together as far as nothing happens in them; the last of them leaves its dense output.
+    // Several steps, as far as nothing happens in them; the last one leaves its dense output.
     void step() {
         has_dense_output_ = false;
-        if constexpr (std::same_as<Integrator, SingleRk4>)
-            lane_run_.take_event_free_steps(next_row(), steps_together - 1);
-        lane_run_.step_outlined();
+        advance(lane_run_, next_row());
         theta_ = end_theta(lane_run_);
         run_.t_end = lane_run_.t(0);
         run_.steps = lane_run_.steps(0);
