@@ -24,14 +24,14 @@ void LanePerformance<T>::begin(const LaneInstant<T>& now, const Mask& touching, 
 }
 
 template <class T>
-template <std::size_t n>
-void LanePerformance<T>::end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Mask& moved,
-                             Mask& unresolved) {
+template <const auto& rule>
+void LanePerformance<T>::end(const LaneInstant<T>& now, const T& duration, const Mask& moved, Mask& unresolved) {
     Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
         segment_.duration = duration;
         const T t = slightly_before(now.t);
-        sample(n - 1, {t, now.p, now.wall, now.in, now.tau});
-        last_ = segment_.samples[n - 1];
+        constexpr std::size_t last = rule.node.size() - 1;
+        sample(last, {t, now.p, now.wall, now.in, now.tau});
+        last_ = segment_.samples[last];
         unresolved = add_segment(tracked_, rule, moved, segment_, sums_);
     });
 }
@@ -49,13 +49,13 @@ void LanePerformance<T>::set_sums(int lane, const PerformanceSums<double>& sums)
 }
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
-#define ARM3R_LANE_PERFORMANCE_END(T, n) \
-    template void LanePerformance<T>::end(const Rule<n>&, const LaneInstant<T>&, const T&, const Mask&, Mask&);
+#define ARM3R_LANE_PERFORMANCE_END(T, rule) \
+    template void LanePerformance<T>::end<rule>(const LaneInstant<T>&, const T&, const Mask&, Mask&);
 #define ARM3R_LANE_PERFORMANCE(T)                                                          \
     template void LanePerformance<T>::begin(const LaneInstant<T>&, const Mask&, const T&); \
-    ARM3R_LANE_PERFORMANCE_END(T, 2)                                                       \
-    ARM3R_LANE_PERFORMANCE_END(T, 3)                                                       \
-    ARM3R_LANE_PERFORMANCE_END(T, 7)                                                       \
+    ARM3R_LANE_PERFORMANCE_END(T, trapezoid)                                               \
+    ARM3R_LANE_PERFORMANCE_END(T, simpson)                                                 \
+    ARM3R_LANE_PERFORMANCE_END(T, lobatto)                                                 \
     template PerformanceSums<double> LanePerformance<T>::sums(int) const;                  \
     template void LanePerformance<T>::set_sums(int, const PerformanceSums<double>&);
 ARM3R_LANE_TYPES(ARM3R_LANE_PERFORMANCE)

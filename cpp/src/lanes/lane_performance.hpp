@@ -55,8 +55,8 @@ public:
         sample_torque(now, sample);
     }
     // The segment ends now: adds it to the sums where `moved`, and sets the lanes in which it must be refined.
-    template <std::size_t n>
-    void end(const Rule<n>& rule, const LaneInstant<T>& now, const T& duration, const Mask& moved, Mask& unresolved);
+    template <const auto& rule>
+    void end(const LaneInstant<T>& now, const T& duration, const Mask& moved, Mask& unresolved);
     // The next segment begins where this one ends, and `here` nothing jumps there: neither the contact nor a formula of
     // time.
     ARM3R_INLINE void continue_motion(const Mask& here) { continues_ = here; }

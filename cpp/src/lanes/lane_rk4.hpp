@@ -238,7 +238,7 @@ private:
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
         this->update_energy_balance();
-        if (this->performance_.samples()) add_performance(moved && !eventful_, jumps_);
+        if (this->performance_.samples()) add_performance<terms>(moved && !eventful_, jumps_);
         this->check_lanes(!is_whole_);
     }
 
@@ -385,18 +385,19 @@ private:
     }
 
     // The step as one segment in the lanes in which the contact has not changed.
+    template <Terms terms>
     ARM3R_INLINE void add_performance(Mask whole, const Mask& jumps) {
         this->performance_.continue_motion(whole && !jumps && this->next_knot_ > this->t_);
         if (in_any_lane(this->next_knot_ <= this->t_)) split_at_knots(whole);
-        if (this->plant_.holds_torque && !this->performance_.tracked().motion()) return end_segment(trapezoid, whole);
-        Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint(); });
-        end_segment(simpson, whole);
+        if (this->plant_.holds_torque && !this->performance_.tracked().motion()) return end_segment<trapezoid>(whole);
+        Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { sample_midpoint<terms>(); });
+        end_segment<simpson>(whole);
     }
 
-    template <std::size_t n>
-    ARM3R_INLINE void end_segment(const Rule<n>& rule, const Mask& whole) {
+    template <const auto& rule>
+    ARM3R_INLINE void end_segment(const Mask& whole) {
         Mask unresolved = false;
-        this->performance_.end(rule, this->instant(), this->h_, whole, unresolved);
+        this->performance_.template end<rule>(this->instant(), this->h_, whole, unresolved);
         if (in_any_lane(unresolved)) refine_segment(rule, unresolved);
     }
 
@@ -424,7 +425,9 @@ private:
         });
     }
 
-    // The midpoint lies on the cubic through both ends.
+    // The midpoint lies on the cubic through both ends. With common terms nothing of the wall turns, and the force needs no
+    // more than the depth.
+    template <Terms terms>
     ARM3R_INLINE void sample_midpoint() {
         const T &h = this->h_, t = t0_ + 0.5 * h;
         const Y& f1 = derivative_at_end();
@@ -436,8 +439,13 @@ private:
         WallState<T> wall = no_wall<T>();
         Indentation<T> in{};
         if (this->plant_.has_wall && (N != state_size || this->performance_.tracked().force)) {
-            wall = wall_at(this->plant_.wall, t);
-            in = tip_indentation(this->plant_, wall, p, qd);
+            if constexpr (terms == Terms::common) {
+                wall = even_wall_at(this->plant_.wall, t);
+                in.depth = indentation_at_rest(this->plant_.wall, wall, tip_position(this->plant_.arm, p)).depth;
+            } else {
+                wall = wall_at(this->plant_.wall, t);
+                in = tip_indentation(this->plant_, wall, p, qd);
+            }
         }
         Vec3<T> tau;
         if (this->performance_.tracked().limits && !this->plant_.holds_torque) {

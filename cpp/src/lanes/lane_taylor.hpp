@@ -315,15 +315,15 @@ private:
     }
 
     ARM3R_INLINE void add_performance(const Mask& moved, const T& h) {
-        this->performance_.tracked().motion() ? end_segment(lobatto, moved, h) : end_segment(trapezoid, moved, h);
+        this->performance_.tracked().motion() ? end_segment<lobatto>(moved, h) : end_segment<trapezoid>(moved, h);
     }
 
-    template <std::size_t n>
-    ARM3R_INLINE void end_segment(const Rule<n>& rule, const Mask& moved, const T& h) {
+    template <const auto& rule>
+    ARM3R_INLINE void end_segment(const Mask& moved, const T& h) {
         Mask unresolved = false;
-        for (std::size_t j = 1; j + 1 < n; ++j)
+        for (std::size_t j = 1; j + 1 < rule.node.size(); ++j)
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), j); });
-        this->performance_.end(rule, this->instant(), h, moved, unresolved);
+        this->performance_.template end<rule>(this->instant(), h, moved, unresolved);
         if (in_any_lane(unresolved)) refine_segment(rule, unresolved);
     }
 

@@ -5,7 +5,8 @@
 namespace arm3r {
 
 void SingleRk4::take_event_free_steps(double until, int most) {
-    if (!has_common_terms_ || is_controlled_ || performance_.samples() || may_be_ill_conditioned_ || has_failed()) return;
+    if (!has_common_terms_ || is_controlled_ || performance_.samples() || may_be_ill_conditioned_ || has_failed())
+        return;
     Instant now{t_, y_, f_, in_, tau_, balance_};
     double accepted = accepted_;
     const double before = accepted, last = accepted + std::min(most, whole_steps_);
