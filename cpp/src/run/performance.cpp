@@ -59,7 +59,10 @@ public:
 
     void refine(const TrackedQuantities& tracked, PerformanceSums<double>& sums) const {
         if (tracked.force) {
-            if (segment_.touching) refine_force(sums);
+            if (segment_.touching) {
+                if (tracked.overshoot) include_maxima(excess, 0, sums.overshoot);
+                refine_shortfall(sums);
+            }
             refine_settling(sums);
         }
         if (tracked.path) include_maxima(path_error, 0, sums.max_path_2);
@@ -74,7 +77,7 @@ private:
 
         double operator()(const PerformanceSample<double>& sample) const { return value(sample); }
     };
-    static constexpr TrackedQuantities force_alone{true, false, false}, path_alone{false, true, false};
+    static constexpr TrackedQuantities force_alone{.force = true}, path_alone{.path = true};
     static constexpr Quantity path_error{[](const auto& sample) { return sample.path_error_2; }, path_alone},
         shortfall{[](const auto& sample) { return force_error_of(sample); }, force_alone},
         excess{[](const auto& sample) { return -force_error_of(sample); }, force_alone},
@@ -118,8 +121,7 @@ private:
                 largest = std::max(largest, maximum_around(quantity, j, from).value);
     }
 
-    void refine_force(PerformanceSums<double>& sums) const {
-        include_maxima(excess, 0, sums.overshoot);
+    void refine_shortfall(PerformanceSums<double>& sums) const {
         double from = 0;
         if (!(sums.reached > 0)) {
             const std::optional<double> reached = first_time_reached();

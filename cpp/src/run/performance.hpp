@@ -33,6 +33,7 @@ ARM3R_INLINE PerformanceSample<T> select_sample(const M& here, const Performance
 // The quantities that metrics need.
 struct TrackedQuantities {
     bool force = false, path = false, limits = false;
+    bool overshoot = false;  // above a force that changes; above a constant one the largest force tells it
 
     bool motion() const { return force || path; }
     bool anything() const { return motion() || limits; }
@@ -41,7 +42,8 @@ struct TrackedQuantities {
 // Those that the law tracks, and torque limits if there are any.
 inline TrackedQuantities tracked_quantities(const Setup& setup) {
     const ControllerType type = setup.controller().type;
-    return {tracks_force(type), tracks_path(type), setup.plant.arm.has_torque_limit};
+    return {tracks_force(type), tracks_path(type), setup.plant.arm.has_torque_limit,
+            setup.controller().reference.force_profile != ForceProfile::constant};
 }
 
 // A quadrature rule on [0, 1] with nodes at both ends and between.
@@ -191,18 +193,27 @@ ARM3R_INLINE M add_segment(const TrackedQuantities& tracked, const Rule<n>& rule
         const auto square = [](const PerformanceSample<T>& s)
                                 ARM3R_INLINE_LAMBDA { return T(force_error_of(s) * force_error_of(s)); };
         const auto in_touch = moved && segment.touching, after = in_touch && sums.reached > o;
-        const T most = max_of<n>(segment, excess);
         sums.touching_time = sums.touching_time + select(in_touch, dt, o);
         sums.force_error_2 = sums.force_error_2 + select(in_touch, T(dt * mean_of(rule, segment, square)), o);
-        sums.overshoot = max_where(in_touch, sums.overshoot, most);
         sums.max_shortfall = max_where(after, sums.max_shortfall, max_of<n>(segment, shortfall));
         const auto ends_unsettled = moved && band_excess_of(segment.samples[n - 1]) > o;
         sums.unsettled_until = select(ends_unsettled, T(segment.start + segment.duration), sums.unsettled_until);
-        const T top = peak_bound(rule, segment, excess);
-        unresolved = unresolved || (in_touch && (top > sums.overshoot || (!(sums.reached > o) && max(most, top) >= o)));
-        unresolved = unresolved || (after && peak_bound(rule, segment, shortfall) > sums.max_shortfall);
-        const T band_excess_within = max(max_of<n>(segment, band_excess), peak_bound(rule, segment, band_excess));
-        unresolved = unresolved || (moved && !ends_unsettled && band_excess_within > o);
+        const auto before = in_touch && !(sums.reached > o);
+        if (tracked.overshoot || in_any_lane(before)) {
+            const T most = max_of<n>(segment, excess), top = peak_bound(rule, segment, excess);
+            if (tracked.overshoot) {
+                sums.overshoot = max_where(in_touch, sums.overshoot, most);
+                unresolved = unresolved || (in_touch && top > sums.overshoot);
+            }
+            unresolved = unresolved || (before && max(most, top) >= o);
+        }
+        if (in_any_lane(after))
+            unresolved = unresolved || (after && peak_bound(rule, segment, shortfall) > sums.max_shortfall);
+        const auto ends_settled = moved && !ends_unsettled;
+        if (in_any_lane(ends_settled)) {
+            const T within = max(max_of<n>(segment, band_excess), peak_bound(rule, segment, band_excess));
+            unresolved = unresolved || (ends_settled && within > o);
+        }
     }
     if (tracked.path) {
         const auto square = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.path_error_2; };
