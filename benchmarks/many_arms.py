@@ -6,7 +6,7 @@ python benchmarks/many_arms.py PROGRAM    # arm3r_benchmarks: peer_loop's librar
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -26,6 +26,8 @@ FALLING = f"format: 1\ntime: {{stop: {STEP * STEPS}, log_every: {STEP * STEPS}}}
 SAMPLED = f"{FALLING}wall: {{acts_on_arm: true, point: [{WALL_NEAR}, 0, 0]}}\nsampling: {{rate: {1 / STEP}}}\n"
 HYBRID = f"{SAMPLED}controller: {{type: hybrid}}"
 FORCE_FEEDBACK = f"{SAMPLED}controller: {{type: hybrid, variant: jacobian_transpose}}"
+END = ["outcome", "q1", "q2", "q3"]
+PEAK, ERROR = [*END, "peak_force"], [*END, "force_error_rms"]
 PUSHED = f"{FALLING}wall: {{acts_on_arm: true, point: [{WALL_NEAR}, 0, 0]}}\ncontroller: {{type: gravity_compensation}}"
 
 
@@ -50,8 +52,8 @@ class Entry:
         return racer
 
 
-def ours(q: np.ndarray, text: str, threads: int) -> Batch:
-    return Batch(text, from_poses(q), solver={"method": "rk4", "step": STEP}, threads=threads)
+def ours(q: np.ndarray, text: str, threads: int, metrics: Sequence[str] | None = None) -> Batch:
+    return Batch(text, from_poses(q), solver={"method": "rk4", "step": STEP}, threads=threads, metrics=metrics)
 
 
 def rollouts() -> list[Entry]:
@@ -100,6 +102,8 @@ def main() -> None:
         entries = [
             Entry("arm3r batch", BUILD, partial(ours, text=text, threads=1)),
             Entry("arm3r batch, 2 threads", BUILD, partial(ours, text=text, threads=2)),
+            Entry("arm3r batch, peak force alone", BUILD, partial(ours, text=text, threads=1, metrics=PEAK)),
+            Entry("arm3r batch, force error alone", BUILD, partial(ours, text=text, threads=1, metrics=ERROR)),
         ]
         compare(table, f"RK4 step of many arms, {job}", entries, [1, 0, 0])
 

@@ -62,8 +62,9 @@ class Batch:
         solver: Mapping[str, Any],
         threads: int = 1,
         lanes: int = 0,
+        metrics: Sequence[str] | None = None,
     ) -> None:
-        """`varied`: n values a number, by its name, such as "initial.q[1]"."""
+        """`varied`: n values a number, by its name, such as "initial.q[1]". metrics: the table's columns; None: all."""
         scenario = arm3r.Scenario(text)
         self._solver = dict(solver)
         scenario["solver"] = self._solver
@@ -71,9 +72,13 @@ class Batch:
         self._varied = np.array([arm3r.param_index(name) for name in varied], dtype=np.uintp)
         self._values = np.array(list(varied.values()), dtype=float)
         self.runs = self._values.shape[1]
-        self._results = np.empty((len(NAMES), self.runs))
+        self._names = NAMES if metrics is None else list(metrics)
+        self._results = np.empty((len(self._names), self.runs))
         self._options = ffi.new("arm3r_batch_options *", {"threads": threads, "lanes": lanes})
         self._options.struct_size = ffi.sizeof("arm3r_batch_options")
+        if metrics is not None:
+            self._summary = ffi.new("size_t[]", [NAMES.index(name) for name in metrics])
+            self._options.summary, self._options.summary_size = self._summary, len(metrics)
 
     def run(self) -> None:
         _native.call(
@@ -94,7 +99,7 @@ class Batch:
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A column of the last results: shape (runs,)."""
-        return self._results[NAMES.index(name)]
+        return self._results[self._names.index(name)]
 
     @property
     def q(self) -> np.ndarray:

@@ -392,13 +392,17 @@ def batch(
     progress: BatchProgress | None,
     law: Any = None,
     rows: tuple[Sequence[str], Floats] | None = None,
+    metrics: Sequence[str] | None = None,
 ) -> tuple[Floats, BaseException | None]:
     """The table of (varied, runs) values in the places of the varied numbers, (columns, runs); and what a law raised.
 
     law: None, in machine code (NativeLaw), or called as law(run, state, tau). If it raises, no other run is begun.
     rows: names of columns, and the array (runs, columns, rows) that is to be filled with them.
+    metrics: the names of the table's columns; None: all of `summary_columns()`.
     """
-    results = np.empty((lib.arm3r_summary_count(), values.shape[1]))
+    known = list(summary_columns())
+    wanted = [known.index(name) for name in (known if metrics is None else metrics)]
+    results = np.empty((len(wanted), values.shape[1]))
     given = _variation(params, varied, values)
     here = _InProgress(progress, law)
     options = ffi.new("arm3r_batch_options *")
@@ -408,6 +412,8 @@ def batch(
     options.threads = threads or 0
     memory, _kept = _batch_rows(*rows) if rows else (ffi.NULL, None)
     options.rows = memory
+    summary = ffi.new("size_t[]", wanted or 1)
+    options.summary, options.summary_size = summary, len(wanted)
     with here:
         if law is None:
             call(lib.arm3r_batch_run, *given, options, writable(results))

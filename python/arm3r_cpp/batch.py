@@ -16,10 +16,10 @@ from ._messages import no_column
 from ._native import BatchProgress, Floats, Progress, lib
 from .control.batch_law import BatchLaw, MakeLaw
 from .control.law import Law, NativeLaw
-from .errors import BudgetError, ScenarioError, UsageError
+from .errors import BudgetError, ColumnError, ScenarioError, UsageError
 from .params import param_index, param_key, param_name, places
 from .rows.batch_rows import BatchRows
-from .rows.names import columns_asked_for
+from .rows.names import columns_asked_for, metrics_asked_for
 from .run import Run
 from .scenario import Scenario
 
@@ -90,8 +90,8 @@ class Batch:
         self._rows = rows
         self.axes = {axis.key: axis.values if axis.values.shape[-1] > 1 else axis.values[..., 0] for axis in axes}
         self.shape = shape
-        self.units = _native.summary_columns()
         self.names = list(columns)
+        self.units = {name: unit for name, unit in _native.summary_columns().items() if name in columns}
         for array in (*columns.values(), *self.axes.values()):
             array.flags.writeable = False
 
@@ -102,10 +102,12 @@ class Batch:
         """A column.
 
         Raises:
-            KeyError: there is no such column; the message names the nearest one.
+            KeyError: there is no such column, and the message names the nearest one; or it was not asked for.
         """
         if name in self._columns:
             return self._columns[name]
+        if name in _native.summary_columns():
+            raise ColumnError(f"no column {name!r}: this batch was asked for others; name it in metrics", code="usage")
         raise no_column(name, self.names)
 
     def __iter__(self) -> Iterator[str]:
@@ -217,6 +219,7 @@ def run_batch(
     make_controller: MakeLaw | None = None,
     rate: float | None = None,
     columns: Sequence[str] | None = None,
+    metrics: Sequence[str] | None = None,
 ) -> Batch:
     """What `Scenario.batch` does."""
     if not isinstance(values, Mapping):
@@ -227,6 +230,7 @@ def run_batch(
     if rate is not None and not has_law:
         raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
     asked = [] if columns is None else columns_asked_for(columns)
+    names = metrics_asked_for(metrics)
     mine = scenario._for_law(rate) if has_law else scenario
     mine.validate()
     base = mine.copy()
@@ -239,7 +243,6 @@ def run_batch(
     shape = _shape(axes)
     runs = math.prod(shape)
     varied = [index for axis in axes for index in axis.indices]
-    names = list(_native.summary_columns())
     law: Any = controller
     if make_controller is None and (block := _block_of(controller)):
         law, make_controller = None, _law_of_row(block, base, axes, shape)
@@ -263,7 +266,8 @@ def run_batch(
             table[names.index("outcome")] = lib.ARM3R_RUN_INVALID
             return table
         given = group.params, varied, group.values
-        options: Any = {"threads": threads, "progress": report, "rows": (asked, rows) if asked else None}
+        wanted = {"rows": (asked, rows) if asked else None, "metrics": names}
+        options: Any = {"threads": threads, "progress": report, **wanted}
         return law.table(group.runs, *given, **options) if law else _native.batch(*given, **options)[0]
 
     if len(groups) == 1:

@@ -362,6 +362,7 @@ class Scenario:
         make_controller: MakeLaw | None = None,
         rate: float | None = None,
         columns: Sequence[str] | None = None,
+        metrics: Sequence[str] | None = None,
     ) -> Batch:
         """Many runs at once: a table of their summaries. Ctrl-C ends it at once with KeyboardInterrupt.
 
@@ -389,12 +390,16 @@ class Scenario:
                 time.log_columns chooses: names, or names of three such as "q". They are `batch.rows`, and take 8 bytes
                 for each run, column and row. None: no rows. With rows each run takes as long as it does alone, on its
                 thread.
+            metrics: the names of the summaries that are wanted, such as ["peak_force", "settling_time"]; `outcome` is
+                always one. Metrics of a controller's performance that are not among them are not computed, which
+                saves up to 0.4 of the time of a batch by rk4. None: all.
 
         Raises:
             ControllerError: a law in Python raised, or returned no torque: `error.index` is its run, and no other one
                 is begun. A torque that is not finite, and a NativeLaw that returns an error, end that run alone, with
                 the outcome `controller`.
-            UsageError: a key that there is not, a number that varies twice, or arrays of shapes that do not fit.
+            UsageError: a key or a metric that there is not, a number that varies twice, or arrays of shapes that do not
+                fit.
             TypeError: not numbers.
             BudgetError: there is no memory for the table or the rows.
             ScenarioError: the scenario itself is not valid, a word is none of its key's, or no run has one of the
@@ -413,6 +418,7 @@ class Scenario:
                 make_controller=make_controller,
                 rate=rate,
                 columns=columns,
+                metrics=metrics,
             )
 
 

@@ -106,6 +106,10 @@ def wrong_in_batch(keys: Keys, rng: np.random.Generator) -> list[str]:
         with_rows = scenario.batch(values, threads=1, columns=columns) if "ok" in batch.outcomes else batch
         if not same(np.array([with_rows[name] for name in batch]), table):
             found.append(f"{method} with rows of {columns}")
+        metrics = [str(one) for one in rng.choice(batch.names, int(rng.integers(0, 6)), replace=False)]
+        chosen = scenario.batch(values, threads=1, metrics=metrics)
+        if wrong := [name for name in chosen if not same(chosen[name], batch[name])]:
+            found.append(f"{method} with the metrics {metrics}: {wrong}")
     return found
 
 

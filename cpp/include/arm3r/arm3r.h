@@ -244,14 +244,18 @@ typedef struct arm3r_batch_options {
     int32_t threads;                /* 0: as many as the CPUs that this process may use */
     int32_t lanes;                  /* runs that a thread computes in parallel, at most: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
     const arm3r_batch_rows *rows;   /* Nullable: no rows. With them each run is computed by itself, not in lanes */
-    int64_t reserved[3];            /* 0 */
+    const size_t *summary;          /* Nullable: all. Else `results` has these columns alone, of arm3r_summary_column; a metric
+                                       of the controller's performance that is not among them is not computed */
+    size_t summary_size;            /* how many; not read where summary is null */
+    int64_t reserved[1];            /* 0 */
 } arm3r_batch_options;
 
 ARM3R_API size_t arm3r_summary_count(void); /* columns of a batch's table */
 ARM3R_API int32_t arm3r_summary_column(size_t index, const char **name, const char **unit, const char **meaning);
-/* `runs` runs: run i has params, but values[j*runs + i] in the place of number varied[j]. results: arm3r_summary_count() columns
- * of `runs` numbers, one column after the other; NaN where a run has no such number. Row i has the same bits as the summary
- * of a run of its own. ARM3R_OK whatever the outcomes. Numbers that stand for a choice, a flag or a section cannot vary. */
+/* `runs` runs: run i has params, but values[j*runs + i] in the place of number varied[j]. results: the columns of options->summary,
+ * else all arm3r_summary_count() of them, `runs` numbers each, one column after the other; NaN where a run has no such number. Row i
+ * has the same bits as the summary of a run of its own. ARM3R_OK whatever the outcomes. Numbers that stand for a choice, a flag or a
+ * section cannot vary. */
 ARM3R_API int32_t arm3r_batch_run(const double *params, size_t count, const size_t *varied, size_t varied_count, const double *values, size_t runs,
                                   const arm3r_batch_options *options /* Nullable */, double *results);
 

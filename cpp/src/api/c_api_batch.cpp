@@ -38,6 +38,14 @@ std::optional<BatchRows> rows_in(const arm3r_batch_rows* given, std::size_t runs
     return BatchRows{columns_in(rows.columns, rows.column_count), rows.row_count, rows.data};
 }
 
+// The columns of the results that are wanted, of the table of summaries.
+std::optional<std::span<const std::size_t>> summary_in(const arm3r_batch_options& options) {
+    if (!options.summary) return {};
+    for (std::size_t i = 0; i < options.summary_size; ++i)
+        check_index(options.summary[i], summary_table().size(), "column");
+    return std::span{options.summary, options.summary_size};
+}
+
 BatchOptions batch_options_in(const arm3r_batch_options* given, std::size_t runs) {
     if (!given) return {};
     const char* const name = "arm3r_batch_options";
@@ -49,7 +57,9 @@ BatchOptions batch_options_in(const arm3r_batch_options* given, std::size_t runs
     if (options.threads < 0) refuse("threads", options.threads, "0 or more");
     if (options.lanes < 0 || options.lanes > 8 || (options.lanes & (options.lanes - 1)))
         refuse("lanes", options.lanes, "0, 1, 2, 4 or 8");
-    return {options.stop, options.progress, options.user, options.threads, options.lanes, rows_in(options.rows, runs)};
+    return {options.stop,       options.progress, options.user,
+            options.threads,    options.lanes,    rows_in(options.rows, runs),
+            summary_in(options)};
 }
 
 BatchLaw batch_law_in(const arm3r_batch_law& given) {

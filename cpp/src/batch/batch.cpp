@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -30,6 +31,13 @@ struct StopGuard {
     ~StopGuard() { stop = true; }
 };
 
+std::vector<std::size_t> wanted_columns(const BatchOptions& options) {
+    if (options.summary) return {options.summary->begin(), options.summary->end()};
+    std::vector<std::size_t> all(summary_table().size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+}
+
 class Batch {
 public:
     Batch(const Variation& variation, const BatchOptions& options, double* results)
@@ -37,6 +45,7 @@ public:
           job_{variation,
                Checker(variation.params, variation.varied),
                results,
+               wanted_columns(options),
                options.lanes ? widest(LaneTypes{}, options.lanes) : max_lanes(),
                options.rows,
                options.law,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "arm3r/arm3r.h"
 #include "batch/batch_rows.hpp"
@@ -24,10 +25,11 @@ struct BatchOptions {
     int threads = 0;  // 0: as many as the CPUs that this process may use
     int lanes = 0;    // 1, 2, 4 or 8; 0: as is fastest
     std::optional<BatchRows> rows = {};
+    std::optional<std::span<const std::size_t>> summary = {};  // the columns that are wanted; none given: all
     BatchLaw law = {};
 };
 
-// results: summary_table().size() columns of `runs` numbers. Throws Error where the base or the variation is not valid.
+// results: the columns that are wanted, of summary_table(), `runs` numbers each. Throws Error where the base or the variation is not valid.
 void run_batch(const Variation& variation, const BatchOptions& options, double* results);
 
 }  // namespace arm3r

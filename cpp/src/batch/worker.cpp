@@ -20,6 +20,12 @@ std::size_t fetched_at_once(const BatchJob& job) {
     return job.rows ? runs_with_rows : runs_at_a_time;
 }
 
+MetricGroups groups_of(const std::vector<std::size_t>& summary) {
+    MetricGroups groups;
+    for (const std::size_t column : summary) groups.add(summary_table()[column].group);
+    return groups;
+}
+
 auto lane_group_of(const Setup& first) {
     if (first.solver.method == SolverMethod::taylor) return run_lanes_taylor;
     return has_memory(first.plant) ? run_lanes_rk4_controlled : run_lanes_rk4;
@@ -29,8 +35,9 @@ auto lane_group_of(const Setup& first) {
 
 BatchWorker::BatchWorker(BatchJob& job)
     : job_(job),
+      metrics_(groups_of(job.summary)),
       params_(job.variation.params.begin(), job.variation.params.end()),
-      summaries_(job.results, job.variation.runs) {}
+      summaries_(job.summary, job.results, job.variation.runs) {}
 
 void BatchWorker::run() {
     std::size_t run;
@@ -104,6 +111,7 @@ bool BatchWorker::fetch(std::size_t& run) {
 bool BatchWorker::prepare(std::size_t run, std::optional<Setup>& setup) {
     job_.variation.put(run, params_);
     job_.check(params_, setup);
+    if (setup) setup->metrics = metrics_;
     if (setup && !has_too_many_steps(*setup)) return true;
     refuse(run, run + 1, setup ? ARM3R_RUN_BUDGET : ARM3R_RUN_INVALID);
     return false;
@@ -128,12 +136,11 @@ void BatchWorker::refuse_rest() {
 
 void BatchWorker::refuse(std::size_t first, std::size_t last, arm3r_outcome why) {
     const std::size_t runs = job_.variation.runs;
-    const auto fill = [&](std::size_t column, double value) {
-        std::fill(job_.results + column * runs + first, job_.results + column * runs + last, value);
-    };
-    fill(0, double(why));  // the outcome is the first column
-    for (std::size_t column = 1; column < summary_table().size(); ++column)
-        fill(column, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < job_.summary.size(); ++i) {
+        const bool is_outcome = job_.summary[i] == 0;  // the first of the table
+        double* const column = job_.results + i * runs;
+        std::fill(column + first, column + last, is_outcome ? double(why) : std::numeric_limits<double>::quiet_NaN());
+    }
     if (job_.rows) job_.rows->clear(first, last);
     job_.done.fetch_add(last - first, std::memory_order_relaxed);
 }

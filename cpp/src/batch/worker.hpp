@@ -19,7 +19,8 @@ struct BatchJob {
     const Variation& variation;
     const Checker check;
     double* const results;
-    const int lanes;  // as BatchOptions::lanes
+    const std::vector<std::size_t> summary;  // the columns of the results, of summary_table()
+    const int lanes;                         // as BatchOptions::lanes
     const std::optional<BatchRows>& rows;
     const BatchLaw& law;
     const std::function<void()> poll;  // empty, or what the calling thread does during a run and after it
@@ -52,6 +53,7 @@ private:
     void refuse_rest();  // all runs that no worker has started
 
     BatchJob& job_;
+    const MetricGroups metrics_;  // that the summary needs
     std::vector<double> params_;
     SummaryBuffer summaries_;
     std::size_t first_ = 0, last_ = 0;  // the runs that were fetched and not yet started

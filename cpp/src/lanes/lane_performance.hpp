@@ -26,13 +26,15 @@ public:
     LanePerformance(const Setup& any_lane, const Plant<T>& plant, const Contact<T>& contact,
                     const Controller<T>& controller)
         : is_on_(any_lane.has_performance()),
+          sums_work_(is_on_ && any_lane.metrics.wants(MetricGroup::work)),
           tracked_(tracked_quantities(any_lane)),
           plant_(plant),
           contact_(contact),
           controller_(controller) {}
 
     bool is_on() const { return is_on_; }
-    // Whether more than the works of the torques is needed.
+    // Whether the works of the torques are needed, and whether more than these is.
+    bool sums_work() const { return sums_work_; }
     bool samples() const { return is_on_ && tracked_.anything(); }
     ARM3R_INLINE const TrackedQuantities& tracked() const { return tracked_; }
     // At the start of the segment; a sampled controller holds it.
@@ -96,7 +98,7 @@ private:
     }
     void set_sums(int lane, const PerformanceSums<double>& sums);
 
-    const bool is_on_;
+    const bool is_on_, sums_work_;
     const TrackedQuantities tracked_;
     const Plant<T>& plant_;
     const Contact<T>& contact_;

@@ -89,7 +89,7 @@ protected:
     };
 
     // The works of the torques are summed as the quadratures are.
-    ARM3R_INLINE bool sums_work() const { return this->performance_.is_on() && !this->plant_.holds_torque; }
+    ARM3R_INLINE bool sums_work() const { return this->performance_.sums_work() && !this->plant_.holds_torque; }
 
     ARM3R_INLINE static Vec3<T> power_of(const Vec3<T>& tau, const Y& y) {
         return cwise_product(tau, Vec3<T>(y[3], y[4], y[5]));
@@ -221,11 +221,11 @@ private:
         Y y1;
         if constexpr (together > 1) y1 = stepped<terms>();
         else y1 = stepped_alone<terms>(t0_, this->y_, this->f_, this->h_, work_);
-        if (this->performance_.is_on()) work_ = work_in_step(this->tau_, this->y_, y1, this->h_, work_);
+        if (this->performance_.sums_work()) work_ = work_in_step(this->tau_, this->y_, y1, this->h_, work_);
         const Mask finite = Base::template is_finite<terms>(y1);
         const bool all_finite = in_all_lanes(finite);
         const Mask moved = all_finite ? this->active_ : finite && this->active_;
-        if (this->performance_.is_on()) this->performance_.add_work(work_, moved);
+        if (this->performance_.sums_work()) this->performance_.add_work(work_, moved);
         // An empty lane is at the end of its run, where a step does not move it.
         if (all_finite) this->accept_all(t1_, y1);
         else this->accept(moved, t1_, y1), stop_diverged_lanes(finite);

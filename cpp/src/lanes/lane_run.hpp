@@ -217,9 +217,11 @@ protected:
         return {tau[0] * (y1[0] - y0[0]), tau[1] * (y1[1] - y0[1]), tau[2] * (y1[2] - y0[2])};
     }
 
-    // The next instant after t at which the reference that the metrics compare with has another formula.
+    // The next instant after t at which the reference that metrics compare with has another formula, whether these are
+    // wanted or not: steps end there.
     double next_metric_knot(int lane, double t) const {
-        return performance_.tracked().motion() ? next_knot(setups_[lane]->controller().reference, t) : infinite;
+        const Controller<double>& law = setups_[lane]->controller();
+        return tracks_force(law.type) || tracks_path(law.type) ? next_knot(law.reference, t) : infinite;
     }
 
     // The step of one lane in doubles, as a function of theta; the torque of a sampled controller is that of the step.

@@ -54,7 +54,7 @@ public:
             t1 = select(theta_ < T(1.0), T(t0_ + h), t1);
         }
         const Y y1 = state_after(series_, h);
-        if (this->performance_.is_on()) add_work(moved, y1, h);
+        if (this->performance_.sums_work()) add_work(moved, y1, h);
         this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->observe();

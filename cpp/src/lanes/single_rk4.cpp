@@ -27,7 +27,7 @@ ARM3R_INLINE bool SingleRk4::take_event_free_step(double t1, Instant& now) {
     Vec3<double> work = power_of(now.tau, now.y);
     Y y = stepped_alone<Terms::common>(now.t, now.y, now.f, h, work);
     if (!is_finite<Terms::common>(y) || is_out_of_range(y)) return false;
-    if (performance_.is_on()) work = work_in_step(now.tau, now.y, y, h, work);
+    if (performance_.sums_work()) work = work_in_step(now.tau, now.y, y, h, work);
     drop_tiny_rates(y);
     rhs_.begin_step(y);
     const Pose<double> p = rhs_.pose_near(y);
@@ -40,7 +40,7 @@ ARM3R_INLINE bool SingleRk4::take_event_free_step(double t1, Instant& now) {
     rhs_.common_derivative(t1, p, y, now.f, now.tau);
     now.balance.update(
         Energies<double>{kinetic_energy(plant_.arm, p, qd), potential_energy(plant_.arm, p), stored(now.in)}, y);
-    if (performance_.is_on()) performance_.add_work(work, true);
+    if (performance_.sums_work()) performance_.add_work(work, true);
     return true;
 }
 

@@ -6,12 +6,14 @@
 
 #include "record/contact_tally.hpp"
 #include "record/row.hpp"
+#include "setup/metric_groups.hpp"
 
 namespace arm3r {
 
 struct SummaryNumber {
     std::string_view name, unit, meaning;
     double (*of)(const Metrics&);  // NaN: the run has no such number
+    MetricGroup group = MetricGroup::others;
 };
 
 // Writes the numbers of a run that its end tells: the state `y` at t, and the contacts.

@@ -58,14 +58,10 @@ public:
         : rule_(rule), segment_(segment), view_(view), a_(a), b_(b) {}
 
     void refine(const TrackedQuantities& tracked, PerformanceSums<double>& sums) const {
-        if (tracked.force) {
-            if (segment_.touching) {
-                if (tracked.overshoot) include_maxima(excess, 0, sums.overshoot);
-                refine_shortfall(sums);
-            }
-            refine_settling(sums);
-        }
-        if (tracked.path) include_maxima(path_error, 0, sums.max_path_2);
+        if (segment_.touching && tracked.overshoot) include_maxima(excess, 0, sums.overshoot);
+        if (segment_.touching && tracked.shortfall) refine_shortfall(sums);
+        if (tracked.settling) refine_settling(sums);
+        if (tracked.path_maximum) include_maxima(path_error, 0, sums.max_path_2);
         if (tracked.limits) refine_saturation(sums);
     }
 

@@ -33,17 +33,29 @@ ARM3R_INLINE PerformanceSample<T> select_sample(const M& here, const Performance
 // The quantities that metrics need.
 struct TrackedQuantities {
     bool force = false, path = false, limits = false;
-    bool overshoot = false;  // above a force that changes; above a constant one the largest force tells it
+    // Of the force: the shortfall, the overshoot above a force that changes (above a constant one the largest force tells
+    // it), and when it settles. Of the path: the largest distance.
+    bool shortfall = false, overshoot = false, settling = false, path_maximum = false;
 
     bool motion() const { return force || path; }
     bool anything() const { return motion() || limits; }
 };
 
-// Those that the law tracks, and torque limits if there are any.
+// Those of the wanted metrics that the law tracks, and torque limits if there are any.
 inline TrackedQuantities tracked_quantities(const Setup& setup) {
-    const ControllerType type = setup.controller().type;
-    return {tracks_force(type), tracks_path(type), setup.plant.arm.has_torque_limit,
-            setup.controller().reference.force_profile != ForceProfile::constant};
+    using enum MetricGroup;
+    const Controller<double>& controller = setup.controller();
+    const auto wants = [&](MetricGroup group) { return setup.metrics.wants(group); };
+    const bool has_force = tracks_force(controller.type), has_path = tracks_path(controller.type);
+    TrackedQuantities tracked;
+    tracked.shortfall = has_force && wants(force_extremes);
+    tracked.overshoot = tracked.shortfall && controller.reference.force_profile != ForceProfile::constant;
+    tracked.settling = has_force && wants(settling);
+    tracked.force = tracked.shortfall || tracked.settling || (has_force && wants(force_error));
+    tracked.path_maximum = has_path && wants(path_maximum);
+    tracked.path = tracked.path_maximum || (has_path && wants(path_error));
+    tracked.limits = setup.plant.arm.has_torque_limit && wants(saturation);
+    return tracked;
 }
 
 // A quadrature rule on [0, 1] with nodes at both ends and between.
@@ -179,56 +191,90 @@ ARM3R_INLINE T max_of(const Segment<T>& segment, F quantity) {
     return most;
 }
 
+// The overshoot, and the shortfall since the force has reached the desired one.
+template <std::size_t n, class T, class M>
+ARM3R_INLINE M add_force_extremes(const TrackedQuantities& tracked, const Rule<n>& rule, const M& in_touch,
+                                  const Segment<T>& segment, PerformanceSums<T>& sums) {
+    const T o(0.0);
+    const auto shortfall = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return force_error_of(s); };
+    const auto excess = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return T(-force_error_of(s)); };
+    const auto after = in_touch && sums.reached > o, before = in_touch && !(sums.reached > o);
+    M unresolved = false;
+    sums.max_shortfall = max_where(after, sums.max_shortfall, max_of<n>(segment, shortfall));
+    if (tracked.overshoot || in_any_lane(before)) {
+        const T most = max_of<n>(segment, excess), top = peak_bound(rule, segment, excess);
+        if (tracked.overshoot) {
+            sums.overshoot = max_where(in_touch, sums.overshoot, most);
+            unresolved = in_touch && top > sums.overshoot;
+        }
+        unresolved = unresolved || (before && max(most, top) >= o);
+    }
+    if (in_any_lane(after))
+        unresolved = unresolved || (after && peak_bound(rule, segment, shortfall) > sums.max_shortfall);
+    return unresolved;
+}
+
+// The instant until which the force is outside its band.
+template <std::size_t n, class T, class M>
+ARM3R_INLINE M add_settling(const Rule<n>& rule, const M& moved, const Segment<T>& segment, PerformanceSums<T>& sums) {
+    const auto band_excess = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return band_excess_of(s); };
+    const auto ends_unsettled = moved && band_excess_of(segment.samples[n - 1]) > T(0.0);
+    sums.unsettled_until = select(ends_unsettled, T(segment.start + segment.duration), sums.unsettled_until);
+    const auto ends_settled = moved && !ends_unsettled;
+    if (!in_any_lane(ends_settled)) return false;
+    return ends_settled && max(max_of<n>(segment, band_excess), peak_bound(rule, segment, band_excess)) > T(0.0);
+}
+
+// The force error in a segment: its mean square, and its extremes and its band where they are tracked. Returns the lanes
+// in which one of these may lie between the samples.
+template <std::size_t n, class T, class M>
+ARM3R_INLINE M add_force(const TrackedQuantities& tracked, const Rule<n>& rule, const M& moved,
+                         const Segment<T>& segment, PerformanceSums<T>& sums) {
+    const T o(0.0), dt = select(moved, segment.duration, o);
+    const auto square = [](const PerformanceSample<T>& s)
+                            ARM3R_INLINE_LAMBDA { return T(force_error_of(s) * force_error_of(s)); };
+    const auto in_touch = moved && segment.touching;
+    sums.touching_time = sums.touching_time + select(in_touch, dt, o);
+    sums.force_error_2 = sums.force_error_2 + select(in_touch, T(dt * mean_of(rule, segment, square)), o);
+    M extremes = false, band = false;  // all are added, whatever another one says: so no || with a call
+    if (tracked.shortfall) extremes = add_force_extremes(tracked, rule, M(in_touch), segment, sums);
+    if (tracked.settling) band = add_settling(rule, moved, segment, sums);
+    return extremes || band;
+}
+
+// The squared distance of the tip from its reference in a segment.
+template <std::size_t n, class T, class M>
+ARM3R_INLINE M add_path(const TrackedQuantities& tracked, const Rule<n>& rule, const M& moved,
+                        const Segment<T>& segment, PerformanceSums<T>& sums) {
+    const auto square = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.path_error_2; };
+    sums.path_2 = sums.path_2 + select(moved, segment.duration, T(0.0)) * mean_of(rule, segment, square);
+    if (!tracked.path_maximum) return false;
+    sums.max_path_2 = max_where(moved, sums.max_path_2, max_of<n>(segment, square));
+    return moved && peak_bound(rule, segment, square) > sums.max_path_2;
+}
+
+// The time in a segment in which a torque is at its limit, where that holds in all of the segment or in none.
+template <std::size_t n, class T, class M>
+ARM3R_INLINE M add_saturation(const Rule<n>& rule, const M& moved, const Segment<T>& segment,
+                              PerformanceSums<T>& sums) {
+    const T o(0.0), dt = select(moved, segment.duration, o);
+    const auto saturated = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.saturated; };
+    const T share = mean_of(rule, segment, saturated);
+    const auto changes = moved && share > o && share < T(1 - 1e-9);
+    sums.saturated_time = sums.saturated_time + select(changes, o, T(dt * segment.samples[0].saturated));
+    return changes;
+}
+
 // Adds a segment, without the works of the torques, where `moved`. Returns the lanes in which it must be refined
 // (refine_segment).
 template <std::size_t n, class T, class M>
 ARM3R_INLINE M add_segment(const TrackedQuantities& tracked, const Rule<n>& rule, const M& moved,
                            const Segment<T>& segment, PerformanceSums<T>& sums) {
-    const T o(0.0), dt = select(moved, segment.duration, o);
-    M unresolved = false;
-    if (tracked.force) {
-        const auto shortfall = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return force_error_of(s); };
-        const auto excess = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return T(-force_error_of(s)); };
-        const auto band_excess = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return band_excess_of(s); };
-        const auto square = [](const PerformanceSample<T>& s)
-                                ARM3R_INLINE_LAMBDA { return T(force_error_of(s) * force_error_of(s)); };
-        const auto in_touch = moved && segment.touching, after = in_touch && sums.reached > o;
-        sums.touching_time = sums.touching_time + select(in_touch, dt, o);
-        sums.force_error_2 = sums.force_error_2 + select(in_touch, T(dt * mean_of(rule, segment, square)), o);
-        sums.max_shortfall = max_where(after, sums.max_shortfall, max_of<n>(segment, shortfall));
-        const auto ends_unsettled = moved && band_excess_of(segment.samples[n - 1]) > o;
-        sums.unsettled_until = select(ends_unsettled, T(segment.start + segment.duration), sums.unsettled_until);
-        const auto before = in_touch && !(sums.reached > o);
-        if (tracked.overshoot || in_any_lane(before)) {
-            const T most = max_of<n>(segment, excess), top = peak_bound(rule, segment, excess);
-            if (tracked.overshoot) {
-                sums.overshoot = max_where(in_touch, sums.overshoot, most);
-                unresolved = unresolved || (in_touch && top > sums.overshoot);
-            }
-            unresolved = unresolved || (before && max(most, top) >= o);
-        }
-        if (in_any_lane(after))
-            unresolved = unresolved || (after && peak_bound(rule, segment, shortfall) > sums.max_shortfall);
-        const auto ends_settled = moved && !ends_unsettled;
-        if (in_any_lane(ends_settled)) {
-            const T within = max(max_of<n>(segment, band_excess), peak_bound(rule, segment, band_excess));
-            unresolved = unresolved || (ends_settled && within > o);
-        }
-    }
-    if (tracked.path) {
-        const auto square = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.path_error_2; };
-        sums.path_2 = sums.path_2 + dt * mean_of(rule, segment, square);
-        sums.max_path_2 = max_where(moved, sums.max_path_2, max_of<n>(segment, square));
-        unresolved = unresolved || (moved && peak_bound(rule, segment, square) > sums.max_path_2);
-    }
-    if (tracked.limits) {
-        const auto saturated = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.saturated; };
-        const T share = mean_of(rule, segment, saturated);
-        const auto changes = moved && share > T(0.0) && share < T(1 - 1e-9);
-        sums.saturated_time = sums.saturated_time + select(changes, o, T(dt * segment.samples[0].saturated));
-        unresolved = unresolved || changes;
-    }
-    return unresolved;
+    M force = false, path = false, limits = false;
+    if (tracked.force) force = add_force(tracked, rule, moved, segment, sums);
+    if (tracked.path) path = add_path(tracked, rule, moved, segment, sums);
+    if (tracked.limits) limits = add_saturation(rule, moved, segment, sums);
+    return force || path || limits;
 }
 
 // ---- one lane, in doubles

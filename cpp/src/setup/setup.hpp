@@ -9,6 +9,7 @@
 #include "base/problem_list.hpp"
 #include "schema/columns.hpp"
 #include "schema/solver_method.hpp"
+#include "setup/metric_groups.hpp"
 
 namespace arm3r {
 
@@ -31,12 +32,13 @@ struct Setup {
     Estimation<double> estimation;
     Vec3<double> q, qd;  // at the start
     Solver solver;
-    double start, stop, log_every;  // s
-    ColumnSet logged;               // the columns of the log, as far as the run has them; t is always one
+    double start, stop, log_every;               // s
+    ColumnSet logged;                            // the columns of the log, as far as the run has them; t is always one
+    MetricGroups metrics = MetricGroups::all();  // that are wanted
 
     const Controller<double>& controller() const { return digital.sampling.on ? digital.controller : plant.controller; }
     bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }
-    bool has_performance() const { return controller().type != ControllerType::none; }
+    bool has_performance() const { return controller().type != ControllerType::none && metrics.want_performance(); }
 
     // From parameters whose choices are in order; what their numbers must keep to is said by validate() (validate.hpp),
     // of which check_setup() is the last part.

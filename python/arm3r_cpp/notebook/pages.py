@@ -79,8 +79,9 @@ def of_batch(batch: Batch) -> str:
     """How the runs ended, the range of their numbers, and one of these over the axes."""
     words, counts = np.unique(batch.outcomes, return_counts=True)
     state = ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
-    ranges = [(name, batch.units[name], *_range(batch, name)) for name in SHOWN if np.isfinite(batch[name]).any()]
-    drawn = next((name for name in DRAWN if np.ptp(_finite(batch, name)) > 0), "") if batch.ok.any() else ""
+    shown, drawable = ([name for name in names if name in batch.names] for names in (SHOWN, DRAWN))
+    ranges = [(name, batch.units[name], *_range(batch, name)) for name in shown if np.isfinite(batch[name]).any()]
+    drawn = next((name for name in drawable if np.ptp(_finite(batch, name)) > 0), "") if batch.ok.any() else ""
     png = small_figure.of_batch(batch, drawn) if drawn else None
     return html.page(
         html.heading("Batch of runs over", ", ".join(batch.axes) or "nothing", state, good=bool(batch.ok.all())),

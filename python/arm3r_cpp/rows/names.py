@@ -51,3 +51,26 @@ def columns_asked_for(names: object) -> list[str]:
             raise UsageError(f"columns[{i}]: there is no column {name!r}; {hint}", code="usage")
         asked.update(found)
     return sorted(asked, key=places.__getitem__)
+
+
+def metrics_asked_for(names: object) -> list[str]:
+    """Names of summaries in the order of a batch's table, with the outcome; None: all.
+
+    Raises:
+        TypeError: no list of names.
+        UsageError: there is no such metric; the message names the nearest one.
+    """
+    known = list(_native.summary_columns())
+    if names is None:
+        return known
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise TypeError(f'metrics: a list of names is needed, such as ["peak_force", "impulse"], got {names!r}')
+    asked = {"outcome"}
+    for i, name in enumerate(names):
+        if not isinstance(name, str):
+            raise TypeError(f"metrics[{i}]: a metric's name is needed, got {name!r}")
+        if name not in known:
+            hint = did_you_mean(name, known) or f"there are {', '.join(known)}"
+            raise UsageError(f"metrics[{i}]: there is no metric {name!r}; {hint}", code="usage")
+        asked.add(name)
+    return sorted(asked, key=known.index)

@@ -91,7 +91,7 @@ def _computed(job: ShardJob, progress: Callable[[int, int], Any] | None) -> Shar
     counts_later = progress and (lambda runs_done, runs: progress(0, runs))  # statistics run each of them once more
     scenario = Scenario(job.scenario, file=job.file)._quiet()
     report = counts_later if job.statistics else progress
-    batch = run_batch(scenario, job.values, threads=1, progress=report, controller=job.controller)
+    batch = run_batch(scenario, job.values, threads=1, progress=report, controller=job.controller, metrics=job.metrics)
     outcomes = batch.outcomes
     columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
     columns |= {name: batch[name] for name in job.metrics}
