@@ -29,7 +29,8 @@ struct BatchOptions {
     BatchLaw law = {};
 };
 
-// results: the columns that are wanted, of summary_table(), `runs` numbers each. Throws Error where the base or the variation is not valid.
+// results: the columns that are wanted, of summary_table(), `runs` numbers each. Throws Error where the base or the
+// variation is not valid.
 void run_batch(const Variation& variation, const BatchOptions& options, double* results);
 
 }  // namespace arm3r

@@ -1,6 +1,9 @@
 // Runs by the methods of lane_run.hpp, with a single lane.
 
 #include "lanes/single_lane_run.hpp"
+
+#include <utility>
+
 #include "lanes/lane_taylor.hpp"
 #include "lanes/single_rk4.hpp"
 #include "record/end_messages.hpp"
@@ -41,11 +44,10 @@ public:
         update_row_context();
         start_contact(lane_run_.mode(0));
         start_rows(lane_run_.y(0), initial_derivative(lane_run_.y(0)), lane_run_.energy_at_start(0));
-        std::int64_t polled = run_.steps.accepted - 1;
+        std::int64_t accepted = -1;  // steps, at the last poll
         while (is_running() && !lane_run_.has_ended(0)) {
-            const std::int64_t taken = run_.steps.accepted;
-            if (poll(taken - polled)) step();
-            polled = taken;
+            const std::int64_t before = std::exchange(accepted, run_.steps.accepted);
+            if (poll(accepted - before)) step();
         }
         update_dense_output();
         return finish(lane_run_.y(0), theta_, set_end_metrics());
