@@ -38,11 +38,18 @@ def timed(*command: str | Path) -> tuple[float, str]:
         return (ended - begun) * 1e3, out.read()
 
 
+def remove_results(out: Path) -> None:
+    for path in (out, out.with_suffix(".json")):
+        path.unlink(missing_ok=True)
+
+
 def ours(runs: int, scenario: Path, out: Path) -> dict[str, list[float]]:
-    parts: dict[str, list[float]] = {name: [] for name in ("whole", "without -o", "start", "loop")}
+    parts: dict[str, list[float]] = {name: [] for name in ("whole", "over", "without -o", "start", "loop")}
     for _ in range(runs):
         _, summary = timed(EXECUTABLE, "run", scenario, "--json")
-        parts["whole"].append(timed(EXECUTABLE, "run", scenario, "-o", out)[0])
+        remove_results(out)
+        for part in ("whole", "over"):
+            parts[part].append(timed(EXECUTABLE, "run", scenario, "-o", out)[0])
         parts["without -o"].append(timed(EXECUTABLE, "run", scenario)[0])
         parts["start"].append(timed(EXECUTABLE, "--version")[0])
         parts["loop"].append(json.loads(summary)["elapsed_s"] * 1e3)
@@ -52,6 +59,7 @@ def ours(runs: int, scenario: Path, out: Path) -> dict[str, list[float]]:
 def mujocos(program: str, out: Path) -> dict[str, list[float]]:
     parts: dict[str, list[float]] = {name: [] for name in ("whole", "import", "loop", "text")}
     for _ in range(PEER_RUNS):
+        remove_results(out)
         whole, printed = timed(sys.executable, HERE / program, out)
         parts["whole"].append(whole)
         for name, seconds in json.loads(printed).items():
@@ -77,6 +85,7 @@ def compare(table: Table, job: str, build: str, scenario: Path, program: str, ru
         "loop": ("loop", "loop"),
         "CSV (ours: and JSON)": ("text", "text"),
         "without -o": ("without -o", ""),
+        "over an earlier result": ("over", ""),
     }.items():
         table.row(f"{job}: {name}", "arm3r", build, "ms", mine[our_part])
         if their_part in theirs:
