@@ -459,6 +459,7 @@ def _batch_law(law: Any) -> Any:
     return struct
 
 
+@cache
 def summary_columns() -> dict[str, str]:
     """Units of a batch's columns, by name."""
     name, unit, meaning = (ffi.new("const char **") for _ in range(3))

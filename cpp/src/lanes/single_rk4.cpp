@@ -24,7 +24,8 @@ void SingleRk4::take_event_free_steps(double until, int most) {
 // Moves `now` to t1 and returns whether the step is free of events; else changes nothing.
 ARM3R_INLINE bool SingleRk4::take_event_free_step(double t1, Instant& now) {
     const double h = step_;
-    Vec3<double> work = power_of(now.tau, now.y);
+    Vec3<double> work;
+    if (sums_work()) work = power_of(now.tau, now.y);
     Y y = stepped_alone<Terms::common>(now.t, now.y, now.f, h, work);
     if (!is_finite<Terms::common>(y) || is_out_of_range(y)) return false;
     if (performance_.sums_work()) work = work_in_step(now.tau, now.y, y, h, work);
@@ -32,7 +33,7 @@ ARM3R_INLINE bool SingleRk4::take_event_free_step(double t1, Instant& now) {
     rhs_.begin_step(y);
     const Pose<double> p = rhs_.pose_near(y);
     const Vec3<double> qd(y[3], y[4], y[5]);
-    if (plant_.has_wall && !touch(t1, p, qd, now)) {
+    if (plant_.has_wall && !move_indentation(t1, p, qd, now)) {
         rhs_.begin_step(now.y);
         return false;
     }
@@ -45,7 +46,7 @@ ARM3R_INLINE bool SingleRk4::take_event_free_step(double t1, Instant& now) {
 }
 
 // Moves the indentation of `now` and the contact to t1, if nothing happens to them before.
-ARM3R_INLINE bool SingleRk4::touch(double t1, const Pose<double>& p, const Vec3<double>& qd, Instant& now) {
+ARM3R_INLINE bool SingleRk4::move_indentation(double t1, const Pose<double>& p, const Vec3<double>& qd, Instant& now) {
     const double h = step_;
     Indentation<double> in = now.in;
     set_indentation(even_wall_at(plant_.wall, t1), p, qd, in);

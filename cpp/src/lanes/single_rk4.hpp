@@ -28,7 +28,7 @@ private:
     };
 
     bool take_event_free_step(double t1, Instant& now);
-    bool touch(double t1, const Pose<double>& p, const Vec3<double>& qd, Instant& now);
+    bool move_indentation(double t1, const Pose<double>& p, const Vec3<double>& qd, Instant& now);
 };
 
 inline void advance(SingleRk4& run, double until) {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Iterator
 
 from .. import _native
 from .._messages import did_you_mean
@@ -38,17 +38,12 @@ def columns_asked_for(names: object) -> list[str]:
         TypeError: no list of names.
         UsageError: some run has no such column; the message names the nearest one.
     """
-    if isinstance(names, str) or not isinstance(names, Iterable):
-        raise TypeError(f'columns: a list of names is needed, such as ["q1", "force"], got {names!r}')
     places = _native.column_places()
     asked = {"t"}
-    for i, name in enumerate(names):
-        if not isinstance(name, str):
-            raise TypeError(f"columns[{i}]: a column's name is needed, got {name!r}")
+    for i, name in _each_name(names, "column", '["q1", "force"]'):
         found = columns_of(name, places)
         if not found:
-            hint = did_you_mean(name, places) or "`arm3r columns` lists them"
-            raise UsageError(f"columns[{i}]: there is no column {name!r}; {hint}", code="usage")
+            raise _no_such("column", i, name, places, "`arm3r columns` lists them")
         asked.update(found)
     return sorted(asked, key=places.__getitem__)
 
@@ -63,14 +58,24 @@ def metrics_asked_for(names: object) -> list[str]:
     known = list(_native.summary_columns())
     if names is None:
         return known
-    if isinstance(names, str) or not isinstance(names, Iterable):
-        raise TypeError(f'metrics: a list of names is needed, such as ["peak_force", "impulse"], got {names!r}')
     asked = {"outcome"}
-    for i, name in enumerate(names):
-        if not isinstance(name, str):
-            raise TypeError(f"metrics[{i}]: a metric's name is needed, got {name!r}")
+    for i, name in _each_name(names, "metric", '["peak_force", "impulse"]'):
         if name not in known:
-            hint = did_you_mean(name, known) or f"there are {', '.join(known)}"
-            raise UsageError(f"metrics[{i}]: there is no metric {name!r}; {hint}", code="usage")
+            raise _no_such("metric", i, name, known, f"there are {', '.join(known)}")
         asked.add(name)
     return sorted(asked, key=known.index)
+
+
+def _each_name(names: object, kind: str, example: str) -> Iterator[tuple[int, str]]:
+    """The names in the argument `kind`s, with their places. TypeError: it is no list of names."""
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise TypeError(f"{kind}s: a list of names is needed, such as {example}, got {names!r}")
+    for i, name in enumerate(names):
+        if not isinstance(name, str):
+            raise TypeError(f"{kind}s[{i}]: a {kind}'s name is needed, got {name!r}")
+        yield i, name
+
+
+def _no_such(kind: str, place: int, name: str, known: Iterable[str], list_of_all: str) -> UsageError:
+    hint = did_you_mean(name, known) or list_of_all
+    return UsageError(f"{kind}s[{place}]: there is no {kind} {name!r}; {hint}", code="usage")
