@@ -66,7 +66,7 @@ Contender our_packs(std::string job, std::vector<double> (*params)()) {
 
 Contender our_runs(std::string job, std::vector<double> (*params)()) {
     return {std::move(job), "arm3r simulate()", our_build,
-            [params] { return [setup = params()](int times) { run_fixed_steps(setup, times); }; }};
+            [params] { return [run = std::make_shared<WholeRun>(params())](int times) { run->advance(times); }; }};
 }
 
 Arm<double> arm() { return make_arm(free_fall()); }

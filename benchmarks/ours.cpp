@@ -159,12 +159,18 @@ void PackStepper<Size>::advance(int steps) {
 template class PackStepper<motion_size>;
 template class PackStepper<state_size>;
 
-void run_fixed_steps(const std::vector<double>& params, int steps) {
-    std::vector<double> run = params;
+void WholeRun::advance(int steps) {
+    if (steps != steps_) prepare(steps);
+    simulate(*setup_, {});
+}
+
+void WholeRun::prepare(int steps) {
+    std::vector<double> run = params_;
     run[param_index("solver.method")] = double(SolverMethod::rk4);
     run[param_index("solver.step")] = step;
     run[param_index("time.stop")] = run[param_index("time.log_every")] = steps * step;
-    simulate(valid_setup(run), {});
+    setup_ = valid_setup(run);
+    steps_ = steps;
 }
 
 }  // namespace bench

@@ -2,7 +2,9 @@
 // The jobs as arm3r does them.
 
 #include <array>
+#include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "arm3r/numbers/eigen_traits.hpp"
@@ -64,7 +66,18 @@ private:
 };
 
 // The same steps within a whole run: after each step contact, energy balance and conditioning are checked; two rows are
-// logged.
-void run_fixed_steps(const std::vector<double>& params, int steps);
+// logged. As a Stepper it has its setup before it is timed, for as many steps as the last time.
+class WholeRun {
+public:
+    explicit WholeRun(std::vector<double> params) : params_(std::move(params)) {}
+    void advance(int steps);
+
+private:
+    void prepare(int steps);
+
+    std::vector<double> params_;
+    int steps_ = 0;
+    std::optional<arm3r::Setup> setup_;
+};
 
 }  // namespace bench

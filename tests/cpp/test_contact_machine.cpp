@@ -1,5 +1,6 @@
 #include "arm3r/model/restitution.hpp"
 #include "check.hpp"
+#include "contact/contact_search.hpp"
 #include "fixtures.hpp"
 #include "linear_algebra.hpp"
 
@@ -451,6 +452,35 @@ TEST_CASE(a_start_in_a_wall_that_recedes_faster_than_the_law_follows_has_no_forc
         CHECK(column(run, "contact")[0] == 1);
         CHECK(std::abs(column(run, "f_on_wall_x")[0] - std::max(0.0, 2 + 30 * speed)) <= 1e-12);
         CHECK(std::abs(run.peak_force - std::max(0.0, 2 + 30 * speed + std::max(0.0, 10 * speed))) <= 1e-9);
+    }
+}
+
+// From a depth of 1e-13 to 1e-10 m the tip moves straight to the surface, where depths are rounding errors: as likely negative
+// as positive, they grow by any factor.
+TEST_CASE(the_impulse_of_a_contact_that_ends_among_rounding_errors_is_that_of_its_closed_form) {
+    const double k = 1e5, p = 1.5;
+    Random random(11);
+    for (int i = 0; i < 300; ++i) {
+        Params params = unequal_params().set("wall", 1).choose("wall.contact.law", "hunt_crossley");
+        params.set("wall.contact.stiffness", k).set("wall.contact.exponent", p).set("wall.contact.dissipation", 0);
+        params.set("initial.q", {random.in(-3, 3), random.in(-1, 1), random.in(0.5, 2)}).set("wall.acts_on_arm", 1);
+        params.set("wall.normal", random.vector(-1, 1)).set("wall.point", start_of(params));
+        params.choose("wall.motion.type", "fixed");
+        const Setup setup = make_setup(params);
+        const double way = std::pow(10, random.in(-13, -10));
+        DenseOutput dense;
+        dense.h = 0.01, dense.order = 1;
+        for (int joint = 0; joint < 3; ++joint) {
+            const double turned = way * random.in(-1, 1);
+            dense.c[0][joint] = setup.q[joint] + turned, dense.c[1][joint] = -turned / dense.h;
+        }
+        const double deepest = tip_indentation(setup.plant, wall_at(setup.plant.wall, 0.0),
+                                               pose(angles(dense.motion(0))), Vec3<double>(0, 0, 0))
+                                   .depth;
+        const double expected = deepest > 0 ? k * std::pow(deepest, p) * dense.h / (p + 1) : 0;
+        const double impulse = ContactSearch(setup.plant, 5).impulse(dense, 0, 1);
+        CHECK(std::abs(impulse - expected) <= 1e-2 * expected + k * std::pow(1e-14, p) * dense.h,
+              way << ": " << impulse << " for " << expected);
     }
 }
 

@@ -26,6 +26,15 @@ Indentation<T> indentation_at(const Plant<double>& plant, const DenseOutput& den
     return tip_indentation(plant, wall, p, Vec3<T>(y(3), y(4), y(5)));
 }
 
+// m: the rounding errors of a depth in a step: those of the angles, of the tip's position and of the wall's.
+double rounding_of_depth(const Plant<double>& plant, const DenseOutput& dense) {
+    const auto size = [](const Vec3<double>& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
+    const Vec3<double> origin = wall_at(plant.wall, dense.t0 + dense.h).position;
+    const double of_tip = reach(plant.arm) * (1 + size(angles(dense.motion(0)))) + std::abs(plant.arm.base_height);
+    const double of_wall = size(origin) + size(plant.wall.point) + std::abs(plant.wall.face_offset);
+    return 4 * std::numeric_limits<double>::epsilon() * (of_tip + of_wall);
+}
+
 }  // namespace
 
 ContactMode ContactSearch::mode_at_start(double t, const FullState& y) const {
@@ -114,17 +123,20 @@ double ContactSearch::impulse(const DenseOutput& dense, double a, double b) cons
     constexpr double negligible = 1e-4;  // a depth, as a share of the largest: less than 1e-8 of the impulse lies below
     const double depth_a = depth(dense, a), depth_b = depth(dense, b);
     const double largest = std::max({depth_a, depth(dense, 0.5 * (a + b)), depth_b});
-    return impulse_in_parts(dense, a, depth_a, b, depth_b, negligible * largest);
+    // Rounding errors of a depth near zero grow by any factor, however short the part.
+    const double least = std::max(negligible * largest, rounding_of_depth(plant_, dense));
+    constexpr int halvings = 20;  // from any depth to a negligible one it takes less
+    return impulse_in_parts(dense, a, depth_a, b, depth_b, least, halvings);
 }
 
 double ContactSearch::impulse_in_parts(const DenseOutput& dense, double a, double depth_a, double b, double depth_b,
-                                       double negligible) const {
+                                       double least, int halvings) const {
     constexpr double most_growth = 1.5;  // of the depth in a part
     const double middle = 0.5 * (a + b), depth_middle = depth(dense, middle);
     const double low = std::min(depth_a, depth_b), high = std::max({depth_a, depth_middle, depth_b});
-    if (!(high > most_growth * low && high > negligible)) return impulse_by_gauss(dense, a, b);
-    return impulse_in_parts(dense, a, depth_a, middle, depth_middle, negligible) +
-           impulse_in_parts(dense, middle, depth_middle, b, depth_b, negligible);
+    if (halvings == 0 || !(high > most_growth * low && high > least)) return impulse_by_gauss(dense, a, b);
+    return impulse_in_parts(dense, a, depth_a, middle, depth_middle, least, halvings - 1) +
+           impulse_in_parts(dense, middle, depth_middle, b, depth_b, least, halvings - 1);
 }
 
 double ContactSearch::depth(const DenseOutput& dense, double theta) const {

@@ -54,8 +54,9 @@ private:
     void update_peak(const DenseOutput& dense, double a, const SignalSample& at_a, double b, const SignalSample& at_b,
                      Peak& peak) const;
     double impulse_by_gauss(const DenseOutput& dense, double a, double b) const;
-    double impulse_in_parts(const DenseOutput& dense, double a, double depth_a, double b, double depth_b,
-                            double negligible) const;
+    // Halves a part in which the depth grows by much, at most so many times, unless all of it is below `least`, m.
+    double impulse_in_parts(const DenseOutput& dense, double a, double depth_a, double b, double depth_b, double least,
+                            int halvings) const;
     double depth(const DenseOutput& dense, double theta) const;  // m
     double root(const DenseOutput& dense, const ZeroCrossing& event, double a, double b) const;
 
