@@ -19,8 +19,11 @@ SIZE = 1e-7
 """of the disturbance: rad, rad/s and m, and ten times as much in m/s^2 of gravity"""
 FLOOR = SIZE
 """of what may differ, in a column's unit and relative to its largest value: some columns feel no disturbance"""
-NOISY = {"tip_dv": 100.0, "f_estimate": 1000.0}
-"""times the floor: the error of an interpolant's slope, and a residual over a Jacobian that is singular to 1e-3"""
+NOISY = {"tip_dv": 100.0, "f_estimate": 1000.0, "stiffness_estimate": 10.0, "wall_speed_estimate": 10.0}
+"""times the floor: the error of an interpolant's slope, a residual over a Jacobian that is singular to 1e-3, and the
+rounding errors of a sum, times the condition of the data"""
+UNSTABLE = 1e5
+"""growth beyond which two runs of a scenario have nothing in common: 1e-7 rad have become 0.01"""
 TIMES_OWN_ERROR = 5.0
 """how much larger the error of a method of fixed steps may be than the differences between its runs with other steps"""
 
@@ -103,8 +106,8 @@ class Band:
 
     @property
     def growth(self) -> float:
-        """By how much a disturbance of the joint angles has grown at the end."""
-        return max(self.limits[name][-1] for name in ("q1", "q2", "q3")) / SIZE
+        """By how much a disturbance of the joint angles and rates has grown at the end."""
+        return max(self.limits[name][-1] for name in ("q1", "q2", "q3", "qd1", "qd2", "qd3")) / SIZE
 
     def gap(self, other: arm3r.Run, own: OwnError | None = None) -> Gap:
         """Where another run leaves the band most, which its own error, where it is known, widens."""

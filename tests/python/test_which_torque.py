@@ -208,6 +208,33 @@ def test_a_push_is_no_contact_with_the_wall(solver: dict[str, Any]) -> None:
     assert batch["stiffness_estimate"] == run.summary["metrics"]["stiffness_estimate"]
 
 
+PUSHED = """
+format: 1
+arm: {convention: simscape, gravity: [1, -2, -9]}
+initial: {q: [0.4, -0.7, 1.3], qd: [0.2, 0.3, -0.1]}
+wall: {point: [-3, 0, 0], normal: [1, 0.3, 0.2], size: infinite, motion: {type: fixed}}
+controller: {type: joint_stiffness, stiffness: 100, damping: 30}
+reference: {type: point, q: [0.2, -0.9, 1.1]}
+sampling: {rate: 500}
+push: {force: [9, 4, -3], duration: 0.6}
+estimator: {}
+time: {stop: 1}
+"""
+
+
+@pytest.mark.parametrize("wall", ["moving", "fixed"])
+@pytest.mark.parametrize("method", ["dopri5", "rk4"])
+def test_a_sensed_force_that_does_not_depend_on_the_place_is_no_wall(method: str, wall: str) -> None:
+    """A force sensor takes the push for contact. The best fit is a wall of 1e-12 N/m, which rounding errors make."""
+    made = arm3r.Scenario(PUSHED)
+    made["solver.method"], made["estimator.wall"] = method, wall
+    run = made.run()
+    assert run["force_measured"].max() > 8
+    assert np.ptp(run["tip_x"]) > 0.05
+    for column in ("identifiable", "stiffness_estimate", "wall_speed_estimate"):
+        assert not run[column].any(), column
+
+
 @pytest.mark.parametrize(
     ("changes", "told"),
     [

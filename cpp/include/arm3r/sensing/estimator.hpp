@@ -4,6 +4,7 @@
 // the answer is that of the data and not its square.
 
 #include <array>
+#include <limits>
 
 #include "arm3r/numbers/vectors.hpp"
 
@@ -13,7 +14,7 @@ template <class T>
 struct WallEstimate {
     T stiffness;    // N/m
     T face, speed;  // m along the pressing direction at the first sample, m/s towards the arm
-    T condition;    // of the data, columns scaled to the same size
+    T condition;    // of the data, columns scaled to the same size; infinite if the force does not depend on position
 };
 
 template <class T>
@@ -50,11 +51,11 @@ public:
             for (int j = i + 1; j < size_; ++j) rest = rest - at(i, j) * x[j];
             x[i] = rest / at(i, i);
         }
-        // the data do not determine the wall if the force does not depend on position
-        const auto none = x[0] == T(0.0);
-        const T stiffness = select(none, T(1.0), x[0]);
-        return {x[0], select(none, T(0.0), T(-x[1] / stiffness)), select(none, T(0.0), T(x[2] / stiffness)),
-                condition()};
+        const T condition = this->condition();
+        const auto none = !(abs(x[0] * at(0, 0)) > rounding * (condition * force()));
+        const T o(0.0), stiffness = select(none, T(1.0), x[0]);
+        return {select(none, o, x[0]), select(none, o, T(-x[1] / stiffness)), select(none, o, T(x[2] / stiffness)),
+                select(none, T(infinite), condition)};
     }
 
 private:
@@ -71,6 +72,13 @@ private:
             row[j] = c * row[j] - d * at(i, j);
             at(i, j) = kept;
         }
+    }
+
+    // The length of the column of forces, N.
+    ARM3R_INLINE T force() const {
+        T square(0.0);
+        for (int i = 0; i < size_; ++i) square = square + at(i, size_) * at(i, size_);
+        return sqrt(square);
     }
 
     // Norm times norm of the inverse (Frobenius), columns scaled to length one.
@@ -92,6 +100,10 @@ private:
             }
         return sqrt(forward * backward);
     }
+
+    // A thousand rounding errors, as a share of the force: times the condition, what position explains at least of a force
+    // that depends on it.
+    static constexpr double rounding = 1e3 * std::numeric_limits<double>::epsilon();
 
     int size_ = 3;
     std::array<T, 12> factor_{};  // row by row: triangular, with the right-hand side behind it
