@@ -145,7 +145,7 @@ class OwnError(NamedTuple):
     The steps are no multiples of one another and none of a millisecond: a contact that begins just before the end of a
     step must not begin just before the end of a step in every run. Up to one step away from such an instant, and from
     an estimate that is due between two steps, the controller knows of it at the end of the step only: these rows say
-    nothing.
+    nothing. Nor do those with a depth that is less than its error: there may be contact or none.
     """
 
     columns: dict[str, np.ndarray]
@@ -157,6 +157,9 @@ class OwnError(NamedTuple):
         """From the run with the smallest step and those with others, of which `step` is the longest."""
         late = [t for run in (finest, *others) for t in instants(run)] + estimates_between_steps(scenario)
         rows = np.all([abs(finest.t - t) > step for t in late], axis=0) if late else np.ones(len(finest.t), bool)
+        if "depth" in finest.columns:
+            apart = np.max([abs(run["depth"] - finest["depth"]) for run in others], axis=0)
+            rows &= abs(finest["depth"]) > TIMES_OWN_ERROR * np.maximum.accumulate(apart)
         # An error may turn a rounded reading into the next one.
         quanta = {"force_measured": scenario.get("sensors", {}).get("force", {}).get("resolution", 0.0)}
 
