@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "check.hpp"
 #include "fixtures.hpp"
+#include "record/diagnosis.hpp"
 #include "record/energy_balance.hpp"
 
 namespace arm3r {
@@ -256,6 +257,20 @@ TEST_CASE(coarse_fixed_steps_only_warn_of_the_energy_they_lose) {
     REQUIRE(run.warnings.size() == 1u);
     CHECK(run.warnings[0].find("energy balance") != std::string::npos);
     CHECK(falling().choose("solver.method", "rk4").set("solver.step", 1e-4).run().warnings.empty());
+}
+
+// Steps of an absolute tolerance leave what they may: the balance is judged by the larger of both, and the advice names it.
+TEST_CASE(the_energy_balance_is_judged_by_the_tolerance_that_steps_have) {
+    for (const char* method : {"dopri5", "rodas4", "auto"}) {
+        const Params loose = falling().choose("solver.method", method).set("solver.atol", 1e-6).set("time.stop", 3);
+        const Run run = loose.run();
+        CHECK(run.outcome == ARM3R_RUN_OK, method << ": " << run.message);
+        CHECK(run.energy_residual_max > 1e-8, method << ": " << run.energy_residual_max);
+        CHECK(Params(loose).set("solver.atol", 1e-4).run().outcome == ARM3R_RUN_OK, method);
+        const Solver solver = make_setup(loose).solver, tight = make_setup(falling()).solver;
+        CHECK(std::string(accuracy_advice(solver)).starts_with("tighten solver.atol"));
+        CHECK(std::string(accuracy_advice(tight)).starts_with("tighten solver.rtol"));
+    }
 }
 
 static double max_residual_of_rows(const Run& run) {

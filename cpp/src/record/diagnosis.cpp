@@ -33,7 +33,9 @@ const char* accuracy_advice(const Solver& solver) {
     switch (solver.method) {
         case SolverMethod::rk4: return "take a smaller solver.step";
         case SolverMethod::taylor: return "tighten solver.tol, or limit solver.max_step";
-        default: return "tighten solver.rtol, or limit solver.max_step";
+        default:
+            return solver.atol > solver.rtol ? "tighten solver.atol, or limit solver.max_step"
+                                             : "tighten solver.rtol, or limit solver.max_step";
     }
 }
 

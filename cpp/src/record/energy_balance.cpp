@@ -7,12 +7,12 @@ namespace {
 
 constexpr double max_strict_tolerance = 1e-6;
 
-// The tolerance of the solver; a fixed step promises none.
+// The tolerance of the solver, of angles about 1 rad; a fixed step promises none.
 double tolerance(const Solver& solver) {
     switch (solver.method) {
         case SolverMethod::rk4: return max_strict_tolerance;
         case SolverMethod::taylor: return solver.tol;
-        default: return solver.rtol;
+        default: return std::max(solver.rtol, solver.atol);
     }
 }
 
