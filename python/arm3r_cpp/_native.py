@@ -274,9 +274,9 @@ _interpreter = _Interpreter()
 
 
 class _InProgress:
-    """While the library calls `progress`, of one run or one batch. What that raises comes out again."""
+    """While the library calls `progress`, of one run or one batch, or a law. What they raise comes out again."""
 
-    def __init__(self, progress: Callable[..., Any] | None, law: Callable[[Any, Any], int] | None = None) -> None:
+    def __init__(self, progress: Callable[..., Any] | None, law: Any = None) -> None:
         self.progress = progress
         self.law = law
         self.raised: BaseException | None = None
@@ -497,6 +497,11 @@ def put_torque(torque: Any, out: Any) -> None:
         raise NoTorque from None
 
 
+def _as_doubles(array: Any) -> memoryview[float]:
+    """An array of the library's type as one of Python's, which takes numbers in two thirds of the time."""
+    return memoryview(ffi.buffer(array)).cast("d")
+
+
 _STATE_ARRAYS = {
     name: (field.offset, field.type.length)
     for name, field in ffi.typeof("arm3r_law_state").fields
@@ -531,18 +536,56 @@ def state_index() -> dict[str, int]:
     return {name: field.offset // 8 for name, field in fields if name != "struct_size"}
 
 
-@_called_by_the_library("arm3r_law")
-def arm3r_python_law(user: Any, state: Any, tau: Any) -> int:
-    return _here.call.law(state, tau)
+class LawMemory:
+    """What the library and a law in Python share: its state at a sample, and the torque that it answers.
+
+    Attributes:
+        state: the state.
+        torque: where the torque is put.
+        user: what the library is given with the law.
+    """
+
+    def __init__(self) -> None:
+        self._struct, self._tau = ffi.new("arm3r_law_state *"), ffi.new("double[3]")
+        self.state, self.torque = StateMemory(self._struct), _as_doubles(self._tau)
+        self.user = ffi.new("void *[2]", [self._struct, self._tau])
+
+
+def arm3r_python_tick(t: float) -> int:
+    law = _here.call.law
+    put_torque(law.answer(t), law.memory.torque)
+    return 0
+
+
+def _law_in_python() -> Any:
+    """The arm3r_law that calls `arm3r_python_tick`: compiled with the extension, or without one, made here."""
+    if hasattr(lib, "arm3r_python_tick"):
+        ffi.def_extern(error=-1, onerror=_keep)(arm3r_python_tick)
+        return ffi.addressof(lib, "arm3r_python_law")
+
+    def law(user: Any, state: Any, tau: Any) -> int:
+        struct, torque = ffi.cast("void **", user)[0:2]
+        ffi.memmove(struct, state, ffi.sizeof("arm3r_law_state"))
+        status = arm3r_python_tick(state.t)
+        ffi.memmove(tau, torque, ffi.sizeof("double[3]"))
+        return status
+
+    return ffi.callback("arm3r_law", law, error=-1, onerror=_keep)
+
+
+_python_law = _law_in_python()
 
 
 def control(
     scenario: Any, law: Any, *, progress: Progress | None, time_limit: float | None
 ) -> tuple[Any, BaseException | None]:
-    """A run with a law, called as law(state, tau) or, with an `address`, in machine code; and what it raised."""
+    """A run with a law in Python or, with an `address`, in machine code; and what it raised.
+
+    One in Python has a `memory`: law.answer(t) returns the torque for the state that stands there.
+    """
     native = hasattr(law, "address")
-    given = ffi.cast("arm3r_law", int(law.address)) if native else arm3r_python_law
-    user = ffi.cast("void *", int(law.user)) if native else ffi.NULL
+    given = ffi.cast("arm3r_law", int(law.address)) if native else _python_law
+    user = ffi.cast("void *", int(law.user)) if native else law.memory.user
     here = _InProgress(progress, law)
     with here:
         run = create("run", lib.arm3r_scenario_control, scenario, given, user, _run_options(time_limit))
@@ -560,6 +603,7 @@ class SimulationView:
     def __init__(self, simulation: Any) -> None:
         self._simulation = simulation
         self._struct, self._tau = ffi.new("arm3r_law_state *"), ffi.new("double[3]")
+        self._torque = _as_doubles(self._tau)
         self.memory, self.over = StateMemory(self._struct), ffi.new("int32_t *")
         self.look()
 
@@ -569,7 +613,7 @@ class SimulationView:
 
     def advance(self, torque: Any) -> int:
         """Apply a torque until the next sample; the status of the library. NoTorque: it is not three numbers."""
-        put_torque(torque, self._tau)
+        put_torque(torque, self._torque)
         return lib.arm3r_simulation_advance(self._simulation, self._tau, self._struct, self.over)
 
 

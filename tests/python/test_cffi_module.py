@@ -16,7 +16,7 @@ import numpy as np
 import arm3r_cpp as arm3r
 from arm3r_cpp import _arm3r, _native
 
-assert _arm3r.__file__.endswith("_arm3r.py") and not hasattr(_native.lib, "arm3r_python_law")
+assert _arm3r.__file__.endswith("_arm3r.py") and not hasattr(_native.lib, "arm3r_python_tick")
 run = arm3r.Scenario.example("moving_wall").run()
 print(run.summary["hash"])
 user = arm3r.Scenario("format: 1\\ntime: {stop: 0.1}\\n")

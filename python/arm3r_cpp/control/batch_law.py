@@ -116,6 +116,7 @@ class _Caller:
     def __call__(self, run: int, struct: Any, tau: Any) -> int:
         if run != self.run:
             self.run, self.adapter = run, None
-            self.adapter = LawAdapter(self._law_of(run))
+            self.adapter = LawAdapter(self._law_of(run), _native.StateMemory(struct))
         assert self.adapter is not None
-        return self.adapter.call(struct, tau)
+        _native.put_torque(self.adapter.answer(struct.t), tau)
+        return 0

@@ -42,41 +42,43 @@ def law_state_index() -> dict[str, int]:
     return _native.state_index()
 
 
-_new = object.__new__
-
-
 class LawAdapter:
-    """Calls a law at each sample as the library calls it, and keeps what the message of an error needs."""
+    """Asks a law at each sample, and keeps what the message of an error needs. `state`: where its state stands."""
 
-    def __init__(self, law: Law) -> None:
+    def __init__(self, law: Law, state: _native.StateMemory) -> None:
         self.law = law
-        self._memory: _native.StateMemory | None = None
+        self._memory = state
+        self._first: float | None = None
         self._period = 1.0
-        self._first = 0.0
         self.t = 0.0
         self.received: Any = None
 
-    def call(self, struct: Any, tau: Any) -> int:
-        """Write the law's torque for a state, both in the library's memory."""
-        memory = self._memory
-        if memory is None:
-            memory = self._memory = _native.StateMemory(struct)
-            self._period, self._first = struct.period, struct.t
-        self.t = t = struct.t
+    def answer(self, t: float) -> Any:
+        """What the law returns for the state of the sample at t, s."""
+        if self._first is None:
+            self._first, self._period = t, self._memory.struct.period
+        self.t = t
         self.received = None
-        state = _new(LawState)
-        state._now = memory
+        state = LawState()
+        state._now = self._memory
         try:
             self.received = received = self.law(t, state)
         finally:
             state._now = OVER
-        _native.put_torque(received, tau)
-        return 0
+        return received
 
     @property
     def tick(self) -> int:
         """The number of the last tick."""
-        return round((self.t - self._first) / self._period)
+        return round((self.t - (self._first or 0.0)) / self._period)
+
+
+class _SingleLaw(LawAdapter):
+    """The law of a single run, with the memory that it shares with the library."""
+
+    def __init__(self, law: Law) -> None:
+        self.memory = _native.LawMemory()
+        super().__init__(law, self.memory.state)
 
 
 def run_with_law(
@@ -90,9 +92,9 @@ def run_with_law(
     if not callable(controller):
         raise UsageError(f"controller: a function of (t, state) is needed, got {controller!r}", code="usage")
     limit = None if time_limit is None else TimeLimit(controller, time_limit)
-    adapter = LawAdapter(limit or controller)
+    adapter = _SingleLaw(limit or controller)
     with limit or nullcontext():
-        run, raised = _native.control(handle, adapter.call, progress=progress, time_limit=time_limit)
+        run, raised = _native.control(handle, adapter, progress=progress, time_limit=time_limit)
     if raised is not None and not isinstance(raised, (Exception, TimeLimitReached)):
         raise raised
     ended = Run._of(run)
