@@ -175,6 +175,21 @@ def test_a_row_where_a_torque_changes_shows_the_new_one(method: str, rate: float
     assert not stale, (len(stale), stale[:5])
 
 
+@pytest.mark.parametrize("method", ["dopri5", "rodas4", "auto", "taylor"])
+@pytest.mark.parametrize(
+    ("rate", "delay", "start", "stop"),
+    [(500, 1.4, 0, 0.7848), (200, 1.4, -0.25, 0.057), (500, 2, 2.3, 2.466), (500, 0.4, 0.1, 0.6808)],
+)
+def test_the_last_step_is_longer_than_the_rounding_errors_of_the_clock(
+    method: str, rate: float, delay: float, start: float, stop: float
+) -> None:
+    """Where a torque comes to act at the end of the run but for rounding: the tip is differentiated over that step."""
+    changes = {"sampling": {"rate": rate, "delay": delay}, "time": {"start": start, "stop": stop, "log_every": 0.01}}
+    run = scenario(SAMPLED, {**changes, "solver": {"method": method}}).run()
+    for axis in "xyz":
+        assert run[f"tip_dv{axis}"][-1] == pytest.approx(run[f"tip_v{axis}"][-1], abs=1e-7)
+
+
 def test_a_jump_within_a_fixed_step_is_warned_of() -> None:
     def warnings(start: float, method: str) -> list[str]:
         changes = {"push": {"force": [9, -4, 6], "start": start}, "time.stop": 0.5, "solver": {"method": method}}

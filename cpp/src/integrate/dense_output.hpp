@@ -36,10 +36,12 @@ struct DenseOutput {
         for (std::size_t i = 0; i < from.c.size(); ++i) std::copy(from.c[i].begin(), from.c[i].end(), c[i].begin());
     }
 
+    bool is_series() const { return order >= 0; }
+
     // One component at theta in [0, 1] of the step: at one instant or at several in one pack.
     template <class S>
     ARM3R_INLINE S component(std::size_t i, const S& theta) const {
-        return order < 0 ? interpolated(c, i, theta) : summed(i, S(theta * h));
+        return is_series() ? summed(i, S(theta * h)) : interpolated(c, i, theta);
     }
 
     FullState operator()(double theta) const { return first(size, theta); }

@@ -39,7 +39,8 @@ ARM3R_INLINE std::array<Vec3<double>, 4> tip_around(const Arm<double>& arm, cons
 
 template <class T>
 ARM3R_INLINE Vec3<T> differentiated_tip(const Arm<double>& arm, const DenseOutput& dense, const T& theta) {  // (5.4)
-    const double d = std::max(dense.h * stencil, std::min(min_stencil, 0.25 * dense.h));
+    const double longest = dense.is_series() ? infinite : 0.25 * dense.h;  // a series holds beyond the step, too
+    const double d = std::max(dense.h * stencil, std::min(min_stencil, longest));
     const std::array<Vec3<T>, 4> tip = tip_around(arm, dense, theta, d / dense.h);
     Vec3<T> v;
     for (int i = 0; i < 3; ++i) v[i] = (8.0 * (tip[2][i] - tip[1][i]) - (tip[3][i] - tip[0][i])) / (12 * d);
