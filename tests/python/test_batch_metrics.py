@@ -45,6 +45,17 @@ def test_each_metric_alone_is_that_of_the_whole_table(profile: str, solver: str)
         assert np.array_equal(alone[name], whole[name], equal_nan=True), name
 
 
+@pytest.mark.parametrize("solver", [SOLVERS[0], SOLVERS[2]])  # taylor has no series of a plate that turns
+def test_the_path_error_alone_knows_how_the_plate_has_turned(solver: str) -> None:
+    """Along its normal a force law has none, at the middle of a step either."""
+    scenario = hybrid(PROFILES[1], solver)
+    scenario["wall.rotation"] = {"type": "sinusoid", "axis": [0.2, 1, 0.4], "amplitude": 0.3, "frequency": 2}
+    whole = scenario.batch(STIFFNESS)
+    assert (whole["tip_path_error_rms"] > 1e-6).all()
+    for name in ("tip_path_error_rms", "tip_path_error_max"):
+        assert np.array_equal(scenario.batch(STIFFNESS, metrics=[name])[name], whole[name]), name
+
+
 def test_the_columns_stand_in_the_order_of_the_table_with_the_outcome() -> None:
     batch = hybrid().batch(STIFFNESS, metrics=("work_1", "peak_force", "peak_force"))
     assert batch.names == list(batch.units) == ["outcome", "peak_force", "work_1"]

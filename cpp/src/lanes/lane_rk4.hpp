@@ -438,7 +438,7 @@ private:
         const Vec3<T> q(y[0], y[1], y[2]), qd(y[3], y[4], y[5]);
         WallState<T> wall = no_wall<T>();
         Indentation<T> in{};
-        if (this->plant_.has_wall && (N != state_size || this->performance_.tracked().force)) {
+        if (this->samples_wall() || (N != state_size && this->plant_.has_wall)) {
             if constexpr (terms == Terms::common) {
                 wall = even_wall_at(this->plant_.wall, t);
                 in.depth = indentation_at_rest(this->plant_.wall, wall, tip_position(this->plant_.arm, p)).depth;

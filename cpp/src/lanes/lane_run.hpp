@@ -212,6 +212,12 @@ protected:
         performance_.begin(instant(), contact_.touching(), force_phase);
     }
 
+    // Whether a sample within a step needs the wall: for the force, or for the normal of a plate that turns, along which a
+    // force law has no path error.
+    ARM3R_INLINE bool samples_wall() const {
+        return plant_.has_wall && (performance_.tracked().force || plant_.wall.rotation != Rotation::none);
+    }
+
     // J: of each held torque, in a step from y0 to y1.
     ARM3R_INLINE static Vec3<T> work_of_held(const Vec3<T>& tau, const Y& y0, const Y& y1) {
         return {tau[0] * (y1[0] - y0[0]), tau[1] * (y1[1] - y0[1]), tau[2] * (y1[2] - y0[2])};

@@ -334,7 +334,7 @@ private:
         const Pose<T> p = pose(q);
         WallState<T> wall = no_wall<T>();
         Indentation<T> in{};
-        if (this->plant_.has_wall && this->performance_.tracked().force) {
+        if (this->samples_wall()) {
             wall = wall_at(this->plant_.wall, t);
             in = tip_indentation(this->plant_, wall, p, qd);
         }
