@@ -19,11 +19,8 @@ SIZE = 1e-7
 """of the disturbance: rad, rad/s and m, and ten times as much in m/s^2 of gravity"""
 FLOOR = SIZE
 """of what may differ, in a column's unit and relative to its largest value: some columns feel no disturbance"""
-NOISY = {"tip_dv": 100.0, "f_estimate": 1000.0, "stiffness_estimate": 10.0, "wall_speed_estimate": 10.0}
-"""times the floor: the error of an interpolant's slope, a residual over a Jacobian that is singular to 1e-3, and the
-rounding errors of a sum, times the condition of the data"""
-UNSTABLE = 1e5
-"""growth beyond which two runs of a scenario have nothing in common: 1e-7 rad have become 0.01"""
+NOISY = {"tip_dv": 100.0, "f_estimate": 1000.0}
+"""times the floor: the error of an interpolant's slope, and a residual over a Jacobian that is singular to 1e-3"""
 TIMES_OWN_ERROR = 5.0
 """how much larger the error of a method of fixed steps may be than the differences between its runs with other steps"""
 
@@ -106,8 +103,8 @@ class Band:
 
     @property
     def growth(self) -> float:
-        """By how much a disturbance of the joint angles and rates has grown at the end."""
-        return max(self.limits[name][-1] for name in ("q1", "q2", "q3", "qd1", "qd2", "qd3")) / SIZE
+        """By how much a disturbance of the joint angles has grown at the end."""
+        return max(self.limits[name][-1] for name in ("q1", "q2", "q3")) / SIZE
 
     def gap(self, other: arm3r.Run, own: OwnError | None = None) -> Gap:
         """Where another run leaves the band most, which its own error, where it is known, widens."""
@@ -145,7 +142,7 @@ class OwnError(NamedTuple):
     The steps are no multiples of one another and none of a millisecond: a contact that begins just before the end of a
     step must not begin just before the end of a step in every run. Up to one step away from such an instant, and from
     an estimate that is due between two steps, the controller knows of it at the end of the step only: these rows say
-    nothing. Nor do those with a depth that is less than its error: there may be contact or none.
+    nothing.
     """
 
     columns: dict[str, np.ndarray]
@@ -157,9 +154,6 @@ class OwnError(NamedTuple):
         """From the run with the smallest step and those with others, of which `step` is the longest."""
         late = [t for run in (finest, *others) for t in instants(run)] + estimates_between_steps(scenario)
         rows = np.all([abs(finest.t - t) > step for t in late], axis=0) if late else np.ones(len(finest.t), bool)
-        if "depth" in finest.columns:
-            apart = np.max([abs(run["depth"] - finest["depth"]) for run in others], axis=0)
-            rows &= abs(finest["depth"]) > TIMES_OWN_ERROR * np.maximum.accumulate(apart)
         # An error may turn a rounded reading into the next one.
         quanta = {"force_measured": scenario.get("sensors", {}).get("force", {}).get("resolution", 0.0)}
 

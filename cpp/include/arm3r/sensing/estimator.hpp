@@ -101,8 +101,8 @@ private:
         return sqrt(forward * backward);
     }
 
-    // A thousand rounding errors, as a share of the force: times the condition, what position explains at least of a force
-    // that depends on it.
+    // A force depends on position if position explains at least this share of it, times the condition of the data: a
+    // thousand rounding errors.
     static constexpr double rounding = 1e3 * std::numeric_limits<double>::epsilon();
 
     int size_ = 3;
