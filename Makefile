@@ -21,7 +21,7 @@ PIP     := $(BIN)/python -m pip --disable-pip-version-check install --no-compile
 # Each worker has one core; threads of numpy's linear algebra would take turns with those of the other workers.
 PYTEST  := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -n $(CMAKE_BUILD_PARALLEL_LEVEL) --dist worksteal
 
-.PHONY: run test gates page docs wheels dist bench bench-avx2 format lint clean
+.PHONY: run test gates seeds page docs wheels dist bench bench-avx2 format lint clean
 
 run: $(VENV)/installed
 	mkdir -p out
@@ -37,9 +37,20 @@ test: $(VENV)/boost
 	$(PYTEST) || failed=1; \
 	exit $$failed
 
+# Interrupted, it goes on where it was when it is called again with the same seed, as long as no file that git knows has changed.
+SEED = $(or $(ARM3R_SEED),$(shell date +%Y%m%d))
+TREE = $(shell git rev-parse "$$(git stash create | grep . || echo HEAD)^{tree}")
 gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests wheels
-	ARM3R_SEED=$${ARM3R_SEED:-$$(date +%Y%m%d)} ARM3R_SAMPLE=all $(PYTEST) -m "gate or sample"
+	@echo "If this is interrupted, make gates ARM3R_SEED=$(SEED) goes on."
+	ARM3R_SEED=$(SEED) ARM3R_SAMPLE=all ARM3R_RESUME=build/gates/$(SEED)-$(TREE).passed $(PYTEST) -m "gate or sample"
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
+
+# The gates that draw their cases at random, with four seeds that nobody chose, a quarter of an hour each.
+seeds: $(VENV)/test
+	@for seed in $$($(BIN)/python -c "import secrets; print(*(secrets.randbits(31) for _ in range(4)))"); do \
+	  echo "ARM3R_SEED=$$seed"; \
+	  ARM3R_SEED=$$seed ARM3R_MINUTES=15 $(PYTEST) -m "gate and random" || exit 1; \
+	done
 
 # The live page, into build/page: needs node with npm.
 page: build/page/arm3r.wasm

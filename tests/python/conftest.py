@@ -14,7 +14,9 @@ from types import ModuleType
 import arm3r_cpp as arm3r
 import parts
 import pytest
+import resuming
 import sampling
+import time_box
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell that starts tests in the background ignores it
 
@@ -24,7 +26,8 @@ PACKAGE = Path(arm3r.__file__).parent
 
 def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(parts)
-    config.pluginmanager.register(sampling)
+    for plugin in (sampling, resuming, time_box):
+        config.pluginmanager.register(plugin)
 
 
 def scenario_files() -> list[Path]:

@@ -150,6 +150,7 @@ def test_the_parts_of_random_scenarios_add_up() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_the_parts_of_many_random_scenarios_add_up() -> None:
     assert not (text := check_random(2000)), text
 

@@ -10,9 +10,10 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from force_scenarios import read
+from random_scenarios import sample_seed
 
 RTOL = 1e-10
-SEED = 20260422
+SEED = sample_seed()
 SAMPLED = ("energy_tank", "virtual_wall")
 CONTINUOUS = (
     "gravity_compensation", "joint_pd", "stiffness", "joint_stiffness", "impedance", "shaped_impedance", "energy_tank",
@@ -154,11 +155,13 @@ def test_random_laws_create_no_energy_in_samples() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_many_random_laws_create_no_energy() -> None:
     check_random(200 * len(CONTINUOUS), CONTINUOUS, sampled=False)
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_many_random_laws_create_no_energy_in_samples() -> None:
     check_random(200 * len(SAMPLED), SAMPLED, sampled=True)
 

@@ -87,6 +87,7 @@ def test_methods_agree() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_methods_agree_in_many(part: int) -> None:
     check(range(1000 + 500 * part, 1500 + 500 * part), longest=1.2, methods=METHODS)

@@ -134,6 +134,7 @@ def test_no_extreme_of_a_key_puts_what_is_no_number_into_a_row(root: Path) -> No
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_no_extreme_of_any_key_puts_what_is_no_number_into_a_row(root: Path) -> None:
     _hold_extremes(root, scenarios=200, each=None)
 
@@ -272,6 +273,7 @@ def test_the_energy_balance_of_random_scenarios_closes() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_the_energy_balance_of_many_random_scenarios_closes() -> None:
     _hold_balance(scenarios=5000, limits={0.999: 10})
 

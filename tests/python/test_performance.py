@@ -432,6 +432,7 @@ def test_numbers_of_random_runs_are_those_of_their_rows() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_numbers_of_many_random_runs_are_those_of_their_rows() -> None:
     check_random_scenarios(300)
 

@@ -133,6 +133,7 @@ def test_a_batch_is_its_runs() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 @pytest.mark.parametrize("part", range(5))
 def test_many_batches_are_their_runs(part: int) -> None:
     assert not (text := found_in(range(1000 + 200 * part, 1200 + 200 * part), wrong_in_batch)), text
@@ -190,6 +191,7 @@ time: {stop: 0.094751}
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_many_rows_do_not_depend_on_the_others() -> None:
     assert not (text := found_in(range(1000, 2000), wrong_in_rows)), text
 
@@ -242,6 +244,7 @@ def test_a_run_step_by_step_is_the_run() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_many_runs_step_by_step_are_the_run() -> None:
     text = found_in(range(1000, 1500), wrong_in_steps, law="gravity_compensation", sampled=True)
     assert not text, text

@@ -73,6 +73,7 @@ def test_both_conventions_give_the_same_bits() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_both_conventions_give_the_same_bits_in_many() -> None:
     check_mirror(range(1000, 2000), longest=1.2)
 
@@ -166,5 +167,6 @@ def test_a_turned_world_gives_the_turned_run() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_many_turned_worlds_give_the_turned_runs() -> None:
     check_turn(range(1000, 2000), longest=1.2)

@@ -198,6 +198,7 @@ def test_random_scenarios_do_not_know_what_time_it_is() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_many_random_scenarios_do_not_know_what_time_it_is() -> None:
     hold_random(300)
 

@@ -308,6 +308,7 @@ def test_mistakes_by_a_foreign_tool_are_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
     outcomes = counted(60, SEED + part, tmp_path, foreign=True, name=f"foreign_{part}")
@@ -316,6 +317,7 @@ def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
     outcomes = counted(100, SEED + part, tmp_path, name=f"single_{part}")
@@ -324,6 +326,7 @@ def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 @pytest.mark.parametrize("part", range(5))
 def test_many_pairs_of_mistakes(part: int, tmp_path: Path) -> None:
     outcomes = counted(60, SEED + part, tmp_path, two=True, name=f"pairs_{part}")
@@ -352,6 +355,7 @@ def test_equivalent_programs_raise_no_alarm(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_no_alarm_on_ten_thousand_right_programs(part: int, tmp_path: Path) -> None:
     no_alarms(1000, SEED + part, tmp_path, name=f"alarms_{part}")
