@@ -79,6 +79,8 @@ def _in_the_loop(task: FunctionTask, formula: Formula, mark: Mark) -> Mark:
     try:
         word, off = task.loop.judged(function)
     except ControllerError as error:
+        if isinstance(error.__cause__, Unjudged):
+            return Mark(UNCLEAR, f"{str(error.__cause__).split(':')[0]} in the loop")
         if mark.word == RIGHT:
             return Mark(WRONG, "right at single states, and fails in the loop", message=one_line(str(error), 400))
         return mark
