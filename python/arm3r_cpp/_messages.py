@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import sys
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,6 +18,33 @@ def place(file: object, line: int = 0, column: int = 0) -> str:
     return ":".join(str(part) for part in (file, line, column) if part)
 
 
+_INVISIBLE = re.compile(
+    "[\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2800\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef]"
+)
+"""What Python takes for printable, and nobody sees."""
+
+
+def shown(text: str) -> str:
+    """Foreign text on one line, as it can do no harm to a terminal, a table or a page, nor pass for another line.
+
+    Escaped, as Python writes them, are line breaks and controls, what turns the direction of writing, what has no width,
+    and halves of characters.
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(c if c.isprintable() and not _INVISIBLE.match(c) else _escaped(c) for c in text)
+
+
+def _escaped(character: str) -> str:
+    return ascii(character)[1:-1]
+
+
+def as_json(value: object) -> str:
+    """JSON to be read by people too: letters of all languages stay, and what `shown` escapes is escaped."""
+    text = json.dumps(value, indent=2, ensure_ascii=False)
+    return "".join(c if c == "\n" or shown(c) == c else json.dumps(c)[1:-1] for c in text)
+
+
 def describe(problem: Mapping[str, Any]) -> str:
     """A problem as the library lists it in one line.
 
@@ -27,7 +56,7 @@ def describe(problem: Mapping[str, Any]) -> str:
     path = f"{problem['path']}: " if problem["path"] else ""
     where = place(problem["file"], problem["line"], problem["column"])
     line = f"{where}: error[{problem['code']}]: {path}{problem['message']}{got}{allowed}{hint}"
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
+    return shown(line)
 
 
 def did_you_mean(word: str, words: Iterable[str]) -> str:

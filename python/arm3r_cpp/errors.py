@@ -39,6 +39,10 @@ class UsageError(Arm3rError, ValueError):
     """An argument is not usable: out of range, out of reach, or a file that cannot be read."""
 
 
+class UnjudgedError(UsageError):
+    """A formula cannot be judged: it is not read, is too slow, or breaks the connection to its judge."""
+
+
 class ColumnError(UsageError, KeyError):
     """A run or a table has no column of this name."""
 

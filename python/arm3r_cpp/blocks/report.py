@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._messages import in_columns
+from .._messages import in_columns, shown
 
 if TYPE_CHECKING:
     from ..run import Run
@@ -19,7 +19,7 @@ OTHER_CONVENTION = 1e-6
 
 def report(beside: Comparison) -> str:
     """The lines behind the summary of the user's run."""
-    lines = [f"  controller      {beside.name}"]
+    lines = [f"  controller      {shown(beside.name)}"]
     if beside.true is None:
         return "\n".join([*lines, "  beside it       nothing: the scenario has no controller of its own"])
     ended = "" if beside.true.outcome == "ok" else f", which ended as {beside.true.outcome}"

@@ -64,4 +64,6 @@ def _call(module: str) -> int:
 
 
 def _say(message: object, *_: object) -> None:
-    print(f"warning: {message}", file=sys.stderr)
+    from .._messages import shown
+
+    print(f"warning: {shown(str(message))}", file=sys.stderr)

@@ -10,23 +10,26 @@ from typing import TYPE_CHECKING, Any
 
 from .._progress_bar import Bar
 from ..errors import UsageError
-from .exit_codes import WRONG_FORMULA, attempt, print_line
+from .exit_codes import UNJUDGED, WRONG_FORMULA, attempt, print_line, say
 
 if TYPE_CHECKING:
     from ..exercises.task import Task
+
+PROGRAM = "arm3r-exercise"
+_CODES = {"right": 0, "wrong": WRONG_FORMULA, "unclear": UNJUDGED}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-exercise`; argv without the program's name. Returns one of the exit codes of `arm3r`."""
     options = parser().parse_args(sys.argv[1:] if argv is None else argv)
     marks: list[str] = []
-    code = attempt("arm3r-exercise", lambda: options.do(options, marks))
-    return code or (WRONG_FORMULA if marks and marks != ["right"] else 0)
+    code = attempt(PROGRAM, lambda: options.do(options, marks))
+    return code or max((_CODES[word] for word in marks), default=0)
 
 
 def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="arm3r-exercise",
+        prog=PROGRAM,
         description="Exercises about the lecture's arm, with marking; docs/exercises.md is the lab sheet.",
     )
     calls = parser.add_subparsers(title="calls", metavar="CALL", required=True)
@@ -40,7 +43,7 @@ def parser() -> argparse.ArgumentParser:
     add = call("show", show, "print an exercise: what is asked, and what is given")
     add("name", metavar="NAME")
     add("--given", action="store_true", help="print only what is given: the file to begin with")
-    add = call("check", check, "judge a file: exit code 0 if it is right, 11 if not")
+    add = call("check", check, "judge a file: exit code 0 if it is right, 11 if it is wrong, 12 if that is unclear")
     add("name", metavar="NAME")
     add("file", metavar="FILE", type=Path, help="a function in Python or MATLAB, or a scenario")
     add("--hint", metavar="GRADE", type=int, choices=(1, 2, 3), default=0, help="say more: 1, 2 or 3")
@@ -97,7 +100,7 @@ def mark(options: argparse.Namespace, _: list[str]) -> None:
     if options.out != "-":
         check_folder(Path(options.out).parent)
     for note in notes(options.folder, list(TASKS.values())):
-        say(note)
+        say(PROGRAM, note)
     if runs_code(found):
         ask_for_trust(options.trust_code)
     bar = Bar("mark", "files")
@@ -139,13 +142,8 @@ def say_what_is_not_barred() -> list[str]:
 
     unbarred = what_is_not_barred()
     if unbarred:
-        say(f"this system cannot bar a submission from: {', '.join(unbarred)}")
+        say(PROGRAM, f"this system cannot bar a submission from: {', '.join(unbarred)}")
     return unbarred
-
-
-def say(line: str) -> None:
-    printable = "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
-    print(f"arm3r-exercise: {printable}", file=sys.stderr)
 
 
 if __name__ == "__main__":

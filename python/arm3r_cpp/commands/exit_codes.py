@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 
+from .._messages import shown
 from ..errors import (
     Arm3rError,
     BudgetError,
@@ -13,6 +14,7 @@ from ..errors import (
     NumericalError,
     OutputError,
     ScenarioError,
+    UnjudgedError,
     UsageError,
 )
 from ..system.processes import end_by_closed_pipe, end_by_interrupt
@@ -20,7 +22,9 @@ from ..system.processes import end_by_closed_pipe, end_by_interrupt
 FAILED_RUNS = 7
 FAILED_CHECK = 10
 WRONG_FORMULA = 11
+UNJUDGED = 12
 _CODES: dict[type[Arm3rError], int] = {
+    UnjudgedError: UNJUDGED,  # before its base
     UsageError: 2,
     ScenarioError: 3,
     NumericalError: 4,
@@ -40,24 +44,31 @@ def attempt(program: str, work: Callable[[], None]) -> int:
     try:
         work()
     except Arm3rError as error:
-        print(f"{program}: {error}", file=sys.stderr)
+        say(program, error)
         return exit_code(error)
     except ModuleNotFoundError as error:
-        print(f"{program}: needs {error.name}, which is not installed: pip install {error.name}", file=sys.stderr)
+        say(program, f"needs {error.name}, which is not installed: pip install {error.name}")
         return exit_code(UsageError(str(error)))
     except KeyboardInterrupt:
         end_by_interrupt()
     return 0
 
 
+def say(program: str, message: object) -> None:
+    """Print a message on stderr: one line, whatever foreign text it holds; or a line for each problem of a scenario."""
+    text = str(message)
+    lines = text.split("\n") if isinstance(message, ScenarioError) else [text]
+    print("\n".join(map(shown, [f"{program}: {lines[0]}", *lines[1:]])), file=sys.stderr, flush=True)
+
+
 def print_line(line: object) -> None:
-    """Print a line on stdout. If its reader has closed the pipe, end by SIGPIPE.
+    """Print text on stdout: its lines, and what else is not printable escaped. If its reader has closed the pipe, end by SIGPIPE.
 
     Raises:
         OutputError: it cannot be written.
     """
     try:
-        print(line, flush=True)
+        print("\n".join(map(shown, str(line).split("\n"))), flush=True)
     except OSError as error:
         sys.stdout = None  # else Python tries again when it ends
         if isinstance(error, BrokenPipeError):

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._files import make_folder
+from .._messages import as_json, shown
 from .._progress_bar import Bar
 from ..errors import Arm3rError, UsageError
 from .exit_codes import FAILED_CHECK, attempt, exit_code, print_line
@@ -66,9 +67,9 @@ def run_all(options: argparse.Namespace) -> list[int]:
         if not options.json:
             say(("\n" if len(codes) > 1 else "") + beside.yours.report() + str(beside))
         if beside.failure:
-            print_error(f"{PROGRAM}: {beside.failure}")
+            print_error(f"{PROGRAM}: {shown(str(beside.failure))}")
     if options.json:
-        say(json.dumps(found if len(found) > 1 else found[0], indent=2, ensure_ascii=False))
+        say(as_json(found if len(found) > 1 else found[0]))
     elif len(found) > 1:
         say(f"\n{len(found)} runs, {sum(map(bool, codes))} not ok")
     return codes

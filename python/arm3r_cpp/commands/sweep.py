@@ -11,7 +11,9 @@ from typing import Any
 from .._progress_bar import Bar
 from ..errors import Arm3rError
 from ..system.processes import end_by_interrupt
-from .exit_codes import FAILED_RUNS, exit_code, print_line
+from .exit_codes import FAILED_RUNS, exit_code, print_line, say
+
+PROGRAM = "arm3r-sweep"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -33,11 +35,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         print_line(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
     except Arm3rError as error:
         bar.clear()
-        print(f"arm3r-sweep: {error}", file=sys.stderr)
+        say(PROGRAM, error)
         return exit_code(error)
     except KeyboardInterrupt:
         bar.clear()
-        print(f"arm3r-sweep: interrupted; --resume goes on in {options.out}", file=sys.stderr)
+        say(PROGRAM, f"interrupted; --resume goes on in {options.out}")
         end_by_interrupt()
     return FAILED_RUNS if failed else 0
 
@@ -45,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     from .._native import version
 
-    parser = argparse.ArgumentParser(prog="arm3r-sweep", description="Run a sweep: a table with one row a run.")
+    parser = argparse.ArgumentParser(prog=PROGRAM, description="Run a sweep: a table with one row a run.")
     add = parser.add_argument
     add("sweep", metavar="SWEEP.yaml", help="scenario, axes, and what is kept; see docs/sweeps.md")
     add("-o", dest="out", metavar="DIR", required=True, help="folder of the sweep: its table and its finished shards")
@@ -70,7 +72,7 @@ class _PrintSchema(argparse.Action):
 
 
 def _say(message: Warning | str, *_: Any) -> None:
-    print(f"arm3r-sweep: {message}", file=sys.stderr)
+    say(PROGRAM, str(message))
 
 
 if __name__ == "__main__":

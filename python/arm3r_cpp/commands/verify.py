@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from .._messages import as_json
 from .._progress_bar import Bar
 from ..errors import Arm3rError
-from .exit_codes import WRONG_FORMULA, attempt, print_line
+from .exit_codes import UNJUDGED, WRONG_FORMULA, attempt, exit_code, print_line, say
 
 if TYPE_CHECKING:
     from ..verify.verdict import Verdict
 
+PROGRAM = "arm3r-verify"
 KINDS = ("jacobian", "gravity", "kinematics", "mass", "coriolis", "inverse", "forward", "controller")
 
 EXAMPLES = """\
@@ -30,15 +31,16 @@ A file holds a function of the joint angles that returns numbers: in Python `def
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-verify`; argv without the program's name. Returns an exit code, one of those of `arm3r`."""
     options = parser().parse_args(sys.argv[1:] if argv is None else argv)
-    verdicts: list[Verdict] = []
-    code = attempt("arm3r-verify", lambda: verify(options, verdicts))
-    return code or (0 if all(verdict.ok for verdict in verdicts) else WRONG_FORMULA)
+    codes: list[int] = []
+    code = attempt(PROGRAM, lambda: verify(options, codes))
+    return code or next((one for one in (WRONG_FORMULA, UNJUDGED) if one in codes), max(codes, default=0))
 
 
 def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="arm3r-verify",
-        description="Judge formulas of the arm: exit code 0 if all are right, 11 if one is wrong.",
+        prog=PROGRAM,
+        description="Judge formulas of the arm: exit code 0 if all are right, 11 if one is wrong, 12 if one "
+        "cannot be judged.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -60,8 +62,8 @@ def parser() -> argparse.ArgumentParser:
     return parser
 
 
-def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
-    """Judge each formula; a file that cannot be read ends it."""
+def verify(options: argparse.Namespace, codes: list[int]) -> None:
+    """Judge each formula: its exit code. What one cannot be judged for is said, and the others are judged."""
     from ..verify.functions import Chain, formula_verdict, truth_of
     from ..verify.program.python_process import PythonProcess
 
@@ -70,7 +72,7 @@ def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
     arm: Any = truth_of(options.arm)
     if options.urdf or options.dh:
         arm = Chain.from_urdf(options.urdf) if options.urdf else Chain.from_dh(options.dh)
-    failure: Arm3rError | None = None
+    verdicts: list[Verdict] = []
     for formula in options.formulas:
         bar = Bar("repair", "edits")
         try:
@@ -78,19 +80,19 @@ def verify(options: argparse.Namespace, verdicts: list[Verdict]) -> None:
                 formula, options.kind, arm, seen_by=options.seen_by, progress=bar.draw, noise=options.noise
             )
         except Arm3rError as error:
-            failure = failure or error
+            say(PROGRAM, error)
+            codes.append(exit_code(error))
             continue
         finally:
             bar.clear()
         verdicts.append(verdict)
+        codes.append(0 if verdict.ok else WRONG_FORMULA)
         if not options.json:
             print_line(verdict)
     if options.json:
-        print_line(json.dumps([verdict.to_dict() for verdict in verdicts], indent=2, ensure_ascii=False))
-    elif len(verdicts) > 1 or not all(verdict.ok for verdict in verdicts):
+        print_line(as_json([verdict.to_dict() for verdict in verdicts]))
+    elif verdicts and (len(verdicts) > 1 or not verdicts[0].ok):
         print_line(summary(verdicts))
-    if failure:
-        raise failure
 
 
 def say_once(unbarred: list[str]) -> None:
@@ -98,7 +100,7 @@ def say_once(unbarred: list[str]) -> None:
     from ..verify.program.python_process import PythonProcess
 
     PythonProcess.report = None
-    print(f"arm3r-verify: this system cannot bar a formula from: {', '.join(unbarred)}", file=sys.stderr)
+    say(PROGRAM, f"this system cannot bar a formula from: {', '.join(unbarred)}")
 
 
 def summary(verdicts: Sequence[Verdict]) -> str:

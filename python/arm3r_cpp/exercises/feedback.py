@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
+from .._messages import shown
 from .mark import RIGHT, Mark
 from .task import Task
 
@@ -22,14 +23,14 @@ def described(task: Task) -> str:
 
 def answer(task: Task, file: str, mark: Mark, grade: int) -> str:
     """The mark of a file; where it is not right, the hints up to a grade. The second names a known mistake."""
-    lines = [f"{file}: {mark.word}{f': {mark.found}' if mark.found else ''}"]
+    lines = [f"{shown(file)}: {mark.word}{f': {mark.found}' if mark.found else ''}"]
     if mark.word == RIGHT:
         return lines[0]
     if mark.cause and grade >= 2:
         lines.append(f"  {mark.cause}")
     lines += [f"  hint {number}: {task.hints[number - 1]}" for number in GRADES[:grade]]
     if mark.message:
-        lines.append(textwrap.indent(mark.message, "  "))
+        lines += [f"  {shown(line)}" for line in mark.message.split("\n")]
     if grade < GRADES[-1]:
         lines.append(f"  --hint {grade + 1} says more")
     return "\n".join(lines)

@@ -19,7 +19,7 @@ from ..verify.formula import Formula, from_file
 from ..verify.judge import judge
 from ..verify.kinds import KINDS, standard_form
 from ..verify.names import quantities_of, slot_of
-from ..verify.program.nodes import Call, ProgramError
+from ..verify.program.nodes import Call, ProgramError, Unjudged
 from ..verify.program.python_process import PythonProcess
 from ..verify.samples import VECTORS, Samples
 from ..verify.truth.three_r import ThreeR
@@ -27,7 +27,6 @@ from .mark import RIGHT, UNCLEAR, WORDS, WRONG, Mark, one_line, word_of
 from .task import FunctionTask, Mistake
 
 THRESHOLD = 1e-6  # of an entry's scale
-_STOPPED = "takes too long"
 _NOT_READ = "is not read"  # a refusal of the MATLAB reader: the file may still be right
 
 
@@ -47,6 +46,8 @@ def judge_function(task: FunctionTask, path: Path, *, forbid_own_package: bool =
         values, again = _values(task, formula, states), _values(task, formula, states)
         mark = _mark(task, values, again, states)
         return _in_the_loop(task, formula, mark) if task.loop and mark.word != UNCLEAR else mark
+    except Unjudged as error:
+        return Mark(UNCLEAR, str(error).split(":")[0], message=one_line(str(error), 400))
     except (UsageError, ProgramError) as error:
         return _failed(error, path)
     except BudgetError as error:
@@ -78,6 +79,8 @@ def _in_the_loop(task: FunctionTask, formula: Formula, mark: Mark) -> Mark:
     try:
         word, off = task.loop.judged(function)
     except ControllerError as error:
+        if isinstance(error.__cause__, Unjudged):
+            return Mark(UNCLEAR, f"{str(error.__cause__).split(':')[0]} in the loop")
         if mark.word == RIGHT:
             return Mark(WRONG, "right at single states, and fails in the loop", message=one_line(str(error), 400))
         return mark
@@ -114,7 +117,7 @@ def _failed(error: UsageError | ProgramError, path: Path) -> Mark:
     """The mark of a file that cannot be read, or whose function fails."""
     message = str(error).replace(str(path), path.name)
     is_text = isinstance(error, UsageError)
-    is_unclear = _NOT_READ in message and path.suffix == ".m" if is_text else message.startswith(_STOPPED)
+    is_unclear = is_text and _NOT_READ in message and path.suffix == ".m"
     line = getattr(error, "line", None)
     text = f"line {line}: {message}" if line else message
     reason = _reason_of_text(message, path) if is_text else _reason_of_run(message, line, path)

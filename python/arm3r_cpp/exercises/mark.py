@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .._messages import shown
+
 RIGHT, WRONG, UNCLEAR, MISSING = "right", "wrong", "unclear", "missing"
 WORDS = (RIGHT, WRONG, UNCLEAR, MISSING)
 _ROOM = 10.0
@@ -41,8 +43,8 @@ def worst(words: list[str]) -> str:
 
 
 def one_line(text: str, longest: int = _LONGEST) -> str:
-    """The text without what could break a line, a table or a terminal, and not too long."""
-    line = "".join(c if c.isprintable() else " " for c in text).strip()
+    """The text as `shown` shows it, and not too long."""
+    line = shown(text.strip())
     return line if len(line) <= longest else f"{line[: longest - 3]}..."
 
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections import Counter
 from collections.abc import Sequence
 
+from .._messages import shown
 from .folder import Row
-from .mark import WORDS, one_line
+from .mark import WORDS
 
 COLUMNS = ("student", "task", "mark", "reason")
-_FORMULA = ("=", "+", "-", "@", "'")  # what a spreadsheet takes for the beginning of a formula, or of a text
+_FORMULA = re.compile(r"\s*[=+\-@'\uff1d\uff0b\uff0d\uff20]")  # what a spreadsheet takes for a formula, or a text
 
 
 def csv_of(rows: Sequence[Row]) -> str:
@@ -19,14 +21,15 @@ def csv_of(rows: Sequence[Row]) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     for row in rows:
-        writer.writerow(map(_cell, (row.student, row.task, row.mark.word, row.mark.reason)))
+        student = row.student.replace("\\", "\\\\")  # other names have other cells
+        writer.writerow(map(_cell, (student, row.task, row.mark.word, row.mark.reason)))
     return text.getvalue()
 
 
 def _cell(text: str) -> str:
     """The text as one line that a spreadsheet does not compute."""
-    line = one_line(text)
-    return f"'{line}" if line.startswith(_FORMULA) else line
+    line = shown(text)
+    return f"'{line}" if _FORMULA.match(line) else line
 
 
 def summary(rows: Sequence[Row]) -> str:

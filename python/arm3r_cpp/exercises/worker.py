@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import Arm3rError, UsageError
+from ..system.patience import SLICE, Patience
 from ..system.processes import bare_environment, end_with_descendants
 from ..verify.program.confinement import end_with_parent
 from ..verify.program.limits import limit_judge
@@ -25,7 +26,7 @@ from .task import FunctionTask, Task
 from .tasks import TASKS
 
 _START = "from arm3r_cpp.exercises.worker import main; main()"
-MOST_SECONDS = 300.0  # a right answer takes less than three
+MOST_SECONDS = 300.0  # of processor time; a right answer takes less than three
 
 
 def judge_apart(task: Task, path: Path, *, forbid_own_package: bool = False, with_reading: bool = False) -> Mark:
@@ -50,14 +51,26 @@ def judge_apart(task: Task, path: Path, *, forbid_own_package: bool = False, wit
         cwd="/",
     )
     try:
-        answer, _ = process.communicate(json.dumps(request).encode(), timeout=MOST_SECONDS)
-        return Mark(**json.loads(answer))
-    except subprocess.TimeoutExpired:
+        return Mark(**json.loads(_answer(process, json.dumps(request).encode())))
+    except TimeoutError:
         return Mark(UNCLEAR, "takes too long")
     except (ValueError, TypeError):
         return Mark(UNCLEAR, "ends the process that judges it")
     finally:
         _end(process)
+
+
+def _answer(process: subprocess.Popen[bytes], request: bytes) -> bytes:
+    """
+    Raises:
+        TimeoutError: it computes for too long, or waits.
+    """
+    patience = Patience(process.pid, MOST_SECONDS)
+    while True:
+        try:
+            return process.communicate(request, timeout=SLICE)[0]
+        except subprocess.TimeoutExpired:
+            patience.check()
 
 
 def what_is_not_barred() -> list[str]:

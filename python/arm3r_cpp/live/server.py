@@ -6,7 +6,6 @@ import webbrowser
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from urllib.parse import urlsplit
 
 from ..errors import UsageError
 from . import page
@@ -58,7 +57,7 @@ def _handler(index: bytes) -> type[BaseHTTPRequestHandler]:
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
             host, _, _ = self.headers.get("Host", "").rpartition(":")
-            content = content_of(urlsplit(self.path).path) if host in (HOST, "localhost") else None
+            content = content_of(self.path.partition("?")[0]) if host in (HOST, "localhost") else None
             if content is None:
                 self.send_error(HTTPStatus.NOT_FOUND)
                 return

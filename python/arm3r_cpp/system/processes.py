@@ -72,13 +72,32 @@ def end_with_descendants(pid: int) -> None:
             end(pid, signal.SIGKILL)
 
 
+def processor_time(pid: int) -> float | None:
+    """Seconds that a process, and all that it started, have computed; None where the system does not tell."""
+    every = _statistics()
+    if pid not in every:
+        return None
+    ticks = sum(sum(map(int, every[one][11:15])) for one in (pid, *_descendants_in(every, pid)))
+    return float(ticks / os.sysconf("SC_CLK_TCK"))
+
+
 def _descendants(ancestor: int) -> list[int]:
     """The processes that a process started, directly or not; orphans among them became its children."""
-    parents = {}
+    return _descendants_in(_statistics(), ancestor)
+
+
+def _statistics() -> dict[int, list[str]]:
+    """What Linux tells of each process behind its name: its state, its parent, ..., its own times and its children's."""
+    found = {}
     for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
         if name.isdigit():
-            with contextlib.suppress(OSError, ValueError, IndexError), open(f"/proc/{name}/stat") as file:
-                parents[int(name)] = int(file.read().rsplit(")", 1)[1].split()[1])
+            with contextlib.suppress(OSError, ValueError, IndexError), open(f"/proc/{name}/stat", "rb") as file:
+                found[int(name)] = file.read().rsplit(b")", 1)[1].decode().split()
+    return found
+
+
+def _descendants_in(every: dict[int, list[str]], ancestor: int) -> list[int]:
+    parents = {pid: int(words[1]) for pid, words in every.items()}
     found = {ancestor}
     while more := {child for child, parent in parents.items() if parent in found} - found:
         found |= more

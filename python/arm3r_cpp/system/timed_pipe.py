@@ -1,4 +1,4 @@
-"""A pipe that is read with a deadline."""
+"""A pipe that is read with patience for the process at its other end."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import os
 import select
 import sys
 import threading
-import time
 from queue import Empty, SimpleQueue
+
+from .patience import SLICE, Patience
 
 _AT_ONCE = 1 << 16  # bytes
 
@@ -19,21 +20,22 @@ class SelectedPipe:
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
 
-    def read(self, count: int, deadline: float) -> bytes:
+    def read(self, count: int, patience: Patience) -> bytes:
         """As many bytes.
 
         Args:
-            deadline: on the clock of `time.monotonic`, s.
+            patience: with the process that writes them.
 
         Raises:
-            TimeoutError: they did not come before the deadline.
+            TimeoutError: as patience says.
             EOFError: the other end is closed.
         """
         parts = b""
         while len(parts) < count:
-            ready, _, _ = select.select([self._descriptor], [], [], max(deadline - time.monotonic(), 0))
+            patience.check()
+            ready, _, _ = select.select([self._descriptor], [], [], SLICE)
             if not ready:
-                raise TimeoutError
+                continue
             part = os.read(self._descriptor, count - len(parts))
             if not part:
                 raise EOFError
@@ -64,13 +66,14 @@ class PumpedPipe:
             self._parts.put(part)
         os.close(descriptor)
 
-    def read(self, count: int, deadline: float) -> bytes:
+    def read(self, count: int, patience: Patience) -> bytes:
         """As `SelectedPipe.read`."""
         while len(self._rest) < count:
+            patience.check()
             try:
-                part = self._parts.get(timeout=max(deadline - time.monotonic(), 0))
+                part = self._parts.get(timeout=SLICE)
             except Empty:
-                raise TimeoutError from None
+                continue
             if not part:
                 self._parts.put(part)  # for the next call
                 raise EOFError

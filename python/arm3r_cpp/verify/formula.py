@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from .._files import regular
 from .._native import Floats
 from ..errors import UsageError
 from .kinds import KINDS, Kind
@@ -196,8 +197,8 @@ def from_file(path: str | os.PathLike[str], *, sandbox: Any = None) -> Formula:
     if file.endswith((".so", ".dylib", ".dll")):
         return _from_library(file, function)
     try:
-        text = Path(file).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        text = regular(Path(file)).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
     return from_text(text, file, function, sandbox=sandbox)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..arm import Arm
-from ..errors import UsageError
+from ..errors import UnjudgedError, UsageError
 from ..scenario import Scenario
 from .formula import Formula, from_callable, from_file, kind_of
 from .judge import Progress, judge
@@ -64,9 +64,18 @@ def formula_verdict(
         seen_by: tests, of which the verdict says whether they would have seen each mistake.
 
     Raises:
-        UsageError: the formula cannot be read, or its kind is not clear.
+        UsageError: the file cannot be read, or the kind of the formula is not clear.
+        UnjudgedError: what it holds is not read, or it is too slow.
     """
-    truth = truth_of(arm)
+    try:
+        return _verdict_of(f, kind, truth_of(arm), seen_by, progress, noise)
+    except RecursionError:
+        raise UnjudgedError(f"{f}: cannot be judged: it is nested too deeply to be read") from None
+
+
+def _verdict_of(
+    f: Any, kind: str | None, truth: Any, seen_by: Sequence[Any], progress: Progress | None, noise: float | None
+) -> Verdict:
     if isinstance(f, (str, os.PathLike)) and os.fspath(f).endswith(".csv"):
         log = read_log(f)
         return judge_log(log, KINDS[kind] if kind else log.kind(), truth, noise=noise)

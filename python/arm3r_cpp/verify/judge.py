@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .._native import Floats
+from ..errors import UnjudgedError
 from .comparison import TOLERANCE, Comparison, Solved, scales
 from .coverage import seen_by_tests
 from .explain.budget import Budget
@@ -24,7 +25,7 @@ from .formula import Formula
 from .kinds import Kind, entry_name
 from .meaning import doubted, is_right_as_it_stands, meant, ways
 from .names import slot_of
-from .program.nodes import Edit, Node, ProcessEnded, ProgramError, line_and_column
+from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, line_and_column
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
@@ -42,7 +43,11 @@ def judge(
     seen_by: Sequence[Any] = (),
     progress: Progress | None = None,
 ) -> Verdict:
-    """The verdict on a formula of a known kind."""
+    """The verdict on a formula of a known kind.
+
+    Raises:
+        UnjudgedError: it is too slow, needs too much memory, or breaks the connection to its judge.
+    """
     try:
         cases = meant(formula, kind, truth)
         values = cases[0].values(cases[0].second)
@@ -55,6 +60,8 @@ def judge(
         if not verdicts[0][0].findings and (strict := _with_unused_numbers(cases[0], progress, budget)):
             verdicts = [strict]
         verdict, case = min(verdicts, key=lambda one: _complexity(one[0]))
+    except Unjudged as error:
+        raise UnjudgedError(f"{formula.file}: cannot be judged: it {error}") from None
     except ProgramError as error:
         verdict = _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
         if not isinstance(error, ProcessEnded):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 import re
 from typing import NamedTuple
@@ -18,6 +19,7 @@ _ENTRIES = {
     "kinematics": r"(?:p_?|tip_)([123xyz])", "inverse": r"tau_?(\d)", "forward": r"qdd_?(\d)",
 }  # fmt: skip
 _MOST_ROWS = 1_000_000
+LARGEST = 1e12  # of a number
 
 
 class Log(NamedTuple):
@@ -25,6 +27,8 @@ class Log(NamedTuple):
 
     file: str
     columns: dict[str, Floats]
+    left_out: list[int]
+    """The lines with a cell that is no finite number."""
 
     def vector(self, name: str, joints: int) -> Floats | None:
         """name1, name2, ...: (rows, joints); None where a column is missing."""
@@ -72,7 +76,7 @@ class Log(NamedTuple):
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:
-    """The numbers of a CSV file with one line of names.
+    """The numbers of a CSV file with one line of names. Rows with NaN or infinity are left out.
 
     Raises:
         UsageError: the file cannot be read, or a row of it holds what is no number.
@@ -82,16 +86,38 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         with open(file, encoding="utf-8", newline="") as stream:
             reader = csv.reader(stream)
             names = [name.strip() for name in next(reader, [])]
-            rows = []
+            rows: list[list[float]] = []
+            left_out: list[int] = []
             for number, row in enumerate(reader, start=2):
                 if len(row) != len(names) or number > _MOST_ROWS:
                     raise UsageError(f"{file}:{number}: a row has {len(names)} numbers, got {len(row)}")
-                try:
-                    rows.append([float(cell) for cell in row])
-                except ValueError:
-                    raise UsageError(f"{file}:{number}: a row holds numbers, got {','.join(row)[:80]!r}") from None
+                numbers = _numbers(f"{file}:{number}", names, row)
+                if all(map(math.isfinite, numbers)):
+                    rows.append(numbers)
+                else:
+                    left_out.append(number)
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if not rows:
-        raise UsageError(f"{file}: the log has no rows")
-    return Log(file, dict(zip(names, np.array(rows).T, strict=True)))
+        raise UsageError(f"{file}: the log has no rows{' of finite numbers' if left_out else ''}")
+    if len(names) != len(set(names)):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise UsageError(f"{file}:1: two columns are named {twice!r}")
+    return Log(file, dict(zip(names, np.array(rows).T, strict=True)), left_out)
+
+
+def _numbers(place: str, names: list[str], row: list[str]) -> list[float]:
+    """The numbers of a row; NaN and infinity are some.
+
+    Raises:
+        UsageError: a cell holds no number, or one that no measured quantity has.
+    """
+    found = []
+    for name, cell in zip(names, row, strict=True):
+        try:
+            found.append(float(cell))
+        except ValueError:
+            raise UsageError(f"{place}: {name} is a number, got {cell[:80]!r}") from None
+        if LARGEST < abs(found[-1]) < math.inf:
+            raise UsageError(f"{place}: {name} is at most {LARGEST:g} either way, got {cell[:80]!r}")
+    return found

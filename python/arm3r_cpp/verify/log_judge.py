@@ -42,7 +42,12 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
         if best is None or count < best[0]:
             best = count, verdict
     assert best
-    return best[1]
+    verdict = best[1]
+    if log.left_out:
+        lines = ", ".join(map(str, log.left_out[:5])) + (", ..." if len(log.left_out) > 5 else "")
+        rows = f"{len(log.left_out)} row{'s' if len(log.left_out) > 1 else ''}"
+        verdict.warnings.append(f"{rows} with NaN or infinity left out: line {lines}")
+    return verdict
 
 
 def _due(truth: Any, kind: Kind, convention: str, states: dict[str, Floats], given: dict[str, Floats]) -> Floats:

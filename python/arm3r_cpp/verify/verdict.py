@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from .._messages import as_json
 from .finding import Finding, Judgement
 from .words import report, table
 
@@ -26,7 +26,7 @@ class Verdict(Judgement):
         return whole
 
     def to_json(self) -> str:
-        return json.dumps(self.to_dict(), indent=2, ensure_ascii=False)
+        return as_json(self.to_dict())
 
     def __str__(self) -> str:
         return report(self)

@@ -7,6 +7,7 @@ from itertools import groupby
 
 import numpy as np
 
+from .._messages import shown
 from .explain.terms import difference_words
 from .finding import Finding, Judgement
 from .kinds import KINDS, entry_name
@@ -21,7 +22,7 @@ def report(verdict: Judgement) -> str:
     lines += [f"  also possible: {words}" for words in verdict.alternatives]
     lines += [f"  note: {words}" for words in verdict.warnings]
     lines += [f"  {_covered(verdict, name)}" for name in verdict.coverage]
-    return "\n".join(lines)
+    return "\n".join(map(shown, lines))
 
 
 def _head(verdict: Judgement) -> str:
@@ -89,11 +90,11 @@ def _place(verdict: Judgement, finding: Finding) -> list[str]:
     """The line of the source, with carets below what is to be replaced."""
     if finding.line is None or verdict.text is None or finding.old is None:
         return [f"line {finding.line}"] if finding.line else []
-    source = verdict.text.splitlines()[finding.line - 1]
+    source = verdict.text.split("\n")[finding.line - 1].replace("\t", " ").rstrip("\r")
     head = f"line {finding.line}:  "
     before = source[: (finding.column or 1) - 1]
-    blanks = "".join("\t" if character == "\t" else " " for character in before.lstrip())
-    width = max(len(finding.old.splitlines()[0]) if finding.old else 1, 1)
+    blanks = " " * len(shown(before.lstrip()))
+    width = max(len(shown(finding.old.split("\n")[0])), 1)
     due = f"{finding.new} is due" if finding.new else "this is too much"
     return [f"{head}{source.strip()}", f"{' ' * len(head)}{blanks}{'^' * width}  {due}"]
 
@@ -113,13 +114,13 @@ def table(verdict: Judgement) -> str:
             line += f'<td style="background:{colour};color:#000;padding:0.4em;text-align:left">{text}</td>'
         cells.append(f"<tr>{line}</tr>")
     return (
-        f"<p>{html.escape(_head(verdict))}</p><table>{''.join(cells)}</table><pre>{html.escape(report(verdict))}</pre>"
+        f"<p>{html.escape(shown(_head(verdict)))}</p><table>{''.join(cells)}</table><pre>{html.escape(report(verdict))}</pre>"
     )
 
 
 def _cell(finding: Finding) -> str:
     if finding.reads is not None:
-        return f"<u>{html.escape(finding.reads)}</u><br>due: {html.escape(finding.due or '')}"
+        return f"<u>{html.escape(shown(finding.reads))}</u><br>due: {html.escape(shown(finding.due or ''))}"
     if finding.old is not None:
-        return f"<u>{html.escape(finding.old)}</u><br>due: {html.escape(finding.new or '')}"
+        return f"<u>{html.escape(shown(finding.old))}</u><br>due: {html.escape(shown(finding.new or ''))}"
     return "wrong"

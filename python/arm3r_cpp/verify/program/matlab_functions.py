@@ -142,7 +142,9 @@ def _reshaped(name: str, parts: list[Floats]) -> Floats:
         raise ProgramError("reshape takes a matrix, and its new rows and columns")
     count = array.shape[1] * array.shape[2]
     rows, columns = (integer(one) if one.size else -1 for one in sizes)
-    rows, columns = (count // columns if rows < 0 else rows, count // rows if columns < 0 else columns)
+    if 0 in (rows, columns) and count:
+        raise ProgramError(f"{count} numbers do not fill {max(rows, 0)} x {max(columns, 0)}")
+    rows, columns = (count // max(columns, 1) if rows < 0 else rows, count // max(rows, 1) if columns < 0 else columns)
     check_size(rows, columns)
     if rows * columns != count:
         raise ProgramError(f"{count} numbers do not fill {rows} x {columns}")

@@ -23,7 +23,7 @@ from .matlab_functions import (
     stacked,
 )
 from .matlab_reader import Function, Statement, read, read_expression
-from .nodes import Call, Constant, Edit, Node, ProgramError, line_and_column
+from .nodes import Call, Constant, Edit, Node, ProgramError, Unjudged, line_and_column
 
 Floats = NDArray[np.float64]
 _MAX_CALLS = 2000
@@ -224,8 +224,11 @@ class MatlabProgram:
         try:
             yield
         except ProgramError as error:
-            raise ProgramError(str(error), error.line or line_and_column(self.text, statement.start)[0]) from None
-        except (ValueError, IndexError, OverflowError, np.linalg.LinAlgError, RecursionError) as error:
+            error.line = error.line or line_and_column(self.text, statement.start)[0]
+            raise
+        except RecursionError:
+            raise Unjudged("is nested too deeply", line_and_column(self.text, statement.start)[0]) from None
+        except (ValueError, IndexError, ArithmeticError, np.linalg.LinAlgError) as error:
             raise ProgramError(str(error).split("\n")[0], line_and_column(self.text, statement.start)[0]) from None
 
     def _assign(self, statement: Statement, variables: dict[str, Any]) -> None:

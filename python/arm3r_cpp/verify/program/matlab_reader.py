@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from ...errors import UsageError
+from ...errors import UnjudgedError
 from .nodes import Node, line_and_column
 
 _TOKEN = re.compile(
@@ -98,11 +98,15 @@ def read(text: str, file: str) -> dict[str, Function]:
     """The functions of a file by their names, in their order.
 
     Raises:
-        UsageError: the file holds what is not read; the message names its line.
+        UnjudgedError: the file holds what is not read; the message names its line.
     """
     if len(text) > MAX_CHARACTERS:
-        raise UsageError(f"{file}: a function file of at most {MAX_CHARACTERS} characters is read, got {len(text)}")
-    return _Reader(text, file).functions()
+        raise UnjudgedError(f"{file}: a function file of at most {MAX_CHARACTERS} characters is read, got {len(text)}")
+    reader = _Reader(text, file)
+    try:
+        return reader.functions()
+    except RecursionError:
+        raise reader.refusal("what stands here is nested too deeply, and is not read") from None
 
 
 def read_expression(text: str, file: str = "expression") -> Node:
@@ -136,7 +140,7 @@ class _Reader:
             found = _TOKEN.match(text, at)
             if not found:
                 line, column = line_and_column(text, at)
-                raise UsageError(f"{self.file}:{line}:{column}: {text[at]!r} is not read; {KNOWN}")
+                raise UnjudgedError(f"{self.file}:{line}:{column}: {text[at]!r} is not read; {KNOWN}")
             kind = found.lastgroup or ""
             if kind in ("blank", "comment"):
                 spaced = True
@@ -154,9 +158,9 @@ class _Reader:
         self.at += 1
         return token
 
-    def refusal(self, message: str, token: Token | None = None) -> UsageError:
+    def refusal(self, message: str, token: Token | None = None) -> UnjudgedError:
         line, column = line_and_column(self.text, (token or self.peek()).start)
-        return UsageError(f"{self.file}:{line}:{column}: {message}")
+        return UnjudgedError(f"{self.file}:{line}:{column}: {message}")
 
     def expect(self, text: str) -> Token:
         if self.peek().text != text:
@@ -181,7 +185,7 @@ class _Reader:
             found[function.name] = function
             self.skip_separators()
         if not found:
-            raise UsageError(f"{self.file}:1: there is no function in this file")
+            raise UnjudgedError(f"{self.file}:1: there is no function in this file")
         return found
 
     def function(self) -> Function:

@@ -78,7 +78,12 @@ class ProgramError(Exception):
 
 
 class ProcessEnded(ProgramError):
-    """The process that runs the user's program hung or ended."""
+    """The process that runs the user's program ended."""
+
+
+class Unjudged(ProcessEnded):
+    """What the program would return stays unknown: it is too slow, waits, needs too much memory, or it answered its
+    judge itself."""
 
 
 def numbers_of(text: Sequence[str]) -> str:

@@ -36,7 +36,7 @@ class PythonText:
         self.text, self.file = text, file
         try:
             self.tree = ast.parse(text)
-        except (SyntaxError, ValueError, RecursionError) as error:
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
             line = getattr(error, "lineno", None) or 1
             raise UsageError(f"{file}:{line}: this is not Python: {getattr(error, 'msg', error)}") from None
         self._place = PythonProgram(text, "").offset

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import subprocess
 import sys
-import time
 import weakref
 from collections.abc import Callable
 from typing import IO, Any, NoReturn, Protocol
@@ -15,15 +13,18 @@ from typing import IO, Any, NoReturn, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...system.processes import bare_environment, end_with_descendants
+from ...system.patience import Patience, TooSlow, Waits
+from ...system.processes import bare_environment, end_with_descendants, processor_time
 from ...system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
+from .answers import BROKEN, BrokenAnswer, answer_of, head_of, unbarred_of
 from .child import HEAD, send
-from .nodes import Call, Edit, ProcessEnded, ProgramError
+from .limits import PROCESSOR_TIME
+from .nodes import Call, Edit, ProcessEnded, ProgramError, Unjudged
 
 Floats = NDArray[np.float64]
 _START = "from arm3r_cpp.verify.program.child import main; main()"
-_MOST_BYTES = 64 << 20  # of an answer
-STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s
+_MOST_BYTES, _MOST_BYTES_OF_HEAD = 64 << 20, 1 << 16  # of an answer
+STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s of processor time
 
 
 class Process(Protocol):
@@ -63,7 +64,8 @@ class PythonProcess:
         """A row of numbers for each row of the table, in the shape that the function returns.
 
         Raises:
-            ProgramError: the function failed, or its process ended or took too long.
+            ProgramError: the function failed, or its process ended.
+            Unjudged: it took too long, needs too much memory, or answered in the process's place.
         """
         if edit and self._hung > 3:
             raise ProgramError("too many edits made it hang")
@@ -72,17 +74,11 @@ class PythonProcess:
         head = {"rows": len(table), "slots": call.slots, "lifted": call.lifted, "edit": edit and list(edit)}
         self._send(head, np.ascontiguousarray(table).tobytes())
         head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
-        if isinstance(seconds := head.get("seconds"), float):
-            self._seconds[-1] = seconds
-        if "error" in head:
-            line = head.get("line")
-            raise ProgramError(str(head["error"])[:300], line if isinstance(line, int) else None)
-        shape = head.get("shape")
-        if not isinstance(shape, list) or not all(isinstance(size, int) and size >= 0 for size in shape):
-            raise ProgramError("returns no numbers")
-        if int(np.prod(shape)) * 8 != len(body) or shape[:1] != [len(table)]:
-            raise ProgramError("returns no numbers")
-        return np.frombuffer(body).reshape(shape)
+        answer = self._understood(lambda: answer_of(head, body, len(table)))
+        self._seconds[-1] = answer.seconds
+        if answer.values is None:
+            raise (Unjudged if answer.is_exhausted else ProgramError)(answer.error, answer.line)
+        return answer.values
 
     def _start(self) -> None:
         environment = {
@@ -116,7 +112,7 @@ class PythonProcess:
             b"",
         )
         head, _ = self._receive(STARTING_TIME)
-        self.unbarred = [str(one) for one in head.get("unbarred", [])]
+        self.unbarred = self._understood(lambda: unbarred_of(head))
         if self.unbarred and PythonProcess.report:
             PythonProcess.report(self.unbarred)
 
@@ -132,32 +128,38 @@ class PythonProcess:
             self._fail("ends its process")
 
     def _receive(self, seconds: float) -> tuple[Any, bytes]:
-        deadline = time.monotonic() + seconds
-        lengths = HEAD.unpack(self._read(HEAD.size, deadline))
-        if sum(lengths) > _MOST_BYTES:
-            self._fail("returns too many numbers")
-        text, body = (self._read(length, deadline) for length in lengths)
-        try:
-            head = json.loads(text)
-        except ValueError:
-            head = None
-        if not isinstance(head, dict):
-            self._fail("returns no numbers")
-        return head, body
+        assert self._process
+        patience = Patience(self._process.pid, seconds)
+        lengths = HEAD.unpack(self._read(HEAD.size, patience))
+        if lengths[0] > _MOST_BYTES_OF_HEAD or lengths[1] > _MOST_BYTES:
+            self._fail(BROKEN, Unjudged)
+        text, body = (self._read(length, patience) for length in lengths)
+        return self._understood(lambda: head_of(text)), body
 
-    def _read(self, count: int, deadline: float) -> bytes:
-        assert self._answers
+    def _understood(self, parse: Callable[[], Any]) -> Any:
         try:
-            return self._answers.read(count, deadline)
-        except TimeoutError:
+            return parse()
+        except BrokenAnswer:
+            self._fail(BROKEN, Unjudged)
+
+    def _read(self, count: int, patience: Patience) -> bytes:
+        assert self._answers and self._process
+        try:
+            return self._answers.read(count, patience)
+        except TooSlow:
             self._hung += 1
-            self._fail("takes too long: it was stopped")
+            self._fail("takes too long: it was stopped", Unjudged)
+        except Waits:
+            self._hung += 1
+            self._fail("takes too long: it waits for something", Unjudged)
         except EOFError:
+            if (processor_time(self._process.pid) or 0.0) > PROCESSOR_TIME - 1:
+                self._fail("takes too long: it was stopped", Unjudged)
             self._fail("ends its process")
 
-    def _fail(self, message: str) -> NoReturn:
+    def _fail(self, message: str, kind: type[ProcessEnded] = ProcessEnded) -> NoReturn:
         self.close()
-        raise ProcessEnded(message)
+        raise kind(message)
 
     def close(self) -> None:
         """End the process and all that it started."""

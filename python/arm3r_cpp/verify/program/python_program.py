@@ -166,6 +166,8 @@ class PythonProgram:
         except BaseException as error:  # whatever a user's program raises, SystemExit too
             if isinstance(error, KeyboardInterrupt):
                 raise
+            if isinstance(error, MemoryError) and not str(error):  # of the interpreter's own
+                raise ProgramError("needs too much memory") from None
             raise ProgramError(*self._describe(error)) from None
         if len({result.shape for result in results}) > 1:
             raise ProgramError("returns arrays of different shapes at different states")

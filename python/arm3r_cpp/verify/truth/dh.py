@@ -17,8 +17,9 @@ from .chain import Joint, SerialChain
 AnyChain = TypeVar("AnyChain", bound=SerialChain)
 
 _NUMBER = re.compile(
-    r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>\d+))?|(?P<number>[\d.]+(?:[eE][+-]?\d+)?)(?P<deg> ?deg)?)"
+    r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>0*[1-9]\d{0,8}))?|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?P<deg> ?deg)?)"
 )
+LARGEST = 1e12
 _OPTIONAL = ("mass", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz", "armature")
 
 
@@ -56,7 +57,12 @@ def read_dh(path: str | os.PathLike[str], make: type[AnyChain]) -> AnyChain:
     if names[:5] != ["type", "a", "alpha", "d", "theta"] or unknown:
         raise UsageError(f"{file}:2: the header is type,a,alpha,d,theta and then any of {','.join(_OPTIONAL)}"
                          + (f"; {unknown[0]!r} is none of them" if unknown else ""))  # fmt: skip
-    table = [_row(file, number, names, next(csv.reader([line]))) for number, line in rows[2:]]
+    if len(names) != len(set(names)):
+        raise UsageError(f"{file}:{rows[1][0]}: two columns have one name")
+    try:
+        table = [_row(file, number, names, next(csv.reader([line]))) for number, line in rows[2:]]
+    except csv.Error as error:
+        raise UsageError(f"{file}: this file cannot be read: {error}") from None
     return _chain(table, word, os.path.basename(file), make)
 
 
@@ -71,8 +77,10 @@ def _row(file: str, number: int, names: list[str], cells: list[str]) -> dict[str
         found = _NUMBER.fullmatch(cell.strip() or "0")
         if not found:
             raise UsageError(f"{file}:{number}: {name} is a number, such as 0.25, 90 deg or pi/2, got {cell.strip()!r}")
-        value = np.pi / int(found["part"] or 1) if found["pi"] else float(found["number"])
+        value = np.pi / float(found["part"] or 1) if found["pi"] else float(found["number"])
         value = np.deg2rad(value) if found["deg"] else value
+        if value > LARGEST:
+            raise UsageError(f"{file}:{number}: {name} is at most {LARGEST:g} either way, got {cell.strip()!r}")
         values[name] = -value if found["sign"] == "-" else value
     return values
 

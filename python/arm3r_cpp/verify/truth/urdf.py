@@ -15,6 +15,7 @@ from .chain import Joint, SerialChain
 AnyChain = TypeVar("AnyChain", bound=SerialChain)
 
 _MOST_BYTES = 10_000_000
+LARGEST = 1e12  # of a number
 
 
 class _Link(NamedTuple):
@@ -46,6 +47,8 @@ def read_urdf(path: str | os.PathLike[str], tip: str | None, make: type[AnyChain
     while name in by_child and len(path_of_joints) <= len(links):
         path_of_joints.insert(0, by_child[name])
         name = _name(file, by_child[name], "parent")
+    if name in by_child:
+        raise UsageError(f"{file}: the joints make a ring through {name!r}; a chain begins at a link that is no child")
     return _chain(file, path_of_joints, links, make)
 
 
@@ -58,7 +61,7 @@ def _parsed(file: str) -> ElementTree.Element:
         if "<!ENTITY" in text or "<!DOCTYPE" in text:
             raise UsageError(f"{file}: a URDF has no document type")
         root = ElementTree.fromstring(text)
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
     except ElementTree.ParseError as error:
         raise UsageError(f"{file}:{error.position[0]}: this is not XML: {error}") from None
@@ -74,14 +77,24 @@ def _name(file: str, joint: ElementTree.Element, end: str) -> str:
     return found.attrib["link"]
 
 
+def _link_of(
+    file: str, joint: ElementTree.Element, links: dict[str, ElementTree.Element]
+) -> ElementTree.Element:
+    name = _name(file, joint, "child")
+    if name not in links:
+        raise UsageError(f"{file}: the joint {joint.get('name')!r} has the child {name!r}, which is no link")
+    return links[name]
+
+
 def _numbers(file: str, element: ElementTree.Element | None, key: str, default: str) -> Floats:
     text = element.get(key, default) if element is not None else default
     try:
         values = np.array([float(part) for part in text.split()])
     except ValueError:
         values = np.zeros(0)
-    if len(values) != len(default.split()) or not np.isfinite(values).all():
-        raise UsageError(f"{file}: {key} has {len(default.split())} numbers, got {text!r}")
+    if len(values) != len(default.split()) or not (np.abs(values) <= LARGEST).all():
+        due = f"{len(default.split())} numbers of at most {LARGEST:g} either way"
+        raise UsageError(f"{file}: {key} has {due}, got {text[:80]!r}")
     return values
 
 
@@ -103,6 +116,8 @@ def _link(file: str, element: ElementTree.Element) -> _Link:
         return _Link(0.0, np.zeros(3), np.zeros((3, 3)))
     rotation, centre = _pose(file, inertial)
     (mass,) = _numbers(file, inertial.find("mass"), "value", "0")
+    if mass < 0:
+        raise UsageError(f"{file}: the link {element.get('name')!r} has the mass {mass:g}; none is negative")
     xx, yy, zz, xy, xz, yz = (
         float(_numbers(file, inertial.find("inertia"), key, "0")[0])
         for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
@@ -135,7 +150,7 @@ def _chain(
         step_rotation, step_origin = _pose(file, element)
         origin, rotation = origin + rotation @ step_origin, rotation @ step_rotation
         kind = element.get("type")
-        link = _link(file, links[_name(file, element, "child")])
+        link = _link(file, _link_of(file, element, links))
         if kind == "fixed":
             if bodies:
                 bodies[-1] = _joined(bodies[-1], link, rotation, origin)

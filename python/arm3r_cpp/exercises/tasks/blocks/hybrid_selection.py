@@ -55,7 +55,7 @@ def in_the_loop(function: Function) -> list[float]:
         torque: Floats = state.tau_g + state.jacobian.T @ force
         return torque
 
-    run = Scenario(LOOP)._quiet().run(controller=law, rate=RATE, time_limit=60)
+    run = Scenario(LOOP)._quiet().run(controller=law, rate=RATE)
     late, pressing = run.t >= 2.5, run["f_on_wall_x"]
     along = np.hypot(run["tip_y"] - GOAL[1], run["tip_z"] - GOAL[2])
     return [float(pressing.max()), float(np.abs(pressing[late] - 20).max()), float(along[late].max())]

@@ -26,7 +26,7 @@ def torque(q: Floats, qd: Floats, *, spring: float = 1, damper: float = 1, weigh
 def in_the_loop(function: Function) -> list[float]:
     """The largest distance from x_d in the last half second of three."""
     scenario = Scenario(f"{SCENARIO}initial: {{q: [0.3, -0.6, 1.0]}}\ntime: {{stop: 3, log_every: 0.01}}\n")._quiet()
-    run = scenario.run(controller=lambda t, state: function(q=state.q, qd=state.qd), rate=RATE, time_limit=60)
+    run = scenario.run(controller=lambda t, state: function(q=state.q, qd=state.qd), rate=RATE)
     tip = np.stack([run[f"tip_{axis}"] for axis in "xyz"], axis=1)
     return [float(np.linalg.norm(tip - X_D, axis=1)[run.t >= 2.5].max())]
 

@@ -1,0 +1,81 @@
+"""Reads the answers of the process that runs a user's file. The file can write any bytes there: nothing is believed."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+BROKEN = "breaks the connection to its judge"
+NO_MEMORY = "needs too much memory"
+_MOST_AXES, _LONGEST, _MOST_LINES, _MOST_SECONDS = 8, 300, 10**7, 1e6
+
+
+class BrokenAnswer(Exception):
+    """It is none that this package writes."""
+
+
+class Answer(NamedTuple):
+    """What a function returned, a row for each state; or None, and why it failed."""
+
+    values: Floats | None
+    seconds: float
+    """How long the process has computed, as it says."""
+    error: str = ""
+    line: int | None = None
+
+    @property
+    def is_exhausted(self) -> bool:
+        return self.error == NO_MEMORY
+
+
+def head_of(text: bytes) -> dict[str, Any]:
+    """
+    Raises:
+        BrokenAnswer: the text is no JSON object.
+    """
+    try:
+        head = json.loads(text.decode())
+    except (ValueError, RecursionError):
+        raise BrokenAnswer from None
+    return _checked(head, type(head) is dict)
+
+
+def answer_of(head: dict[str, Any], body: bytes, rows: int) -> Answer:
+    """
+    Raises:
+        BrokenAnswer: the head is that of no answer, or the body has other than its numbers.
+    """
+    seconds = head.get("seconds", 0.0)
+    _checked(seconds, type(seconds) is float and math.isfinite(seconds) and 0 <= seconds < _MOST_SECONDS)
+    if "error" in head:
+        error, line = head["error"], head.get("line")
+        _checked(error, type(error) is str and not body)
+        _checked(line, line is None or (type(line) is int and 0 < line < _MOST_LINES))
+        return Answer(None, seconds, error[:_LONGEST], line)
+    shape = head.get("shape")
+    _checked(shape, type(shape) is list and 0 < len(shape) <= _MOST_AXES)
+    _checked(shape, all(type(size) is int and 0 <= size <= len(body) for size in shape))
+    _checked(shape, shape[0] == rows and math.prod(shape) * 8 == len(body))
+    return Answer(np.frombuffer(body).reshape(shape), seconds)
+
+
+def unbarred_of(head: dict[str, Any]) -> list[str]:
+    """What the process could not be barred from, by the answer to its first request.
+
+    Raises:
+        BrokenAnswer: the head is that of no such answer.
+    """
+    names = head.get("unbarred")
+    _checked(names, type(names) is list and len(names) <= _MOST_AXES and all(type(one) is str for one in names))
+    return names
+
+
+def _checked(value: Any, holds: bool) -> Any:
+    if not holds:
+        raise BrokenAnswer
+    return value
