@@ -243,29 +243,47 @@ def test_what_is_wrong_is_one_line(
 def test_a_judge_that_does_not_end_is_ended(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.setattr(worker, "MOST_SECONDS", 3.0)
     file = tmp_path / "observer.py"
-    text = f"import subprocess\nsubprocess.run(['sleep', '{SECONDS}'])\ndef momentum_rate(a, b, c, d):\n    return a\n"
-    file.write_text(text)
+    file.write_text("import time\ntime.sleep(1e6)\ndef momentum_rate(a, b, c, d):\n    return a\n")
     mark = worker.judge_apart(TASKS["observer"], file)
     assert mark.word in WORDS and mark.reason == "takes too long"
-    assert sleeping() == []
+    assert descendants(os.getpid()) == []
+
+
+def descendants(ancestor: int) -> list[int]:
+    """The processes that a process has started, directly or not, and that run."""
+    done = subprocess.run(["ps", "-eo", "pid,ppid,stat,args"], capture_output=True, text=True)
+    lines = [line.split(None, 3) for line in done.stdout.splitlines()[1:]]
+    parents = {int(pid): int(parent) for pid, parent, state, words in lines if state[0] != "Z" and words[:3] != "ps "}
+    found = {ancestor}
+    while more := {pid for pid, parent in parents.items() if parent in found} - found:
+        found |= more
+    return sorted(found - {ancestor})
 
 
 def test_ctrl_c_ends_the_marking_and_the_files_that_are_judged(scripts: Path, tmp_path: Path) -> None:
     student = tmp_path / "class/loop"
     student.mkdir(parents=True)
-    text = f"import subprocess\nsubprocess.run(['sleep', '{SECONDS}'])\ndef momentum_rate(a, b, c, d):\n    return a\n"
-    (student / "observer.py").write_text(text)
-    command = [scripts / "arm3r-exercise", "mark", "--trust-code", tmp_path / "class", "-o", tmp_path / "t.csv"]
+    (student / "observer.py").write_text("while True: pass\ndef momentum_rate(a, b, c, d):\n    return a\n")
+    command = [scripts / "arm3r-exercise", "mark", "--trust-code", tmp_path / "class", "--task", "observer"]
     with subprocess.Popen(command, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         for _ in range(600):
             time.sleep(0.1)
-            if sleeping():
+            started = descendants(process.pid)
+            if len(started) == 2:  # a judge, and the process that it judges
                 break
-        assert sleeping()
+        assert len(started) == 2
         process.send_signal(signal.SIGINT)
-        assert process.wait(5) == -signal.SIGINT
-    time.sleep(1)
-    assert sleeping() == [] and not (tmp_path / "t.csv").exists()
+        assert process.wait(60) == -signal.SIGINT
+    for _ in range(600):
+        if not any(is_running(pid) for pid in started):
+            break
+        time.sleep(0.1)
+    assert not any(is_running(pid) for pid in started)
+
+
+def is_running(pid: int) -> bool:
+    done = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True)
+    return bool(done.stdout.strip()) and not done.stdout.strip().startswith("Z")
 
 
 def test_the_words_of_marks_are_those_of_the_page(root: Path) -> None:

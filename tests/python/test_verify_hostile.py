@@ -100,38 +100,6 @@ def test_nothing_stays_behind(number: int, judged: Any) -> None:
     judged(FILES[number][1])
 
 
-WITHOUT_NAMESPACES = """
-import ctypes, sys
-from arm3r_cpp.verify.program.seccomp import refuse
-
-libc = ctypes.CDLL(None, use_errno=True)
-libc.prctl(38, 1, 0, 0, 0)
-assert refuse(libc, ["unshare"])
-import pytest
-sys.exit(pytest.main(["-q", "-n", "0", "-p", "no:cacheprovider", *sys.argv[1:]]))
-"""
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        ["-k", "some_files or forbidden"],
-        pytest.param(["-m", "gate", "-k", "test_nothing_stays_behind"], marks=pytest.mark.gate),
-    ],
-)
-def test_without_namespaces_a_process_restricts_itself(options: list[str]) -> None:
-    """The same tests in a process to which the system refuses namespaces."""
-    if sys.platform != "linux":
-        pytest.skip("namespaces are Linux's")
-    if os.environ.get("ARM3R_WITHOUT_NAMESPACES"):
-        pytest.skip("this is the process without")
-    environment = {**os.environ, "ARM3R_WITHOUT_NAMESPACES": "1", "ARM3R_SEED": str(SEED)}
-    done = subprocess.run(
-        [sys.executable, "-c", WITHOUT_NAMESPACES, __file__, *options], capture_output=True, text=True, env=environment
-    )
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-1000:]
-
-
 def test_a_package_can_be_forbidden(tmp_path: Path, monkeypatch: Any) -> None:
     path = tmp_path / "jacobian.py"
     path.write_text("import arm3r_cpp\n\ndef jacobian(q):\n    return arm3r_cpp.Scenario().arm.jacobian(q)\n")

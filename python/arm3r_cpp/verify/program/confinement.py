@@ -1,24 +1,25 @@
-"""Confines the process that runs a user's file, in namespaces of its own where the system has them."""
+"""Confines the process that runs a user's file: it computes, and reads what a program needs; nothing else."""
 
 from __future__ import annotations
 
 import ctypes
+import glob
 import os
 import signal
 import sys
+from collections.abc import Iterable
 
-from .landlock import forbid_writing
-from .seccomp import OTHERS, refuse
+from .landlock import Readable, read_only
+from .seccomp import refuse_system_calls
 
-_NEWUSER, _NEWNS, _NEWPID, _NEWNET, _NEWIPC = 0x10000000, 0x00020000, 0x20000000, 0x40000000, 0x08000000
-_MS_PRIVATE, _MS_REC = 1 << 18, 1 << 14
-_SYS_MOUNT_SETATTR, _AT_FDCWD, _AT_RECURSIVE, _ATTR_RDONLY = 442, -100, 0x8000, 1
-_PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS = 1, 36, 38
+_PR_SET_PDEATHSIG, _PR_SET_DUMPABLE, _PR_CAPBSET_DROP, _PR_SET_SECUREBITS = 1, 4, 24, 28
+_PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS, _PR_CAP_AMBIENT = 36, 38, 47
+_CLEAR_ALL, _HIGHEST_CAPABILITY = 4, 63
+_NO_ROOT_LOCKED = 0b11101111  # securebits: no identity gives capabilities, none is kept or raised, locked
+_CAPABILITY_VERSION_3 = 0x20080522
 EVERYTHING = ("network", "files", "processes")
-
-
-class _MountAttributes(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_uint64) for name in ("set", "clear", "propagation", "namespace")]
+_SYSTEM = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/nix/store", "/usr/share/zoneinfo")
+_FILES = ("/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
 
 
 def _libc() -> ctypes.CDLL:
@@ -34,54 +35,67 @@ def end_with_parent() -> None:
         libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
 
 
-def confine() -> list[str]:
-    """Cut this process off in namespaces of its own, and go on in a child that is the first process in them.
+def confine(folder: str, hidden_package: str) -> list[str]:
+    """This process gives up all privileges, all files but those that programs need, and all other processes.
 
-    The parent stays behind, and ends as the child. Where the system refuses namespaces, the process restricts itself.
+    Args:
+        folder: of the user's file, whose neighbours can be read; "" where there is none.
+        hidden_package: the folder of a package that cannot be read, and no copy of it; "" where none is hidden.
+
     Returns what could not be barred, some of `EVERYTHING`.
     """
     if sys.platform != "linux":
         return list(EVERYTHING)
     libc = _libc()
-    user, group = os.getuid(), os.getgid()
-    everything = _NEWUSER | _NEWNS | _NEWPID | _NEWNET | _NEWIPC
-    if libc.unshare(everything) != 0:
-        return _restrict_itself(libc)
-    for name, text in (("setgroups", "deny"), ("uid_map", f"{user} {user} 1"), ("gid_map", f"{group} {group} 1")):
-        try:
-            with open(f"/proc/self/{name}", "w") as file:
-                file.write(text)
-        except OSError:
-            pass
-    open_to = [] if _make_files_read_only(libc) else ["files"]
-    child = os.fork()
-    if child:
-        _end_as(child)
-    end_with_parent()
-    libc.mount(b"proc", b"/proc", b"proc", 0, None)  # only the processes of this namespace, where it is allowed
-    return open_to
+    _give_up_privileges(libc)
+    can_bar_files = read_only(libc, _readable(folder, hidden_package))
+    if not refuse_system_calls(libc):
+        return list(EVERYTHING)
+    return [] if can_bar_files else ["files"]
 
 
-def _restrict_itself(libc: ctypes.CDLL) -> list[str]:
-    """Where there are no namespaces: this process gives up writing, sockets, and reaching or starting processes."""
-    unbarred = [] if forbid_writing(libc) else ["files"]
-    return unbarred if refuse(libc, OTHERS, new_processes=True) else ["network", *unbarred, "processes"]
+def _give_up_privileges(libc: ctypes.CDLL) -> None:
+    """No capability is left or can be gained, by root neither; nobody else can look into this process.
+
+    Raises:
+        OSError: capabilities are left.
+    """
+    for capability in range(_HIGHEST_CAPABILITY + 1):
+        libc.prctl(_PR_CAPBSET_DROP, capability, 0, 0, 0)
+    libc.prctl(_PR_SET_SECUREBITS, _NO_ROOT_LOCKED, 0, 0, 0)  # refused, as the line above, to who has none to lose
+    libc.prctl(_PR_CAP_AMBIENT, _CLEAR_ALL, 0, 0, 0)
+    head, none = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION_3, 0), (ctypes.c_uint32 * 6)()
+    done = (
+        libc.capset(head, none),
+        libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0),
+        libc.prctl(_PR_SET_DUMPABLE, 0, 0, 0, 0),
+    )
+    if any(done):
+        raise OSError(ctypes.get_errno(), "the privileges of this process stay")
 
 
-def _make_files_read_only(libc: ctypes.CDLL) -> bool:
-    if libc.mount(b"none", b"/", None, _MS_REC | _MS_PRIVATE, None) != 0:
-        return False
-    attributes = _MountAttributes(set=_ATTR_RDONLY)
-    size = ctypes.c_size_t(ctypes.sizeof(attributes))
-    result = libc.syscall(_SYS_MOUNT_SETATTR, _AT_FDCWD, b"/", _AT_RECURSIVE, ctypes.byref(attributes), size)
-    return bool(result == 0)
+def _readable(folder: str, hidden_package: str) -> list[Readable]:
+    """The system's libraries, Python's modules, and the folder of the user's file."""
+    modules = [path for path in sys.path if os.path.isdir(path)]
+    libraries = [*_SYSTEM, *(f"{prefix}/lib" for prefix in {sys.prefix, sys.base_prefix})]
+    pythons = _found(libraries, "python3*")
+    pythons += _found([*pythons, *modules], "*-packages")
+    hidden = _real(_copies_of(hidden_package, [*libraries, *modules])) if hidden_package else frozenset()
+    found = [Readable(path, hidden | _real(pythons) - _real([path])) for path in (*libraries, *modules)]
+    found += [Readable(path) for path in _FILES]
+    return [*found, Readable(folder, hidden, is_foreign=True)] if folder else found
 
 
-def _end_as(child: int) -> None:
-    """Wait for the child and end in the same way."""
-    null = os.open(os.devnull, os.O_RDWR)
-    for descriptor in (0, 1, 2):
-        os.dup2(null, descriptor)
-    os.closerange(3, 256)
-    _, status = os.waitpid(child, 0)
-    os._exit(os.waitstatus_to_exitcode(status) & 0xFF)
+def _copies_of(package: str, folders: list[str]) -> list[str]:
+    """A package, and it and its library where they are installed elsewhere."""
+    name = os.path.basename(package)
+    library = f"lib{name.partition('_')[0]}*"
+    return [package, *_found(folders, f"{name}*"), *_found(folders, library), *_found(list(_SYSTEM), f"*/{library}")]
+
+
+def _found(folders: list[str], pattern: str) -> list[str]:
+    return [path for folder in folders for path in glob.glob(f"{glob.escape(folder)}/{pattern}")]
+
+
+def _real(paths: Iterable[str]) -> frozenset[str]:
+    return frozenset(map(os.path.realpath, paths))

@@ -22,7 +22,16 @@ from .limits import PROCESSOR_TIME
 from .nodes import Call, Edit, ProcessEnded, ProgramError, Unjudged
 
 Floats = NDArray[np.float64]
-_START = "from arm3r_cpp.verify.program.child import main; main()"
+_FOLDER = os.path.dirname(os.path.abspath(__file__))
+_PACKAGE = os.path.dirname(os.path.dirname(_FOLDER))
+# The modules of this folder alone, under a name of their own: what is right is not in the process that is judged.
+_START = """
+import sys, types
+package = sys.modules["_arm3r_program"] = types.ModuleType("_arm3r_program")
+package.__path__ = sys.argv[1:]
+from _arm3r_program.child import main
+main()
+"""
 _MOST_BYTES, _MOST_BYTES_OF_HEAD = 64 << 20, 1 << 16  # of an answer
 STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s of processor time
 
@@ -88,7 +97,7 @@ class PythonProcess:
             "HOME": "/",
         }
         process = subprocess.Popen(
-            [sys.executable, "-I", "-c", _START],
+            [sys.executable, "-I", "-c", _START, _FOLDER],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -107,7 +116,7 @@ class PythonProcess:
                 "function": self.function,
                 "file": self.file,
                 "folder": folder,
-                "forbid": self.forbid_own_package,
+                "hidden_package": _PACKAGE if self.forbid_own_package else "",
             },
             b"",
         )
