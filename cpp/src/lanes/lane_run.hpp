@@ -105,7 +105,8 @@ public:
     }
     Metrics metrics(int lane) const;
     EnergyTotals totals(int lane) const {
-        return balance_.totals(lane, force_times_reach(setups_[lane]->plant, contact_.peak_force(lane)));
+        return balance_.totals(lane, setups_[lane]->plant, contact_.peak_force(lane),
+                               Lanes<T>::get(accepted_, lane));
     }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
@@ -144,7 +145,7 @@ protected:
         if (needs_derivative_) derive<terms>();
         else if (performance_.is_on()) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
         kinetic_ = kinetic_energy(plant_.arm, p_, qd);
-        potential_ = potential_energy(plant_.arm, p_);
+        potential_ = potential_energy_of_pose(plant_.arm, p_);
     }
     void observe_outlined();
 
@@ -353,7 +354,7 @@ protected:
     WallState<T> wall_ = no_wall<T>();
     Indentation<T> in_{};
     Vec3<T> tau_ = zero_vector<T>();  // N m, applied
-    T kinetic_, potential_;
+    T kinetic_, potential_;  // J; potential_: of the pose
 
     Mask active_ = false, started_ = false;
     T accepted_{0.0}, evaluations_{0.0}, max_steps_{0.0};

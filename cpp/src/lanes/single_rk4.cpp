@@ -40,7 +40,8 @@ ARM3R_INLINE bool SingleRk4::take_event_free_step(double t1, Instant& now) {
     now.t = t1, now.y = y;
     rhs_.common_derivative(t1, p, y, now.f, now.tau);
     now.balance.update(
-        Energies<double>{kinetic_energy(plant_.arm, p, qd), potential_energy(plant_.arm, p), stored(now.in)}, y);
+        Energies<double>{kinetic_energy(plant_.arm, p, qd), potential_energy_of_pose(plant_.arm, p), stored(now.in)},
+        y);
     if (performance_.sums_work()) performance_.add_work(work, true);
     return true;
 }

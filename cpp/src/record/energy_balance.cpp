@@ -1,5 +1,7 @@
 #include "record/energy_balance.hpp"
 
+#include <limits>
+
 #include "base/number_text.hpp"
 
 namespace arm3r {
@@ -19,7 +21,8 @@ double tolerance(const Solver& solver) {
 }  // namespace
 
 double balance_limit(const Solver& solver, const EnergyTotals& totals) {
-    return 100 * tolerance(solver) * totals.throughput + 1e-12 * totals.stored + 0x1p-46 * totals.force_times_reach;
+    const double of_steps = 1e-12 + std::numeric_limits<double>::epsilon() * totals.steps;
+    return 100 * tolerance(solver) * totals.throughput + of_steps * totals.scale + 0x1p-46 * totals.force_times_reach;
 }
 
 bool is_strict(const Solver& solver) {

@@ -14,15 +14,13 @@
 
 namespace arm3r {
 
-// J, maxima over the run so far: the energy throughput, the stored energy, and the residual; and the largest wall force
-// times the length of the arm, by which a rounding error of the position becomes an energy.
+// What the balance of a run is judged by, J: the largest energy throughput and residual so far; the scale of the rounding
+// errors of a step, which is the largest energy of motion and of the contact, and what the weight can do over the reach
+// of the arm; and the largest forces times that reach, by which a rounding error of the position becomes an energy. None
+// of them knows where an energy, a height or a time is zero.
 struct EnergyTotals {
-    double throughput = 0, stored = 0, residual = 0, force_times_reach = 0;
+    double throughput = 0, residual = 0, scale = 0, force_times_reach = 0, steps = 0;
 };
-
-inline double force_times_reach(const Plant<double>& plant, double peak_force) {
-    return plant.acts_on_arm ? peak_force * reach(plant.arm) : 0;
-}
 
 // The limit of the residual at the end, and whether a larger one is an outcome of the run or only a warning.
 double balance_limit(const Solver& solver, const EnergyTotals& totals);
@@ -40,7 +38,7 @@ public:
         set(energy_at_start_, energies.sum());
         set(potential_at_start_, energies.potential);
         set(residual_, 0), set(throughput_, 0);
-        set(stored_, stored(energies));
+        set(stored_, energies.kinetic + energies.contact);
     }
 
     // Updates the residual and the maxima after each step.
@@ -50,19 +48,21 @@ public:
         residual_ = max(residual_, select(residual == residual, abs(residual), T(infinite)));
         const T works = max(abs(y[work_of_actuators]), max(abs(y[work_of_wall]), abs(y[dissipated])));
         throughput_ = max(max(throughput_, works), max(now.kinetic, abs(now.potential - potential_at_start_)));
-        stored_ = max(stored_, stored(now));
+        stored_ = max(stored_, T(now.kinetic + now.contact));
     }
 
     double energy_at_start(int lane) const { return Lanes<T>::get(energy_at_start_, lane); }  // J
-    EnergyTotals totals(int lane, double force_times_reach) const {
-        return {Lanes<T>::get(throughput_, lane), Lanes<T>::get(stored_, lane), Lanes<T>::get(residual_, lane),
-                force_times_reach};
+    // peak_force: N, of the wall.
+    EnergyTotals totals(int lane, const Plant<double>& plant, double peak_force, double steps) const {
+        const double scale = Lanes<T>::get(stored_, lane) + weight_times_reach(plant.arm);
+        return {Lanes<T>::get(throughput_, lane), Lanes<T>::get(residual_, lane), scale,
+                largest_force(plant, peak_force) * reach(plant.arm), steps};
     }
 
 private:
-    template <class E>
-    ARM3R_INLINE static E stored(const Energies<E>& energies) {
-        return abs(energies.kinetic) + abs(energies.potential) + abs(energies.contact);
+    static double largest_force(const Plant<double>& plant, double peak_force) {
+        const Vec3<double>& push = plant.external_force.force;
+        return (plant.acts_on_arm ? peak_force : 0) + (plant.external_force.on ? std::sqrt(dot(push, push)) : 0);
     }
 
     T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, throughput_{0.0}, stored_{0.0};

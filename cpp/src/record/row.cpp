@@ -11,7 +11,7 @@ Energies<double> energies(const Plant<double>& plant, double t, const FullState&
         const WallState<double> wall = wall_at(plant.wall, t);
         stored = force_of(plant, wall, tip_indentation(plant, wall, p, rates(y)), mode).stored;
     }
-    return {kinetic_energy(plant.arm, p, rates(y)), potential_energy(plant.arm, p), stored};
+    return {kinetic_energy(plant.arm, p, rates(y)), potential_energy_of_pose(plant.arm, p), stored};
 }
 
 namespace {

@@ -26,7 +26,7 @@ inline std::array<double, 3> joints_out(const Setup& setup, const Vec3<double>& 
 
 template <class T>
 struct Energies {
-    T kinetic, potential, contact;  // J
+    T kinetic, potential, contact;  // J; potential: of the pose, as only its changes count
     ARM3R_INLINE T sum() const { return kinetic + potential + contact; }
 };
 

@@ -222,15 +222,16 @@ template <class T>
 ARM3R_INLINE void write_energy(const RowContext& context, const RowState<T>& now, const State<T, full_size>& y,
                                RowWriter<T>& write) {
     const Plant<double>& plant = context.plant;
-    const T kinetic = kinetic_energy(plant.arm, now.pose, now.qd), potential = potential_energy(plant.arm, now.pose);
+    const T kinetic = kinetic_energy(plant.arm, now.pose, now.qd);
     const T stored = plant.acts_on_arm ? now.force.stored : T(0.0);
     write.number("energy_kinetic", kinetic);
-    write.number("energy_potential", potential);
+    write.number("energy_potential", potential_energy(plant.arm, now.pose));
     write.number("energy_contact", stored);
     write.number("work_actuators", y[work_of_actuators]);
     write.number("work_wall", y[work_of_wall]);
     write.number("energy_dissipated", y[dissipated]);
-    write.number("energy_residual", energy_residual(y, T(kinetic + potential + stored), context.energy_at_start));
+    const T energy = kinetic + potential_energy_of_pose(plant.arm, now.pose) + stored;
+    write.number("energy_residual", energy_residual(y, energy, context.energy_at_start));
 }
 
 template <class T>

@@ -118,7 +118,7 @@ public:
     Run conclude() override {
         if (!is_over()) end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(run_.t_end));
         set_end_metrics();
-        return finish(state_.y, state_.theta, balance_.totals(0, force_times_reach(setup_.plant, run_.peak_force)));
+        return finish(state_.y, state_.theta, balance_.totals(0, setup_.plant, run_.peak_force, double(run_.steps.accepted)));
     }
 
 private:

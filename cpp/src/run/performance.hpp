@@ -84,7 +84,8 @@ struct Segment {
 // An instant just before t: the end of a segment, where a formula of time may jump, is evaluated before the jump.
 template <class T>
 ARM3R_INLINE T slightly_before(const T& t) {
-    return t - std::numeric_limits<double>::epsilon() * abs(t);
+    using Limits = std::numeric_limits<double>;
+    return t - (Limits::epsilon() * abs(t) + Limits::denorm_min());  // before 0, too
 }
 
 // ---- samples

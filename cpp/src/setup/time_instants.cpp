@@ -95,10 +95,16 @@ double Setup::clock_rounding() const {
 void set_jumps_on_clock(Setup& setup) {
     const bool has_grid = setup.solver.method == SolverMethod::rk4, has_samples = setup.digital.sampling.on;
     const double period = has_grid ? setup.solver.step : has_samples ? setup.digital.sampling.period : infinite;
+    const auto nearest = [&](double jump, double every) {
+        const double count = nearest_integer((jump - setup.start) / every);
+        return setup.start + (count > 0 ? count * every : 0);
+    };
     const auto snap = [&](double& jump) {
-        const double count = nearest_integer((jump - setup.start) / period);
-        for (const double instant : {setup.start + (count > 0 ? count * period : 0), setup.stop})
-            if (std::abs(jump - instant) <= setup.clock_rounding()) jump = instant;
+        for (const double instant : {setup.stop, nearest(jump, period), nearest(jump, setup.log_every)})
+            if (std::abs(jump - instant) <= setup.clock_rounding()) {
+                jump = instant;
+                return;
+            }
     };
     each_jump_of_external_force(setup.plant.external_force, snap);
     if (setup.plant.has_wall) each_jump_of_wall(setup.plant.wall, snap);

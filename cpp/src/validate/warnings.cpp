@@ -119,7 +119,7 @@ void warn_of_jump(const Setup& setup, std::vector<std::string>& warnings) {
     for (double t = next_jump(setup, setup.start); t < setup.stop; t = next_jump(setup, t)) {
         if (t == setup.start + nearest_integer((t - setup.start) / step) * step) continue;
         warnings.push_back(
-            "a push, the reference or the wall's table jumps at t = " + shortest(t) +
+            "a push, the reference or the wall's table jumps at t = " + rounded(t, 15) +
             " s, within a step of rk4, which is of first order there; take a solver.step that reaches this "
             "instant in whole steps, or method: dopri5");
         return;

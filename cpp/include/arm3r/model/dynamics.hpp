@@ -101,14 +101,33 @@ ARM3R_INLINE T kinetic_energy(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>
     return 0.5 * (M11 * (w1 * w1) + inertia.Mb22 * (w2 * w2) + inertia.Mb33 * (w3 * w3)) + Mb23 * (w2 * w3);
 }
 
+// The energy of gravity in a pose, with `fixed`, kg m, beside the part that changes with it.
 template <class P, class T>
-ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, zero at the base origin (3.7)
+ARM3R_INLINE T energy_of_gravity(const Arm<P>& arm, const Pose<T>& p, const P& fixed) {
     const Lumped<P>& l = arm.lumped;
     const T radial = l.G2 * p.C2 + l.G3 * p.C23;
     const T up = l.G2 * p.S2 + l.G3 * p.S23;
-    const P fixed = arm.link1.mass * arm.link1.com + (arm.link2.mass + arm.link3.mass + arm.payload) * arm.base_height;
     if (arm.gravity_is_vertical) return -(arm.gravity[2] * (fixed + up));
     return -(arm.gravity[0] * p.C1 * radial + arm.gravity[1] * p.S1 * radial + arm.gravity[2] * (fixed + up));
+}
+
+template <class P, class T>
+ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, zero at the base origin (3.7)
+    const P fixed = arm.link1.mass * arm.link1.com + (arm.link2.mass + arm.link3.mass + arm.payload) * arm.base_height;
+    return energy_of_gravity(arm, p, fixed);
+}
+
+// U, zero where links 2 and 3 are level: what its changes are computed from, without the rounding errors of a height.
+template <class P, class T>
+ARM3R_INLINE T potential_energy_of_pose(const Arm<P>& arm, const Pose<T>& p) {
+    return energy_of_gravity(arm, p, P(0.0));
+}
+
+// J: no change of U, from any pose to any other, is more than twice this.
+template <class P>
+ARM3R_INLINE P weight_times_reach(const Arm<P>& arm) {
+    const Vec3<P>& g = arm.gravity;
+    return sqrt(P(dot(g, g))) * (abs(arm.lumped.G2) + abs(arm.lumped.G3));
 }
 
 // The joint torques of a force at the tip: J^T f.
