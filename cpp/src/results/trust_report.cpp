@@ -36,17 +36,18 @@ std::string json(const Horizon& horizon) {
     return "{\"horizon\": " + json_number(horizon.t) + ", \"error\": " + json_number(trusted_error) +
            ", \"to_the_end\": " + (horizon.is_end ? "true" : "false") +
            ", \"end_error\": " + json_number(horizon.end_error) +
-           ", \"end_error_at\": " + json_number(horizon.end_error_at) +
-           ", \"growth\": " + json_number(horizon.growth) + ", \"cause\": " + json_string(horizon.cause) + "}";
+           ", \"end_error_at\": " + json_number(horizon.end_error_at) + ", \"growth\": " + json_number(horizon.growth) +
+           ", \"cause\": " + json_string(horizon.cause) + "}";
 }
 
 std::string closed_form_lines(const ClosedForms& found) {
     if (found.forms.empty()) return {};
     std::vector<std::vector<std::string>> lines;
     for (const ClosedForm& one : found.forms) lines.push_back(cells(one));
-    const std::string met = std::isnan(found.approach_speed) ? "" : ", met at " + rounded(found.approach_speed, 5) + " m/s";
-    return line("closed forms", "effective mass " + rounded(found.effective_mass, 7) + " kg" + met +
-                                    ", at the first contact") +
+    const std::string met =
+        std::isnan(found.approach_speed) ? "" : ", met at " + rounded(found.approach_speed, 5) + " m/s";
+    return line("closed forms",
+                "effective mass " + rounded(found.effective_mass, 7) + " kg" + met + ", at the first contact") +
            aligned(lines);
 }
 

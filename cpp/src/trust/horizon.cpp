@@ -147,7 +147,7 @@ std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunO
     std::size_t good = 0;
     while (good < rows && error(good) <= trusted_error) ++good;
     const std::size_t last = good == 0 ? 0 : good - 1;
-    return Horizon{own.t[last],      good == own.t.size(), error(rows - 1),
+    return Horizon{own.t[last],     good == own.t.size(), error(rows - 1),
                    own.t[rows - 1], growth(last),         rows < own.t.size() ? limit.cause : ""};
 }
 
