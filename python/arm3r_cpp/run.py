@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -61,9 +62,13 @@ class Trust(NamedTuple):
     to_the_end: bool
     """Whether no angle ever is."""
     end_error: float
-    """rad, estimated for the last row."""
+    """rad, estimated for the last row at which it can be told."""
     growth: float
     """Factor by which a small change of the start grows until the horizon."""
+    end_error_at: float = math.nan
+    """s: the time of `end_error`."""
+    cause: str = ""
+    """Why the error cannot be told up to the last row, such as a singular pose; "" where it can."""
 
 
 class Run:
@@ -216,7 +221,8 @@ class Run:
         if not found:
             return None
         horizon, error, end_error, growth = (_number(found[key]) for key in ("horizon", "error", "end_error", "growth"))
-        return Trust(horizon, error, bool(found["to_the_end"]), end_error, growth)
+        at, cause = _number(found.get("end_error_at")), found.get("cause", "")
+        return Trust(horizon, error, bool(found["to_the_end"]), end_error, growth, at, cause)
 
     @property
     def checks(self) -> list[dict[str, Any]]:

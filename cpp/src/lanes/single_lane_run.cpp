@@ -66,6 +66,10 @@ private:
             update_dense_output();
             log_until(until);
         }
+        if (seeks_singular_pose()) {
+            update_dense_output();
+            seek_singular_pose(theta_);
+        }
         update_row_context();
     }
 

@@ -23,6 +23,12 @@ struct Event {
     std::array<double, 3> q, qd, tip;  // rad, rad/s, m; in the arm's convention
 };
 
+// Where det J of a law's model passes 0, though the law inverts J.
+struct SingularPassage {
+    double t;                 // s
+    std::array<double, 3> q;  // rad, in the arm's convention
+};
+
 struct Steps {
     std::int64_t accepted = 0, rejected = 0, evaluations = 0;
 };
@@ -72,8 +78,9 @@ struct Run : Metrics, RowTable {
     double energy_residual_max = 0;        // J, over steps and rows
     double elapsed_s = 0;                  // wall clock
     bool has_wall = false;
-    bool has_user_law = false;        // the scenario does not determine what the law does
-    std::optional<EndValues> at_end;  // none where the motion is not finite, or there are no rows
+    bool has_user_law = false;                        // the scenario does not determine what the law does
+    std::optional<SingularPassage> singular_passage;  // the first one, also between rows; looked for if a run judges
+    std::optional<EndValues> at_end;                  // none where the motion is not finite, or there are no rows
     // Observations in the rows; s, and < 0: never.
     double link_behind_wall_since = -1;  // of a link other than at its tip
     double out_of_reach_since = -1;      // of the point that an inner joint loop follows

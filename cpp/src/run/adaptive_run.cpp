@@ -310,6 +310,7 @@ private:
         const bool reached = t1 == step_end.t;
         log_until(reached && (step_end.is_jump || step_end.is_due) ? t1 - setup_.clock_rounding() : t1);
         if (!is_running()) return false;
+        if (seeks_singular_pose()) seek_singular_pose(theta);
         add_impulse(theta);
         if (has_performance_) add_performance(theta, t1);
         state_.theta = theta;

@@ -6,7 +6,9 @@
 #include "base/callback.hpp"
 #include "base/number_text.hpp"
 #include "record/end_messages.hpp"
+#include "run/singular_passage.hpp"
 #include "schema/choice_words.hpp"
+#include "setup/make_controller.hpp"
 #include "validate/size_limits.hpp"
 #include "validate/warnings.hpp"
 
@@ -28,6 +30,7 @@ RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
     : setup_(small_enough(setup, options.rows)), options_(options) {
     run_.t_end = setup_.start;
     run_.has_user_law = setup_.controller().type == ControllerType::user;
+    seeks_singular_pose_ = options.judges && inverts_jacobian(setup_.controller());
     if (!options.rows) return;
     plan_ = make_row_plan(setup_, options.kept, options.judges);
     row_log().reserve(plan_);
@@ -68,6 +71,11 @@ void RunRecorder::record(Event::Type type, double t, const FullState& y) {
     if (options_.rows && double(run_.events.size()) < max_events)
         run_.events.push_back({type, t, joints_out(setup_, angles(y)), joints_out(setup_, rates(y)),
                                without_negative_zero(tip_position(setup_.plant.arm, pose(angles(y))))});
+}
+
+void RunRecorder::seek_singular_pose(double theta) {
+    if (const std::optional<double> at = first_passage(setup_.controller().model, dense_, theta))
+        run_.singular_passage = {dense_.t0 + *at * dense_.h, joints_out(setup_, angles(dense_.motion(*at)))};
 }
 
 void RunRecorder::end(arm3r_outcome outcome, std::string message) {

@@ -44,6 +44,10 @@ protected:
         if (options_.rows) row_log().log_until(t, row_context(), [this] { return poll(); });
     }
 
+    // Whether the steps are to be searched for the first passage of a singular pose, in the dense output up to theta.
+    bool seeks_singular_pose() const { return seeks_singular_pose_ && !run_.singular_passage; }
+    void seek_singular_pose(double theta);
+
     // The state of the sampled controller and of the estimator from now on; a continuous law uses the estimated
     // stiffness.
     void store_controller_state(const ControllerState<double>& controller_state) {
@@ -98,6 +102,7 @@ private:
     void explain(const FullState& y);
     void record(Event::Type type, double t, const FullState& y);
     RowPlan plan_;
+    bool seeks_singular_pose_ = false;
     TorqueOscillation oscillation_;
     double energy_at_start_ = 0;
     std::int64_t steps_since_reading_ = 0;  // of the clock

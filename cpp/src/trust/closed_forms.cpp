@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
+#include "batch/simulation.hpp"
+#include "contact/contact_change.hpp"
 #include "record/energy_balance.hpp"
 #include "schema/columns.hpp"
 #include "trust/enclosure.hpp"
+#include "trust/exact_solver.hpp"
 #include "trust/linear_impact.hpp"
 
 namespace arm3r {
@@ -90,6 +94,21 @@ Approach approach(const Setup& setup, const Meeting& at) {
 // When a depth that begins at -gap, with speed v and acceleration g, reaches 0; NaN: never.
 double arrival(double gap, double v, double g) { return 2 * gap / (v + std::sqrt(v * v + 2 * g * gap)); }
 
+double norm_of(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
+
+// s: what rounding makes of the instant of a contact: of lengths that nearly cancel in the gap, and speeds in its rate,
+// at the speed in the end; and of the clock.
+double rounding_of_arrival(const Plant<double>& plant, const Meeting& start, double duration, double speed) {
+    constexpr double unit = 4 * std::numeric_limits<double>::epsilon();
+    const Pose<double> p = pose(start.q);
+    const WallState<double> wall = wall_at(plant.wall, start.t);
+    const double lengths = norm_of(tip_position(plant.arm, p)) + reach(plant.arm) + norm_of(plant.wall.point) +
+                           norm_of(wall.position) + std::abs(plant.wall.face_offset);
+    const double speeds = norm_of(tip_velocity(plant.arm, p, start.qd)) + norm_of(wall.velocity);
+    const double clock = std::max(std::abs(start.t), std::abs(start.t + duration));
+    return unit * (lengths + speeds * duration) / speed + std::max(event_time_tolerance, unit * clock);
+}
+
 void add_contact_instant(const Setup& setup, const Run& run, double tolerance, std::vector<ClosedForm>& forms) {
     const Meeting start = meeting_at(setup.plant, setup.start, setup.q, setup.qd);
     const double gap = -start.in.depth, v = start.in.rate, g = approach(setup, start).g;
@@ -99,8 +118,10 @@ void add_contact_instant(const Setup& setup, const Run& run, double tolerance, s
     if (!on_the_way) return;
     const double early = arrival(gap, v, g + on_the_way->departure), late = arrival(gap, v, g - on_the_way->departure);
     if (!(late < time)) return;
+    const double speed = std::sqrt(v * v + 2 * g * gap);
     forms.push_back({"first_contact", "s", run.first_contact, setup.start + duration,
-                     std::max(duration - early, late - duration) + tolerance * duration});
+                     std::max(duration - early, late - duration) + tolerance * duration +
+                         rounding_of_arrival(setup.plant, start, duration, speed)});
 }
 
 // A wall that passes through the tip of an arm which does not feel it.
@@ -168,10 +189,11 @@ bool add_contact(const Setup& setup, const Event& event, Sums& sums) {
     return bounds.has_value();
 }
 
-void add_contacts(const Setup& setup, const Run& run, double tolerance, std::vector<ClosedForm>& forms) {
-    if (run.events.back().type != Event::brk) return;
+void add_contacts(const Setup& setup, const Run& run, std::span<const Event> events, double tolerance,
+                  std::vector<ClosedForm>& forms) {
+    if (run.events.back().type != Event::brk || events.back().type != Event::brk) return;
     Sums sums;
-    for (const Event& event : run.events)
+    for (const Event& event : events)
         if (event.type == Event::make && !add_contact(setup, event, sums)) return;
     const auto add = [&](std::string_view name, std::string_view unit, double own, double form, double allowed) {
         if (allowed < form) forms.push_back({name, unit, own, form, allowed + tolerance * form});
@@ -198,20 +220,44 @@ void add_steady_force(const Setup& setup, const Run& run, double tolerance, std:
     if (allowed < 0.01 * form) forms.push_back({"final_force", "N", run.final_force, form, allowed + tolerance * form});
 }
 
+// ---- where and how fast the tip meets the wall
+
+bool has_closed_motion(const Setup& setup) { return !setup.digital.sampling.on && is_passive(setup.plant); }
+
+// The changes of contact by another, more exact method: the run's own error is to stand in its numbers only. Nothing
+// where that run ends at another instant.
+std::vector<Event> exact_events(const Setup& setup, const Run& run) {
+    Setup exact = setup;
+    exact.solver = exact_solver(setup.solver);
+    exact.stop = run.t_end;
+    exact.log_every = 2 * (run.t_end - setup.start);  // no rows but the first and the last
+    exact.metrics = {};
+    const Run other = run.t_end > setup.start ? simulate(exact, {.judges = false}) : Run{};
+    return other.t_end == run.t_end ? other.events : std::vector<Event>{};
+}
+
+// Whether the tip has its speed of before the contact where a run meets the wall: steps of rk4 end beyond it.
+bool knows_approach(const Setup& setup) {
+    return has_closed_motion(setup) || setup.solver.method != SolverMethod::rk4 || !setup.plant.acts_on_arm;
+}
+
 }  // namespace
 
 ClosedForms closed_forms(const Setup& setup, const Run& run) {
     ClosedForms found;
     if (run.events.empty() || run.events.front().type != Event::make) return found;
-    const Meeting first = meeting_at(setup, run.events.front());
+    const bool is_closed = has_closed_motion(setup), turns = setup.plant.wall.rotation != Rotation::none;
+    const std::vector<Event> events = is_closed ? exact_events(setup, run) : run.events;
+    if (events.empty() || events.front().type != Event::make) return found;
+    const Meeting first = meeting_at(setup, events.front());
     found.effective_mass = effective_mass(setup.plant.arm, pose(first.q), first.n);
-    found.approach_speed = first.in.rate;
+    if (knows_approach(setup)) found.approach_speed = first.in.rate;
     const double tolerance = balance_limit(setup.solver, {.throughput = 1});  // 100 times that of the method (4.9)
-    const bool turns = setup.plant.wall.rotation != Rotation::none;
-    if (!turns && !setup.digital.sampling.on && is_passive(setup.plant)) {
+    const double of_both = tolerance + balance_limit(exact_solver(setup.solver), {.throughput = 1});
+    if (!turns && is_closed) {
         add_contact_instant(setup, run, tolerance, found.forms);
         if (!setup.plant.acts_on_arm) add_force_of_replay(setup, run, tolerance, found.forms);
-        else if (is_linear(setup.plant.contact)) add_contacts(setup, run, tolerance, found.forms);
+        else if (is_linear(setup.plant.contact)) add_contacts(setup, run, events, of_both, found.forms);
     }
     if (setup.plant.acts_on_arm) add_steady_force(setup, run, tolerance, found.forms);
     return found;

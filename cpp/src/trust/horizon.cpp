@@ -4,8 +4,10 @@
 #include <cmath>
 #include <span>
 
+#include "base/number_text.hpp"
 #include "batch/simulation.hpp"
 #include "schema/columns.hpp"
+#include "trust/exact_solver.hpp"
 #include "validate/size_limits.hpp"
 
 namespace arm3r {
@@ -28,19 +30,24 @@ double refined(double tolerance, double least, const Refinement& by) {
     return by.once_more ? exact / 2 : exact;
 }
 
+// A fixed step has no tolerance, and a contact may lie in the same place of all steps that divide it: another method
+// takes its place.
 Setup refined(Setup setup, const Refinement& by) {
     Solver& solver = setup.solver;
-    solver.rtol = refined(solver.rtol, least_rtol, by);
-    solver.atol = refined(solver.atol, 0, by);
-    solver.tol = refined(solver.tol, least_tol, by);
-    solver.step /= by.once_more ? 8 : 4;  // the error of rk4 has the order 4
+    if (solver.method == SolverMethod::rk4) {
+        solver = exact_solver(solver);
+        if (by.once_more) solver.rtol /= 2, solver.atol /= 2;
+    } else {
+        solver.rtol = refined(solver.rtol, least_rtol, by);
+        solver.atol = refined(solver.atol, 0, by);
+        solver.tol = refined(solver.tol, least_tol, by);
+    }
     solver.max_steps *= 8;
     return setup;
 }
 
 // rad: far above the error of a step, so that the errors of the two runs do not count.
 double change_of_start(const Solver& solver) {
-    if (solver.method == SolverMethod::rk4) return 1e-7;
     return std::clamp(1e3 * (solver.method == SolverMethod::taylor ? solver.tol : solver.rtol), 1e-11, 1e-6);
 }
 
@@ -78,6 +85,39 @@ struct Trajectory {
     }
 };
 
+// Up to when a comparison of runs tells something, and why no longer.
+struct Comparable {
+    double t = INFINITY;  // s
+    std::string cause;
+
+    void include(double other, const std::string& why) {
+        if (other < t) t = other, cause = why;
+    }
+};
+
+std::string text_of(const SingularPassage& passage) {
+    const auto& q = passage.q;
+    return "at " + rounded(passage.t, 6) + " s the arm passes the singular pose q = (" + rounded(q[0], 4) + ", " +
+           rounded(q[1], 4) + ", " + rounded(q[2], 4) + ") rad, where the law inverts the Jacobian: its torque may " +
+           "last there for less than a step, and no tolerance tells";
+}
+
+// Torques that are held from sample to sample have no peak between them.
+Comparable limit_of(const Setup& setup, const Run& own, std::span<const Run> others) {
+    Comparable limit;
+    const auto pass = [&](const Run& run) {
+        if (run.singular_passage && !setup.digital.sampling.on)
+            limit.include(run.singular_passage->t, text_of(*run.singular_passage));
+    };
+    pass(own);
+    for (const Run& run : others) {
+        pass(run);
+        if (run.outcome != ARM3R_RUN_OK && run.t_end < own.t_end)
+            limit.include(run.t_end, "a more exact run ends at " + rounded(run.t_end, 6) + " s: " + run.message);
+    }
+    return limit;
+}
+
 }  // namespace
 
 ColumnSet states_in_log() {
@@ -95,8 +135,11 @@ std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunO
     const Run runs[] = {simulate(exact, options), simulate(more_exact, options),
                         simulate(changed(exact, change), options)};
     const Trajectory own(run), z(runs[0]), half(runs[1]), beside(runs[2]);
-    const std::size_t rows = std::min({own.common_rows(z), own.common_rows(half), own.common_rows(beside)});
-    if (rows == 0 || std::ranges::any_of(runs, is_cut_short)) return {};
+    if (std::ranges::any_of(runs, is_cut_short)) return {};
+    const Comparable limit = limit_of(setup, run, runs);
+    std::size_t rows = std::min({own.common_rows(z), own.common_rows(half), own.common_rows(beside)});
+    while (rows > 1 && own.t[rows - 1] > limit.t) --rows;
+    if (rows == 0) return {};
     const auto growth = [&](std::size_t row) { return beside.distance(z, row) / change; };
     const auto error = [&](std::size_t row) {
         return own.angle_distance(z, row) + z.angle_distance(half, row) + rounding_unit * growth(row);
@@ -104,7 +147,8 @@ std::optional<Horizon> horizon_of(const Setup& setup, const Run& run, const RunO
     std::size_t good = 0;
     while (good < rows && error(good) <= trusted_error) ++good;
     const std::size_t last = good == 0 ? 0 : good - 1;
-    return Horizon{own.t[last], good == own.t.size(), error(rows - 1), growth(last)};
+    return Horizon{own.t[last],     good == own.t.size(), error(rows - 1),
+                   own.t[rows - 1], growth(last),         rows < own.t.size() ? limit.cause : ""};
 }
 
 }  // namespace arm3r

@@ -1,0 +1,62 @@
+#include "run/singular_passage.hpp"
+
+#include <algorithm>
+
+#include "run/scalar_search.hpp"
+
+namespace arm3r {
+namespace {
+
+constexpr int parts = 8;  // of a step, in each of which a factor of det J has at most one extremum
+
+bool is_negative(const SearchPoint& p) { return p.value < 0; }
+
+// The first change of sign of f between two places.
+template <class F>
+std::optional<double> change_of_sign(F f, const SearchPoint& first, const SearchPoint& last) {
+    if (is_negative(first) == is_negative(last)) return {};
+    const double sign = is_negative(first) ? -1 : 1;
+    const auto falling = [&](double at) { return sign * f(at); };
+    return find_zero(falling, {first.at, sign * first.value}, {last.at, sign * last.value});
+}
+
+// The same between three places of one sign, where the middle one is nearest to 0.
+template <class F>
+std::optional<double> double_change(F f, const SearchPoint& first, const SearchPoint& middle, const SearchPoint& last) {
+    const double sign = is_negative(middle) ? 1 : -1;
+    const auto turned = [&](const SearchPoint& p) { return SearchPoint{p.at, sign * p.value}; };
+    const SearchPoint a = turned(first), b = turned(middle), c = turned(last);
+    if (!(b.value >= a.value && b.value >= c.value && b.value < 0)) return {};
+    const Maximum nearest = find_maximum([&](double at) { return sign * f(at); }, a, b, c);
+    return change_of_sign(f, first, {nearest.position, sign * nearest.value});
+}
+
+template <class F>
+std::optional<double> first_change_of_sign(F f, double end) {
+    const auto point = [&](int part) {
+        const double at = end * part / parts;
+        return SearchPoint{at, f(at)};
+    };
+    SearchPoint before = point(0), here = point(1);
+    if (const auto found = change_of_sign(f, before, here)) return found;
+    for (int part = 2; part <= parts; ++part) {
+        const SearchPoint next = point(part);
+        if (is_negative(before) == is_negative(next))
+            if (const auto found = double_change(f, before, here, next)) return found;
+        if (const auto found = change_of_sign(f, here, next)) return found;
+        before = here, here = next;
+    }
+    return {};
+}
+
+}  // namespace
+
+std::optional<double> first_passage(const Arm<double>& arm, const DenseOutput& dense, double end) {
+    const auto pose_at = [&](double theta) { return pose(angles(dense.motion(theta))); };
+    const auto stretched = first_change_of_sign([&](double theta) { return sin_q3(pose_at(theta)); }, end);
+    const auto on_axis = first_change_of_sign([&](double theta) { return radius(arm, pose_at(theta)); }, end);
+    if (stretched && on_axis) return std::min(*stretched, *on_axis);
+    return stretched ? stretched : on_axis;
+}
+
+}  // namespace arm3r
