@@ -209,6 +209,7 @@ typedef struct arm3r_law_state {
     double wall_speed_estimate;     /* m/s */
     double identifiable;            /* 1 where the data determine both */
     double q_true[3], qd_true[3], f_on_tip_true[3]; /* the true state, without sensor errors */
+    double stiffness_sigma;         /* N/m, standard deviation of stiffness_estimate; 0 where it is not identifiable */
 } arm3r_law_state;
 
 /* Writes three torques, N m. Not 0, or a torque that is not finite or beyond 1e12: the run ends as `controller`. The state is

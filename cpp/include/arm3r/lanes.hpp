@@ -56,7 +56,7 @@ template <class F, class... Sets>
 ARM3R_INLINE void each_sensor_number(F f, Sets&... s) {
     f(s.encoder_step...), f(s.velocity_share...), f(s.noise...), f(s.resolution...);
     f(s.bias[0]...), f(s.bias[1]...), f(s.bias[2]...);
-    f(s.analog_rate...), f(s.force_share...), f(s.force_delay...), f(s.tool_mass...);
+    f(s.analog_rate...), f(s.analog_share...), f(s.force_share...), f(s.force_delay...), f(s.tool_mass...);
 }
 
 template <class F, class... Observers>

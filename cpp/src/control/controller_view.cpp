@@ -45,6 +45,7 @@ void LawView::fill_state(double tick, const GroundTruth& truth, const Measuremen
     }
     if (estimates_) {
         state.stiffness_estimate = controller_state.stiffness;
+        state.stiffness_sigma = controller_state.stiffness_sigma;
         state.wall_speed_estimate = controller_state.wall_speed;
         state.identifiable = controller_state.identifiable;
     }

@@ -43,10 +43,12 @@ void SampledController<T>::load_lane(int lane, const DigitalController<double>& 
     set(estimation_.forgetting, estimation.forgetting);
     set(estimation_.max_condition, estimation.max_condition);
     set(next_estimate_, estimation.on ? estimation.start : never);
+    set(estimation_.assumed, estimation.assumed), set(state_.assumed_stiffness, estimation.assumed);
+    contact_samples_.load_lane(lane);
     estimator_.reset(estimation.wall_moves, [&](T& x) { set(x, 0.0); });
     for (T* zero : {&count_, &outputs_done_, &state_.contact, &state_.force_phase, &state_.collision, &state_.stiffness,
-                    &state_.wall_speed, &state_.identifiable, &quiet_since_, &reacts_, &last_potential_, &early_share_,
-                    &estimates_, &samples_in_, &contact_sample_.counts})
+                    &state_.stiffness_sigma, &state_.wall_speed, &state_.identifiable, &quiet_since_, &reacts_, &last_potential_, &early_share_,
+                    &estimates_, &samples_in_})
         set(*zero, 0.0);
     for (Vec3<T>* zeros : {&state_.q, &state_.qd, &state_.f_on_tip, &state_.residual, &filtered_, &expected_,
                            &hold_pose_, &last_q_, &last_qd_, &last_desired_, &early_torque_})
@@ -234,31 +236,50 @@ void SampledController<T>::apply_brake(const Mask& due, const Arm<T>& arm, const
     });
 }
 
-// Each sample is used once, and in contact only. The estimate becomes the assumed stiffness of a law that needs it.
+// Each sample is used once, and in contact only.
 template <class T>
 void SampledController<T>::estimate(const Mask& due) {
     Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
         const T o(0.0), l(1.0);
-        const Mask counts = due && contact_sample_.counts > o;
+        const auto& sample = contact_samples_.now();
+        const Mask counts = due && sample.counts > o;
         const Mask first = counts && samples_in_ == o;
-        first_position_ = select(first, contact_sample_.position, first_position_);
-        first_time_ = select(first, contact_sample_.time, first_time_);
-        estimator_.add_where(counts, T(contact_sample_.position - first_position_),
-                             T(contact_sample_.time - first_time_), contact_sample_.force, estimation_.forgetting);
-        contact_sample_.counts = select(due, o, contact_sample_.counts);
+        first_position_ = select(first, sample.position, first_position_);
+        first_time_ = select(first, sample.time, first_time_);
+        estimator_.add_where(counts, T(sample.position - first_position_), T(sample.time - first_time_), sample.force,
+                             estimation_.forgetting);
+        contact_samples_.use(due);
         samples_in_ = samples_in_ + select(counts, l, o);
-        const WallEstimate<T> answer = estimator_.solve();
-        const Mask is_valid = samples_in_ >= T(8.0) && answer.condition < estimation_.max_condition;
-        state_.identifiable = select(due, select(is_valid, l, o), state_.identifiable);
-        state_.stiffness = select(due, select(is_valid, answer.stiffness, o), state_.stiffness);
-        state_.wall_speed = select(due, select(is_valid, answer.speed, o), state_.wall_speed);
-        if (digital_.sampling.on && asks_estimator(digital_.controller)) {
-            T& assumed = digital_.controller.gains.assumed_stiffness;
-            assumed = select(due && is_valid, answer.stiffness, assumed);
-        }
+        const WallEstimate<T> answer = estimator_.solve(sample.errors);
+        const Mask is_valid = samples_in_ >= T(8.0) && answer.condition < estimation_.max_condition &&
+                              answer.stiffness > least_certainty * answer.sigma;
+        tell(due, is_valid, answer);
         estimates_ = estimates_ + select(due, l, o);
         next_estimate_ = select(due, T(estimation_.start + estimates_ * estimation_.period), next_estimate_);
     });
+}
+
+template <class T>
+void SampledController<T>::forget(const Mask& lost) {
+    Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
+        estimator_.forget_where(lost);
+        samples_in_ = select(lost, T(0.0), samples_in_);
+        tell(lost, !lost, {});
+    });
+}
+
+// Where it is valid, the estimate is the stiffness of a law that needs one.
+template <class T>
+void SampledController<T>::tell(const Mask& due, const Mask& is_valid, const WallEstimate<T>& answer) {
+    const T o(0.0), l(1.0);
+    state_.identifiable = select(due, select(is_valid, l, o), state_.identifiable);
+    state_.stiffness = select(due, select(is_valid, answer.stiffness, o), state_.stiffness);
+    state_.stiffness_sigma = select(due, select(is_valid, answer.sigma, o), state_.stiffness_sigma);
+    state_.wall_speed = select(due, select(is_valid, answer.speed, o), state_.wall_speed);
+    const T assumed = select(is_valid, answer.stiffness, estimation_.assumed);
+    state_.assumed_stiffness = select(due, assumed, state_.assumed_stiffness);
+    if (is_on() && asks_estimator(digital_.controller))
+        digital_.controller.gains.assumed_stiffness = state_.assumed_stiffness;
 }
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
@@ -274,7 +295,8 @@ void SampledController<T>::estimate(const Mask& due) {
     template void SampledController<__VA_ARGS__>::update_reserve(const Mask&, const Measurement<__VA_ARGS__>&);        \
     template void SampledController<__VA_ARGS__>::apply_brake(const Mask&, const Arm<__VA_ARGS__>&,                    \
                                                               const Measurement<__VA_ARGS__>&, Command<__VA_ARGS__>&); \
-    template void SampledController<__VA_ARGS__>::estimate(const Mask&);
+    template void SampledController<__VA_ARGS__>::estimate(const Mask&);                                               \
+    template void SampledController<__VA_ARGS__>::forget(const Mask&);
 
 ARM3R_LANE_TYPES(ARM3R_SAMPLED_CONTROLLER)
 

@@ -15,6 +15,8 @@
 #include "arm3r/numbers/random.hpp"
 #include "arm3r/numbers/widths.hpp"
 #include "arm3r/sensing/estimator.hpp"
+#include "control/contact_samples.hpp"
+#include "control/delay_line.hpp"
 #include "control/user_law.hpp"
 
 namespace arm3r {
@@ -51,32 +53,8 @@ struct ControllerState {
     Vec3<T> residual;         // N m
     T contact{0.0}, force_phase{0.0}, collision{0.0};
     std::array<T, law_memory> memory{};
-    T stiffness{0.0}, wall_speed{0.0}, identifiable{0.0};  // N/m, m/s
-};
-
-// The latest values of a quantity, by the number of their sample. A copy takes those that were written, no more: most
-// controllers have no delay.
-template <std::size_t size>
-class DelayLine {
-public:
-    DelayLine() = default;
-    DelayLine(const DelayLine& other) { *this = other; }
-    DelayLine& operator=(const DelayLine& other) {
-        written_ = other.written_;
-        std::copy_n(other.values_.begin(), written_, values_.begin());
-        return *this;
-    }
-
-    const Vec3<double>& at(double sample) const { return values_[std::size_t(std::max(0.0, sample)) % size]; }
-    Vec3<double>& to_write(double sample) {
-        const std::size_t place = std::size_t(sample) % size;
-        written_ = std::max(written_, place + 1);
-        return values_[place];
-    }
-
-private:
-    std::size_t written_ = 0;
-    std::array<Vec3<double>, size> values_;
+    T stiffness{0.0}, stiffness_sigma{0.0}, wall_speed{0.0}, identifiable{0.0};  // N/m, N/m, m/s
+    T assumed_stiffness{0.0};  // N/m, for a law that asks the estimator
 };
 
 template <class T>
@@ -108,6 +86,7 @@ public:
 
     const ControllerState<T>& controller_state() const { return state_; }
     bool is_on() const { return digital_.sampling.on; }
+    bool estimates() const { return estimation_.on; }
     const Controller<T>& controller() const { return digital_.controller; }
     // The instant of the next sample, s.
     ARM3R_INLINE T next_sample() const { return next_sample_; }
@@ -122,7 +101,7 @@ private:
             if (controller.type == ControllerType::user) truth_ = {sensed.q, sensed.qd, sensed.f_on_tip};
         measure(due, arm, now.f_filtered, sensed);
         update_contact(due, sensed);
-        if (estimation_.on) sample_contact(due, controller.model, sensed);
+        if (estimation_.on) sense_contact(due, sensed);
         if (digital_.observer.on) update_residual(due, sensed);
         start_memory(due, sensed);
         if (has_reserve(controller)) update_reserve(due, sensed);
@@ -187,6 +166,7 @@ private:
             for (int i = 0; i < 3; ++i) f[i] = rounded_to_grid(f[i], sensors.resolution);
         if (sensors.has_bias) f = plus(f, sensors.bias);
         if (sensors.has_noise) add_noise(due, f);
+        unfiltered_ = f;
         if (sensors.has_filter) {
             const Mask first = count_ == T(0.0);
             for (int i = 0; i < 3; ++i) {
@@ -332,25 +312,27 @@ private:
     ARM3R_INLINE void estimate_if_due(const Mask& due, const T& until, const Arm<T>& arm, const Measurement<T>& seen) {
         const Mask estimates = due && next_estimate_ <= until;
         if (!in_any_lane(estimates)) return;
-        if (!is_on()) sample_contact(estimates, arm, seen);
+        if (!is_on()) {
+            contact_samples_.take(estimates, arm, seen);
+            forget_lost_contact(estimates);
+        }
         estimate(estimates);
     }
 
-    // Force and position at one instant; a sampled controller has both from its sensors.
-    struct ContactSample {
-        T time{0.0}, position{0.0}, force{0.0};  // s, m, N: of the tip and on it, along the normal
-        T counts{0.0};                           // 1: taken in contact and not yet used by the estimator
-    };
-
-    ARM3R_INLINE void sample_contact(const Mask& due, const Arm<T>& arm, const Measurement<T>& seen) {
-        const T force = dot(seen.n, seen.f_on_tip), o(0.0), l(1.0);
-        const bool judges = !is_on() || digital_.controller.switching != Switching::always;
-        const Mask touches = judges ? seen.contact > o : force > o;
-        contact_sample_.time = select(due, seen.t, contact_sample_.time);
-        contact_sample_.position = select(due, T(-dot(seen.n, tip_position(arm, seen.pose))), contact_sample_.position);
-        contact_sample_.force = select(due, force, contact_sample_.force);
-        contact_sample_.counts = select(due, select(touches, l, o), contact_sample_.counts);
+    ARM3R_INLINE void sense_contact(const Mask& due, const Measurement<T>& sensed) {
+        contact_samples_.take_sensed(due, count_, digital_, sensed, unfiltered_);
+        forget_lost_contact(due);
     }
+
+    // An estimate is of one contact: where it is lost, the estimator starts anew.
+    ARM3R_INLINE void forget_lost_contact(const Mask& due) {
+        const T o(0.0);
+        const Mask lost = due && !(contact_samples_.now().touches > o) && samples_in_ > o;
+        if (in_any_lane(lost)) forget(lost);
+    }
+
+    [[gnu::noinline]] void forget(const Mask& lost);
+    ARM3R_INLINE void tell(const Mask& due, const Mask& is_valid, const WallEstimate<T>& answer);
 
     [[gnu::noinline]] void estimate(const Mask& due);
 
@@ -369,18 +351,19 @@ private:
     double due_time(int lane, double sample) const;
 
     static constexpr double never = infinite;
+    static constexpr double least_certainty = 5;  // standard deviations of the stiffness in an estimate of it
 
     DigitalController<T> digital_;
     T count_{0.0}, outputs_done_{0.0};  // number of samples, and of torques that have begun to act
     T next_sample_{never}, next_output_{never}, next_estimate_{never};
     ControllerState<T> state_;
     GroundTruth truth_;  // for a law of the user's own
-    ContactSample contact_sample_;
+    ContactSamples<T> contact_samples_;
     Estimation<T> estimation_;
     Estimator<T> estimator_;
     T estimates_{0.0}, first_position_{0.0}, first_time_{0.0}, samples_in_{0.0};
     Vec3<T> mean_acting_{};  // N m: mean of the torques that act from the last sample to the next one (8.3)
-    Vec3<T> filtered_{}, expected_{}, hold_pose_{};
+    Vec3<T> unfiltered_{}, filtered_{}, expected_{}, hold_pose_{};
     T quiet_since_{0.0}, reacts_{0.0};
     Vec3<T> last_q_{}, last_qd_{}, last_desired_{};  // rad, rad/s, m: at the last sample, for a law with a reserve
     T last_potential_{0.0};                          // J

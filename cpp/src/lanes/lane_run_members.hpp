@@ -90,9 +90,7 @@ void LaneRun<T, N>::update_controller() {
         PlantOutput<T> now = plant_output();
         sampled_.update(is_due(), slack_, plant_.arm, now, plant_.held_torque);
         if (!asks_estimator(plant_.controller)) return;
-        T& assumed = plant_.controller.gains.assumed_stiffness;
-        assumed =
-            select(sampled_.controller_state().identifiable > T(0.0), sampled_.controller_state().stiffness, assumed);
+        if (sampled_.estimates()) plant_.controller.gains.assumed_stiffness = sampled_.controller_state().assumed_stiffness;
     });
     if (sampled_.has_failed()) stop_lane(0, ARM3R_RUN_CONTROLLER);
 }
@@ -198,6 +196,7 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
     if (performance_.is_on()) write_performance(performance_.sums(lane), setup, m);
     if (is_controlled_ && get(sampled_.controller_state().identifiable) > 0) {
         m.stiffness_estimate = get(sampled_.controller_state().stiffness);
+        m.stiffness_sigma = get(sampled_.controller_state().stiffness_sigma);
         m.wall_speed_estimate = get(sampled_.controller_state().wall_speed);
     }
     const EnergyTotals totals = this->totals(lane);

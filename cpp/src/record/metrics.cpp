@@ -68,6 +68,8 @@ constexpr SummaryNumber numbers[] = {
      [](R r) { return r.dissipated_parts[2]; }},
     {"energy_dissipated_edges", "J", "the part lost where the tip left the plate across an edge",
      [](R r) { return r.dissipated_parts[3]; }},
+    {"stiffness_sigma", "N/m", "standard deviation of stiffness_estimate, where it is identifiable",
+     [](R r) { return r.stiffness_sigma; }},
 };
 
 }  // namespace

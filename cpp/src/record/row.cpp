@@ -28,6 +28,7 @@ constexpr unsigned parts_of(std::size_t column) {
     if (is_between("force", "q_ref3")) return law_signals;
     if (is_between("residual1", "collision")) return observer_signals;
     if (is_between("stiffness_estimate", "tank_energy")) return memory_signals;
+    if (is_between("stiffness_sigma", "stiffness_sigma")) return memory_signals;
     if (is_between("saturated", "saturated")) return applied_torque | memory_signals;
     if (is_between("energy_dissipated_joints", "energy_dissipated_edges")) return losses;
     if (is_between("wall_x", "f_on_wall_z")) return contact_state;

@@ -269,6 +269,7 @@ template <class T>
 ARM3R_INLINE void write_memory(const RowContext& context, const RowState<T>& now, const State<T, full_size>& y,
                                RowWriter<T>& write) {
     write.number("stiffness_estimate", T(context.controller_state.stiffness));
+    write.number("stiffness_sigma", T(context.controller_state.stiffness_sigma));
     write.number("wall_speed_estimate", T(context.controller_state.wall_speed));
     write.number("identifiable", T(context.controller_state.identifiable));
     write.number("tank_energy", context.is_sampled ? T(context.controller_state.memory[0]) : y[law_at]);

@@ -58,7 +58,7 @@ struct Metrics {
     double path_error_rms = unknown, path_error_max = unknown;                          // m
     double saturation_share = 0;
     std::array<double, 3> work{};                                        // J, of each torque
-    double stiffness_estimate = unknown, wall_speed_estimate = unknown;  // N/m, m/s
+    double stiffness_estimate = unknown, stiffness_sigma = unknown, wall_speed_estimate = unknown;  // N/m, N/m, m/s
     double stiff_steps = 0;                                              // accepted steps of the stiff method
 };
 

@@ -408,6 +408,7 @@ private:
         run_.choices = stepper_.choices();
         if (controller_state_.identifiable > 0) {
             run_.stiffness_estimate = controller_state_.stiffness;
+            run_.stiffness_sigma = controller_state_.stiffness_sigma;
             run_.wall_speed_estimate = controller_state_.wall_speed;
         }
     }

@@ -111,6 +111,8 @@ inline constexpr std::array column_table = std::to_array<Column>({
      Need::loss},
     {"energy_dissipated_friction", "J", "the part lost to friction along the wall", Need::loss},
     {"energy_dissipated_edges", "J", "the part lost where the tip left the plate across an edge", Need::loss},
+    {"stiffness_sigma", "N/m", "standard deviation of stiffness_estimate; 0 where it is not identifiable",
+     Need::estimator},
 });
 
 inline constexpr std::size_t column_count = column_table.size();

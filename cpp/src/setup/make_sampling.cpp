@@ -38,6 +38,7 @@ Sensors<double> make_sensors(std::span<const double> params) {
     sensors.bias = vector_at<"sensors.force.bias">(params);
     sensors.resolution = at<"sensors.force.resolution">(params);
     sensors.analog_rate = std::isnan(analog) ? 0 : 2 * pi * analog;
+    sensors.analog_share = std::isnan(analog) ? 1 : share_of(analog, period);
     sensors.force_share = std::isnan(cutoff) ? 1 : share_of(cutoff, period);
     sensors.force_delay = at<"sensors.force.delay">(params);
     sensors.tool_mass = at<"sensors.force.tool_mass">(params);
@@ -74,6 +75,7 @@ Estimation<double> make_estimation(std::span<const double> params) {
     estimation.start = std::max(at<"estimator.start">(params), at<"time.start">(params));
     estimation.forgetting = at<"estimator.forgetting">(params);
     estimation.max_condition = at<"estimator.largest_condition">(params);
+    estimation.assumed = at<"controller.assumed_stiffness">(params);
     return estimation;
 }
 

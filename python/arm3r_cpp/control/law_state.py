@@ -120,6 +120,11 @@ class LawState:
         return self._now.struct.stiffness_estimate
 
     @property
+    def stiffness_sigma(self) -> float:
+        """The standard deviation of the estimated stiffness, N/m; 0 where the stiffness is not identifiable."""
+        return self._now.struct.stiffness_sigma
+
+    @property
     def wall_speed_estimate(self) -> float:
         """The speed of the wall towards the arm that the estimator found, m/s; 0 where the stiffness is."""
         return self._now.struct.wall_speed_estimate

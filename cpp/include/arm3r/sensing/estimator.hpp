@@ -1,7 +1,8 @@
 #pragma once
 // The wall's stiffness, position and speed from force and position alone: least squares with forgetting of
 // f = k s - k s0 + k v t (8.7), kept as a triangular factor that each sample is rotated into, so that the condition of
-// the answer is that of the data and not its square.
+// the answer is that of the data and not its square. What the rotations leave over of the samples tells how far the
+// stiffness may be from the truth (8.10).
 
 #include <array>
 #include <limits>
@@ -15,6 +16,13 @@ struct WallEstimate {
     T stiffness;    // N/m
     T face, speed;  // m along the pressing direction at the first sample, m/s towards the arm
     T condition;    // of the data, columns scaled to the same size; infinite if the force does not depend on position
+    T sigma;        // N/m, standard deviation of the stiffness; infinite or NaN where the samples do not tell it
+};
+
+// Variances of the rounding by encoders, m^2, and by the force sensor, N^2.
+template <class T>
+struct RoundingErrors {
+    T position{0.0}, force{0.0};
 };
 
 template <class T>
@@ -24,16 +32,16 @@ public:
     template <class Clear>
     void reset(bool wall_moves, Clear clear) {
         size_ = wall_moves ? 3 : 2;
-        for (T& x : factor_) clear(x);
+        for (T& x : numbers_) clear(x);
     }
 
     // s: m along the pressing direction; f: N; t: s since the first sample.
     ARM3R_INLINE void add(const T& s, const T& t, const T& f, const T& forgetting) {
         const T weight = sqrt(forgetting);
-        for (int i = 0; i < size_; ++i)
-            for (int j = i; j <= size_; ++j) at(i, j) = weight * at(i, j);
-        std::array<T, 4> row{s, T(1.0), size_ == 3 ? t : f, f};
-        for (int i = 0; i < size_; ++i) rotate_in(row, i);
+        std::array<T, 4> row{s, T(1.0), size_ == 3 ? t : f, f}, again = row;
+        rotate_in(row, fit_at, size_ + 1, weight);
+        rotate_in(again, spread_at, size_, forgetting);
+        add_residual(row[size_], forgetting);
     }
 
     // The sample enters only where `due`.
@@ -41,43 +49,109 @@ public:
     ARM3R_INLINE void add_where(const M& due, const T& s, const T& t, const T& f, const T& forgetting) {
         Estimator after = *this;
         after.add(s, t, f, forgetting);
-        for (std::size_t i = 0; i < factor_.size(); ++i) factor_[i] = select(due, after.factor_[i], factor_[i]);
+        for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = select(due, after.numbers_[i], numbers_[i]);
     }
 
-    ARM3R_INLINE WallEstimate<T> solve() const {
+    // Forgets all samples where `lost`.
+    template <class M>
+    ARM3R_INLINE void forget_where(const M& lost) {
+        for (T& x : numbers_) x = select(lost, T(0.0), x);
+    }
+
+    ARM3R_INLINE WallEstimate<T> solve(const RoundingErrors<T>& errors) const {
         std::array<T, 3> x{T(0.0), T(0.0), T(0.0)};
         for (int i = size_ - 1; i >= 0; --i) {
-            T rest = at(i, size_);
-            for (int j = i + 1; j < size_; ++j) rest = rest - at(i, j) * x[j];
-            x[i] = rest / at(i, i);
+            T rest = fit(i, size_);
+            for (int j = i + 1; j < size_; ++j) rest = rest - fit(i, j) * x[j];
+            x[i] = rest / fit(i, i);
         }
         const T condition = this->condition();
-        const auto none = !(abs(x[0] * at(0, 0)) > rounding * (condition * force()));
+        const auto none = !(abs(x[0] * fit(0, 0)) > rounding * (condition * force()));
         const T o(0.0), stiffness = select(none, T(1.0), x[0]);
         return {select(none, o, x[0]), select(none, o, T(-x[1] / stiffness)), select(none, o, T(x[2] / stiffness)),
-                select(none, T(infinite), condition)};
+                select(none, T(infinite), condition), sigma(x[0], condition, errors)};
     }
 
 private:
-    ARM3R_INLINE T& at(int i, int j) { return factor_[4 * i + j]; }
-    ARM3R_INLINE const T& at(int i, int j) const { return factor_[4 * i + j]; }
+    // Where the numbers lie: two triangular factors, row by row, the first with the right-hand side behind it and with
+    // weights w of the squares, the second with weights w^2; then sums over the residuals.
+    enum : int { fit_at = 0, spread_at = 12, weights_at = 24, squared_weights, squares, products, last, number_count };
 
-    ARM3R_INLINE void rotate_in(std::array<T, 4>& row, int i) {
-        const T length = sqrt(at(i, i) * at(i, i) + row[i] * row[i]);
-        const auto empty = length == T(0.0);
-        const T divisor = select(empty, T(1.0), length);
-        const T c = select(empty, T(1.0), T(at(i, i) / divisor)), d = select(empty, T(0.0), T(row[i] / divisor));
-        for (int j = i; j <= size_; ++j) {
-            const T kept = c * at(i, j) + d * row[j];
-            row[j] = c * row[j] - d * at(i, j);
-            at(i, j) = kept;
+    ARM3R_INLINE const T& fit(int i, int j) const { return numbers_[fit_at + 4 * i + j]; }
+    ARM3R_INLINE const T& spread(int i, int j) const { return numbers_[spread_at + 4 * i + j]; }
+
+    // Rotates a row into the factor that begins at `start`, whose rows before it come to weigh less. What remains in
+    // the row's columns behind the triangle is its residual.
+    ARM3R_INLINE void rotate_in(std::array<T, 4>& row, int start, int columns, const T& weight) {
+        const auto at = [&](int i, int j) ARM3R_INLINE_LAMBDA -> T& { return numbers_[start + 4 * i + j]; };
+        for (int i = 0; i < size_; ++i)
+            for (int j = i; j < columns; ++j) at(i, j) = weight * at(i, j);
+        for (int i = 0; i < size_; ++i) {
+            const T length = sqrt(at(i, i) * at(i, i) + row[i] * row[i]);
+            const auto empty = length == T(0.0);
+            const T divisor = select(empty, T(1.0), length);
+            const T c = select(empty, T(1.0), T(at(i, i) / divisor)), d = select(empty, T(0.0), T(row[i] / divisor));
+            for (int j = i; j < columns; ++j) {
+                const T kept = c * at(i, j) + d * row[j];
+                row[j] = c * row[j] - d * at(i, j);
+                at(i, j) = kept;
+            }
         }
+    }
+
+    ARM3R_INLINE void add_residual(const T& residual, const T& forgetting) {
+        const auto add_to = [&](int sum, const T& factor, const T& x)
+                                ARM3R_INLINE_LAMBDA { numbers_[sum] = factor * numbers_[sum] + x; };
+        add_to(weights_at, forgetting, T(1.0));
+        add_to(squared_weights, T(forgetting * forgetting), T(1.0));
+        add_to(squares, forgetting, T(residual * residual));
+        add_to(products, forgetting, T(residual * numbers_[last]));
+        numbers_[last] = residual;
+    }
+
+    // (8.10)
+    ARM3R_INLINE T sigma(const T& stiffness, const T& condition, const RoundingErrors<T>& errors) const {
+        const std::array<T, 9> inverse = inverse_of_fit();
+        T position(0.0), spread_of_k(0.0), fitted(0.0);
+        for (int j = 0; j < size_; ++j) position = position + inverse[j] * inverse[j];
+        for (int i = 0; i < size_; ++i) {
+            T along(0.0);
+            for (int j = i; j < size_; ++j) {
+                T m(0.0);
+                for (int k = i; k <= j; ++k) m = m + spread(i, k) * inverse[3 * k + j];
+                fitted = fitted + m * m;
+                along = along + m * inverse[j];
+            }
+            spread_of_k = spread_of_k + along * along;
+        }
+        const T weights = numbers_[weights_at], freedom = weights - fitted;
+        const T noise = max(T(numbers_[squares] / freedom), errors.force);
+        const T least = rounding * force();
+        const T alike = max(T(0.0), T(numbers_[products] / (numbers_[squares] + least * least)));
+        const T samples = freedom * weights / numbers_[squared_weights];
+        const T repeats = (1.0 + alike) / (1.0 - alike);
+        const T independent = max(T(samples / repeats), T(2.0));
+        const T by_noise = noise * spread_of_k * repeats * (independent / (independent - 2.0));
+        const T by_encoder = stiffness * errors.position * weights * position;
+        const T by_rounding = rounding * condition * stiffness;
+        return sqrt(T(by_noise + by_encoder * by_encoder + by_rounding * by_rounding));
+    }
+
+    ARM3R_INLINE std::array<T, 9> inverse_of_fit() const {
+        std::array<T, 9> inverse;
+        for (int j = 0; j < size_; ++j)
+            for (int i = j; i >= 0; --i) {
+                T rest(i == j ? 1.0 : 0.0);
+                for (int k = i + 1; k <= j; ++k) rest = rest - fit(i, k) * inverse[3 * k + j];
+                inverse[3 * i + j] = rest / fit(i, i);
+            }
+        return inverse;
     }
 
     // The length of the column of forces, N.
     ARM3R_INLINE T force() const {
         T square(0.0);
-        for (int i = 0; i < size_; ++i) square = square + at(i, size_) * at(i, size_);
+        for (int i = 0; i < size_; ++i) square = square + fit(i, size_) * fit(i, size_);
         return sqrt(square);
     }
 
@@ -86,8 +160,8 @@ private:
         std::array<T, 9> r, inverse;
         for (int j = 0; j < size_; ++j) {
             T square(0.0);
-            for (int i = 0; i <= j; ++i) square = square + at(i, j) * at(i, j);
-            for (int i = 0; i < size_; ++i) r[3 * i + j] = i <= j ? T(at(i, j) / sqrt(square)) : T(0.0);
+            for (int i = 0; i <= j; ++i) square = square + fit(i, j) * fit(i, j);
+            for (int i = 0; i < size_; ++i) r[3 * i + j] = i <= j ? T(fit(i, j) / sqrt(square)) : T(0.0);
         }
         T forward(0.0), backward(0.0);
         for (int j = 0; j < size_; ++j)
@@ -106,7 +180,7 @@ private:
     static constexpr double rounding = 1e3 * std::numeric_limits<double>::epsilon();
 
     int size_ = 3;
-    std::array<T, 12> factor_{};  // row by row: triangular, with the right-hand side behind it
+    std::array<T, number_count> numbers_{};
 };
 
 }  // namespace arm3r

@@ -40,6 +40,7 @@ struct Sensors : SensorChoices {
     P noise, resolution;  // N: standard deviation, step
     Vec3<P> bias;         // N
     P analog_rate;        // rad/s, pole of the low-pass before sampling
+    P analog_share;       // by which its output approaches a constant force within a period
     P force_share;        // weight of a new sample in the digitally filtered force
     P force_delay;        // samples
     P tool_mass;          // kg
@@ -80,6 +81,7 @@ struct Estimation : EstimationChoices {
     P period, start;  // s
     P forgetting;     // forgetting factor: the weight of a sample is multiplied by it at each later sample
     P max_condition;  // the estimate is not valid above it
+    P assumed;        // N/m: what a law that asks the estimator goes by where the wall is not identifiable
 };
 
 // An external force on the tip, beside that of the wall: it grows linearly during `rise` and then stays constant.
