@@ -24,6 +24,13 @@ const Setup& small_enough(const Setup& setup, bool rows) {
     return setup;
 }
 
+// The first cause of a bad end: what `arm3r check` says of the loop.
+std::optional<std::string> unstable_loop(const Setup& setup) {
+    std::vector<std::string> loops = unstable_loops(setup);
+    if (loops.empty()) return {};
+    return std::move(loops.front());
+}
+
 }  // namespace
 
 RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
@@ -112,6 +119,7 @@ void RunRecorder::explain(const FullState& y) {
     if (!is_numerical && !is(ARM3R_RUN_EVENT_STORM) && !is(ARM3R_RUN_BUDGET)) return;
     std::optional<std::string> cause;
     if (setup_.digital.sampling.on) cause = oscillation_.error_message(setup_.digital.sampling.period);
+    if (!cause) cause = unstable_loop(setup_);
     if (!cause) cause = singular_pose(setup_, run_, angles(y));
     if (cause) run_.message += "; " + *cause;
     else if (is(ARM3R_RUN_ENERGY)) run_.message += std::string("; ") + accuracy_advice(setup_.solver);
@@ -147,7 +155,7 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
         }
     }
     explain(y);
-    if (is_running() && options_.judges && !setup_.digital.sampling.on)
+    if (is_running() && options_.judges && !setup_.digital.sampling.on && !unstable_loop(setup_))
         if (const std::optional<std::string> passed = singular_pose(setup_, run_, angles(y)))
             run_.warnings.push_back(*passed +
                                     "; steps may miss torques that last for microseconds there: compare with a "

@@ -14,6 +14,9 @@ std::vector<std::string> scenario_warnings(const Setup& setup);
 // of scenario_warnings(), because the numbers do not show which keys were given.
 std::optional<std::string> default_gravity_warning(const Setup& setup);
 
+// One sentence for each control loop that is unstable at the start: by a formula, or else by its linearisation.
+std::vector<std::string> unstable_loops(const Setup& setup);
+
 // Warnings about the controller, its reference and its sampling.
 void add_controller_warnings(const Setup& setup, std::vector<std::string>& warnings);
 

@@ -7,6 +7,7 @@
 #include "arm3r/control/energy_reserve.hpp"
 #include "base/number_text.hpp"
 #include "setup/make_controller.hpp"
+#include "validate/linear_loop.hpp"
 #include "validate/stability_limits.hpp"
 #include "validate/warnings.hpp"
 
@@ -32,6 +33,12 @@ struct Loop {
     double k_e, m_n;  // N/m, kg
     Vec3<double> n;
 };
+
+Loop loop_on_wall(const Setup& setup) {
+    const Plant<double>& plant = setup.plant;
+    return {plant.contact.stiffness[0], effective_mass(setup.controller().model, pose(setup.q), plant.wall.n),
+            plant.wall.n};
+}
 
 // ---- stability of the force loops on the wall at t = 0
 
@@ -116,12 +123,16 @@ void warn_of_contact(const Setup& setup, Warnings& warnings) {
             (tracks_force(setup.controller().type) ? " presses on the wall" : " uses the contact force") +
             " and wall.acts_on_arm is false: the arm does not feel the force that "
             "its controller measures; write acts_on_arm: true");
-    const Pose<double> p = pose(setup.q);
-    const Loop loop{plant.contact.stiffness[0], effective_mass(setup.controller().model, p, plant.wall.n),
-                    plant.wall.n};
+    const Loop loop = loop_on_wall(setup);
     warn_of_light_mass(setup.controller(), loop, warnings);
-    if (!plant.acts_on_arm || (plant.contact.law != ContactLaw::spring && plant.contact.law != ContactLaw::diagonal))
-        return;
+}
+
+// Where a formula has the limit of a gain.
+void warn_of_contact_loop(const Setup& setup, Warnings& warnings) {
+    const Plant<double>& plant = setup.plant;
+    const bool is_spring = plant.contact.law == ContactLaw::spring || plant.contact.law == ContactLaw::diagonal;
+    if (!plant.has_wall || !plant.acts_on_arm || !is_spring) return;
+    const Loop loop = loop_on_wall(setup);
     warn_of_force_loop(setup.controller(), loop, warnings);
     warn_of_admittance(setup.controller(), loop, warnings);
     warn_of_reference_gain(setup.controller(), loop, warnings);
@@ -158,6 +169,47 @@ void warn_of_slow_samples(const Setup& setup, Warnings& warnings) {
         warnings.push_back("the controller computes every " + short_number(setup.digital.sampling.period) +
                            " s, and these position and velocity gains are stable with periods below " +
                            short_number(longest) + " s only, min(2 Kd/Kp, 2/Kd); raise sampling.rate");
+}
+
+// Hz: the lowest rate found at which the loop is stable; 0: none.
+double stable_rate(const Setup& setup, TipPlace place) {
+    const auto is_stable_at = [&](double rate) {
+        const auto growth = loop_growth(setup, place, 1 / rate);
+        return growth && growth->per_second <= least_growth;
+    };
+    double low = 1 / setup.digital.sampling.period, high = 2 * low;
+    constexpr int doublings = 8, halvings = 6;
+    for (int i = 0; !is_stable_at(high); ++i, low = high, high *= 2)
+        if (i == doublings) return 0;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        (is_stable_at(middle) ? high : low) = middle;
+    }
+    return high;
+}
+
+std::string unstable_loop_text(const Setup& setup, TipPlace place, const LoopGrowth& growth) {
+    const std::string where = place == TipPlace::in_contact ? " in contact" : "";
+    if (growth.period == 0)
+        return "the loop is unstable" + where + " at the pose of the start: its fastest mode grows by a factor e in " +
+               rounded(1 / growth.per_second, 3) + " s; lower the gains, or raise the damping";
+    const double rate = stable_rate(setup, place);
+    const std::string factor = rounded(exp(growth.per_second * growth.period), 5);
+    return "the sampled loop of " + rounded(1 / growth.period, 6) + " Hz is unstable" + where +
+           " at the pose of the start: its fastest mode grows " + factor + " times a sample; " +
+           (rate > 0 ? "from about " + rounded(rate, 3) + " Hz on it is stable: raise sampling.rate, or take less delay "
+                                                         "or lower gains"
+                     : std::string("a higher sampling.rate alone does not help: take less delay or lower gains"));
+}
+
+// Where no formula has said it.
+void warn_of_linear_loop(const Setup& setup, Warnings& warnings) {
+    for (const TipPlace place : {TipPlace::free, TipPlace::in_contact}) {
+        const std::optional<LoopGrowth> growth = loop_growth(setup, place);
+        if (!growth || !(growth->per_second > least_growth)) continue;
+        warnings.push_back(unstable_loop_text(setup, place, *growth));
+        return;
+    }
 }
 
 void warn_of_observer(const Setup& setup, Warnings& warnings) {
@@ -367,10 +419,18 @@ void warn_of_push(const Setup& setup, Warnings& warnings) {
 
 }  // namespace
 
+Warnings unstable_loops(const Setup& setup) {
+    Warnings warnings;
+    warn_of_contact_loop(setup, warnings);
+    warn_of_slow_samples(setup, warnings);
+    if (warnings.empty()) warn_of_linear_loop(setup, warnings);
+    return warnings;
+}
+
 void add_controller_warnings(const Setup& setup, Warnings& warnings) {
     warn_of_contact(setup, warnings);
+    for (std::string& loop : unstable_loops(setup)) warnings.push_back(std::move(loop));
     warn_of_raibert_craig(setup, warnings);
-    warn_of_slow_samples(setup, warnings);
     warn_of_observer(setup, warnings);
     warn_of_reference(setup, warnings);
     warn_of_pressing(setup, warnings);
