@@ -126,7 +126,7 @@ class Arm:
 
         The number in row i and column j is that of qdd[i] with respect to q[j] (1/s^2), to qd[j] (1/s) and to tau[j]
         (1/(kg m^2)): the last matrix is the inverse of the mass matrix. They are exact to rounding (automatic
-        differentiation; docs/model.md, 3.13). f_on_tip is constant in base axes.
+        differentiation; `arm3r docs model`, 3.13). f_on_tip is constant in base axes.
         """
         found = self._batch(
             lib.arm3r_arm_forward_dynamics_derivatives, *[(3, 3)] * 3, q=q, qd=qd, tau=tau, f_on_tip=f_on_tip
@@ -152,7 +152,7 @@ class Arm:
     ) -> tuple[Floats, Floats]:
         """The linear state-space model about a state, d(q, qd)/dt = A (q, qd) + B tau for small deviations of each.
 
-        A is (..., 6, 6) and B is (..., 6, 3), in SI units and radians; docs/model.md (3.14). f_on_tip is constant.
+        A is (..., 6, 6) and B is (..., 6, 3), in SI units and radians; `arm3r docs model` (3.14). f_on_tip is constant.
 
         >>> A, B = arm.linearize(q, [0, 0, 0], arm.gravity_torque(q))  # about rest
         """

@@ -40,7 +40,7 @@ class Event(NamedTuple):
 
 
 class ClosedForm(NamedTuple):
-    """What theory says of the contacts of a run, beside the run's own number; docs/model.md, section 9."""
+    """What theory says of the contacts of a run, beside the run's own number; `arm3r docs model`, section 9."""
 
     name: str
     """Of the summary number."""
@@ -52,7 +52,7 @@ class ClosedForm(NamedTuple):
 
 
 class Trust(NamedTuple):
-    """How long the joint angles of a run are right; docs/model.md (9.6)."""
+    """How long the joint angles of a run are right; `arm3r docs model` (9.6)."""
 
     horizon: float
     """s: the last row before an angle is wrong by more than `error`."""

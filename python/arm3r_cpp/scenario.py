@@ -276,7 +276,7 @@ class Scenario:
         Args:
             controller: a law of your own instead of the scenario's, controller(t, state) -> three torques, N m. It is
                 called once at each sample, in increasing time, and its torque held until the next. Or a function in a
-                file, "my_law.m" or "my_law.py:f"; docs/control.md says what its arguments get. `run_beside` runs the
+                file, "my_law.m" or "my_law.py:f"; `arm3r docs control` says what its arguments get. `run_beside` runs
                 scenario's own controller, too.
             rate: of its samples, Hz; None: the scenario's sampling.rate, by default 1000.
             progress: called as progress(t, stop, steps) at most every 20 ms; a true result stops the run, and what it

@@ -36,6 +36,7 @@ constexpr Program programs[] = {
     {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
     {"converge", "FILE", "run a scenario with smaller and smaller steps, and print the observed order"},
     {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},
+    {"docs", "[NAME]", "list the pages of this installation, or print one, such as verify or sweeps"},
     {"exercise", "CALL", "list and show exercises, judge what you hand in, and mark a folder of submissions"},
 };
 
@@ -47,8 +48,8 @@ constexpr std::string_view no_call = "-";  // as `calls` of an option of the pro
 
 constexpr Option options[] = {
     {"--output", "-o", "OUT", "run",
-     "write OUT (.csv, or .npz for numpy) and, beside it, the summary as .json; - is standard output; for several files a directory, which is "
-     "made"},
+     "write OUT (.csv, or .npz for numpy; no other ending) and, beside it, the summary as .json; - is standard output; "
+     "for several files, or with / at its end, a directory, which is made"},
     {"--set", "", "PATH=VALUE", "run check",
      "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
     {"--no-checks", "", "", "run", "leave out the scenario's checks, which hold for its own values only"},

@@ -26,6 +26,10 @@ def converge() -> int:
     return _call("converge")
 
 
+def docs() -> int:
+    return _call("docs")
+
+
 def examples() -> int:
     return _call("examples")
 

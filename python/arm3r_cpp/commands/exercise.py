@@ -27,7 +27,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="arm3r-exercise",
-        description="Exercises about the lecture's arm, with marking; docs/exercises.md is the lab sheet.",
+        description="Exercises about the lecture's arm, with marking; `arm3r docs exercises` is the lab sheet.",
     )
     calls = parser.add_subparsers(title="calls", metavar="CALL", required=True)
 
