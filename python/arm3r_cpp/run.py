@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _native
-from ._files import replacing
+from ._files import check_ending, replacing
 from ._messages import no_column
 from ._native import Floats, lib
 from .errors import ColumnError, UsageError
@@ -234,22 +234,30 @@ class Run:
         return self.summary["warnings"]
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write PATH and, beside it, the summary with the suffix .json: each whole or not at all.
+        """Write PATH, which ends in .csv, and beside it the summary with the suffix .json: each whole or not at all.
 
         Raises:
             OutputError: it cannot be written.
-            UsageError: the run was not made in this process; it has been written before, or use `to_npz`.
+            UsageError: the name has another ending; or the run was not made in this process; it has been written before, or use `to_npz`.
         """
         if self._handle is None:
             raise UsageError("only a run made in this process is written as CSV; use to_npz", code="usage")
+        if os.fspath(path):  # the library has a sentence for an empty name
+            check_ending(path, [".csv"], hint="to_npz writes .npz, to_html .html")
+        self._save(path)
+
+    def _save(self, path: str | os.PathLike[str]) -> None:
+        """Write PATH, .csv or .npz, and the summary beside it, as `arm3r run -o` does."""
         _native.call(lib.arm3r_run_save, self._handle, *_native.file_path(path))
 
     def to_npz(self, path: str | os.PathLike[str]) -> None:
-        """Write everything into one file that `Run.load` and `numpy.load` read: whole or not at all.
+        """Write everything into one file, .npz, that `Run.load` and `numpy.load` read: whole or not at all.
 
         Raises:
             OutputError: it cannot be written.
+            UsageError: the name has another ending.
         """
+        check_ending(path, [".npz"], hint="to_csv writes .csv, to_html .html")
         with replacing(Path(path)) as part, part.open("wb") as file:
             np.savez(
                 file,
@@ -285,7 +293,8 @@ class Run:
 
         Raises:
             OutputError: it cannot be written.
-            UsageError: the installation has no page, or the run's summary holds no scenario.
+            UsageError: the name has another ending than .html, the installation has no page, or the run's summary holds
+                no scenario.
         """
         from .live import show
 

@@ -277,7 +277,7 @@ class Scenario:
             controller: a law of your own instead of the scenario's, controller(t, state) -> three torques, N m. It is
                 called once at each sample, in increasing time, and its torque held until the next. Or a function in a
                 file, "my_law.m" or "my_law.py:f"; `arm3r docs control` says what its arguments get. `run_beside` runs
-                scenario's own controller, too.
+                the scenario's own controller, too.
             rate: of its samples, Hz; None: the scenario's sampling.rate, by default 1000.
             progress: called as progress(t, stop, steps) at most every 20 ms; a true result stops the run, and what it
                 raises comes out unchanged.
@@ -324,14 +324,14 @@ class Scenario:
         progress: Progress | None = None,
         time_limit: float | None = None,
     ) -> Beside:
-        """Run a controller of your own, and beside it the true one: the scenario's own, at the same samples.
+        """Run a controller of your own, and beside it the scenario's own, at the same samples.
 
         >>> beside = scenario.run_beside("my_gravity.m")
         >>> print(beside)
         >>> beside.figure()
 
         A function of the joint angles alone is a gravity torque. Where the scenario does not compensate gravity, the
-        true one beside it is `gravity_compensation`.
+        controller beside it is `gravity_compensation`.
 
         Args, Raises: as `run`. What ends your run early is in `beside.failure` and is not raised.
         """

@@ -57,7 +57,7 @@ constexpr Option options[] = {
     {"--trust", "", "", "run", "say up to which time the joint angles are right to 1e-6 rad; it takes three more runs"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
     {"--controller", "", "FILE[:FUNCTION]", "run",
-     "run a MATLAB or Python function of yours as the controller, beside the true one, in the scenario's convention; "
+     "run a MATLAB or Python function of yours as the controller, beside the scenario's own, in its convention; "
      "FILE is executed as you would execute it, unconfined"},
     {"--format", "", "md", "schema columns", "print a Markdown page instead"},
     {"--help", "-h", "", "", "print this"},

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .._files import check_folder, make_folder
+from .._files import check_folder, folder_named, make_folder
 from ..errors import UsageError
 from ..plot.figure_files import check_format, write
 from ..plot.style import FORMATS, WIDTH
@@ -49,7 +49,7 @@ def draw(options: argparse.Namespace) -> None:
 
 
 def draw_beside(options: argparse.Namespace) -> None:
-    """Your function as the controller, and the true one."""
+    """Your function as the controller, and the scenario's."""
     if options.panels:
         raise UsageError("--panels: with --controller the panels are those of two controllers; leave it away")
     paths_of(options)
@@ -98,7 +98,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="PATH",
         help="folder, made if it is missing, or without --lecture also a file in a folder that exists (default: here)",
     )
-    controller = "run your function as the controller of the scenario RUN, beside the true one, and draw both; FILE is "
+    controller = "run your function as the controller of the scenario RUN, beside its own, and draw both; FILE is "
     pick("--controller", metavar="FILE[:FUNCTION]", help=f"{controller}executed as you would execute it, unconfined")
     add_set(parser)
     add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
@@ -143,7 +143,7 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
     """What the files' names begin with, and their format."""
     out = options.out or Path()
     if out.is_dir() or not out.suffix:
-        make_folder(out)
+        make_folder(folder_named(out))
         return out / ("compare" if options.compare else options.run.stem), options.format or "png"
     if options.lecture:
         raise UsageError(f"-o {out}: with --lecture several files are written; give a folder")

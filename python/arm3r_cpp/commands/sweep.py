@@ -48,7 +48,7 @@ def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="arm3r-sweep", description="Run a sweep: a table with one row a run.")
     add = parser.add_argument
     add("sweep", metavar="SWEEP.yaml", help="scenario, axes, and what is kept; see `arm3r docs sweeps`")
-    add("-o", dest="out", metavar="DIR", required=True, help="folder of the sweep: its table and its finished shards")
+    add("-o", dest="out", metavar="DIR", required=True, help="folder (without an ending) of the sweep: its table and its finished shards")
     add("--jobs", type=int, metavar="N", help="shards computed at a time (default: one for each CPU allowed)")
     add("--resume", action="store_true", help="go on where an interrupted sweep in DIR stopped")
     add("--set", action="append", default=[], metavar="PATH=VALUE", help="put a value into the scenario")

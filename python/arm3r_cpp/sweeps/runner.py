@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import _native
-from .._files import replacing
+from .._files import folder_named, replacing
 from ..batch import AXIS_ERRORS, axis_of
 from ..errors import Arm3rError, UsageError
 from ..system.cpus import usable_cpus
@@ -62,7 +62,7 @@ def sweep(
 
     Args:
         source: a Sweep, its keys as a map, or its file.
-        out: the folder; new or empty, or with `resume` that of the same sweep.
+        out: the folder; new or empty, or with `resume` that of the same sweep. The name of a new one has no ending.
         executor: where shards are computed; None: threads of this process.
         jobs: how many shards at a time; None: one for each CPU that this process may use, of an executor 64.
         resume: go on where an interrupted sweep stopped. No finished shard is done again.
@@ -77,14 +77,16 @@ def sweep(
 
     Raises:
         ScenarioError: the sweep is not valid; all that is wrong is listed.
+        UsageError: the folder has the name of a file.
         OutputError: the folder exists, is in use, or cannot be written.
         IncompatibleError: the folder was begun with something else, or a worker has another version.
         Arm3rError: `progress` ended the sweep, or a worker of the executor died; either can be resumed.
     """
     jobs = None if jobs is None else index(jobs)
+    folder_path = folder_named(out)
     plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
     job = _first_job(plan, "parquet" if parquet else "csv", controller)
-    with SweepFolder.open(Path(out), _manifest(plan, job), resume=resume) as folder:
+    with SweepFolder.open(folder_path, _manifest(plan, job), resume=resume) as folder:
         under_way: UnderWay = {}
         with _submitting(executor, jobs, under_way) as (submit, at_a_time):
             _run(plan, job, folder, submit, at_a_time, under_way, progress)
