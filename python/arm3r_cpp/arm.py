@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
 from ._native import Floats, ffi, lib
+from .answers.meant_names import Answering, no_attribute
 from .params import param_defaults
 
 
-class Arm:
+class Arm(metaclass=Answering):
     """An arm: every function takes (..., 3) arrays, broadcasts them over the leading axes and returns new arrays.
 
     Joint vectors q, qd, qdd (rad, rad/s, rad/s^2) and tau (N m) follow the arm's convention; points, velocities and
@@ -31,6 +32,11 @@ class Arm:
         """
         self._params = param_defaults() if params is None else np.array(params, np.float64)
         self._handle = _native.create("arm", lib.arm3r_arm_create, _native.readable(self._params), self._params.size)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise no_attribute("Arm", name, dir(Arm))
 
     @property
     def params(self) -> Floats:

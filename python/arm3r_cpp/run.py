@@ -15,6 +15,7 @@ from . import _native
 from ._files import check_ending, replacing
 from ._messages import no_column
 from ._native import Floats, lib
+from .answers.meant_names import Answering, no_attribute
 from .errors import ColumnError, UsageError
 from .rows.names import columns_of, completions, three_of
 from .run_file import read, with_numbers
@@ -66,7 +67,7 @@ class Trust(NamedTuple):
     """Factor by which a small change of the start grows until the horizon."""
 
 
-class Run:
+class Run(metaclass=Answering):
     """A finished or partial run. `run["q1"]` is a column, `run["q"]`, `run["tip"]` are three of them as (rows, 3).
 
     Columns are read-only arrays of float64, views of the run's own memory, in SI units and radians; `units` names them.
@@ -112,6 +113,12 @@ class Run:
             message = f"the log of this run does not have {name!r}: {self._why_not(meant)}"
             raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
         raise no_column(name, self._columns)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            is_column = not name.startswith("_") and name in self
+            raise no_attribute("Run", name, dir(Run), meant=f"run[{name!r}]" if is_column else "")
 
     def _why_not(self, meant: list[str]) -> str:
         """Why columns of other runs are none of this one's."""

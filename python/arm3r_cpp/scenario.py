@@ -15,6 +15,7 @@ from . import _native
 from ._messages import describe, warn_user
 from ._native import BatchProgress, Floats, Progress, lib
 from ._progress_bar import shown
+from .answers.meant_names import Answering, no_attribute
 from .arm import Arm
 from .control.law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
 from .errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, class_of_outcome
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
 
 
-class Scenario:
+class Scenario(metaclass=Answering):
     """A scenario: read from YAML, changed by path, validated and run by the library.
 
     >>> scenario = Scenario.example("moving_wall")
@@ -99,6 +100,13 @@ class Scenario:
 
     def __repr__(self) -> str:
         return f"<Scenario {self._file}>"
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            is_section = any(place.partition(".")[0] == name for place in places())
+            meant = f'scenario["{name}"], or of a key in it scenario["{name}.KEY"]' if is_section else ""
+            raise no_attribute("Scenario", name, dir(Scenario), meant=meant)
 
     def __getitem__(self, path: str) -> Any:
         """The value at a dotted path, defaults included, list items by [i]: "wall.contact.stiffness", "initial.q[1]".

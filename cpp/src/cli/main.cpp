@@ -117,8 +117,9 @@ void check_new_directory(const std::string& path) {
     const std::size_t dot = path.rfind('.'), name = platform::last_separator(path) + 1;
     if (platform::kind_of(path) == platform::FileKind::missing && dot != path.npos && dot > name &&
         !ends_with_separator(path))
-        throw Exit{exit_usage, path + ": error[usage]: several scenarios are written into a directory, and this is the "
-                                      "name of a file; write / at its end if it is a directory"};
+        throw Exit{exit_usage, path +
+                                   ": error[usage]: several scenarios are written into a directory, and this is the "
+                                   "name of a file; write / at its end if it is a directory"};
 }
 
 void spare_scenarios(const std::vector<std::string>& files, const std::string& path) {

@@ -78,8 +78,8 @@ const std::vector<Elsewhere>& elsewhere() {
 }
 
 // Names of what other robots have: of a whole robot, and of one in the section of this arm.
-const Words of_robots = {"dof",    "dofs",      "joint",    "joints", "link",   "links",  "mjcf", "ndof", "njoints",
-                         "nlinks", "numjoints", "numlinks", "robot",  "robots", "urdf",   "xacro"};
+const Words of_robots = {"dof",     "dofs",   "joint",     "joints",   "link",  "links",  "mjcf", "ndof",
+                         "njoints", "nlinks", "numjoints", "numlinks", "robot", "robots", "urdf", "xacro"};
 const Words of_other_arms = {"alpha", "dh",     "dhparameters", "dhtable", "jointtype", "mdh",
                              "model", "offset", "offsets",      "twist",   "type",      "xml"};
 

@@ -192,7 +192,8 @@ private:
         if (node.type == Node::unset) return;
         std::string hint = node.type == Node::nothing ? "write `" + node.key + ": {}`, or leave it out" : "";
         if (const Key* choice = node.type == Node::scalar ? choice_with(path, node.text) : nullptr)
-            hint = "write `" + node.key + ": {" + last_name(choice->path) + ": " + word_meant(*choice, node.text) + "}`";
+            hint =
+                "write `" + node.key + ": {" + last_name(choice->path) + ": " + word_meant(*choice, node.text) + "}`";
         problem(node.type == Node::nothing ? node.key_mark : node.mark,
                 {"scenario.type", path, "expects a map", node_text(node), "keys " + listed(names_here(path)), hint});
     }

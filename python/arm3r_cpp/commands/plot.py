@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from .._files import check_folder, folder_named, make_folder
 from ..errors import UsageError
+from ..measured.reader import is_measurement
 from ..plot.figure_files import check_format, write
 from ..plot.style import FORMATS, WIDTH
 from .exit_codes import attempt, print_line
@@ -40,12 +41,29 @@ def main(argv: Sequence[str] | None = None) -> int:
 def draw(options: argparse.Namespace) -> None:
     if options.controller:
         return draw_beside(options)
-    runs = {path: read(path, options.set) for path in paths_of(options)}
+    paths = paths_of(options)
+    logs = [path for path in paths if is_measurement(path)]
+    check_measured(logs, options)
     target = target_of(options)
-    save({path: run for path, (run, _) in runs.items()}, options, target)
+    runs = {path: read(path, options.set) for path in paths if path not in logs}
+    save({path: run for path, (run, _) in runs.items()}, options, target, logs)
     for _, failure in runs.values():
         if failure:
             raise failure
+
+
+def check_measured(logs: Sequence[Path], options: argparse.Namespace) -> None:
+    """
+    Raises:
+        UsageError: there are several measurements, or a figure of runs alone is asked for.
+    """
+    if len(logs) > 1:
+        raise UsageError(
+            f"{logs[1]}: one measurement (a CSV file without a JSON file beside it) is drawn, got {len(logs)}"
+        )
+    if logs and (options.lecture or options.force or options.overview):
+        why = "a measurement has no summary (there is no JSON file beside it); give --compare, or leave the option out"
+        raise UsageError(f"{logs[0]}: {why}", code="usage")
 
 
 def draw_beside(options: argparse.Namespace) -> None:
@@ -90,7 +108,14 @@ def parser() -> argparse.ArgumentParser:
     pick(
         "--lecture", action="store_true", help="tip, velocities, torques, energies, wall, contact, strobe: a file each"
     )
-    pick("--compare", type=Path, nargs="+", metavar="RUN", help="two to six runs over each other, and their metrics")
+    pick(
+        "--compare",
+        type=Path,
+        nargs="+",
+        metavar="RUN",
+        help="two to six runs over each other, and their "
+        "metrics; or runs over a measurement, a CSV file with a column t or time and no JSON file beside it",
+    )
     add(
         "-o",
         dest="out",
@@ -154,23 +179,27 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
     return out.with_suffix(""), out.suffix[1:]
 
 
-def save(runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path, str]) -> None:
+def save(
+    runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path, str], logs: Sequence[Path] = ()
+) -> None:
     stem, suffix = target
-    files = {Path(f"{stem}{name}.{suffix}"): figure for name, figure in figures(runs, options).items()}
+    files = {Path(f"{stem}{name}.{suffix}"): figure for name, figure in figures(runs, options, logs).items()}
     write(files)
     for path in files:
         print_line(path)
 
 
-def figures(runs: dict[Path, Run], options: argparse.Namespace) -> dict[str, Figure]:
+def figures(runs: dict[Path, Run], options: argparse.Namespace, logs: Sequence[Path] = ()) -> dict[str, Figure]:
     """The figures by the ends of their files' names."""
-    from ..plot import compare, force, lecture, overview
+    from ..plot import compare, force, lecture, measured, overview
 
     if options.lecture and (options.width or options.height):
         given = "--width" if options.width else "--height"
         raise UsageError(f"{given}: the lecture's figures have a size of their own; leave it away", code="usage")
     part = {"start": options.start, "end": options.end, "panels": options.panels, "stamp": options.stamp}
     size = {"width": options.width or WIDTH, "height": options.height}
+    if logs:
+        return {"": measured(logs[0], named(runs), **size, **part)}
     if options.compare:
         return {"": compare(named(runs), **size, **part)}
     (run,) = runs.values()

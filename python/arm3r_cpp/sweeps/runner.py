@@ -10,14 +10,14 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from operator import index
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import _native
 from .._files import folder_named, replacing
 from ..batch import AXIS_ERRORS, axis_of
-from ..errors import Arm3rError, UsageError
+from ..errors import Arm3rError, ScenarioWarning, UsageError
 from ..system.cpus import usable_cpus
+from .advice import Advice
 from .definition import Sweep
 from .folder import SweepFolder, sha256
 from .shard import ShardJob, ShardResult, columns_of, run_shard
@@ -187,6 +187,7 @@ def _run(
     """Compute and store every shard that the folder does not have; at most `at_a_time` are on their way."""
     missing = (number for number in range(_shards(plan)) if number not in folder.finished)
     pending: dict[Future[ShardResult], tuple[int, int, int]] = {}
+    advice, before = None if job.controller else Advice(plan.scenario), folder.runs_done
     try:
         while True:
             while len(pending) < at_a_time and (number := next(missing, None)) is not None:
@@ -201,7 +202,10 @@ def _run(
                 shard = pending.pop(future)
                 folder.store(*shard, *future.result())
                 under_way.pop(shard[1], None)
-            if progress and progress(folder.runs_done + sum(list(under_way.values())), plan.runs):
+            done = folder.runs_done + sum(list(under_way.values()))
+            if advice and (sentence := advice.after(done - before, plan.runs - before)):
+                warnings.warn(f"{plan.file}: {sentence}", ScenarioWarning, stacklevel=2)
+            if progress and progress(done, plan.runs):
                 raise Arm3rError(f"{folder.path}: stopped after {folder.runs_done} of {plan.runs} runs", code="stopped")
     except BrokenExecutor as broken:
         message = f"a worker died; {folder.runs_done} of {plan.runs} runs are finished, and resuming goes on from there"
