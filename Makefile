@@ -13,7 +13,7 @@ ifdef NEED
 export ARM3R_NEED := $(NEED)
 endif
 
-SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md $(wildcard docs/*.schema.json build/page/live.html) \
+SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md CHANGELOG.md $(wildcard docs/*.md docs/*.schema.json build/page/live.html) \
            $(shell find cpp cmake python scenarios -type f -not -path '*/__pycache__/*')
 CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
 # Python compiles what it imports; pip would compile every module of every package, half of the time of an installation.

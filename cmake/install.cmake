@@ -12,6 +12,10 @@ endif()
 set(_data ${CMAKE_INSTALL_DATADIR}/arm3r)
 install(DIRECTORY scenarios DESTINATION ${_data} FILES_MATCHING PATTERN "*.yaml")
 install(FILES docs/scenario.schema.json docs/sweep.schema.json DESTINATION ${_data}/docs)
+# The pages that `arm3r docs` prints; their pictures stay in the repository.
+file(GLOB _pages CONFIGURE_DEPENDS docs/*.md)
+install(FILES ${_pages} DESTINATION ${_data}/docs)
+install(FILES README.md CHANGELOG.md DESTINATION ${_data})
 # The live page, where `make page` has built it.
 install(DIRECTORY build/page/ DESTINATION ${_data}/live OPTIONAL)
 set(ARM3R_LICENSES "" CACHE FILEPATH "The licences of what is compiled in, as cmake/core_licenses.py prints them")

@@ -28,7 +28,7 @@ def __getattr__(name: str) -> Any:
         return import_module(f"{__name__}.{name}")
     api = import_module(f"{__name__}._api")
     if name not in api.__all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}; it has {', '.join(dir())}")
+        raise import_module(f"{__name__}.answers.meant_names").no_attribute(__name__, name, __dir__())
     value = globals()[name] = getattr(api, name)
     return value
 

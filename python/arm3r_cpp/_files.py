@@ -5,12 +5,12 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
 
-from .errors import OutputError
+from .errors import OutputError, UsageError
 
 _number = count()  # of the files that this process has begun: two threads may write to the same path
 
@@ -27,6 +27,33 @@ def regular(path: Path) -> Path:
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if path.exists() and not path.is_file():
         raise OSError(errno.EINVAL, "not a regular file", str(path))
+    return path
+
+
+def check_ending(path: str | os.PathLike[str], endings: Sequence[str], *, hint: str = "") -> None:
+    """
+    Raises:
+        UsageError: the name ends in none of these, so that the file would not be what its name says.
+    """
+    suffix = Path(path).suffix
+    if suffix not in endings:
+        got = f"got {suffix}" if suffix else "the name has no ending"
+        words = f"{os.fspath(path)}: {' or '.join(endings)} is written there, {got}"
+        raise UsageError(f"{words}; {hint}" if hint else words, code="usage")
+
+
+def folder_named(name: str | os.PathLike[str]) -> Path:
+    """The folder that is written, which may have to be made.
+
+    Raises:
+        UsageError: there is none yet, and the name is that of a file or of standard output.
+    """
+    text, path = os.fspath(name), Path(name)
+    if text == "-":
+        raise UsageError("-: a folder is written, which standard output cannot take; name one", code="usage")
+    if path.suffix and not path.exists() and not text.endswith(("/", os.sep)):
+        hint = "write / at its end, or make it first, if it is a folder"
+        raise UsageError(f"{text}: a folder is written, and this is the name of a file; {hint}", code="usage")
     return path
 
 

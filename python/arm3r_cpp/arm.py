@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _native
 from ._native import Floats, ffi, lib
+from .answers.meant_names import Answering, no_attribute
 from .params import param_defaults
 
 
-class Arm:
+class Arm(metaclass=Answering):
     """An arm: every function takes (..., 3) arrays, broadcasts them over the leading axes and returns new arrays.
 
     Joint vectors q, qd, qdd (rad, rad/s, rad/s^2) and tau (N m) follow the arm's convention; points, velocities and
@@ -31,6 +32,11 @@ class Arm:
         """
         self._params = param_defaults() if params is None else np.array(params, np.float64)
         self._handle = _native.create("arm", lib.arm3r_arm_create, _native.readable(self._params), self._params.size)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise no_attribute("Arm", name, dir(Arm))
 
     @property
     def params(self) -> Floats:
@@ -126,7 +132,7 @@ class Arm:
 
         The number in row i and column j is that of qdd[i] with respect to q[j] (1/s^2), to qd[j] (1/s) and to tau[j]
         (1/(kg m^2)): the last matrix is the inverse of the mass matrix. They are exact to rounding (automatic
-        differentiation; docs/model.md, 3.13). f_on_tip is constant in base axes.
+        differentiation; `arm3r docs model`, 3.13). f_on_tip is constant in base axes.
         """
         found = self._batch(
             lib.arm3r_arm_forward_dynamics_derivatives, *[(3, 3)] * 3, q=q, qd=qd, tau=tau, f_on_tip=f_on_tip
@@ -152,7 +158,7 @@ class Arm:
     ) -> tuple[Floats, Floats]:
         """The linear state-space model about a state, d(q, qd)/dt = A (q, qd) + B tau for small deviations of each.
 
-        A is (..., 6, 6) and B is (..., 6, 3), in SI units and radians; docs/model.md (3.14). f_on_tip is constant.
+        A is (..., 6, 6) and B is (..., 6, 3), in SI units and radians; `arm3r docs model` (3.14). f_on_tip is constant.
 
         >>> A, B = arm.linearize(q, [0, 0, 0], arm.gravity_torque(q))  # about rest
         """

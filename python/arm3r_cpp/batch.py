@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._messages import no_column
 from ._native import BatchProgress, Floats, Progress, lib
+from .answers.refusals import Refusal, lines_of, refusals_of
 from .control.batch_law import BatchLaw, MakeLaw
 from .control.law import Law, NativeLaw
 from .errors import BudgetError, ColumnError, ScenarioError, UsageError
@@ -28,12 +29,16 @@ if TYPE_CHECKING:
     import xarray
 
     from .blocks.block import Block
+    from .sweeps.advice import Advice
 
 Index = int | tuple[int, ...]
 
 # Codes of errors of the axes themselves, which no other number in a run would avoid.
 AXIS_ERRORS = {f"scenario.{error}" for error in ("unknown_word", "type", "unknown_key", "other_choice", "missing_key")}
 AXIS_ERRORS.add("number.syntax")
+
+
+MOST_REFUSED = 10_000  # runs whose reasons are looked for: each is read as a scenario of its own
 
 
 class Axis(NamedTuple):
@@ -182,6 +187,15 @@ class Batch:
         """Which runs reached their end."""
         return self["outcome"] == lib.ARM3R_RUN_OK
 
+    def refusals(self, *, most: int = MOST_REFUSED) -> list[Refusal]:
+        """Why runs have the outcome `invalid`: each reason with how often it holds and a message, the most frequent
+        first.
+
+        most: how many of these runs are asked, the first ones.
+        """
+        invalid = np.argwhere(self["outcome"] == lib.ARM3R_RUN_INVALID)[:most]
+        return refusals_of(self.scenario(tuple(map(int, place)))._quiet() for place in invalid)
+
     def scenario(self, index: Index) -> Scenario:
         """The scenario of one run, without checks: those of the base were not meant for it.
 
@@ -253,10 +267,13 @@ def run_batch(
         _Group(group, _params(base, axes, shape, group), np.ascontiguousarray(numbers[:, group]))
         for group in (law.groups(_groups(axes, shape)) if law else _groups(axes, shape))
     ]
-    memory = _room_for_rows(runs, asked, _most_rows(groups, varied, asked))
+    memory = _room_for_rows(runs, asked, _most_rows(groups, varied, asked) or _rows_of(base, asked))
+    advice = None if law or base._warned is None else _advice(base)
     done = 0
 
     def report(runs_done: int, _: int) -> Any:
+        if advice and (sentence := advice.after(done + runs_done, runs)):
+            base._warn([sentence])
         return progress and progress(done + runs_done, runs)
 
     def table_of(group: _Group, rows: Floats) -> Floats:
@@ -280,7 +297,16 @@ def run_batch(
             memory[group.runs] = rows
             done += len(group.runs)
     summaries = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
-    return Batch(base, axes, summaries, shape, law, BatchRows(asked, memory, shape) if asked else None)
+    batch = Batch(base, axes, summaries, shape, law, BatchRows(asked, memory, shape) if asked else None)
+    if base._warned is not None and runs and (batch["outcome"] == lib.ARM3R_RUN_INVALID).all():
+        base._warn([f"no run of this batch is valid: {'; '.join(lines_of(batch.refusals(), runs))}"])
+    return batch
+
+
+def _advice(base: Scenario) -> Advice:
+    from .sweeps.advice import Advice  # it stands above this module
+
+    return Advice(base)
 
 
 class _Group(NamedTuple):
@@ -413,6 +439,11 @@ def _most_rows(groups: Sequence[_Group], varied: list[int], columns: Sequence[st
     if refusals and len(refusals) == len(valid) and set.intersection(*map(_missing, refusals)):
         raise min(refusals, key=lambda error: len(error.problems))
     return max(counts)
+
+
+def _rows_of(base: Scenario, columns: Sequence[str]) -> int:
+    """The rows of the scenario itself: where no run of a batch is valid, theirs would be as many."""
+    return _native.batch_row_count(base.params, [], np.empty((0, 1)), ["t"]) if columns else 0
 
 
 def _missing(error: ScenarioError) -> set[str]:

@@ -6,7 +6,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-from ._files import writing
+from ._files import folder_named, writing
 from ._messages import did_you_mean
 from .errors import OutputError, UsageError
 
@@ -62,8 +62,10 @@ def copy(paths: list[Path], folder: Path) -> list[Path]:
     """Copy examples into a folder, in which they lie as they do in the package, each sweep with its scenario.
 
     Raises:
+        UsageError: the folder has the name of a file.
         OutputError: one of the files exists already, or cannot be written.
     """
+    folder = folder_named(folder)
     files = {folder / path.relative_to(FOLDER): path for path in _with_scenarios(paths)}
     for target in files:
         if target.exists():

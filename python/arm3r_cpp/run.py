@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _native
-from ._files import replacing
+from ._files import check_ending, replacing
 from ._messages import no_column
 from ._native import Floats, lib
+from .answers.meant_names import Answering, no_attribute
 from .errors import ColumnError, UsageError
 from .rows.names import columns_of, completions, three_of
 from .run_file import read, with_numbers
@@ -41,7 +42,7 @@ class Event(NamedTuple):
 
 
 class ClosedForm(NamedTuple):
-    """What theory says of the contacts of a run, beside the run's own number; docs/model.md, section 9."""
+    """What theory says of the contacts of a run, beside the run's own number; `arm3r docs model`, section 9."""
 
     name: str
     """Of the summary number."""
@@ -53,7 +54,7 @@ class ClosedForm(NamedTuple):
 
 
 class Trust(NamedTuple):
-    """How long the joint angles of a run are right; docs/model.md (9.6)."""
+    """How long the joint angles of a run are right; `arm3r docs model` (9.6)."""
 
     horizon: float
     """s: the last row before an angle is wrong by more than `error`."""
@@ -71,7 +72,7 @@ class Trust(NamedTuple):
     """Why the error cannot be told up to the last row, such as a singular pose; "" where it can."""
 
 
-class Run:
+class Run(metaclass=Answering):
     """A finished or partial run. `run["q1"]` is a column, `run["q"]`, `run["tip"]` are three of them as (rows, 3).
 
     Columns are read-only arrays of float64, views of the run's own memory, in SI units and radians; `units` names them.
@@ -117,6 +118,12 @@ class Run:
             message = f"the log of this run does not have {name!r}: {self._why_not(meant)}"
             raise ColumnError(f"{message}; there are {', '.join(self)}", code="usage")
         raise no_column(name, self._columns)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            is_column = not name.startswith("_") and name in self
+            raise no_attribute("Run", name, dir(Run), meant=f"run[{name!r}]" if is_column else "")
 
     def _why_not(self, meant: list[str]) -> str:
         """Why columns of other runs are none of this one's."""
@@ -240,22 +247,30 @@ class Run:
         return self.summary["warnings"]
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write PATH and, beside it, the summary with the suffix .json: each whole or not at all.
+        """Write PATH, which ends in .csv, and beside it the summary with the suffix .json: each whole or not at all.
 
         Raises:
             OutputError: it cannot be written.
-            UsageError: the run was not made in this process; it has been written before, or use `to_npz`.
+            UsageError: the name has another ending; or the run was not made in this process; it has been written before, or use `to_npz`.
         """
         if self._handle is None:
             raise UsageError("only a run made in this process is written as CSV; use to_npz", code="usage")
+        if os.fspath(path):  # the library has a sentence for an empty name
+            check_ending(path, [".csv"], hint="to_npz writes .npz, to_html .html")
+        self._save(path)
+
+    def _save(self, path: str | os.PathLike[str]) -> None:
+        """Write PATH, .csv or .npz, and the summary beside it, as `arm3r run -o` does."""
         _native.call(lib.arm3r_run_save, self._handle, *_native.file_path(path))
 
     def to_npz(self, path: str | os.PathLike[str]) -> None:
-        """Write everything into one file that `Run.load` and `numpy.load` read: whole or not at all.
+        """Write everything into one file, .npz, that `Run.load` and `numpy.load` read: whole or not at all.
 
         Raises:
             OutputError: it cannot be written.
+            UsageError: the name has another ending.
         """
+        check_ending(path, [".npz"], hint="to_csv writes .csv, to_html .html")
         with replacing(Path(path)) as part, part.open("wb") as file:
             np.savez(
                 file,
@@ -291,7 +306,8 @@ class Run:
 
         Raises:
             OutputError: it cannot be written.
-            UsageError: the installation has no page, or the run's summary holds no scenario.
+            UsageError: the name has another ending than .html, the installation has no page, or the run's summary holds
+                no scenario.
         """
         from .live import show
 

@@ -15,6 +15,7 @@ from . import _native
 from ._messages import describe, warn_user
 from ._native import BatchProgress, Floats, Progress, lib
 from ._progress_bar import shown
+from .answers.meant_names import Answering, no_attribute
 from .arm import Arm
 from .control.law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
 from .errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, class_of_outcome
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
 
 
-class Scenario:
+class Scenario(metaclass=Answering):
     """A scenario: read from YAML, changed by path, validated and run by the library.
 
     >>> scenario = Scenario.example("moving_wall")
@@ -99,6 +100,13 @@ class Scenario:
 
     def __repr__(self) -> str:
         return f"<Scenario {self._file}>"
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            is_section = any(place.partition(".")[0] == name for place in places())
+            meant = f'scenario["{name}"], or of a key in it scenario["{name}.KEY"]' if is_section else ""
+            raise no_attribute("Scenario", name, dir(Scenario), meant=meant)
 
     def __getitem__(self, path: str) -> Any:
         """The value at a dotted path, defaults included, list items by [i]: "wall.contact.stiffness", "initial.q[1]".
@@ -276,8 +284,8 @@ class Scenario:
         Args:
             controller: a law of your own instead of the scenario's, controller(t, state) -> three torques, N m. It is
                 called once at each sample, in increasing time, and its torque held until the next. Or a function in a
-                file, "my_law.m" or "my_law.py:f"; docs/control.md says what its arguments get. `run_beside` runs the
-                scenario's own controller, too.
+                file, "my_law.m" or "my_law.py:f"; `arm3r docs control` says what its arguments get. `run_beside` runs
+                the scenario's own controller, too.
             rate: of its samples, Hz; None: the scenario's sampling.rate, by default 1000.
             progress: called as progress(t, stop, steps) at most every 20 ms; a true result stops the run, and what it
                 raises comes out unchanged.
@@ -324,14 +332,14 @@ class Scenario:
         progress: Progress | None = None,
         time_limit: float | None = None,
     ) -> Beside:
-        """Run a controller of your own, and beside it the true one: the scenario's own, at the same samples.
+        """Run a controller of your own, and beside it the scenario's own, at the same samples.
 
         >>> beside = scenario.run_beside("my_gravity.m")
         >>> print(beside)
         >>> beside.figure()
 
         A function of the joint angles alone is a gravity torque. Where the scenario does not compensate gravity, the
-        true one beside it is `gravity_compensation`.
+        controller beside it is `gravity_compensation`.
 
         Args, Raises: as `run`. What ends your run early is in `beside.failure` and is not raised.
         """

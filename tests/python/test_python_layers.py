@@ -15,6 +15,7 @@ ROOMS = [
     "errors _hash _arm3r system",
     "_files _native _progress_bar",
     "_messages",
+    "answers",
     "examples",
     "rows",
     "params arm run_file run",
@@ -24,6 +25,7 @@ ROOMS = [
     "batch simulation",
     "sweeps",
     "plot",
+    "measured",
     "notebook",
     "animation",
     "live",
@@ -36,7 +38,7 @@ ROOMS = [
 ]
 
 # Public names that a room below hands on: these imports point up, and they are done when the name is used.
-LATER = {("scenario", "batch"), ("plot", "animation")}
+LATER = {("scenario", "batch"), ("plot", "animation"), ("plot", "measured"), ("batch", "sweeps")}
 LATER |= {(room, "blocks") for room in ("scenario", "batch", "sweeps")}  # controllers in files
 LATER |= {("run", "live")}  # the page with a run
 LATER |= {(room, "notebook") for room in ("run", "scenario", "batch")}  # their pages and tables

@@ -354,10 +354,11 @@ ARM3R_API int32_t arm3r_run_block(const arm3r_run *run, const double **data, siz
 /* CSV in pieces: the sink returns 0 to go on, anything else ends the call with ARM3R_E_OUTPUT. */
 typedef int32_t (*arm3r_sink)(void *user, const char *data, size_t size);
 ARM3R_API int32_t arm3r_run_csv(const arm3r_run *run, arm3r_sink sink, void *user /* Nullable */);
-/* Write PATH and, beside it, the summary with the suffix .json: each whole or not at all. PATH is CSV; where it ends in .npz it
- * is what numpy.load reads: an array for each column under its name, and the summary as summary.json. */
+/* Write PATH and, beside it, the summary with the suffix .json: each whole or not at all. The ending of PATH says what is written:
+ * .csv, or .npz, which numpy.load reads: an array for each column under its name, and the summary as summary.json.
+ * ARM3R_E_VALUE: it has another ending. */
 ARM3R_API int32_t arm3r_run_save(const arm3r_run *run, const char *path, size_t path_size);
-/* Fail with ARM3R_E_OUTPUT if arm3r_run_save could not write there: to be asked before a long run. */
+/* Fail as arm3r_run_save would if it could not write there: to be asked before a long run. */
 ARM3R_API int32_t arm3r_output_probe(const char *path, size_t path_size);
 /* Where arm3r_run_save puts the summary that belongs to PATH; the text stays until this thread asks again. */
 ARM3R_API int32_t arm3r_output_summary(const char *path, size_t path_size, const char **summary);

@@ -54,12 +54,13 @@ constexpr std::size_t worth_a_thread = 1 << 15;
 
 // The hash of the summary takes about as long as the rows: another thread computes it, if there can be one.
 void save(const arm3r_run& run, const std::string& path) {
+    check_run_path(path);
     OutputFile rows(path), summary(summary_path(path));
     const bool is_long = run.run.rows * run.run.columns.size() > worth_a_thread;
     const auto policy =
         platform::has_threads && is_long ? std::launch::async | std::launch::deferred : std::launch::deferred;
     std::future<const char*> summary_text = std::async(policy, [&] { return summary_of(run); });
-    if (path.ends_with(".npz"))
+    if (path.ends_with(npz_ending))
         write_npz(run.run, [&] { return summary_text.get(); }, [&](std::string_view piece) { rows.write(piece); });
     else write_csv(run.run, [&](std::string_view piece) { return rows.write(piece), true; });
     summary.write(summary_of(run));

@@ -116,26 +116,32 @@ bool is_degrees(std::string_view unit) {
     return unit == "deg" || unit == "\u00b0" || unit == "degree" || unit == "degrees" || unit == "deg/s";
 }
 
-// A hint at what was probably meant by `number` followed by `unit`.
-std::string unit_hint(std::string_view number, std::string_view unit, const NumberRules& rules) {
+// What is wrong with the text of a number, and what was probably meant: `before` + `text` + `after` says it.
+struct Fix {
+    std::string rule;  // where no text is known that can be read
+    std::string before = {}, text = {}, after = {};
+};
+
+// Of `number` followed by `unit`.
+Fix unit_fix(std::string_view number, std::string_view unit, const NumberRules& rules) {
     if (is_degrees(unit)) {
-        if (rules.degrees) return "write " + std::string(number) + " deg";
-        return "only joint angles, joint rates and phases can be given in degrees";
+        if (rules.degrees) return {"", "write ", std::string(number) + " deg"};
+        return {"only joint angles, joint rates and phases can be given in degrees"};
     }
-    for (const Unit& known : units) {
-        NumberFault ignored;
-        if (known.name != unit) continue;
-        const std::optional<double> value = convert(number, parts_of(number), ignored);
-        if (value)
-            return "numbers are plain SI: write " + yaml_number(*value / known.divisor) + " (" + std::string(known.si) +
-                   ")";
-    }
+    const auto known = std::find_if(std::begin(units), std::end(units), [&](const Unit& u) { return u.name == unit; });
+    NumberFault ignored;
+    if (known != std::end(units) && rules.unit && known->si != *rules.unit)
+        return {rules.unit->empty() ? "this number has no unit" : "its unit is " + std::string(*rules.unit)};
+    if (known != std::end(units))
+        if (const std::optional<double> value = convert(number, parts_of(number), ignored))
+            return {"", "numbers are plain SI: write ", yaml_number(*value / known->divisor),
+                    " (" + std::string(known->si) + ")"};
     constexpr std::string_view no_word = "e+-.,:_0123456789";  // e: an exponent that was not finished
     const bool is_word = !unit.empty() && no_word.find(unit[0]) == unit.npos;
-    return is_word ? "numbers are plain SI, without their unit" : "";
+    return {is_word ? "numbers are plain SI, without their unit" : ""};
 }
 
-std::string based_hint(std::string_view text) {
+Fix based_fix(std::string_view text) {
     const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-');
     if (text.size() < sign + 3 || text[sign] != '0') return {};
     const char letter = text[sign + 1];
@@ -146,7 +152,7 @@ std::string based_hint(std::string_view text) {
     long long value = 0;
     const char* end = text.data() + text.size();
     if (base == 0 || std::from_chars(text.data() + sign + 2, end, value, base).ptr != end) return {};
-    return "only decimal numbers: this would be " + std::string(text.substr(0, sign)) + std::to_string(value);
+    return {"", "only decimal numbers: this would be ", std::string(text.substr(0, sign)) + std::to_string(value)};
 }
 
 constexpr auto digit_pairs = [] {
@@ -212,29 +218,68 @@ char* write_decimal(char* out, const ShortestDecimal& decimal) {
     return out + size + 1;
 }
 
-std::string without(std::string_view text, char drop) {
-    std::string out;
-    for (const char c : text)
-        if (c != drop) out += c;
-    return out;
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+    return text;
 }
 
-std::string likely_fix(std::string_view text, std::size_t good, const NumberRules& rules) {
-    const std::string_view rest = text.substr(good);
-    if (const std::string hint = based_hint(text); !hint.empty()) return hint;
-    if (text.find("\u2212") != text.npos) return "write the minus sign as -";
-    const std::string_view word =
-        text.substr(text.find_first_not_of("+-.") == text.npos ? 0 : text.find_first_not_of("+-."));
-    if (word == "inf" || word == "Inf" || word == "INF" || word == "nan" || word == "NaN" || word == "NAN" ||
-        word == "infinity")
-        return rules.infinity ? "write inf for no limit" : "the value must be finite";
+// Without the zeros before its first digit; "" where there are none.
+std::string without_leading_zeros(std::string_view text) {
+    const std::size_t sign = text.find_first_not_of("+-"), end = digits(text, std::min(sign, text.size()));
+    if (sign > 1 || end < sign + 2 || text[sign] != '0') return {};
+    const std::size_t first = std::min(text.find_first_not_of('0', sign), end - 1);
+    return std::string(text.substr(0, sign)) + std::string(text.substr(first));
+}
+
+bool is_no_finite_number(std::string_view text) {
+    const std::size_t start = std::min(text.find_first_not_of("+-."), text.size());
+    const std::string_view word = text.substr(start);
+    return word == "inf" || word == "Inf" || word == "INF" || word == "nan" || word == "NaN" || word == "NAN" ||
+           word == "infinity";
+}
+
+// One step from the text of a number that cannot be read towards one that can.
+Fix next_fix(const std::string& text, const NumberRules& rules) {
+    const std::size_t good = parts_of(text).size;
+    const std::string head = text.substr(0, good), rest = text.substr(good);
+    if (const Fix fix = based_fix(text); !fix.text.empty()) return fix;
+    if (text.find("\u2212") != text.npos)
+        return {"write the minus sign as -", "write the minus sign as -: ", replaced(text, "\u2212", "-")};
+    if (is_no_finite_number(text)) return {rules.infinity ? "write inf for no limit" : "the value must be finite"};
+    if (const std::string fewer = without_leading_zeros(text); !fewer.empty()) return {"", "write ", fewer};
     if (good == 0) return {};
-    if (rest[0] == ',') return "use a point: " + std::string(text.substr(0, good)) + "." + std::string(rest.substr(1));
-    if (rest[0] == '_') return "no separators: write " + without(text, '_');
-    if (rest[0] == ':') return "no sexagesimal numbers";
-    if (rest == ".") return "write " + std::string(text.substr(0, good)) + " or " + std::string(text) + "0";
-    if (rest[0] == 'E') return "write the exponent with a small e";
-    return unit_hint(text.substr(0, good), trimmed(rest), rules);
+    if (rest.empty() && rules.whole) {
+        NumberFault ignored;
+        const std::optional<double> value = convert(text, parts_of(text), ignored);
+        const bool is_whole = value && *value == std::trunc(*value) && std::abs(*value) < 1e15;
+        return {"write it without fraction and exponent", "write it without fraction and exponent: ",
+                is_whole ? std::to_string(static_cast<long long>(*value)) : ""};
+    }
+    if (rest[0] == ',') return {"use a point", "use a point: ", head + "." + rest.substr(1)};
+    if (rest[0] == '_') return {"no separators", "no separators: write ", replaced(text, "_", "")};
+    if (rest[0] == ':') return {"no sexagesimal numbers"};
+    if (rest == ".") return {"", "write ", head, rules.whole ? "" : " or " + text + "0"};
+    if (rest[0] == 'E')
+        return {"write the exponent with a small e", "write the exponent with a small e: ", replaced(text, "E", "e")};
+    const std::size_t word = rest.find_first_not_of(' '), end = rest.find_last_not_of(' ');
+    return unit_fix(head, word == rest.npos ? "" : std::string_view(rest).substr(word, end + 1 - word), rules);
+}
+
+std::optional<double> parse(std::string_view text, const NumberRules& rules, NumberFault& fault);
+
+// The likely fix. A text that it names can be read: a fix that only leads to the next mistake is followed to its end.
+std::string likely_fix(std::string_view text, const NumberRules& rules) {
+    constexpr int most_mistakes = 8;
+    Fix fix = next_fix(std::string(text), rules);
+    std::string rule = fix.rule;
+    for (int i = 0; i < most_mistakes && !fix.text.empty(); ++i) {
+        NumberFault ignored;
+        if (parse(fix.text, rules, ignored)) return fix.before + fix.text + fix.after;
+        fix = next_fix(fix.text, rules);
+        if (!fix.rule.empty()) rule = fix.rule;
+    }
+    return rule;
 }
 
 std::optional<double> refuse(std::string_view text, std::size_t good, const NumberRules& rules, NumberFault& fault) {
@@ -246,32 +291,35 @@ std::optional<double> refuse(std::string_view text, std::size_t good, const Numb
         fault.message += ": unexpected '" + std::string(text.substr(good, end - good)) + "' at character " +
                          std::to_string(count_characters(text.substr(0, good)) + 1);
     }
-    fault.hint = likely_fix(text, good, rules);
     return {};
 }
 
-}  // namespace
-
-std::optional<double> read_number(std::string_view text, const NumberRules& rules, NumberFault& fault) {
+// The number, or nothing and in `fault` what is wrong, without a hint where the text must be another.
+std::optional<double> parse(std::string_view text, const NumberRules& rules, NumberFault& fault) {
     if (rules.infinity && (text == "inf" || text == "+inf" || text == "-inf"))
         return text[0] == '-' ? -HUGE_VAL : HUGE_VAL;
     const bool in_degrees = rules.degrees && text.ends_with(" deg");
     const std::string_view number = in_degrees ? trimmed(text.substr(0, text.size() - 4)) : text;
     const Parts parts = parts_of(number);
     if (parts.size == 0 || parts.size < number.size()) return refuse(text, parts.size, rules, fault);
-    const std::size_t whole_end = digits(number, parts.whole);
-    if (whole_end > parts.whole + 1 && number[parts.whole] == '0') {
-        const std::size_t first = std::min(number.find_first_not_of('0', parts.whole), whole_end - 1);
-        fault = {"number.syntax", "a number must not start with 0",
-                 "write " + std::string(number.substr(0, parts.whole)) + std::string(number.substr(first))};
+    if (!without_leading_zeros(number).empty()) {
+        fault = {"number.syntax", "a number must not start with 0", ""};
         return {};
     }
     if (rules.whole && (parts.fraction || parts.exponent)) {
-        fault = {"number.whole", "must be a whole number", "write it without fraction and exponent"};
+        fault = {"number.whole", "must be a whole number", ""};
         return {};
     }
     const std::optional<double> value = convert(number, parts, fault);
     return value && in_degrees ? *value * pi / 180 : value;
+}
+
+}  // namespace
+
+std::optional<double> read_number(std::string_view text, const NumberRules& rules, NumberFault& fault) {
+    const std::optional<double> value = parse(text, rules, fault);
+    if (!value && fault.hint.empty()) fault.hint = likely_fix(text, rules);
+    return value;
 }
 
 char* write_shortest(char* out, double value) {

@@ -9,9 +9,10 @@
 namespace arm3r {
 
 struct NumberRules {
-    bool degrees = false;   // `VALUE deg` is VALUE*pi/180
-    bool infinity = false;  // `inf` is a value
-    bool whole = false;     // no fraction and no exponent
+    bool degrees = false;                       // `VALUE deg` is VALUE*pi/180
+    bool infinity = false;                      // `inf` is a value
+    bool whole = false;                         // no fraction and no exponent
+    std::optional<std::string_view> unit = {};  // of the number, "" for none; not given: it is not known
 };
 
 struct NumberFault {

@@ -36,6 +36,7 @@ constexpr Program programs[] = {
     {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
     {"converge", "FILE", "run a scenario with smaller and smaller steps, and print the observed order"},
     {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},
+    {"docs", "[NAME]", "list the pages of this installation, or print one, such as verify or sweeps"},
     {"exercise", "CALL", "list and show exercises, judge what you hand in, and mark a folder of submissions"},
 };
 
@@ -47,8 +48,8 @@ constexpr std::string_view no_call = "-";  // as `calls` of an option of the pro
 
 constexpr Option options[] = {
     {"--output", "-o", "OUT", "run",
-     "write OUT (.csv, or .npz for numpy) and, beside it, the summary as .json; - is standard output; for several files a directory, which is "
-     "made"},
+     "write OUT (.csv, or .npz for numpy; no other ending) and, beside it, the summary as .json; - is standard output; "
+     "for several files, or with / at its end, a directory, which is made"},
     {"--set", "", "PATH=VALUE", "run check",
      "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
     {"--no-checks", "", "", "run", "leave out the scenario's checks, which hold for its own values only"},
@@ -56,7 +57,7 @@ constexpr Option options[] = {
     {"--trust", "", "", "run", "say up to which time the joint angles are right to 1e-6 rad; it takes three more runs"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
     {"--controller", "", "FILE[:FUNCTION]", "run",
-     "run a MATLAB or Python function of yours as the controller, beside the true one, in the scenario's convention; "
+     "run a MATLAB or Python function of yours as the controller, beside the scenario's own, in its convention; "
      "FILE is executed as you would execute it, unconfined"},
     {"--format", "", "md", "schema columns", "print a Markdown page instead"},
     {"--help", "-h", "", "", "print this"},

@@ -112,6 +112,16 @@ void make_directory(const std::string& path) {
         throw Exit{exit_output, path + ": error[output]: cannot be made; for several scenarios -o names a directory"};
 }
 
+// A directory that is yet to be made is not taken for a file.
+void check_new_directory(const std::string& path) {
+    const std::size_t dot = path.rfind('.'), name = platform::last_separator(path) + 1;
+    if (platform::kind_of(path) == platform::FileKind::missing && dot != path.npos && dot > name &&
+        !ends_with_separator(path))
+        throw Exit{exit_usage, path +
+                                   ": error[usage]: several scenarios are written into a directory, and this is the "
+                                   "name of a file; write / at its end if it is a directory"};
+}
+
 void spare_scenarios(const std::vector<std::string>& files, const std::string& path) {
     for (const std::string& file : files)
         if (platform::is_same_file(file, path))
@@ -132,7 +142,8 @@ std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vec
             throw Exit{exit_usage, "arm3r: error[usage]: -o - takes one scenario"};
         return std::vector<std::string>(scenarios.size(), output);
     }
-    if (scenarios.size() > 1) make_directory(output);
+    if (scenarios.size() > 1) check_new_directory(output);
+    if (scenarios.size() > 1 || ends_with_separator(output)) make_directory(output);
     const bool directory = is_directory(output);
     std::vector<std::string> paths;
     std::set<std::string> seen;

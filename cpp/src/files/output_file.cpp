@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "platform/files.hpp"
 #include "platform/program.hpp"
 
@@ -69,14 +70,31 @@ void OutputFile::publish() {
     temporary_.clear();
 }
 
-std::string summary_path(const std::string& path) {
+std::string ending_of(std::string_view path) {
     const std::size_t name = platform::last_separator(path) + 1, dot = path.rfind('.');
-    const std::string summary = (dot == path.npos || dot <= name ? path : path.substr(0, dot)) + ".json";
-    if (summary == path) refuse_output(path, "the summary goes there", "give the CSV another suffix, .csv");
-    return summary;
+    return std::string(dot == path.npos || dot <= name ? "" : path.substr(dot));
+}
+
+void check_run_path(const std::string& path) {
+    check_target(path);
+    const std::vector<std::string> written = {csv_ending, npz_ending};
+    const std::string ending = ending_of(path);
+    if (is_in(written, ending)) return;
+    throw Error(ARM3R_E_VALUE, {{.code = "usage",
+                                 .message = ending.empty() ? "a run is written by the ending of its file's name"
+                                                           : "a run is not written as " + visible(ending),
+                                 .got = ending.empty() ? "no ending" : "",
+                                 .allowed = listed(written),
+                                 .hint = "`-o -` prints CSV, and a name that ends in / is a directory",
+                                 .file = path}});
+}
+
+std::string summary_path(const std::string& path) {
+    return path.substr(0, path.size() - ending_of(path).size()) + ".json";
 }
 
 void probe_output(const std::string& path) {
+    check_run_path(path);
     OutputFile{path};
     OutputFile{summary_path(path)};
 }

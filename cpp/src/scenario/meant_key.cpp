@@ -16,7 +16,7 @@ bool is_digits(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// Names that textbooks and other programs use, in small letters without underscores, and the last names of the keys with
+// Names that textbooks and other programs use, as plain_word gives them, and the last names of the keys with
 // that meaning here. Which of these keys is meant, the section decides.
 struct Synonyms {
     Words typed, names;
@@ -38,7 +38,7 @@ const std::vector<Synonyms>& synonyms() {
         {{"ko"}, {"gain"}},
         {{"q0", "theta", "angles", "position"}, {"q"}},
         {{"qd0", "dq", "dq0", "qdot", "qdot0", "rates", "velocities"}, {"qd"}},
-        {{"l", "len"}, {"length"}},
+        {{"l", "len", "a"}, {"length"}},
         {{"rho"}, {"density"}},
         {{"lc", "cog", "centerofmass", "centreofmass"}, {"com"}},
         {{"mu"}, {"coefficient"}},
@@ -63,21 +63,32 @@ const std::vector<Elsewhere>& elsewhere() {
     static const Words of_time = {"", "time", "solver"}, of_control = {"", "controller", "reference"};
     static const std::vector<Elsewhere> table = {
         {{"tend", "tstop", "tfinal", "tmax", "tf", "end", "endtime", "stoptime", "duration"}, of_time, {"time.stop"}},
-        {{"dt", "h", "step", "timestep", "stepsize"}, of_time, {"solver.step", "time.log_every"}},
+        {{"dt", "h", "step", "timestep", "stepsize", "fixedstep"}, of_time, {"solver.step", "time.log_every"}},
+        {{"reltol", "rtol", "tol", "tolerance"}, of_time, {"solver.rtol"}},
+        {{"abstol", "atol"}, of_time, {"solver.atol"}},
+        {{"maxstep"}, of_time, {"solver.max_step"}},
+        {{"solvertype", "integrator", "solvername", "ode"}, of_time, {"solver.method"}},
         {{"fd", "fdes", "fref", "desiredforce", "forceref", "setpoint"}, of_control, {"reference.force.value"}},
         {{"xd", "xdes", "xref", "target", "goal"}, of_control, {"reference.tip"}},
         {{"qd", "qdes", "qref"}, of_control, {"reference.q"}},
-        {{"fs", "ts", "rate", "samplerate"}, of_control, {"sampling.rate"}},
+        {{"fs", "ts", "rate", "samplerate", "sampletime", "samplingtime", "period"}, of_control, {"sampling.rate"}},
         {{"taumax", "umax", "maxtorque"}, of_control, {"arm.torque_limit"}},
     };
     return table;
 }
 
-std::string simplified(std::string_view name) {
-    std::string out;
-    for (const char c : name)
-        if (c != '_') out += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-    return out;
+// Names of what other robots have: of a whole robot, and of one in the section of this arm.
+const Words of_robots = {"dof",     "dofs",   "joint",     "joints",   "link",  "links",  "mjcf", "ndof",
+                         "njoints", "nlinks", "numjoints", "numlinks", "robot", "robots", "urdf", "xacro"};
+const Words of_other_arms = {"alpha", "dh",     "dhparameters", "dhtable", "jointtype", "mdh",
+                             "model", "offset", "offsets",      "twist",   "type",      "xml"};
+
+bool is_of_another_robot(std::string_view name, std::string_view section) {
+    const bool is_arm = section == "arm" || section.starts_with("arm.") || section.starts_with("controller.model");
+    if (!section.empty() && !is_arm) return false;
+    const std::string word = plain_word(name), stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
+    const bool is_of_dh = (stem != word && is_in({"a", "d", "theta"}, stem)) || (word == "d" && section != "arm");
+    return is_in(of_robots, stem) || (is_arm && (is_in(of_other_arms, stem) || is_of_dh));
 }
 
 // The keys of a section, or of the sections in it, whose last name is one of these.
@@ -116,14 +127,14 @@ std::string meant(std::vector<const Key*> keys, std::string_view section, std::s
 // Directly in the section, or in the sections in it.
 std::string synonym_of(std::string_view name, std::string_view section, bool directly, std::span<const double> params) {
     for (const Synonyms& entry : synonyms())
-        if (is_in(entry.typed, simplified(name)) && !section.empty())
+        if (is_in(entry.typed, plain_word(name)) && !section.empty())
             if (const auto keys = keys_named(entry.names, section, directly); !keys.empty())
                 return meant(keys, section, params);
     return "";
 }
 
 std::string synonym_elsewhere(std::string_view name, std::string_view section) {
-    const std::string typed = simplified(name);
+    const std::string typed = plain_word(name);
     for (const Elsewhere& entry : elsewhere())
         if (is_in(entry.typed, typed) && is_in(entry.sections, section))
             return "did you mean " + listed(entry.paths, " or ") + "?";
@@ -191,6 +202,28 @@ std::vector<std::string> names_there(std::string_view section, std::span<const d
     return names;
 }
 
+// docs/faq.md says the same.
+std::string not_of_this_arm(std::string_view name, std::string_view section) {
+    if (!is_of_another_robot(name, section) || is_in(names_below(section), name)) return "";
+    return "arm3r is one arm with three joints; `arm3r verify` judges formulas of any chain of up to seven joints, from a "
+           "URDF or a DH table";
+}
+
+std::string suggested_key(const std::string& name, std::string_view section, std::span<const double> params) {
+    if (const std::string other = not_of_this_arm(name, section); !other.empty()) return other;
+    const std::string deeper = synonym_of(name, section, false, params);
+    const bool is_symbol = name.size() == 1;  // of a textbook, rather than a column of a table such as `v`
+    for (const std::string& hint : {synonym_elsewhere(name, section), synonym_of(name, section, true, params),
+                                    is_symbol ? deeper : "", section_of(name, section), deeper})
+        if (!hint.empty()) return hint;
+    if (const std::string here = did_you_mean(name, names_there(section, params)); !here.empty()) return here;
+    if (const std::string other = nearest(name, names_below(section)); !other.empty())
+        if (const Key* key = find_key(join(section, other)))
+            return "did you mean " + other + "? " + owner_text(*key, params);
+    const Words paths = paths_like(name);
+    return paths.empty() ? "" : "did you mean " + listed(paths, " or ") + "?";
+}
+
 std::string suggested_key(const Node& map, const Node& node, std::string_view section, std::span<const double> params) {
     const Node* before = &node == &map.children.front() ? nullptr : &node - 1;
     if (before && node.type == Node::nothing && is_digits(node.key))
@@ -198,17 +231,7 @@ std::string suggested_key(const Node& map, const Node& node, std::string_view se
     if (const std::size_t colon = node.key.find(':'); colon != std::string::npos && node.type == Node::nothing)
         return "a blank is needed after the colon: " + visible(node.key.substr(0, colon)) + ": " +
                visible(node.key.substr(colon + 1));
-    const std::string deeper = synonym_of(node.key, section, false, params);
-    const bool is_symbol = node.key.size() == 1;  // of a textbook, rather than a column of a table such as `v`
-    for (const std::string& hint : {synonym_elsewhere(node.key, section), synonym_of(node.key, section, true, params),
-                                    is_symbol ? deeper : "", section_of(node.key, section), deeper})
-        if (!hint.empty()) return hint;
-    if (const std::string here = did_you_mean(node.key, names_there(section, params)); !here.empty()) return here;
-    if (const std::string other = nearest(node.key, names_below(section)); !other.empty())
-        if (const Key* key = find_key(join(section, other)))
-            return "did you mean " + other + "? " + owner_text(*key, params);
-    const Words paths = paths_like(node.key);
-    return paths.empty() ? "" : "did you mean " + listed(paths, " or ") + "?";
+    return suggested_key(node.key, section, params);
 }
 
 std::string meant_instead(const Key& key, std::span<const double> params) {

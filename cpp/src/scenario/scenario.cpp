@@ -10,6 +10,7 @@
 #include "files/paths.hpp"
 #include "platform/files.hpp"
 #include "scenario/meant_key.hpp"
+#include "scenario/meant_word.hpp"
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
 #include "validate/size_limits.hpp"
@@ -170,7 +171,7 @@ private:
         }
         unknown_choices_.insert(key.path);
         problem(node.mark, {"scenario.unknown_word", key.path, "must be one of the words", node_text(node),
-                            listed(key.choices), did_you_mean(node.text, key.choices)});
+                            listed(key.choices), suggested_word(key, node.text)});
     }
 
     // ---- the file, key by key
@@ -191,7 +192,8 @@ private:
         if (node.type == Node::unset) return;
         std::string hint = node.type == Node::nothing ? "write `" + node.key + ": {}`, or leave it out" : "";
         if (const Key* choice = node.type == Node::scalar ? choice_with(path, node.text) : nullptr)
-            hint = "write `" + node.key + ": {" + last_name(choice->path) + ": " + node.text + "}`";
+            hint =
+                "write `" + node.key + ": {" + last_name(choice->path) + ": " + word_meant(*choice, node.text) + "}`";
         problem(node.type == Node::nothing ? node.key_mark : node.mark,
                 {"scenario.type", path, "expects a map", node_text(node), "keys " + listed(names_here(path)), hint});
     }
@@ -246,7 +248,7 @@ private:
     static const Key* choice_with(const std::string& section, const std::string& word) {
         const auto found = std::find_if(schema().begin(), schema().end(), [&](const Key& key) {
             return key.path == join(section, last_name(key.path)) && key.kind == Kind::choice &&
-                   std::find(key.choices.begin(), key.choices.end(), word) != key.choices.end();
+                   !word_meant(key, word).empty();
         });
         return found == schema().end() ? nullptr : &*found;
     }
@@ -383,12 +385,14 @@ private:
 
     bool read_number_into(const Key& key, const Node& node, const std::string& path, double& value) {
         NumberFault fault{"scenario.type", "expects " + with_unit("a number", key), ""};
-        if (node.type == Node::scalar && node.quoted) {
-            fault = {"number.quoted", "a number has no quotes", "write " + node.text};
-        } else if (node.type == Node::scalar) {
-            const NumberRules rules{
-                .degrees = key.kind == Kind::angle, .infinity = key.allow_infinity, .whole = key.kind == Kind::integer};
-            if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
+        if (node.type == Node::scalar) {
+            const NumberRules rules{.degrees = key.kind == Kind::angle,
+                                    .infinity = key.allow_infinity,
+                                    .whole = key.kind == Kind::integer,
+                                    .unit = key.unit};
+            const auto number = read_number(node.text, rules, fault);
+            if (number && !node.quoted) return value = *number, true;
+            if (number) fault = {"number.quoted", "a number has no quotes", "write " + node.text};
         }
         if (key.form == Form::vector_or_word && is_infinity(node)) fault.hint = "write " + key.word + ", not a list";
         problem(node.mark, {fault.code, path, fault.message, node_text(node), "", fault.hint});

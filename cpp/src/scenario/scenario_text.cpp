@@ -5,6 +5,7 @@
 #include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "files/paths.hpp"
+#include "scenario/meant_key.hpp"
 #include "scenario/scenario.hpp"
 
 namespace arm3r {
@@ -127,10 +128,12 @@ std::string json_at(const Resolved& resolved, std::string_view path) {
     if (const Node* node = find(resolved.tree, steps)) return to_json(*node);
     if (path == "checks") return "[]";
     if (is_known(path)) return "null";
+    const std::size_t dot = path.rfind('.');
+    const std::string other = not_of_this_arm(last_name(path), dot == path.npos ? "" : path.substr(0, dot));
     throw Error(ARM3R_E_INDEX, {{.code = "path.unknown",
                                  .path = std::string(path),
                                  .message = "there is no such value",
-                                 .hint = did_you_mean(path, all_paths())}});
+                                 .hint = other.empty() ? did_you_mean(path, all_paths()) : other}});
 }
 
 }  // namespace arm3r

@@ -48,4 +48,12 @@ std::string nearest(std::string_view word, const std::vector<std::string>& words
     return found;
 }
 
+std::string plain_word(std::string_view word) {
+    std::string out;
+    for (const char c : word)
+        if (c >= 'A' && c <= 'Z') out += static_cast<char>(c + 32);
+        else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) out += c;
+    return out;
+}
+
 }  // namespace arm3r

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._files import check_folder, make_folder, replacing
+from .._files import check_folder, folder_named, make_folder, replacing
 from ..errors import OutputError, UsageError
 
 MAX_GIF_RATE = 50.0  # frames a second: what viewers still show
@@ -36,6 +36,8 @@ def check_target(path: Path, fps: float) -> None:
         )
     if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise UsageError(f"-o {path}: the program ffmpeg is needed and not on PATH; install it or write a .gif")
+    if path.suffix == "":
+        folder_named(path)
     if path.suffix == "" and path.is_dir() and any(path.iterdir()):
         raise UsageError(f"-o {path}: there are files in this folder; give a new one")
     if path.suffix == "" and path.exists() and not path.is_dir():

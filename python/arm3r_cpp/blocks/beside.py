@@ -1,4 +1,4 @@
-"""A controller of the user's own and the true one, each in a run of its own, and how far apart they are."""
+"""A controller of the user's own and the scenario's, each in a run of its own, and how far apart they are."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NO_LAW = ("none", "user")
 
 
 class Beside(Comparison):
-    """A run with a controller of your own, and the run with the true one. `print` shows how far apart they are."""
+    """A run with a controller of your own, and the run with the scenario's. `print` shows how far apart they are."""
 
     def __str__(self) -> str:
         from .report import report
@@ -73,7 +73,7 @@ def as_far_as_it_came(scenario: Scenario, **options: Any) -> tuple[Run, Arm3rErr
 def true_scenario(scenario: Scenario, is_gravity: bool, rate: float | None) -> Scenario | None:
     """With the true controller at the samples of the user's, and its torque held, too: what differs is the law alone.
 
-    is_gravity: whether the user's function is a gravity torque. None: there is no true one.
+    is_gravity: whether the user's function is a gravity torque. None: the scenario has none.
     """
     true = scenario.copy()._quiet()
     true["checks"] = []

@@ -1,4 +1,4 @@
-"""Two runs, with a controller of the user's own and with the true one, and how far apart they are."""
+"""Two runs, with a controller of the user's own and with the scenario's, and how far apart they are."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class Difference(NamedTuple):
 
 
 class Comparison:
-    """A run with a controller of your own, and the run with the true one.
+    """A run with a controller of your own, and the run with the scenario's.
 
     Attributes:
         yours: the run with your controller.
-        true: the run with the true one; None where there is none: a scenario without a law.
+        true: the run with the scenario's controller; None where there is none: a scenario without a law.
         name: your function, with its file and arguments.
-        true_name: the true one's `controller.type`; "" where there is none.
+        true_name: the scenario's `controller.type`; "" where there is none.
         failure: what ended your run early; None: nothing.
     """
 

@@ -47,7 +47,7 @@ def labels(beside: Comparison) -> list[str]:
     """Of the two runs."""
     file, _, function = beside.name.rpartition(": ")
     name = f"{os.path.basename(file)}: {function}" if file else function
-    return [f"solid: {name}", f"dashed: {beside.true_name}, the true one"]
+    return [f"solid: {name}", f"dashed: {beside.true_name}, the scenario's"]
 
 
 def panels(runs: list[Run], words: list[str]) -> list[Panel]:
@@ -69,7 +69,7 @@ def differences(runs: list[Run], name: str, unit: str) -> list[Panel]:
 
 
 def draw_joints(runs: list[Run], name: str, quantity: str, words: list[str], ax: Axes, room: float) -> None:
-    """A colour a joint; yours solid, the true one dashed."""
+    """A colour a joint; yours solid, the scenario's dashed."""
     symbol = {"q": "q", "tau": r"\tau"}[name]
     for run, dashes, lw in zip(runs, ("-", (0, (4, 3))), (1.6, 1.2), strict=False):
         for i, look in zip(JOINTS, TRIPLE, strict=True):
@@ -81,7 +81,7 @@ def draw_joints(runs: list[Run], name: str, quantity: str, words: list[str], ax:
 
 
 def draw_differences(runs: list[Run], name: str, unit: str, ax: Axes, room: float) -> None:
-    """Yours less the true one's, a colour a joint."""
+    """Yours less the scenario's, a colour a joint."""
     rows = min(map(len, runs))
     apart = {i: runs[0][f"{name}{i}"][:rows] - runs[1][f"{name}{i}"][:rows] for i in JOINTS}
     factor, unit = scaled(unit, max(float(np.abs(values).max()) for values in apart.values()))
@@ -93,7 +93,7 @@ def draw_differences(runs: list[Run], name: str, unit: str, ax: Axes, room: floa
 def draw_force(runs: list[Run], ax: Axes, room: float) -> None:
     looks: list[dict[str, Any]] = [
         {"color": BLUE, "ls": "-", "lw": 1.8, "label": "yours"},
-        {"color": RED, "ls": (0, (4, 3)), "lw": 1.4, "label": "the true one"},
+        {"color": RED, "ls": (0, (4, 3)), "lw": 1.4, "label": "the scenario's"},
     ]
     for run, look in zip(runs, looks, strict=False):
         ax.plot(run.t, np.linalg.norm(run["f_on_wall"], axis=1), **look)

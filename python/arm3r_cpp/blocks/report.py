@@ -36,11 +36,11 @@ def report(beside: Comparison) -> str:
 
 
 def table(beside: Comparison) -> str:
-    """A line a quantity: yours and the true one's at the end, and the largest difference."""
+    """A line a quantity: yours and the scenario's at the end, and the largest difference."""
     assert beside.true
     last = beside.rows - 1
     end = f"at {beside.yours.t[last]:.6g} s"
-    rows: list[tuple[str, ...]] = [("", f"yours {end}", f"true one {end}", "largest difference")]
+    rows: list[tuple[str, ...]] = [("", f"yours {end}", f"the scenario's {end}", "largest difference")]
     for name, difference in beside.differences.items():
         unit, words = UNITS[name]
         column = "f_on_wall" if name == "force" else name

@@ -27,7 +27,7 @@ def parser() -> argparse.ArgumentParser:
         prog="arm3r-animate",
         description="A run as a film: the arm and the wall from the side and from above, force and contact over time. "
         "A contact that falls between two frames is shown by the second one, with its largest force.",
-        epilog="The same run and options give the same bytes. docs/figures.md has examples.",
+        epilog="The same run and options give the same bytes. `arm3r docs figures` has examples.",
     )
     add = parser.add_argument
     add("run", type=Path, metavar="RUN", help="RUN.csv with RUN.json beside it, RUN.npz, or a scenario .yaml to run")

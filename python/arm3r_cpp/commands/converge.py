@@ -21,7 +21,7 @@ def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="arm3r-converge",
         description="Run a scenario with smaller and smaller steps (rk4) or tolerances, and print how its error falls: "
-        "the observed order. docs/trust.md says how to read it.",
+        "the observed order. `arm3r docs trust` says how to read it.",
     )
     parser.add_argument("scenario", type=Path, metavar="FILE", help="a scenario .yaml")
     add_set(parser)

@@ -5,6 +5,8 @@ import sys
 import warnings
 from importlib import import_module
 
+from ..answers import unseen_figures
+
 _OURS = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # not where the caller ignores the signal
 if _OURS:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -24,6 +26,10 @@ def animate() -> int:
 
 def converge() -> int:
     return _call("converge")
+
+
+def docs() -> int:
+    return _call("docs")
 
 
 def examples() -> int:
@@ -52,6 +58,7 @@ def view() -> int:
 
 def _call(module: str) -> int:
     warnings.showwarning = _say  # type: ignore[assignment]
+    unseen_figures.silence()
     main = import_module(f".{module}", __package__).main
     if _OURS:
         signal.signal(signal.SIGINT, signal.default_int_handler)

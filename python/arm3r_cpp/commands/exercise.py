@@ -30,7 +30,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
-        description="Exercises about the lecture's arm, with marking; docs/exercises.md is the lab sheet.",
+        description="Exercises about the lecture's arm, with marking; `arm3r docs exercises` is the lab sheet.",
     )
     calls = parser.add_subparsers(title="calls", metavar="CALL", required=True)
 
@@ -89,16 +89,17 @@ def check(options: argparse.Namespace, marks: list[str]) -> None:
 
 
 def mark(options: argparse.Namespace, _: list[str]) -> None:
-    from .._files import check_folder, replacing
+    from .._files import check_ending, check_folder, replacing
     from ..exercises.folder import marks, notes, runs_code, submissions
     from ..exercises.table import csv_of, summary
     from ..exercises.tasks import TASKS
     from ..system.cpus import usable_cpus
 
+    if options.out != "-":
+        check_ending(options.out, [".csv"], hint="- is standard output")
+        check_folder(Path(options.out).parent)
     tasks = [task_of(name) for name in options.task] if options.task else list(TASKS.values())
     found = submissions(options.folder, tasks)
-    if options.out != "-":
-        check_folder(Path(options.out).parent)
     for note in notes(options.folder, list(TASKS.values())):
         say(PROGRAM, note)
     if runs_code(found):

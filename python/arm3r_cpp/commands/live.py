@@ -25,7 +25,7 @@ def parser() -> argparse.ArgumentParser:
         prog="arm3r-live",
         description="The live page: a scenario as scene, plots, text and sliders, simulated anew at each change. It is "
         "served to this computer alone, until Ctrl-C.",
-        epilog="docs/live.md describes the page.",
+        epilog="`arm3r docs live` describes the page.",
     )
     add = parser.add_argument
     add("scenario", nargs="?", metavar="SCENARIO", help="a scenario .yaml, or the name of an example (default: "

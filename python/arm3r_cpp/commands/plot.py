@@ -10,8 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .._files import check_folder, make_folder
+from .._files import check_folder, folder_named, make_folder
 from ..errors import UsageError
+from ..measured.reader import is_measurement
 from ..plot.figure_files import check_format, write
 from ..plot.style import FORMATS, WIDTH
 from .exit_codes import attempt, print_line
@@ -40,16 +41,33 @@ def main(argv: Sequence[str] | None = None) -> int:
 def draw(options: argparse.Namespace) -> None:
     if options.controller:
         return draw_beside(options)
-    runs = {path: read(path, options.set) for path in paths_of(options)}
+    paths = paths_of(options)
+    logs = [path for path in paths if is_measurement(path)]
+    check_measured(logs, options)
     target = target_of(options)
-    save({path: run for path, (run, _) in runs.items()}, options, target)
+    runs = {path: read(path, options.set) for path in paths if path not in logs}
+    save({path: run for path, (run, _) in runs.items()}, options, target, logs)
     for _, failure in runs.values():
         if failure:
             raise failure
 
 
+def check_measured(logs: Sequence[Path], options: argparse.Namespace) -> None:
+    """
+    Raises:
+        UsageError: there are several measurements, or a figure of runs alone is asked for.
+    """
+    if len(logs) > 1:
+        raise UsageError(
+            f"{logs[1]}: one measurement (a CSV file without a JSON file beside it) is drawn, got {len(logs)}"
+        )
+    if logs and (options.lecture or options.force or options.overview):
+        why = "a measurement has no summary (there is no JSON file beside it); give --compare, or leave the option out"
+        raise UsageError(f"{logs[0]}: {why}", code="usage")
+
+
 def draw_beside(options: argparse.Namespace) -> None:
-    """Your function as the controller, and the true one."""
+    """Your function as the controller, and the scenario's."""
     if options.panels:
         raise UsageError("--panels: with --controller the panels are those of two controllers; leave it away")
     paths_of(options)
@@ -69,7 +87,7 @@ def parser() -> argparse.ArgumentParser:
         prog="arm3r-plot",
         usage="arm3r-plot RUN [options] | arm3r-plot --compare RUN RUN ... [options]",
         description="Draw a run: its force control, if it controls force, else an overview; or the lecture's figures; "
-        "or several runs over each other. A file names scenario, convention and hash in its metadata. docs/figures.md "
+        "or several runs over each other. A file names scenario, convention and hash in its metadata. `arm3r docs figures` "
         "says what stands on the figures.",
         epilog="arm3r-plot sweep DIR draws the table of a sweep: see arm3r-plot sweep --help.",
     )
@@ -90,7 +108,14 @@ def parser() -> argparse.ArgumentParser:
     pick(
         "--lecture", action="store_true", help="tip, velocities, torques, energies, wall, contact, strobe: a file each"
     )
-    pick("--compare", type=Path, nargs="+", metavar="RUN", help="two to six runs over each other, and their metrics")
+    pick(
+        "--compare",
+        type=Path,
+        nargs="+",
+        metavar="RUN",
+        help="two to six runs over each other, and their "
+        "metrics; or runs over a measurement, a CSV file with a column t or time and no JSON file beside it",
+    )
     add(
         "-o",
         dest="out",
@@ -98,7 +123,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="PATH",
         help="folder, made if it is missing, or without --lecture also a file in a folder that exists (default: here)",
     )
-    controller = "run your function as the controller of the scenario RUN, beside the true one, and draw both; FILE is "
+    controller = "run your function as the controller of the scenario RUN, beside its own, and draw both; FILE is "
     pick("--controller", metavar="FILE[:FUNCTION]", help=f"{controller}executed as you would execute it, unconfined")
     add_set(parser)
     add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
@@ -143,7 +168,7 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
     """What the files' names begin with, and their format."""
     out = options.out or Path()
     if out.is_dir() or not out.suffix:
-        make_folder(out)
+        make_folder(folder_named(out))
         return out / ("compare" if options.compare else options.run.stem), options.format or "png"
     if options.lecture:
         raise UsageError(f"-o {out}: with --lecture several files are written; give a folder")
@@ -154,23 +179,27 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
     return out.with_suffix(""), out.suffix[1:]
 
 
-def save(runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path, str]) -> None:
+def save(
+    runs: dict[Path, Run], options: argparse.Namespace, target: tuple[Path, str], logs: Sequence[Path] = ()
+) -> None:
     stem, suffix = target
-    files = {Path(f"{stem}{name}.{suffix}"): figure for name, figure in figures(runs, options).items()}
+    files = {Path(f"{stem}{name}.{suffix}"): figure for name, figure in figures(runs, options, logs).items()}
     write(files)
     for path in files:
         print_line(path)
 
 
-def figures(runs: dict[Path, Run], options: argparse.Namespace) -> dict[str, Figure]:
+def figures(runs: dict[Path, Run], options: argparse.Namespace, logs: Sequence[Path] = ()) -> dict[str, Figure]:
     """The figures by the ends of their files' names."""
-    from ..plot import compare, force, lecture, overview
+    from ..plot import compare, force, lecture, measured, overview
 
     if options.lecture and (options.width or options.height):
         given = "--width" if options.width else "--height"
         raise UsageError(f"{given}: the lecture's figures have a size of their own; leave it away", code="usage")
     part = {"start": options.start, "end": options.end, "panels": options.panels, "stamp": options.stamp}
     size = {"width": options.width or WIDTH, "height": options.height}
+    if logs:
+        return {"": measured(logs[0], named(runs), **size, **part)}
     if options.compare:
         return {"": compare(named(runs), **size, **part)}
     (run,) = runs.values()

@@ -1,4 +1,4 @@
-"""arm3r-run: `arm3r run --controller FILE`: a function of the user's own as the controller, beside the true one."""
+"""arm3r-run: `arm3r run --controller FILE`: a function of the user's own as the controller, beside the scenario's."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .._files import make_folder
+from .._files import folder_named, make_folder
 from .._messages import as_json, shown
 from .._progress_bar import Bar
 from ..errors import Arm3rError, UsageError
@@ -119,8 +119,8 @@ def plan_outputs(options: argparse.Namespace, scenarios: Sequence[Scenario]) -> 
         if out and len(scenarios) > 1:
             raise UsageError("-o - takes one scenario", code="usage")
         return [out] * len(scenarios)
-    if len(scenarios) > 1:
-        make_folder(Path(out))
+    if len(scenarios) > 1 or out.endswith(("/", os.sep)):
+        make_folder(folder_named(out))
     paths = [os.path.join(out, f"{scenario.name}.csv") if os.path.isdir(out) else out for scenario in scenarios]
     for i, path in enumerate(paths):
         if path in paths[:i]:
@@ -171,7 +171,7 @@ def write(beside: Beside, output: str) -> None:
             beside.yours.to_csv(path)
             print_line(path.read_text().rstrip("\n"))
     elif output:
-        beside.yours.to_csv(output)
+        beside.yours._save(output)
 
 
 def code_of(beside: Beside) -> int:

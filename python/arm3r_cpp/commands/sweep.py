@@ -22,6 +22,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     warnings.showwarning = _say  # type: ignore[assignment]
     bar = Bar("sweep", "runs")
     try:
+        from ..answers.refusals import lines_of
         from ..sweeps.definition import Sweep
         from ..sweeps.runner import sweep
 
@@ -33,6 +34,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         words = ", ".join(f"{count} {outcome}" for outcome, count in failed.items())
         counted = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
         print_line(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
+        for line in lines_of(table.refusals, failed.get("invalid", 0)):
+            print_line(f"  {line}")
     except Arm3rError as error:
         bar.clear()
         say(PROGRAM, error)
@@ -49,8 +52,14 @@ def parser() -> argparse.ArgumentParser:
 
     parser = argparse.ArgumentParser(prog=PROGRAM, description="Run a sweep: a table with one row a run.")
     add = parser.add_argument
-    add("sweep", metavar="SWEEP.yaml", help="scenario, axes, and what is kept; see docs/sweeps.md")
-    add("-o", dest="out", metavar="DIR", required=True, help="folder of the sweep: its table and its finished shards")
+    add("sweep", metavar="SWEEP.yaml", help="scenario, axes, and what is kept; see `arm3r docs sweeps`")
+    add(
+        "-o",
+        dest="out",
+        metavar="DIR",
+        required=True,
+        help="folder (without an ending) of the sweep: its table and its finished shards",
+    )
     add("--jobs", type=int, metavar="N", help="shards computed at a time (default: one for each CPU allowed)")
     add("--resume", action="store_true", help="go on where an interrupted sweep in DIR stopped")
     add("--set", action="append", default=[], metavar="PATH=VALUE", help="put a value into the scenario")

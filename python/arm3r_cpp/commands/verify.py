@@ -55,7 +55,7 @@ def parser() -> argparse.ArgumentParser:
     arm = parser.add_mutually_exclusive_group()
     arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
     arm.add_argument("--urdf", metavar="FILE", help="a serial chain of up to 7 joints")
-    arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: docs/verify.md says how it is written")
+    arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: `arm3r docs verify` says how it is written")
     add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: does it see the mistakes?")
     add("--noise", type=float, metavar="X", help="of a log, relative to an entry's scale (default: what a fit shows)")
     add("--json", action="store_true", help="print the verdicts as a JSON array")

@@ -22,7 +22,7 @@ def parser() -> argparse.ArgumentParser:
         prog="arm3r-view",
         description="A run in the live page: its rows as they are, not simulated again, until something is changed "
         "there. The page is served to this computer alone, until Ctrl-C.",
-        epilog="docs/live.md describes the page.",
+        epilog="`arm3r docs live` describes the page.",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="RUN.csv with RUN.json beside it, or RUN.npz")
     add_server(parser)

@@ -15,6 +15,7 @@ from .._native import Floats
 from ..errors import BudgetError, ControllerError, UsageError
 from ..scenario import Scenario
 from ..verify.comparison import scales
+from ..verify.finding import Finding
 from ..verify.formula import Formula, from_file
 from ..verify.judge import judge
 from ..verify.kinds import KINDS, standard_form
@@ -27,6 +28,7 @@ from .mark import RIGHT, UNCLEAR, WORDS, WRONG, Mark, one_line, word_of
 from .task import FunctionTask, Mistake
 
 THRESHOLD = 1e-6  # of an entry's scale
+_AN_EXPRESSION = re.compile(r"`[^`]*[A-Za-z_)\]] *[-+*/] *[^`]+` as `")
 _NOT_READ = "is not read"  # a refusal of the MATLAB reader: the file may still be right
 
 
@@ -110,7 +112,29 @@ def reading(task: FunctionTask, path: Path) -> str:
         return ""
     formula = formula_of(task, path, PythonProcess)
     verdict = judge(formula, KINDS[task.kind], ThreeR(Scenario(task.scenario)))
-    return "" if verdict.ok else str(verdict).replace(str(path), path.name)
+    if verdict.ok:
+        return ""
+    text = str(verdict).replace(str(path), path.name)
+    return without_negated_constants(text) if any(map(negates_a_constant, verdict.findings)) else text
+
+
+def negates_a_constant(finding: Finding) -> bool:
+    """Whether a finding would turn the sign of a number or of a name: a negative stiffness or mass explains values, and
+    is no cause."""
+    old, new = (finding.old or "").strip("() "), (finding.new or "").strip("() ")
+    if old.isidentifier():
+        return new == f"-{old}"
+    try:
+        return float(new) == -float(old) < 0
+    except ValueError:
+        return False
+
+
+def without_negated_constants(text: str) -> str:
+    """A verdict's first line, and of the edits that would do as well those of an expression."""
+    head, *lines = text.splitlines()
+    edits = [line.strip() for line in lines if "also possible" in line and _AN_EXPRESSION.search(line)]
+    return "\n".join([head, *(f"  {line.removeprefix('also possible: ')}" for line in edits)])
 
 
 def _failed(error: UsageError | ProgramError, path: Path) -> Mark:

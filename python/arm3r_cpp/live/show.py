@@ -8,7 +8,7 @@ import webbrowser
 from html import escape
 from pathlib import Path
 
-from .._files import check_folder, replacing
+from .._files import check_ending, check_folder, replacing
 from ..errors import UsageError
 from ..run import Run
 from ..scenario import Scenario
@@ -56,8 +56,9 @@ def write(run: Run, path: str | os.PathLike[str]) -> None:
 
     Raises:
         OutputError: it cannot be written.
-        UsageError: the installation has no page, or the run's summary holds no scenario.
+        UsageError: another ending than .html, no page in the installation, or no scenario in the run's summary.
     """
+    check_ending(path, [".html"], hint="to_csv writes .csv, to_npz .npz")
     target = Path(path)
     html = page.html("live.html", page_data.of_run(run))
     check_folder(target.parent)

@@ -1,4 +1,4 @@
-"""Figures and films of runs: `overview`, `lecture`, `force`, `compare` and `animate`; `show` opens them.
+"""Figures and films of runs: `overview`, `lecture`, `force`, `compare`, `measured` and `animate`; `show` opens them.
 
 In comes a finished or partial run, or the table of a sweep. Out goes a matplotlib Figure that pyplot does not know: a
 notebook shows it as the value of a cell, `show` opens a window. `figures` holds the public functions, `style` and
@@ -16,16 +16,18 @@ if TYPE_CHECKING:
     from typing import Any
 
     from ..animation.animate import animate
+    from ..measured.figure import measured
     from .figures import compare, force, lecture, overview, show
 
-__all__ = ["animate", "compare", "force", "lecture", "overview", "show"]
+_ELSEWHERE = {"animate": "..animation.animate", "measured": "..measured.figure"}  # they stand above this room
+
+__all__ = ["animate", "compare", "force", "lecture", "measured", "overview", "show"]
 
 
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}; it has {', '.join(__all__)}")
-    module = "..animation.animate" if name == "animate" else ".figures"
-    return getattr(import_module(module, __name__), name)
+    return getattr(import_module(_ELSEWHERE.get(name, ".figures"), __name__), name)
 
 
 def __dir__() -> list[str]:

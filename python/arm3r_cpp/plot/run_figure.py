@@ -13,6 +13,7 @@ from matplotlib.backend_bases import FigureManagerBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ..answers import unseen_figures
 from ..errors import UsageError
 from ..run import Run
 from ..scenario import Scenario
@@ -56,6 +57,12 @@ class RunFigure(Figure):
         super().__init__(*arguments, **options)
         FigureCanvasAgg(self)
         self.origins: list[Origin] = []
+        self._number = unseen_figures.made()
+
+    def draw(self, renderer: Any) -> None:
+        """As matplotlib's own: whoever draws the figure sees it."""
+        unseen_figures.seen(self._number)
+        super().draw(renderer)
 
     def savefig(self, fname: str | os.PathLike[str] | Any, **options: Any) -> None:
         """As matplotlib's own, with the origin in the file, fonts that journals take, and no date."""

@@ -7,7 +7,7 @@ import json
 import os
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import FileIO
 from itertools import zip_longest
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from .._files import regular, replacing, writing
+from ..answers.refusals import Refusal, merged
 from ..errors import IncompatibleError, OutputError, UsageError
 from ..system.file_lock import try_lock
 
@@ -104,7 +105,8 @@ class SweepFolder:
     def shard(self, number: int) -> Path:
         return self.path / SHARDS / f"{number:06}.{self.manifest['table']}"
 
-    def store(self, number: int, first: int, count: int, data: bytes, outcomes: Mapping[str, int]) -> None:
+    def store(self, number: int, first: int, count: int, data: bytes, outcomes: Mapping[str, int],
+              refusals: Sequence[Refusal] = ()) -> None:  # fmt: skip
         """Write a finished shard, then its line of the ledger. A shard that is stored already stays as it is."""
         if number in self.finished:
             return
@@ -112,6 +114,7 @@ class SweepFolder:
         publish(file, data)
         line = {"first": first, "count": count, "file": f"{SHARDS}/{file.name}", "size": len(data)}
         line |= {"sha256": sha256(data), "outcomes": dict(outcomes)}
+        line |= {"refusals": [list(one) for one in refusals]} if refusals else {}
         with writing(self.path), (self.path / LEDGER).open("ab") as ledger:
             ledger.write(_with_checksum(line, self._manifest_hash))
         self._acknowledge(number, line)
@@ -175,6 +178,11 @@ def count_outcomes(lines: Iterable[Mapping[str, Any]]) -> dict[str, int]:
     for line in lines:
         counts.update(line["outcomes"])
     return dict(sorted(counts.items()))
+
+
+def refusals_in(lines: Iterable[Mapping[str, Any]]) -> list[Refusal]:
+    """Why runs are invalid, by the lines of a ledger."""
+    return merged([Refusal(*one) for one in line.get("refusals", [])] for line in lines)
 
 
 def publish(path: Path, data: bytes) -> None:

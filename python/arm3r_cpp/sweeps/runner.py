@@ -10,14 +10,14 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from operator import index
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import _native
-from .._files import replacing
+from .._files import folder_named, replacing
 from ..batch import AXIS_ERRORS, axis_of
-from ..errors import Arm3rError, UsageError
+from ..errors import Arm3rError, ScenarioWarning, UsageError
 from ..system.cpus import usable_cpus
+from .advice import Advice
 from .definition import Sweep
 from .folder import SweepFolder, sha256
 from .shard import ShardJob, ShardResult, columns_of, run_shard
@@ -62,7 +62,7 @@ def sweep(
 
     Args:
         source: a Sweep, its keys as a map, or its file.
-        out: the folder; new or empty, or with `resume` that of the same sweep.
+        out: the folder; new or empty, or with `resume` that of the same sweep. The name of a new one has no ending.
         executor: where shards are computed; None: threads of this process.
         jobs: how many shards at a time; None: one for each CPU that this process may use, of an executor 64.
         resume: go on where an interrupted sweep stopped. No finished shard is done again.
@@ -77,14 +77,16 @@ def sweep(
 
     Raises:
         ScenarioError: the sweep is not valid; all that is wrong is listed.
+        UsageError: the folder has the name of a file.
         OutputError: the folder exists, is in use, or cannot be written.
         IncompatibleError: the folder was begun with something else, or a worker has another version.
         Arm3rError: `progress` ended the sweep, or a worker of the executor died; either can be resumed.
     """
     jobs = None if jobs is None else index(jobs)
+    folder_path = folder_named(out)
     plan = source if isinstance(source, Sweep) else Sweep(source) if isinstance(source, Mapping) else Sweep.load(source)
     job = _first_job(plan, "parquet" if parquet else "csv", controller)
-    with SweepFolder.open(Path(out), _manifest(plan, job), resume=resume) as folder:
+    with SweepFolder.open(folder_path, _manifest(plan, job), resume=resume) as folder:
         under_way: UnderWay = {}
         with _submitting(executor, jobs, under_way) as (submit, at_a_time):
             _run(plan, job, folder, submit, at_a_time, under_way, progress)
@@ -185,6 +187,7 @@ def _run(
     """Compute and store every shard that the folder does not have; at most `at_a_time` are on their way."""
     missing = (number for number in range(_shards(plan)) if number not in folder.finished)
     pending: dict[Future[ShardResult], tuple[int, int, int]] = {}
+    advice, before = None if job.controller else Advice(plan.scenario), folder.runs_done
     try:
         while True:
             while len(pending) < at_a_time and (number := next(missing, None)) is not None:
@@ -199,7 +202,10 @@ def _run(
                 shard = pending.pop(future)
                 folder.store(*shard, *future.result())
                 under_way.pop(shard[1], None)
-            if progress and progress(folder.runs_done + sum(list(under_way.values())), plan.runs):
+            done = folder.runs_done + sum(list(under_way.values()))
+            if advice and (sentence := advice.after(done - before, plan.runs - before)):
+                warnings.warn(f"{plan.file}: {sentence}", ScenarioWarning, stacklevel=2)
+            if progress and progress(done, plan.runs):
                 raise Arm3rError(f"{folder.path}: stopped after {folder.runs_done} of {plan.runs} runs", code="stopped")
     except BrokenExecutor as broken:
         message = f"a worker died; {folder.runs_done} of {plan.runs} runs are finished, and resuming goes on from there"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .. import _native
 from .._native import Floats
+from ..answers.refusals import Refusal
 from ..batch import Batch, run_batch
 from ..errors import Arm3rError, BudgetError, IncompatibleError
 from ..run import Run
@@ -67,6 +68,8 @@ class ShardResult(NamedTuple):
 
     data: bytes
     outcomes: dict[str, int]
+    refusals: list[Refusal]
+    """Why runs of it are invalid."""
 
 
 def run_shard(job: ShardJob, progress: Callable[[int, int], Any] | None = None) -> ShardResult:
@@ -97,7 +100,7 @@ def _computed(job: ShardJob, progress: Callable[[int, int], Any] | None) -> Shar
     columns |= {name: batch[name] for name in job.metrics}
     columns |= _statistics(job.statistics, batch, progress)
     data = encode(columns, job.table, lambda: progress and progress(len(batch), len(batch)))
-    return ShardResult(data, dict(sorted(Counter(outcomes.tolist()).items())))
+    return ShardResult(data, dict(sorted(Counter(outcomes.tolist()).items())), batch.refusals())
 
 
 def columns_of(job: ShardJob) -> list[str]:

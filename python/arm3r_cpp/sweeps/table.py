@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._files import regular
 from .._messages import no_column
+from ..answers.refusals import Refusal
 from ..errors import UsageError
 from .axes import SweepAxis
-from .folder import LEDGER, count_outcomes, read_manifest, sha256
+from .folder import LEDGER, count_outcomes, read_manifest, refusals_in, sha256
 from .table_io import decode
+
+Found = TypeVar("Found")
 
 
 class SweepTable:
@@ -112,8 +115,20 @@ class SweepTable:
     @property
     def outcomes(self) -> dict[str, int]:
         """How many runs ended in which way, by ledger.jsonl. Raises UsageError: the file is damaged."""
+        return self._of_ledger(count_outcomes)
+
+    @property
+    def refusals(self) -> list[Refusal]:
+        """Why runs are invalid, by ledger.jsonl: each reason with how often it holds, the most frequent first.
+
+        Raises:
+            UsageError: the file is damaged.
+        """
+        return self._of_ledger(refusals_in)
+
+    def _of_ledger(self, read: Callable[[Iterable[Mapping[str, Any]]], Found]) -> Found:
         try:
             with regular(self.folder / LEDGER).open("rb") as ledger:
-                return count_outcomes(map(json.loads, ledger))
+                return read(map(json.loads, ledger))
         except (OSError, ValueError, RecursionError, KeyError, TypeError) as error:
             raise UsageError(f"{self.folder}: {LEDGER} is damaged; --resume repairs it", code="file") from error

@@ -23,5 +23,5 @@ class Chain(SerialChain):
 
     @classmethod
     def from_dh(cls, path: str | os.PathLike[str]) -> Chain:
-        """The chain of a DH table, see docs/verify.md."""
+        """The chain of a DH table, see `arm3r docs verify`."""
         return read_dh(path, cls)
