@@ -456,12 +456,12 @@ def test_a_line_that_fails_is_mended_first(written: Any) -> None:
     assert (finding.line, finding.old, finding.new) == (46, "q2**q3", "q2+q3"), finding
 
 
-def test_the_search_for_an_edit_ends_in_time(written: Any, monkeypatch: Any) -> None:
-    monkeypatch.setattr("arm3r_cpp.verify.judge.REPAIR_TIME", 0.0)
+def test_the_search_for_an_edit_ends(written: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("arm3r_cpp.verify.judge.REPAIR_EDITS", 0)
     text = "from math import cos\n\n\ndef gravity(q1, q2, q3):\n    return [0, cos(q2)/(2 + cos(q3)), 1]\n"
     verdict = arm3r.verify.gravity(written("gravity.py", text))
     assert not verdict.ok and verdict.unexplained == [[2]]
-    assert "the search for an edit that mends it was ended after 0 s" in verdict.warnings
+    assert any("the search for an edit that mends it was ended" in one for one in verdict.warnings)
 
 
 GROWING = {
