@@ -20,6 +20,7 @@ from .errors import (
     OutputError,
     ScenarioError,
     ScenarioWarning,
+    UnjudgedError,
     UsageError,
 )
 from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
@@ -79,6 +80,7 @@ __all__ = [
     "Sweep",
     "SweepTable",
     "Trust",
+    "UnjudgedError",
     "UsageError",
     "__version__",
     "converge",

@@ -59,7 +59,7 @@ ROBOTS = [
 def log() -> str:
     q = np.random.default_rng(1).uniform(-2, 2, (12, 3))
     torque = arm3r.Scenario().arm.gravity_torque(q)
-    rows = [",".join(f"{number:.9g}" for number in (*one, *other)) for one, other in zip(q, torque, strict=True)]
+    rows = [",".join(f"{number:.17g}" for number in (*one, *other)) for one, other in zip(q, torque, strict=True)]
     return "\n".join(["q1,q2,q3,g1,g2,g3", *rows, ""])
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
+import arm3r_cpp as arm3r
 import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.system import cpus, file_lock, processes, timed_pipe
+from arm3r_cpp.system.patience import Patience, TooSlow
 from arm3r_cpp.verify.program import python_process
 
 
@@ -24,8 +25,8 @@ def pipe(request: pytest.FixtureRequest) -> Any:
         pipe.close()
 
 
-def soon() -> float:
-    return time.monotonic() + 30
+def soon() -> Patience:
+    return Patience(os.getpid(), 30)
 
 
 def test_a_pipe_gives_what_is_asked_for_however_it_comes(pipe: Any) -> None:
@@ -33,8 +34,8 @@ def test_a_pipe_gives_what_is_asked_for_however_it_comes(pipe: Any) -> None:
     stream.write(b"abc")
     stream.write(b"defgh")
     assert [pipe.read(n, soon()) for n in (2, 4, 1)] == [b"ab", b"cdef", b"g"]
-    with pytest.raises(TimeoutError):
-        pipe.read(2, time.monotonic() + 0.01)
+    with pytest.raises(TooSlow):
+        pipe.read(2, Patience(os.getpid(), 0.0))
 
 
 def test_a_pipe_whose_writer_is_gone_has_an_end(pipe: Any) -> None:
@@ -55,7 +56,8 @@ def test_formulas_are_judged_through_either_pipe(tmp_path: Path, monkeypatch: py
     assert not verdict.ok and {tuple(finding.entry) for finding in verdict.findings} == {(2,), (3,)}
     file.write_text("def gravity(q):\n    while True: pass\n")
     monkeypatch.setattr(python_process, "ANSWER_TIME", 0.5)
-    assert "takes too long" in str(verify.gravity(str(file)))
+    with pytest.raises(arm3r.UnjudgedError, match="takes too long"):
+        verify.gravity(str(file))
 
 
 def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:

@@ -79,7 +79,7 @@ def test_a_run_is_a_log_of_its_inverse_dynamics(tmp_path: Path) -> None:
 REFUSED = {
     "": "has no rows",
     "q1,q2,q3\n1,2,3\n": "no column is judged",
-    "q1,q2,q3,g1\n1,2,x,4\n": ":2: a row holds numbers",
+    "q1,q2,q3,g1\n1,2,x,4\n": ":2: q3 is a number",
     "q1,q2,q3,g1\n1,2\n": ":2: a row has 4 numbers",
     "g1\n1\n": "has the columns q1, q2, q3",
     "q1,q2,q3,g7\n1,2,3,4\n": "has no entry",

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from .._messages import shown
 from .folder import Row
-from .mark import WORDS
+from .mark import WORDS, one_line
 
 COLUMNS = ("student", "task", "mark", "reason")
 _FORMULA = re.compile(r"\s*[=+\-@'\uff1d\uff0b\uff0d\uff20]")  # what a spreadsheet takes for a formula, or a text
@@ -22,7 +22,7 @@ def csv_of(rows: Sequence[Row]) -> str:
     writer.writerow(COLUMNS)
     for row in rows:
         student = row.student.replace("\\", "\\\\")  # other names have other cells
-        writer.writerow(map(_cell, (student, row.task, row.mark.word, row.mark.reason)))
+        writer.writerow(map(_cell, (student, row.task, row.mark.word, one_line(row.mark.reason))))
     return text.getvalue()
 
 

@@ -65,10 +65,10 @@ def _answer(process: subprocess.Popen[bytes], request: bytes) -> bytes:
     Raises:
         TimeoutError: it computes for too long, or waits.
     """
-    patience = Patience(process.pid, MOST_SECONDS)
+    patience, given = Patience(process.pid, MOST_SECONDS), [request]
     while True:
         try:
-            return process.communicate(request, timeout=SLICE)[0]
+            return process.communicate(given.pop() if given else None, timeout=SLICE)[0]
         except subprocess.TimeoutExpired:
             patience.check()
 

@@ -29,8 +29,8 @@ from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, lin
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
-_MENDING_TIME = 3.0  # s of computing, for a formula that fails
-REPAIR_TIME = 10.0  # s of computing, for the edits of all that a formula may mean
+MENDING_EDITS = 3000  # of a formula that fails
+REPAIR_EDITS = 10_000  # of all that a formula may mean
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
 
@@ -55,7 +55,7 @@ def judge(
             raise ProgramError("gives different numbers when it is called again with the same ones")
         if not np.isfinite(values).any():
             raise ProgramError("returns NaN or infinity instead of numbers")
-        budget = Budget(formula.program, REPAIR_TIME)
+        budget = Budget(formula.program, REPAIR_EDITS)
         verdicts = _verdicts(cases, progress, budget)
         if not verdicts[0][0].findings and (strict := _with_unused_numbers(cases[0], progress, budget)):
             verdicts = [strict]
@@ -180,26 +180,23 @@ def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
 
 def _mend_failure(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None) -> None:
     """The edit that makes a formula right which raises, or returns no numbers: in the line that fails, or another."""
-    budget = Budget(formula.program, _MENDING_TIME)
-
-    def in_time(done: int, count: int) -> None:
-        if budget.is_over():
-            raise ProcessEnded("takes too long")
-        if progress:
-            progress(done, count)
-
+    budget = Budget(formula.program, MENDING_EDITS)
     with contextlib.suppress(ProcessEnded):
-        _mend_in_time(verdict, formula, kind, truth, in_time)
+        _mend_in_time(verdict, formula, kind, truth, progress, budget)
 
 
-def _mend_in_time(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress) -> None:
+def _mend_in_time(
+    verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None, budget: Budget
+) -> None:
     line, text = verdict.findings[0].line, formula.text or ""
     failing = [one for one in formula.nodes if line_and_column(text, one.start)[0] == line]
     for statements, case in product(
         [failing, formula.nodes] if failing else [formula.nodes], ways(formula, kind, truth)
     ):
         wrong = frozenset(range(int(np.prod(case.due(case.first).shape[1:]))))
-        for repair in _repairs(case, wrong, progress, statements):
+        if budget.is_over():
+            return
+        for repair in _repairs(case, wrong, progress, statements, budget):
             if repair.mended == wrong:
                 verdict.convention = case.convention
                 _put_edit(verdict.findings[0], case, repair.edit)
@@ -272,7 +269,7 @@ def _explain(
         if found and found.note and found.note not in verdict.warnings:
             verdict.warnings.append(found.note)
     if budget.is_over() and verdict.unexplained:
-        verdict.warnings.append(f"the search for an edit that mends it was ended after {REPAIR_TIME:g} s")
+        verdict.warnings.append("the search for an edit that mends it was ended: there are too many, or they are too slow")
     if case.kind.name == "forward" and verdict.unexplained:
         _read_torque(verdict, case)
     verdict.alternatives += causes[1:]

@@ -1,28 +1,38 @@
-"""How long edits are tried: in seconds of computing, so that a busy machine finds no less."""
+"""How many edits are tried: a number of them, so that every machine, however busy, finds the same."""
 
 from __future__ import annotations
 
 import time
 from typing import Any
 
-_WAITING = 6.0  # times as long as computing: the most that is waited on a busy machine
+SECONDS_AN_EDIT = 0.003
+"""Of computing, several times what most formulas take: a formula that is slower has fewer edits tried."""
 
 
 class Budget:
-    """Seconds of computing, in this process and in the program's own."""
+    """A number of edits, and the seconds that this process and the program's own may compute for them."""
 
-    def __init__(self, program: Any, seconds: float, latest: float | None = None) -> None:
-        self._program = program
-        self._end = self._used() + seconds
-        self._latest = time.monotonic() + _WAITING * seconds if latest is None else latest
+    def __init__(self, program: Any, edits: int, seconds: float | None = None, whole: Budget | None = None) -> None:
+        """
+        Args:
+            seconds: None: `SECONDS_AN_EDIT` for each.
+            whole: of which this is a part.
+        """
+        self._program, self._left, self._whole = program, edits, whole
+        self._end = self._used() + (SECONDS_AN_EDIT * edits if seconds is None else seconds)
 
     def _used(self) -> float:
         return time.process_time() + float(getattr(self._program, "seconds", 0.0))
 
+    def spend(self) -> None:
+        """An edit is tried."""
+        self._left -= 1
+        if self._whole:
+            self._whole.spend()
+
     def is_over(self) -> bool:
-        return self._used() >= self._end or time.monotonic() >= self._latest
+        return self._left <= 0 or self._used() >= self._end
 
     def share(self, parts: int) -> Budget:
         """One of so many parts of what is left."""
-        left = max(self._latest - time.monotonic(), 0.0)
-        return Budget(self._program, max(self._end - self._used(), 0.0) / parts, time.monotonic() + left / parts)
+        return Budget(self._program, self._left // parts, max(self._end - self._used(), 0.0) / parts, self)

@@ -47,6 +47,8 @@ def tried(
     for number, edit in enumerate(edits):
         if edit.rank > enough or (budget and budget.is_over()):
             break
+        if budget:
+            budget.spend()
         if progress and number % 10 == 0:
             progress(number, len(edits))
         left = _left(evaluate, edit, False, wrong_first)

@@ -26,7 +26,7 @@ from .matlab_reader import Function, Statement, read, read_expression
 from .nodes import Call, Constant, Edit, Node, ProgramError, Unjudged, line_and_column
 
 Floats = NDArray[np.float64]
-_MAX_CALLS = 2000
+_MAX_CALLS, _MAX_DEPTH = 2000, 30
 _MAX_STEPS = 20_000  # statements and turns of loops of one evaluation
 
 
@@ -55,7 +55,7 @@ class MatlabProgram:
         self.function = function or next(iter(self.functions))
         if not self.functions[self.function].outputs:
             raise UsageError(f"{file}:{self.functions[self.function].line}: {self.function} has no output")
-        self._calls = self._steps = 0
+        self._calls = self._steps = self._depth = 0
         self._known: dict[str, Floats] = {}
         self._replaced: tuple[Statement, Node] | None = None
 
@@ -161,9 +161,24 @@ class MatlabProgram:
         raise ProgramError("the edit gives no MATLAB")
 
     def _run(self, function: Function, inputs: list[Any]) -> list[Any]:
+        with self._called(function.line):
+            return self._outputs(function, inputs)
+
+    @contextmanager
+    def _called(self, line: int | None = None) -> Iterator[None]:
+        """A call of a function: how many there may be, and how many inside each other."""
         self._calls += 1
         if self._calls > _MAX_CALLS:
-            raise ProgramError(f"calls functions more than {_MAX_CALLS} times", function.line)
+            raise ProgramError(f"calls functions more than {_MAX_CALLS} times", line)
+        if self._depth >= _MAX_DEPTH:
+            raise ProgramError(f"calls functions more than {_MAX_DEPTH} deep")
+        self._depth += 1
+        try:
+            yield
+        finally:
+            self._depth -= 1
+
+    def _outputs(self, function: Function, inputs: list[Any]) -> list[Any]:
         if len(inputs) > len(function.inputs):
             raise ProgramError(
                 f"{function.name} takes {len(function.inputs)} arguments, got {len(inputs)}", function.line
@@ -346,12 +361,10 @@ class MatlabProgram:
         raise ProgramError(f"{name!r} is not known: no variable, no local function and none of {', '.join(FUNCTIONS)}")
 
     def _apply(self, handle: Handle, inputs: list[Any]) -> Any:
-        self._calls += 1
-        if self._calls > _MAX_CALLS:
-            raise ProgramError(f"calls functions more than {_MAX_CALLS} times")
         if len(inputs) != len(handle.names):
             raise ProgramError(f"an anonymous function takes {len(handle.names)} arguments, got {len(inputs)}")
-        return self._value(handle.body, {**handle.variables, **dict(zip(handle.names, inputs, strict=True))})
+        with self._called():
+            return self._value(handle.body, {**handle.variables, **dict(zip(handle.names, inputs, strict=True))})
 
     def _element(self, cell: Any, node: Node, variables: dict[str, Any]) -> Any:
         """T{i} of a cell array with one row or one column."""
