@@ -25,7 +25,8 @@ HOSTILE = {
     "tip_position.py": ("import time\ndef tip_position(q):\n    return [time.time(), 0, 0]\n", "different numbers"),
     "minus_row.py": ("a2 = 1 << 99999999999\ndef jacobian(q):\n    return q\n", ""),
     "degrees.py": (
-        "import os\ndef tip_velocity(q, qd):\n    os.kill(os.getppid(), 9)\n    os._exit(0)\n",
+        "import os\ndef tip_velocity(q, qd):\n    try:\n        os.kill(os.getppid(), 9)\n"
+        "    except OSError:\n        os._exit(0)\n",
         "ends its process",
     ),
     "tip_torque.py": ("def torque(q, f):\n    while True:\n        pass\n", "takes too long"),
@@ -45,10 +46,10 @@ HOSTILE = {
         "",
     ),
     "plate_face.yaml": ("format: 1\nwall: {face_ofset: 1}\n", "wall.face_ofset: no such key"),
-    "wall_torque.py": (
+    "wall_torque.py": (  # finds nothing to remove
         "import os, glob\nfor name in glob.glob('FOLDER/*/*'):\n    os.remove(name)\n"
         "def torque(q, f):\n    return q\n",
-        "raises",
+        "every entry is wrong",
     ),
     "force_on_arm.yaml": ("", ""),
     "impedance.py": (

@@ -1,4 +1,4 @@
-"""The process that runs a user's file has no way out, for an ordinary user and for root, with namespaces and without."""
+"""The process that runs a user's file has no way out, as root, as an ordinary user, with namespaces and without."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Judged(PythonProcess):
 
 @pytest.fixture
 def class_of_two(tmp_path: Path) -> Iterator[tuple[str, ...]]:
-    """What a submission looks for: a file, another one's, the marks, a FIFO and two Unix sockets that are listened to."""
+    """What a submission looks for: a file, another one's, the marks, a FIFO and two Unix sockets that listen."""
     own, other, table = tmp_path / "class/own/gravity.py", tmp_path / "class/other/gravity.py", tmp_path / "marks.csv"
     fifo, path, name = tmp_path / "class/own/fifo", tmp_path / "s", f"arm3r_{os.getpid()}"
     for file in (own, other, table):
@@ -73,7 +73,7 @@ def open_ways(names: tuple[str, ...]) -> list[str]:
 def become(user: int) -> None:
     """In a user namespace, if need be: root is there an ordinary user, and an ordinary user is root."""
     now, group = os.getuid(), os.getgid()
-    if now == 0 and user == 0 or now != 0 and user != 0:
+    if (now == 0) == (user == 0):
         return
     assert ctypes.CDLL(None).unshare(_NEWUSER) == 0
     for name, words in (("setgroups", "deny"), ("uid_map", f"{user} {now} 1"), ("gid_map", f"{user} {group} 1")):
@@ -148,7 +148,9 @@ from helper import a2
 os.chdir(os.path.dirname(__file__))
 seen = []
 thread = threading.Thread(target=seen.append, args=(float(open("data.txt").read()),))
-thread.start(); thread.join(); time.sleep(0)
+thread.start()
+thread.join()
+time.sleep(0)
 callback = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(lambda x: x + 1)
 def gravity(q):
     return callback(a2 + seen[0] + float(sympy.diff(sympy.Symbol("x") ** 2).subs("x", 1)))
@@ -191,12 +193,12 @@ def gravity(q):
 
 def test_nothing_outlives_the_judge(tmp_path: Path) -> None:
     """A file that runs for ever ends with the process that has started it, whatever ends that."""
-    text = f"""
+    text = """
 import numpy as np, sys, threading, time
 from arm3r_cpp.verify.program.nodes import Call
 from arm3r_cpp.verify.program.python_process import PythonProcess
 process = PythonProcess("def gravity(q):\\n    while True: pass\\n", "gravity", "gravity.py")
-threading.Thread(target=lambda: process.evaluate(Call((0,), {{}}), np.zeros((1, 1))), daemon=True).start()
+threading.Thread(target=lambda: process.evaluate(Call((0,), {}), np.zeros((1, 1))), daemon=True).start()
 while not (process._process and process.unbarred == []): time.sleep(0.01)
 print(process._process.pid, flush=True)
 time.sleep(600)
@@ -232,7 +234,10 @@ def tip_velocity(q_deg, qd_deg):
     return [0.0, 0.0, 0.0]
 """)
     table = tmp_path / "marks.csv"
-    assert exercise.main(["mark", str(tmp_path / "class"), "--task", "degrees", "--task", "first_joint", "-o", str(table)]) == 0
+    assert (
+        exercise.main(["mark", str(tmp_path / "class"), "--task", "degrees", "--task", "first_joint", "-o", str(table)])
+        == 0
+    )
     marks = [line.split(",")[:3] for line in table.read_text().splitlines()[1:]]
     assert ["first", "first_joint", "right"] in marks and ["second", "first_joint", "right"] in marks
     assert "first,degrees,wrong,raises PermissionError" in table.read_text()

@@ -52,7 +52,7 @@ def parser() -> argparse.ArgumentParser:
     add("-o", dest="out", metavar="TABLE.csv", default="-", help="write the table there (default: standard output)")
     add("--task", metavar="NAME", action="append", help="mark only this task; may be given several times")
     add("--jobs", type=int, metavar="N", help="files judged at a time (default: one for each CPU allowed)")
-    add("--forbid-import", action="store_true", help="a Python file cannot import or read arm3r_cpp, to copy its answer")
+    add("--forbid-import", action="store_true", help="a Python file cannot import or read arm3r_cpp, to copy from it")
     add("--trust-code", action="store_true", help="run Python files also where this system cannot confine them")
     return parser
 

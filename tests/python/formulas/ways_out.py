@@ -36,7 +36,7 @@ def call(number, *arguments):
 def gravity(way):
     try:
         exec(WAYS[int(way)], globals())
-    except (OSError, ImportError, AttributeError, ValueError, resource.error) as error:
+    except Exception:
         return 0.0
     return 1.0
 """
@@ -79,7 +79,7 @@ _PRIVILEGE = {
 }  # fmt: skip
 _PROCESSES = {
     "fork": "os.fork() or os._exit(0)", "fork of C": "c.fork() or os._exit(0)", "bare fork": "call(57) or os._exit(0)", "bare vfork": "call(58) or os._exit(0)", "bare clone": "call(56, 17, 0, 0, 0, 0) or os._exit(0)", "execve": "os.execv('/bin/true', ['true'])", "bare execve": "call(59, b'/bin/true', None, None)",
-    "execveat": "call(322, -100, b'/bin/true', None, None, 0)", "spawn": "os.posix_spawn('/bin/true', ['true'], {{}})", "system": "c.system(b'true')", "Popen": "subprocess.Popen(['true'])", "memory file": "os.memfd_create('x')", "execute from memory": "os.fexecve(3, [], {{}})",
+    "execveat": "call(322, -100, b'/bin/true', None, None, 0)", "spawn": "os.posix_spawn('/bin/true', ['true'], {{}})", "system": "_checked(-1 if _libc.system(b'true') else 0)", "Popen": "subprocess.Popen(['true'])", "memory file": "os.memfd_create('x')", "execute from memory": "os.fexecve(3, [], {{}})",
     "kill parent": "os.kill(os.getppid(), 0)", "kill all": "os.kill(-1, 0)", "kill group": "os.killpg(0, 0)", "tkill": "call(200, os.getppid(), 0)", "tgkill": "call(234, os.getppid(), os.getppid(), 0)", "sigqueue": "call(129, os.getppid(), 10, bytes(128))", "pidfd": "os.pidfd_open(os.getppid())", "own pidfd": "os.pidfd_open(os.getpid())", "getfd": "call(438, 3, 0, 0)", "signal by pidfd": "call(424, 3, 0, None, 0)",
     "trace parent": "c.ptrace(16, os.getppid(), None, None)", "be traced": "c.ptrace(0, 0, None, None)", "read parent": "call(310, os.getppid(), None, 0, None, 0, 0)", "write parent": "call(311, os.getppid(), None, 0, None, 0, 0)", "compare": "call(312, os.getppid(), os.getpid(), 0, 0, 0)", "pages of parent": "call(279, os.getppid(), 0, None, None, None, 0)",
     "priority of parent": "os.setpriority(os.PRIO_PROCESS, os.getppid(), 19)", "processors of parent": "os.sched_setaffinity(os.getppid(), {{0}})", "scheduler of parent": "os.sched_setscheduler(os.getppid(), os.SCHED_BATCH, os.sched_param(0))", "io priority": "call(251, 1, os.getppid(), 0)", "session": "os.setsid()", "group": "os.setpgid(0, 0)",
@@ -99,8 +99,19 @@ _TRUTH = {
     "among objects": "[o for o in gc.get_objects() if type(o).__name__ in ('Arm', 'ThreeR', 'FunctionTask', 'Scenario')] or open('')", "loader": "import importlib.machinery as m; m.SourceFileLoader('x', package + '/__init__.py').load_module()", "library": "ctypes.CDLL(library)",
     "library by name": "ctypes.CDLL('libarm3r.so')", "read library": "open(library, 'rb')", "read truth": "open(os.path.join(package, 'exercises', 'arms.py'))", "callers": "[f for f in sys._current_frames().values() if 'truth' in f.f_globals or 'TASKS' in f.f_globals] or open('')", "preload": "os.environ['LD_PRELOAD'] = library; ctypes.CDLL(library)",
 }  # fmt: skip
-GROUPS = {"write": _WRITE, "read": _READ, "privilege": _PRIVILEGE, "processes": _PROCESSES, "sockets": _SOCKETS, "truth": _TRUTH}
-WAYS = {f"{group}: {name}": body.replace("{{", "{").replace("}}", "}") for group, ways in GROUPS.items() for name, body in ways.items()}
+GROUPS = {
+    "write": _WRITE,
+    "read": _READ,
+    "privilege": _PRIVILEGE,
+    "processes": _PROCESSES,
+    "sockets": _SOCKETS,
+    "truth": _TRUTH,
+}
+WAYS = {
+    f"{group}: {name}": body.replace("{{", "{").replace("}}", "}")
+    for group, ways in GROUPS.items()
+    for name, body in ways.items()
+}
 
 
 def text(names: tuple[str, ...]) -> str:

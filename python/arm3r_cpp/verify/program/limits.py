@@ -69,6 +69,8 @@ if sys.platform != "win32":
 
     def _be_counted() -> None:
         """The kernel bounds the threads of each real user but root: this process gets another one, if there is any."""
+        if sys.platform == "darwin":
+            return
         with contextlib.suppress(OSError):
             os.setresuid(_NOBODY, -1, -1)
 
