@@ -290,9 +290,6 @@ protected:
 
     bool has_failed() const { return failed_; }
 
-    ARM3R_INLINE static Mask is_out_of_range(const Y& y) {
-        return max(max(abs(y[0]), abs(y[1])), abs(y[2])) > T(sincos_limit);
-    }
     ARM3R_INLINE void check_lanes(bool may_end_budget = true) {
         Mask bad = is_out_of_range(y_);
         if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned(plant_.arm, p_);
