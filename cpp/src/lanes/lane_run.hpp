@@ -105,8 +105,7 @@ public:
     }
     Metrics metrics(int lane) const;
     EnergyTotals totals(int lane) const {
-        return balance_.totals(lane, setups_[lane]->plant, contact_.peak_force(lane),
-                               Lanes<T>::get(accepted_, lane));
+        return balance_.totals(lane, setups_[lane]->plant, contact_.peak_force(lane), Lanes<T>::get(accepted_, lane));
     }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
@@ -351,7 +350,7 @@ protected:
     WallState<T> wall_ = no_wall<T>();
     Indentation<T> in_{};
     Vec3<T> tau_ = zero_vector<T>();  // N m, applied
-    T kinetic_, potential_;  // J; potential_: of the pose
+    T kinetic_, potential_;           // J; potential_: of the pose
 
     Mask active_ = false, started_ = false;
     T accepted_{0.0}, evaluations_{0.0}, max_steps_{0.0};

@@ -118,7 +118,8 @@ public:
     Run conclude() override {
         if (!is_over()) end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(run_.t_end));
         set_end_metrics();
-        return finish(state_.y, state_.theta, balance_.totals(0, setup_.plant, run_.peak_force, double(run_.steps.accepted)));
+        return finish(state_.y, state_.theta,
+                      balance_.totals(0, setup_.plant, run_.peak_force, double(run_.steps.accepted)));
     }
 
 private:
@@ -372,8 +373,7 @@ private:
         run_.t_end = t1;
         run_.steps.accepted += 1;
         const Vec3<double> q = angles(state_.y);
-        if (is_out_of_range(state_.y))
-            end(ARM3R_RUN_DIVERGED, divergence_message(joints_out(setup_, q), t1));
+        if (is_out_of_range(state_.y)) end(ARM3R_RUN_DIVERGED, divergence_message(joints_out(setup_, q), t1));
         if (!is_well_conditioned(setup_.plant.arm, pose(q)))
             end(ARM3R_RUN_ILL_CONDITIONED, ill_conditioned_message(t1));
         return came_to_rest;
