@@ -69,16 +69,16 @@ def rk4(scenario: Mapping[str, Any], about: float) -> Keys:
     return {"method": "rk4", "step": period / next(fitting, fewest)}
 
 
-def disturbed(scenario: Mapping[str, Any], rng: np.random.Generator) -> Keys:
+def disturbed(scenario: Mapping[str, Any], rng: np.random.Generator, by: float = SIZE) -> Keys:
     """The scenario from slightly other places, rates and gravity, beside a slightly moved wall."""
 
-    def moved(values: Any, size: float = SIZE) -> list[float]:
+    def moved(values: Any, size: float = by) -> list[float]:
         return (np.array(values, float) + size * rng.choice([-1, 1], 3)).tolist()
 
     other = copy.deepcopy(dict(scenario))
     initial, arm = other["initial"], other["arm"]
     other["initial"] = {"q": moved(initial["q"]), "qd": moved(initial.get("qd", [0, 0, 0]))}
-    arm["gravity"] = moved(arm.get("gravity", [0, 0, -9.80665]), 10 * SIZE)
+    arm["gravity"] = moved(arm.get("gravity", [0, 0, -9.80665]), 10 * by)
     if "wall" in other:
         other["wall"]["point"] = moved(other["wall"]["point"])
     return other
@@ -115,10 +115,23 @@ class Band:
             ratio = abs(other[name] - self.run[name]) / (limit + own.columns[name] if own else limit)
             if own:
                 ratio = np.where(own.rows, ratio, 0.0)
+            if name == "contact":
+                ratio = np.where(self._tells_contact(other, own), ratio, 0.0)
             row = int(np.argmax(ratio))
             if not ratio[row] <= worst.ratio:
                 worst = Gap(float(ratio[row]), name, float(self.run.t[row]))
         return worst
+
+    def _tells_contact(self, other: arm3r.Run, own: OwnError | None) -> np.ndarray:
+        """The rows whose depth says on which side of the face the tip is: it exceeds its own error.
+
+        `contact` is 0 or 1, and turns with the last bit of a depth of zero. The instants of contact events are compared
+        by themselves.
+        """
+        if "depth" not in self.limits:
+            return np.ones(len(self.run.t), bool)
+        error = self.limits["depth"] + (own.columns["depth"] if own else 0.0)
+        return np.minimum(abs(self.run["depth"]), abs(other["depth"])) > error
 
     def event_gap(self, other: arm3r.Run, own: OwnError | None = None) -> Gap:
         """The same of the instants of contact events; infinite where there are others."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from random_scenarios import sample_seed
 
 HELD = """
 format: 1
@@ -197,3 +199,38 @@ def test_a_jump_within_a_fixed_step_is_warned_of() -> None:
 
     assert "t = 0.1004 s" in warnings(0.1004, "rk4")[0]
     assert warnings(0.1, "rk4") == warnings(0.1004, "dopri5") == []
+
+
+# ---- a row at a jump -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4", "auto", "rk4"])
+@pytest.mark.parametrize("rate", [None, 487])
+def test_a_row_at_a_jump_shows_what_holds_after_it(method: str, rate: float | None) -> None:
+    """The instants of rows are products, that of a push is a decimal number: they may differ in the last bit."""
+    seed = sample_seed()
+    rng = np.random.default_rng([seed, 7])
+    for number in range(12):
+        every, row = float(f"{rng.uniform(0.003, 0.02):.4g}"), int(rng.integers(3, 30))
+        start = float(rng.choice([0, -0.2, 3.7]))
+        jump = float(f"{start + row * every:.10g}")
+        step = (
+            ", step: 0.00013"
+            if method == "rk4" and not rate
+            else ", step: " + repr(1 / 4870)
+            if method == "rk4"
+            else ""
+        )
+        scenario = arm3r.Scenario(
+            "format: 1\ncontroller: {type: computed_torque}\n"
+            + (f"sampling: {{rate: {rate}}}\n" if rate else "")
+            + f"push: {{force: [50, 20, 30], start: {jump!r}}}\nsolver: {{method: {method}{step}}}\n"
+            + f"time: {{start: {start!r}, stop: {jump + 0.01!r}, log_every: {every!r}}}\n"
+        )
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", arm3r.ScenarioWarning)
+            run = scenario.run()
+        where = f"seed {seed}, {number}: {scenario.to_yaml()}"
+        assert abs(run.t[row] - jump) < 1e-12, where
+        assert abs(run["qdd"][row]).max() > 1, where
+        assert abs(run["qdd"][row - 1]).max() < 1e-6, where

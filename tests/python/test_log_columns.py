@@ -229,3 +229,75 @@ def test_a_column_that_was_not_chosen_is_named_with_the_mend() -> None:
         arm3r.ColumnError, match=r"add q1, q2, q3 to time.log_columns, or leave that out; there are t, q2"
     ):
         scenario.run()["q"]
+
+
+# ---- how a run ends --------------------------------------------------------------------------------------------------
+
+
+def diverging_scenario(rng: np.random.Generator) -> str:
+    """Gains, rates and forces of any size: most of these runs break off."""
+    laws = ["none", "constant", "joint_pd", "stiffness", "impedance", "computed_torque", "resolved_acceleration"]
+    law, method = laws[int(rng.integers(len(laws)))], rng.choice(["rk4", "rk4", "taylor", "dopri5", "rodas4"])
+    gain = lambda: float(10 ** rng.uniform(1, 9))  # noqa: E731
+    controller: dict[str, Any] = {"type": law}
+    if law in ("joint_pd", "computed_torque", "resolved_acceleration"):
+        controller |= {"velocity_gain": gain(), "position_gain": gain()}
+    if law in ("stiffness", "impedance"):
+        controller["damping"] = gain()
+    if law == "constant":
+        controller["torque"] = (gain() * rng.normal(size=3)).tolist()
+    keys: dict[str, Any] = {
+        "format": 1,
+        "arm": {"damping": [float(10 ** rng.uniform(0, 6))] * 3} if method == "rk4" and rng.random() < 0.6 else {},
+        "initial": {"q": rng.uniform(-1, 1, 3).tolist(), "qd": (10 ** rng.uniform(0, 5) * rng.normal(size=3)).tolist()},
+        "controller": controller,
+        "solver": {"method": str(method), "max_steps": 3000},
+        "time": {"stop": 1, "log_every": float(rng.choice([1e-3, 0.01, 7.3e-4]))},
+    }
+    if method == "rk4":
+        keys["solver"]["step"] = float(rng.choice([1e-3, 3e-3, 1e-2]))
+    if law not in ("none", "constant") and rng.random() < 0.3:
+        keys["sampling"] = {"rate": 1000}
+    if rng.random() < 0.4:
+        stiffness = {"stiffness": float(10 ** rng.uniform(3, 9))}
+        keys["wall"] = {"point": [1.7, 0, 0], "size": "infinite", "acts_on_arm": True, "contact": stiffness}
+        keys["wall"]["motion"] = {"type": "fixed"}
+    return yaml_of(keys)
+
+
+def end_of(scenario: arm3r.Scenario) -> tuple[Any, ...]:
+    run = outcome_of(scenario)
+    return run.outcome, run.summary["t_end"], run.summary["message"], len(run.t)
+
+
+def check_ends(count: int) -> None:
+    """A run that breaks off ends at the same instant, with the same message, whatever is logged, and in a batch."""
+    seed, compared = sample_seed(), 0
+    rng = np.random.default_rng([seed, 11])
+    for number in range(count):
+        text = diverging_scenario(rng)
+        scenario = arm3r.Scenario(text)
+        try:
+            scenario.validate()
+        except arm3r.ScenarioError:
+            continue
+        whole = end_of(scenario)
+        compared += whole[0] != "ok"
+        batches = [
+            scenario.batch({"arm.base_height": [0.0]}, columns=columns) for columns in (None, ["energy_kinetic"])
+        ]
+        assert {batch["t_end"][0] for batch in batches} == {whole[1]}, f"seed {seed}, {number}: {whole}\n{text}"
+        assert len({batch["outcome"][0] for batch in batches}) == 1, f"seed {seed}, {number}: {whole}\n{text}"
+        for columns in (["q1"], ["qdd1"], ["energy_kinetic"], ["tip_dvx"], ["tau1"], ["tip_vx", "energy_residual"]):
+            scenario["time.log_columns"] = columns
+            assert end_of(scenario) == whole, f"seed {seed}, {number}, {columns}\n{text}"
+    assert compared > 0.2 * count
+
+
+def test_the_end_of_a_run_does_not_depend_on_what_is_logged() -> None:
+    check_ends(60)
+
+
+@pytest.mark.gate
+def test_the_ends_of_many_runs_do_not_depend_on_what_is_logged() -> None:
+    check_ends(1500)

@@ -105,8 +105,7 @@ public:
     }
     Metrics metrics(int lane) const;
     EnergyTotals totals(int lane) const {
-        return balance_.totals(lane, setups_[lane]->plant, contact_.peak_force(lane),
-                               Lanes<T>::get(accepted_, lane));
+        return balance_.totals(lane, setups_[lane]->plant, contact_.peak_force(lane), Lanes<T>::get(accepted_, lane));
     }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
@@ -290,9 +289,6 @@ protected:
 
     bool has_failed() const { return failed_; }
 
-    ARM3R_INLINE static Mask is_out_of_range(const Y& y) {
-        return max(max(abs(y[0]), abs(y[1])), abs(y[2])) > T(sincos_limit);
-    }
     ARM3R_INLINE void check_lanes(bool may_end_budget = true) {
         Mask bad = is_out_of_range(y_);
         if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned(plant_.arm, p_);
@@ -354,7 +350,7 @@ protected:
     WallState<T> wall_ = no_wall<T>();
     Indentation<T> in_{};
     Vec3<T> tau_ = zero_vector<T>();  // N m, applied
-    T kinetic_, potential_;  // J; potential_: of the pose
+    T kinetic_, potential_;           // J; potential_: of the pose
 
     Mask active_ = false, started_ = false;
     T accepted_{0.0}, evaluations_{0.0}, max_steps_{0.0};

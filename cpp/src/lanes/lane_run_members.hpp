@@ -171,9 +171,8 @@ void LaneRun<T, N>::fail_lanes(const Mask& bad) {
     for (int lane = 0; lane < lanes; ++lane) {
         if (!running_[lane] || !Lanes<T>::is(bad, lane)) continue;
         const FullState y = state_of(y_, lane);
-        const bool in_range = abs(y[0]) <= sincos_limit && abs(y[1]) <= sincos_limit && abs(y[2]) <= sincos_limit;
         const bool used_up = Lanes<T>::get(accepted_, lane) >= Lanes<T>::get(max_steps_, lane) && !at_stop(lane);
-        if (!in_range) stop_lane(lane, ARM3R_RUN_DIVERGED);
+        if (is_out_of_range(y)) stop_lane(lane, ARM3R_RUN_DIVERGED);
         else if (used_up) stop_lane(lane, ARM3R_RUN_BUDGET);
         else stop_lane(lane, ARM3R_RUN_ILL_CONDITIONED);
     }

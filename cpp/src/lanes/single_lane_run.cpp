@@ -62,7 +62,7 @@ private:
         run_.t_end = lane_run_.t(0);
         run_.steps = lane_run_.steps(0);
         const double until = lane_run_.may_jump_at_end() ? run_.t_end - setup_.clock_rounding() : run_.t_end;
-        if (is_row_due(until)) {
+        if (is_row_due(until) && !is_out_of_range(lane_run_.y(0))) {
             update_dense_output();
             log_until(until);
         }

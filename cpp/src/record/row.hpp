@@ -32,6 +32,17 @@ struct Energies {
 
 Energies<double> energies(const Plant<double>& plant, double t, const FullState& y, ContactMode mode);
 
+// Beyond this rate, rad/s, a motion has diverged, long before a square of it is no finite number: where angles and rates
+// are in range, so is every column.
+inline constexpr double rate_limit = 1e100;
+
+// Whether the motion has diverged. A run ends there whatever of it is recorded.
+template <class T, std::size_t N>
+ARM3R_INLINE auto is_out_of_range(const State<T, N>& y) {
+    return max(max(abs(y[0]), abs(y[1])), abs(y[2])) > T(sincos_limit) ||
+           max(max(abs(y[3]), abs(y[4])), abs(y[5])) > T(rate_limit);
+}
+
 // The residual of the energy balance (4.9).
 template <class T, std::size_t N, class E>
 ARM3R_INLINE T energy_residual(const State<T, N>& y, const T& energy, const E& energy_at_start) {

@@ -118,7 +118,8 @@ public:
     Run conclude() override {
         if (!is_over()) end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(run_.t_end));
         set_end_metrics();
-        return finish(state_.y, state_.theta, balance_.totals(0, setup_.plant, run_.peak_force, double(run_.steps.accepted)));
+        return finish(state_.y, state_.theta,
+                      balance_.totals(0, setup_.plant, run_.peak_force, double(run_.steps.accepted)));
     }
 
 private:
@@ -308,7 +309,9 @@ private:
         const double theta = crossing ? crossing->theta : 1;
         const double t1 = crossing ? run_.t_end + theta * h : last ? step_end.t : run_.t_end + h;
         const bool reached = t1 == step_end.t;
-        log_until(reached && (step_end.is_jump || step_end.is_due) ? t1 - setup_.clock_rounding() : t1);
+        const bool diverges = crossing ? is_out_of_range(dense_(theta)) : is_out_of_range(stepper_.end());
+        const bool waits = reached && (step_end.is_jump || step_end.is_due);  // for what holds from t1 on
+        if (!diverges) log_until(waits ? t1 - setup_.clock_rounding() : t1);
         if (!is_running()) return false;
         if (seeks_singular_pose()) seek_singular_pose(theta);
         add_impulse(theta);
@@ -371,8 +374,7 @@ private:
         run_.t_end = t1;
         run_.steps.accepted += 1;
         const Vec3<double> q = angles(state_.y);
-        if (std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])}) > sincos_limit)
-            end(ARM3R_RUN_DIVERGED, divergence_message(joints_out(setup_, q), t1));
+        if (is_out_of_range(state_.y)) end(ARM3R_RUN_DIVERGED, divergence_message(joints_out(setup_, q), t1));
         if (!is_well_conditioned(setup_.plant.arm, pose(q)))
             end(ARM3R_RUN_ILL_CONDITIONED, ill_conditioned_message(t1));
         return came_to_rest;

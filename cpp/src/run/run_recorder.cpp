@@ -65,7 +65,7 @@ void RunRecorder::start_rows(const FullState& y, const FullState& f, double ener
 }
 
 void RunRecorder::record_contact_change(const ContactChange& change, const FullState& y) {
-    log_until(change.t);
+    if (!is_out_of_range(y)) log_until(change.t);
     dense_.c[0][work_of_wall] += change.gained;  // for the rows of this step that are still to come
     dense_.c[0][dissipated] += change.lost;
     contacts_.add(change);
@@ -128,7 +128,7 @@ void RunRecorder::explain(const FullState& y) {
 // From a row at the end, whatever the log has.
 std::optional<EndValues> RunRecorder::end_values(const FullState& y, double theta) const {
     const bool is_finite = std::ranges::all_of(y, [](double value) { return std::isfinite(value); });
-    if (!is_finite || std::max({std::abs(y[0]), std::abs(y[1]), std::abs(y[2])}) > sincos_limit) return {};
+    if (!is_finite || is_out_of_range(y)) return {};
     const RowPlan plan = plan_of_end();
     const Row row = make_row(row_context(plan), run_.t_end, y, theta);
     const auto three = [&](ColumnIndex first) {

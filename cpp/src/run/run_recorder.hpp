@@ -39,7 +39,8 @@ protected:
     bool is_row_due(double t) { return options_.rows && row_log().is_due(t); }
     // The instant of the next row, s: it is due once a step ends behind it.
     double next_row() const { return options_.rows ? time_of(setup_, run_.rows) : infinite; }
-    // Writes all rows before t, from the dense output of the last step.
+    // Writes all rows before t, from the dense output of the last step; not called for a step that diverges, so that the
+    // end of the run does not depend on which columns are written.
     void log_until(double t) {
         if (options_.rows) row_log().log_until(t, row_context(), [this] { return poll(); });
     }

@@ -94,13 +94,15 @@ double Setup::clock_rounding() const {
 
 void set_jumps_on_clock(Setup& setup) {
     const bool has_grid = setup.solver.method == SolverMethod::rk4, has_samples = setup.digital.sampling.on;
+    // An adaptive step ends at every jump; within a fixed one a row must find it.
+    const double between_rows = has_grid ? setup.log_every : infinite;
     const double period = has_grid ? setup.solver.step : has_samples ? setup.digital.sampling.period : infinite;
     const auto nearest = [&](double jump, double every) {
         const double count = nearest_integer((jump - setup.start) / every);
         return setup.start + (count > 0 ? count * every : 0);
     };
     const auto snap = [&](double& jump) {
-        for (const double instant : {setup.stop, nearest(jump, period), nearest(jump, setup.log_every)})
+        for (const double instant : {setup.stop, nearest(jump, period), nearest(jump, between_rows)})
             if (std::abs(jump - instant) <= setup.clock_rounding()) {
                 jump = instant;
                 return;
