@@ -75,7 +75,7 @@ def test_an_estimate_takes_the_place_of_the_assumed_stiffness() -> None:
     changes = {"sampling.rate": 2000, "controller.switching": "always", "estimator.wall": "fixed"}
     run = read("wall_stiffness_overestimated", changes).run()
     told = run["identifiable"] == 1
-    assert told[2:].all() and not told[0]
+    assert told[3:].all() and not told[0]
     assert run["stiffness_estimate"][told] == pytest.approx(np.full(told.sum(), 5000), abs=1e-5)
     assert run["force"][-1] == pytest.approx(20, abs=1e-5)
 

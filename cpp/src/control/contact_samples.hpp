@@ -23,7 +23,7 @@ public:
         T time{0.0}, position{0.0}, force{0.0};  // s, m, N: of the tip and on it, along the normal
         T touches{0.0};                          // 1: the controller is in contact
         T counts{0.0};                           // 1: taken in contact and not yet used by the estimator
-        RoundingErrors<T> errors;
+        SampleErrors<T> errors;
     };
 
     void load_lane(int lane) {
@@ -45,7 +45,7 @@ public:
                                   const Measurement<T>& seen, const Vec3<T>& force) {
         const Sensors<T>& sensors = digital.sensors;
         const T o(0.0), position = position_of(digital.controller.model, seen), pressing = dot(seen.n, force);
-        T felt = pressing, doubt = 4.0 * sensors.noise;  // N: the force before the analog low-pass
+        T felt = pressing, doubt = 2.0 * sensors.noise;  // N: the force before the analog low-pass
         if (sensors.has_analog_filter) {
             felt = last_force_ + (pressing - last_force_) / sensors.analog_share;
             doubt = doubt * 1.5 / sensors.analog_share;
@@ -74,6 +74,7 @@ private:
         now_.force = select(due, force, now_.force);
         now_.touches = select(due, select(touches, T(1.0), T(0.0)), now_.touches);
         now_.counts = select(due, now_.touches, now_.counts);
+        now_.errors.position = select(due, T(1e-26 * position * position), now_.errors.position);
     }
 
     // The position behind the analog low-pass of the force, which begins with the contact; exact where the tip moves
@@ -115,14 +116,16 @@ private:
         return time;
     }
 
+    // Noise, and roundings to steps of the sensors; that of numbers comes with every position.
     ARM3R_INLINE void set_errors(const Mask& due, const DigitalController<T>& digital, const Measurement<T>& seen) {
         const Sensors<T>& sensors = digital.sensors;
         const auto variance = [](const T& step) ARM3R_INLINE_LAMBDA { return T(step * step * (1.0 / 12)); };
-        if (sensors.has_resolution) now_.errors.force = select(due, variance(sensors.resolution), now_.errors.force);
+        const T force = sensors.noise * sensors.noise + variance(sensors.resolution);
+        now_.errors.force = select(due, force, now_.errors.force);
         if (!sensors.has_encoder) return;
         const Vec3<T> per_angle = transposed_times(jacobian(digital.controller.model, seen.pose), seen.n);
         const T position = variance(sensors.encoder_step) * dot(per_angle, per_angle);
-        now_.errors.position = select(due, position, now_.errors.position);
+        now_.errors.position = select(due, T(now_.errors.position + position), now_.errors.position);
     }
 
     Sample now_;

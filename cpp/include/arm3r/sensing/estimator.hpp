@@ -19,9 +19,9 @@ struct WallEstimate {
     T sigma;        // N/m, standard deviation of the stiffness; infinite or NaN where the samples do not tell it
 };
 
-// Variances of the rounding by encoders, m^2, and by the force sensor, N^2.
+// What is known of the errors of a sample: the variances of its position, m^2, and of its force, N^2.
 template <class T>
-struct RoundingErrors {
+struct SampleErrors {
     T position{0.0}, force{0.0};
 };
 
@@ -58,7 +58,7 @@ public:
         for (T& x : numbers_) x = select(lost, T(0.0), x);
     }
 
-    ARM3R_INLINE WallEstimate<T> solve(const RoundingErrors<T>& errors) const {
+    ARM3R_INLINE WallEstimate<T> solve(const SampleErrors<T>& errors) const {
         std::array<T, 3> x{T(0.0), T(0.0), T(0.0)};
         for (int i = size_ - 1; i >= 0; --i) {
             T rest = fit(i, size_);
@@ -75,7 +75,7 @@ public:
 private:
     // Where the numbers lie: two triangular factors, row by row, the first with the right-hand side behind it and with
     // weights w of the squares, the second with weights w^2; then sums over the residuals.
-    enum : int { fit_at = 0, spread_at = 12, weights_at = 24, squared_weights, squares, products, last, number_count };
+    enum : int { fit_at = 0, spread_at = 12, weights_at = 24, squared_weights, squares, products, recent, number_count };
 
     ARM3R_INLINE const T& fit(int i, int j) const { return numbers_[fit_at + 4 * i + j]; }
     ARM3R_INLINE const T& spread(int i, int j) const { return numbers_[spread_at + 4 * i + j]; }
@@ -105,12 +105,12 @@ private:
         add_to(weights_at, forgetting, T(1.0));
         add_to(squared_weights, T(forgetting * forgetting), T(1.0));
         add_to(squares, forgetting, T(residual * residual));
-        add_to(products, forgetting, T(residual * numbers_[last]));
-        numbers_[last] = residual;
+        add_to(products, forgetting, T(residual * numbers_[recent]));
+        numbers_[recent] = memory * (numbers_[recent] + residual);
     }
 
     // (8.10)
-    ARM3R_INLINE T sigma(const T& stiffness, const T& condition, const RoundingErrors<T>& errors) const {
+    ARM3R_INLINE T sigma(const T& stiffness, const T& condition, const SampleErrors<T>& errors) const {
         const std::array<T, 9> inverse = inverse_of_fit();
         T position(0.0), spread_of_k(0.0), fitted(0.0);
         for (int j = 0; j < size_; ++j) position = position + inverse[j] * inverse[j];
@@ -125,16 +125,17 @@ private:
             spread_of_k = spread_of_k + along * along;
         }
         const T weights = numbers_[weights_at], freedom = weights - fitted;
-        const T noise = max(T(numbers_[squares] / freedom), errors.force);
-        const T least = rounding * force();
-        const T alike = max(T(0.0), T(numbers_[products] / (numbers_[squares] + least * least)));
-        const T samples = freedom * weights / numbers_[squared_weights];
-        const T repeats = (1.0 + alike) / (1.0 - alike);
+        const T samples = freedom * weights / numbers_[squared_weights], least = rounding * force();
+        const T square = stiffness * stiffness, residual = numbers_[squares] / freedom;
+        const T expected = errors.force + square * errors.position + least * least;
+        const T moved = 1.0 / (weights * position);
+        const T most = expected * (1.0 + 4.0 * sqrt(T(2.0 / samples))) + square * moved * (misfit * misfit);
+        const T repeats = 1.0 + 2.0 * max(T(0.0), T(numbers_[products] / (numbers_[squares] + weights * expected * 1e-3)));
         const T independent = max(T(samples / repeats), T(2.0));
-        const T by_noise = noise * spread_of_k * repeats * (independent / (independent - 2.0));
-        const T by_encoder = stiffness * errors.position * weights * position;
-        const T by_rounding = rounding * condition * stiffness;
-        return sqrt(T(by_noise + by_encoder * by_encoder + by_rounding * by_rounding));
+        const T by_noise = max(residual, T(0.5 * expected)) * spread_of_k * repeats * (independent / (independent - 2.0));
+        const T by_position = stiffness * errors.position / moved, by_rounding = rounding * condition * stiffness;
+        const T sigma = sqrt(T(by_noise + by_position * by_position + by_rounding * by_rounding));
+        return select(residual <= most, sigma, T(infinite));
     }
 
     ARM3R_INLINE std::array<T, 9> inverse_of_fit() const {
@@ -178,6 +179,11 @@ private:
     // A force depends on position if position explains at least this share of it, times the condition of the data: a
     // thousand rounding errors.
     static constexpr double rounding = 1e3 * std::numeric_limits<double>::epsilon();
+
+    // Residuals are compared with those before them, each of which weighs so much less than the next.
+    static constexpr double memory = 15.0 / 16;
+    // The part of the force's variation that the fit may leave beyond the errors of the samples.
+    static constexpr double misfit = 1e-3;
 
     int size_ = 3;
     std::array<T, number_count> numbers_{};
