@@ -276,7 +276,8 @@ private:
 
 bool has_loop(const Setup& setup, TipPlace place) {
     const Controller<double>& law = setup.controller();
-    return has_law(law.type) && !has_reserve(law) && (place == TipPlace::free || setup.plant.has_wall);
+    const bool feels_wall = setup.plant.has_wall && setup.plant.acts_on_arm;
+    return has_law(law.type) && !has_reserve(law) && (place == TipPlace::free || feels_wall);
 }
 
 }  // namespace
@@ -291,6 +292,17 @@ std::optional<LoopGrowth> loop_growth(const Setup& setup, TipPlace place, double
     const SampledLoop loop(point, place, period);
     if (loop.size() > most_states) return {};
     return LoopGrowth{log_spectral_radius(loop.matrix()) / period, period};
+}
+
+std::optional<double> fastest_rate(const Setup& setup) {
+    constexpr double enough = 1e5;  // the eigenvalues of these matrices are of very different size
+    std::optional<double> fastest;
+    for (const TipPlace place : {TipPlace::free, TipPlace::in_contact}) {
+        if (!has_loop(setup, place)) continue;
+        const double rate = exp(log_spectral_radius(continuous_matrix(at_rest(setup, place), place), enough));
+        fastest = std::max(rate, fastest.value_or(0));
+    }
+    return fastest;
 }
 
 std::optional<LoopGrowth> loop_growth(const Setup& setup, TipPlace place) {
