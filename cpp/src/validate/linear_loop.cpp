@@ -27,6 +27,8 @@ void leave_out(Arm<double>& arm) {
     arm.friction = {0, 0, 0};
 }
 
+constexpr double touch = 1e-6;  // N: a force that moves nothing by itself
+
 // m: the depth at which a contact pushes with a force, N, at rest.
 double depth_of(const Contact<double>& contact, double force) {
     double low = 0, high = 1;
@@ -61,7 +63,7 @@ Setup at_rest(Setup setup, TipPlace place) {
     law.anti_windup = AntiWindup::none;
     law.reference.path = Path::hold;
     law.reference.from = law.reference.in_joints ? setup.q : tip_position(law.model, pose(setup.q));
-    const double wanted = std::max(1.0, std::abs(law.reference.force));
+    const double wanted = tracks_force(law.type) ? std::max(1.0, std::abs(law.reference.force)) : touch;
     if (place == TipPlace::in_contact)
         place_wall(setup.plant, tip_position(setup.plant.arm, pose(setup.q)), depth_of(setup.plant.contact, wanted));
     return setup;

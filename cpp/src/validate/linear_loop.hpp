@@ -17,7 +17,7 @@ struct LoopGrowth {
     double period;      // s, of sampling; 0: a continuous loop
 };
 
-// Where the tip is: free, or in a wall that stands still and pushes with the wanted force, or with 1 N.
+// Where the tip is: free, or in a wall that stands still and pushes with the force that the law wants, or hardly at all.
 enum class TipPlace { free, in_contact };
 
 // Empty where there is no such loop: no law, one of the user's own, one that keeps a reserve of energy, no wall that acts on the arm; or where
