@@ -485,11 +485,11 @@ def test_defaults_are_no_slip(warned, type_name: str) -> None:
             "0.05 s only",
         ),
         (
-            controller("stiffness") + "sampling: {rate: 100}\nobserver: {}\n",
+            controller("gravity_compensation") + "sampling: {rate: 100}\nobserver: {}\n",
             "observer.gain times the period of sampling is 0.5, and above 0.2",
         ),
         (
-            controller("stiffness") + "sampling: {rate: 100}\nobserver: {gain: [1, 2, 200]}\n",
+            controller("gravity_compensation") + "sampling: {rate: 100}\nobserver: {gain: [1, 2, 200]}\n",
             "observer.gain times the period of sampling is 2: the residual diverges",
         ),
         (

@@ -98,4 +98,18 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
            shortest(share) + " of the largest; keep the arm bent, or use a law without an inverse, such as stiffness";
 }
 
+std::optional<std::string> missed_contact(const Setup& setup, const Run& run, double contacts) {
+    const Controller<double>& law = setup.controller();
+    const double wanted = std::max(law.reference.force, law.reference.force_before);
+    if (contacts > 0 || !setup.plant.has_wall || !tracks_force(law.type) || !(wanted > 0)) return std::nullopt;
+    std::string message = "no contact: reference.force wants " + shortest(wanted) + " N";
+    const std::span<const double> depths = run.find(ColumnIndex("depth"));
+    if (!depths.empty())
+        message += ", and the tip came no nearer to the wall than " + rounded(-std::ranges::max(depths), 4) + " m";
+    return message + (law.switching == Switching::always
+                          ? "; move the reference or the wall towards the other"
+                          : "; without contact the tip keeps to its reference: let it lead to the wall, or take "
+                            "controller.switching: always");
+}
+
 }  // namespace arm3r

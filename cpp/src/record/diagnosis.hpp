@@ -45,4 +45,7 @@ const char* accuracy_advice(const Solver& solver);
 // it is not near. q: rad, slide.
 std::optional<std::string> singular_pose(const Setup& setup, const Run& run, const Vec3<double>& q);
 
+// Of a run without contact whose controller was to press: how near to the wall the tip came, in the rows.
+std::optional<std::string> missed_contact(const Setup& setup, const Run& run, double contacts);
+
 }  // namespace arm3r

@@ -24,6 +24,11 @@ namespace {
 using std::numbers::pi;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int samples_per_step = 9;
+// rad/s: at this rate a step of an eighth of a turn takes some microseconds, and the work for a simulated second would
+// grow without bound beyond it.
+constexpr double max_rate = 1e5;
+
+double fastest_joint(const FullState& y) { return std::max({std::abs(y[3]), std::abs(y[4]), std::abs(y[5])}); }
 
 // The initial state.
 FullState start_of(const Setup& setup) {
@@ -375,6 +380,8 @@ private:
         run_.steps.accepted += 1;
         const Vec3<double> q = angles(state_.y);
         if (is_out_of_range(state_.y)) end(ARM3R_RUN_DIVERGED, divergence_message(joints_out(setup_, q), t1));
+        if (const double fastest = fastest_joint(state_.y); fastest > max_rate)
+            end(ARM3R_RUN_DIVERGED, too_fast_message(fastest, t1));
         if (!is_well_conditioned(setup_.plant.arm, pose(q)))
             end(ARM3R_RUN_ILL_CONDITIONED, ill_conditioned_message(t1));
         return came_to_rest;

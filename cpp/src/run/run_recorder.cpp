@@ -24,13 +24,6 @@ const Setup& small_enough(const Setup& setup, bool rows) {
     return setup;
 }
 
-// The first cause of a bad end: what `arm3r check` says of the loop.
-std::optional<std::string> unstable_loop(const Setup& setup) {
-    std::vector<std::string> loops = unstable_loops(setup);
-    if (loops.empty()) return {};
-    return std::move(loops.front());
-}
-
 }  // namespace
 
 RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
@@ -117,11 +110,14 @@ void RunRecorder::explain(const FullState& y) {
     const auto is = [&](arm3r_outcome outcome) { return run_.outcome == outcome; };
     const bool is_numerical = is(ARM3R_RUN_DIVERGED) || is(ARM3R_RUN_ENERGY) || is(ARM3R_RUN_STEP_COLLAPSE);
     if (!is_numerical && !is(ARM3R_RUN_EVENT_STORM) && !is(ARM3R_RUN_BUDGET)) return;
+    const double steps_taken = double(run_.steps.accepted + run_.steps.rejected);
     std::optional<std::string> cause;
     if (setup_.digital.sampling.on) cause = oscillation_.error_message(setup_.digital.sampling.period);
-    if (!cause) cause = unstable_loop(setup_);
+    if (!cause) cause = known_cause(setup_);
     if (!cause) cause = singular_pose(setup_, run_, angles(y));
     if (cause) run_.message += "; " + *cause;
+    else if (is(ARM3R_RUN_BUDGET) && steps_taken >= setup_.solver.max_steps)
+        run_.message += "; stiff friction or contact, or a tolerance too tight?";
     else if (is(ARM3R_RUN_ENERGY)) run_.message += std::string("; ") + accuracy_advice(setup_.solver);
 }
 
@@ -155,12 +151,15 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
         }
     }
     explain(y);
-    if (is_running() && options_.judges && !setup_.digital.sampling.on && !unstable_loop(setup_))
+    if (is_running() && options_.judges && !setup_.digital.sampling.on && !known_cause(setup_))
         if (const std::optional<std::string> passed = singular_pose(setup_, run_, angles(y)))
             run_.warnings.push_back(*passed +
                                     "; steps may miss torques that last for microseconds there: compare with a "
                                     "small solver.max_step");
     if (options_.rows && options_.judges) run_.at_end = end_values(y, theta);
+    if (is_running() && options_.judges)
+        if (const std::optional<std::string> missed = missed_contact(setup_, run_, contacts_.contacts))
+            run_.warnings.push_back(*missed);
     if (run_.link_behind_wall_since >= 0)
         run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
                                 shortest(run_.link_behind_wall_since) + " s on; only the tip feels the wall");

@@ -27,6 +27,8 @@ void leave_out(Arm<double>& arm) {
     arm.friction = {0, 0, 0};
 }
 
+constexpr double touch = 1e-6;  // N: a force that moves nothing by itself
+
 // m: the depth at which a contact pushes with a force, N, at rest.
 double depth_of(const Contact<double>& contact, double force) {
     double low = 0, high = 1;
@@ -61,7 +63,7 @@ Setup at_rest(Setup setup, TipPlace place) {
     law.anti_windup = AntiWindup::none;
     law.reference.path = Path::hold;
     law.reference.from = law.reference.in_joints ? setup.q : tip_position(law.model, pose(setup.q));
-    const double wanted = std::max(1.0, std::abs(law.reference.force));
+    const double wanted = tracks_force(law.type) ? std::max(1.0, std::abs(law.reference.force)) : touch;
     if (place == TipPlace::in_contact)
         place_wall(setup.plant, tip_position(setup.plant.arm, pose(setup.q)), depth_of(setup.plant.contact, wanted));
     return setup;
@@ -276,7 +278,8 @@ private:
 
 bool has_loop(const Setup& setup, TipPlace place) {
     const Controller<double>& law = setup.controller();
-    return has_law(law.type) && !has_reserve(law) && (place == TipPlace::free || setup.plant.has_wall);
+    const bool feels_wall = setup.plant.has_wall && setup.plant.acts_on_arm;
+    return has_law(law.type) && !has_reserve(law) && (place == TipPlace::free || feels_wall);
 }
 
 }  // namespace
@@ -291,6 +294,17 @@ std::optional<LoopGrowth> loop_growth(const Setup& setup, TipPlace place, double
     const SampledLoop loop(point, place, period);
     if (loop.size() > most_states) return {};
     return LoopGrowth{log_spectral_radius(loop.matrix()) / period, period};
+}
+
+std::optional<double> fastest_rate(const Setup& setup) {
+    constexpr double enough = 1e5;  // the eigenvalues of these matrices are of very different size
+    std::optional<double> fastest;
+    for (const TipPlace place : {TipPlace::free, TipPlace::in_contact}) {
+        if (!has_loop(setup, place)) continue;
+        const double rate = exp(log_spectral_radius(continuous_matrix(at_rest(setup, place), place), enough));
+        fastest = std::max(rate, fastest.value_or(0));
+    }
+    return fastest;
 }
 
 std::optional<LoopGrowth> loop_growth(const Setup& setup, TipPlace place) {

@@ -17,12 +17,15 @@ struct LoopGrowth {
     double period;      // s, of sampling; 0: a continuous loop
 };
 
-// Where the tip is: free, or in a wall that stands still and pushes with the wanted force, or with 1 N.
+// Where the tip is: free, or in a wall that stands still and pushes with the force that the law wants, or hardly at all.
 enum class TipPlace { free, in_contact };
 
-// Empty where there is no such loop: no law, one of the user's own, one that keeps a reserve of energy, no wall; or where
+// Empty where there is no such loop: no law, one of the user's own, one that keeps a reserve of energy, no wall that acts on the arm; or where
 // delays make it too large. The second form takes another period of sampling, s; delays stay the same in samples.
 std::optional<LoopGrowth> loop_growth(const Setup& setup, TipPlace place);
 std::optional<LoopGrowth> loop_growth(const Setup& setup, TipPlace place, double period);
+
+// 1/s: of the fastest mode of a continuous loop, free or in contact, whichever is faster.
+std::optional<double> fastest_rate(const Setup& setup);
 
 }  // namespace arm3r

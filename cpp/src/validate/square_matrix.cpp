@@ -50,9 +50,8 @@ SquareMatrix exponential(const SquareMatrix& a, double h) {
     return sum;
 }
 
-double log_spectral_radius(SquareMatrix a) {
-    constexpr int most = 26;       // squarings
-    constexpr double enough = 500;  // ln of a power's norm, beside which that of a condition number is small
+double log_spectral_radius(SquareMatrix a, double enough) {
+    constexpr int most = 26;      // squarings
     double total = 0, power = 1;   // ln of the norm of A^power is total + ln |a|
     for (int k = 0;; ++k) {
         const double size = norm(a);

@@ -23,7 +23,8 @@ double norm(const SquareMatrix& a);  // the largest sum of the sizes of a row
 SquareMatrix exponential(const SquareMatrix& a, double h);
 
 // ln of the spectral radius, from the norm of A^(2^k); where that shows that the radius is below 1, an upper bound that is
-// below 0. Powers that grow no faster than k^p come out as less than p 1e-6.
-double log_spectral_radius(SquareMatrix a);
+// below 0. Powers that grow no faster than k^p come out as less than p 1e-6. It stops
+// when ln of the norm is `enough`, beside which that of a condition number is small.
+double log_spectral_radius(SquareMatrix a, double enough = 500);
 
 }  // namespace arm3r

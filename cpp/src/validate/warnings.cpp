@@ -10,6 +10,7 @@
 #include "setup/make_controller.hpp"
 #include "setup/setup.hpp"
 #include "setup/time_instants.hpp"
+#include "validate/fixed_step.hpp"
 #include "validate/warnings.hpp"
 
 namespace arm3r {
@@ -96,22 +97,6 @@ double max_shoulder_depth(const Setup& setup) {
     return deepest;
 }
 
-// The fixed step compared with the frequency and the decay of the contact.
-void warn_of_contact_step(const Setup& setup, std::vector<std::string>& warnings) {
-    const Contact<double>& contact = setup.plant.contact;
-    const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
-    const auto check = [&](const char* name, double product, double half, const char* limit) {
-        if (product > half)
-            warnings.push_back(std::string(name) + " is " + shortest(product) +
-                               ", more than half of the stability limit of rk4 (" + limit +
-                               "): the contact will not be resolved; take a smaller solver.step");
-    };
-    if (contact.law != ContactLaw::hunt_crossley)
-        check("step*sqrt(K_E/m_n)", setup.solver.step * std::sqrt(contact.stiffness[0] / m_n), 1.414, "2.828");
-    if (contact.law == ContactLaw::kelvin_voigt)
-        check("step*damping/m_n", setup.solver.step * contact.damping / m_n, 1.3925, "2.785");
-}
-
 // A fixed step keeps its order only if a jump lies on its grid (5.8).
 void warn_of_jump(const Setup& setup, std::vector<std::string>& warnings) {
     if (setup.solver.method != SolverMethod::rk4) return;
@@ -132,7 +117,6 @@ void warn_of_wall(const Setup& setup, std::vector<std::string>& warnings) {
     if (past > 0)
         warnings.push_back("the wall passes the shoulder during the run, by " + shortest(past) +
                            " m at the most; the arm's base is then behind it");
-    if (setup.plant.acts_on_arm && setup.solver.method == SolverMethod::rk4) warn_of_contact_step(setup, warnings);
 }
 
 }  // namespace
@@ -147,6 +131,13 @@ std::optional<std::string> default_gravity_warning(const Setup& setup) {
            ", or the value that its model must have";
 }
 
+std::optional<std::string> known_cause(const Setup& setup) {
+    std::vector<std::string> causes = unstable_loops(setup);
+    warn_of_fixed_step(setup, causes);
+    if (causes.empty()) return {};
+    return std::move(causes.front());
+}
+
 std::vector<std::string> scenario_warnings(const Setup& setup) {
     std::vector<std::string> warnings;
     warn_of_gravity(setup, warnings);
@@ -155,6 +146,7 @@ std::vector<std::string> scenario_warnings(const Setup& setup) {
     warn_of_units(setup.plant.arm, warnings);
     warn_of_wall(setup, warnings);
     warn_of_jump(setup, warnings);
+    warn_of_fixed_step(setup, warnings);
     add_controller_warnings(setup, warnings);
     return warnings;
 }

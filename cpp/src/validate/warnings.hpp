@@ -17,6 +17,10 @@ std::optional<std::string> default_gravity_warning(const Setup& setup);
 // One sentence for each control loop that is unstable at the start: by a formula, or else by its linearisation.
 std::vector<std::string> unstable_loops(const Setup& setup);
 
+// What was known before a run and explains that it ended badly: an unstable loop, or a rate that the fixed step does not
+// resolve.
+std::optional<std::string> known_cause(const Setup& setup);
+
 // Warnings about the controller, its reference and its sampling.
 void add_controller_warnings(const Setup& setup, std::vector<std::string>& warnings);
 

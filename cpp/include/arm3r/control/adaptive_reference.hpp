@@ -33,7 +33,7 @@ ARM3R_INLINE void adaptive_reference(const Controller<P>& controller, const Meas
     const TipTask<T> tip = tip_task(controller, sensed);
     command.tau = shaped_impedance_torque(controller, sensed, tip, plus(tip.error, force_along_press(sensed, x_r)));
     if (integrates)
-        command.rates[0] = controller.gains.reference_gain * (force_error(controller, sensed) * sensed.contact);
+        command.rates[0] = controller.gains.reference_gain * (force_error(controller, sensed) * sensed.force_phase);
 }
 
 }  // namespace arm3r
