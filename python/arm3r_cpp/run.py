@@ -251,7 +251,8 @@ class Run(metaclass=Answering):
 
         Raises:
             OutputError: it cannot be written.
-            UsageError: the name has another ending; or the run was not made in this process; it has been written before, or use `to_npz`.
+            UsageError: the name has another ending; or the run was not made in this process: it has been written
+                before, or use `to_npz`.
         """
         if self._handle is None:
             raise UsageError("only a run made in this process is written as CSV; use to_npz", code="usage")

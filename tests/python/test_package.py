@@ -121,5 +121,9 @@ def test_wheel_is_one_for_all_pythons(root: Path, tmp_path: Path) -> None:
     assert "arm3r_cpp/include/arm3r/arm3r.h" in names
     assert "arm3r_cpp/lib/libarm3r.so" in names
     assert "arm3r_cpp/lib/cmake/arm3r/arm3rConfig.cmake" in names
-    files = [*(root / "scenarios").rglob("*.yaml"), *(root / "docs").glob("*.schema.json")]
+    files = [
+        *(root / "scenarios").rglob("*.yaml"),
+        *(root / "docs").glob("*.schema.json"),
+        *(root / "docs").glob("*.md"),
+    ]
     assert {f"arm3r_cpp/share/arm3r/{path.relative_to(root).as_posix()}" for path in files} <= set(names)

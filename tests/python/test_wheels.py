@@ -66,7 +66,11 @@ def test_a_wheel_is_complete(name: str) -> None:
     parts = [f"bin/arm3r{ending}", library, "include/arm3r/arm3r.h", "lib/cmake/arm3r/arm3rConfig.cmake", "py.typed"]
     assert {f"arm3r_cpp/{part}" for part in parts} <= names
     assert any(re.fullmatch(rf"arm3r_cpp-.*\.data/scripts/arm3r{ending}", member) for member in names)
-    files = [*(ROOT / "scenarios").rglob("*.yaml"), *(ROOT / "docs").glob("*.schema.json")]
+    files = [
+        *(ROOT / "scenarios").rglob("*.yaml"),
+        *(ROOT / "docs").glob("*.schema.json"),
+        *(ROOT / "docs").glob("*.md"),
+    ]
     assert {f"arm3r_cpp/share/arm3r/{path.relative_to(ROOT).as_posix()}" for path in files} <= names
     assert {path.name for path in ROOT.glob("python/arm3r_cpp/*.py")} <= {member.split("/")[-1] for member in names}
     if (ROOT / "build/page/live.html").is_file():

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, Protocol
 
 from ..errors import Arm3rError
 
-if TYPE_CHECKING:
-    from ..scenario import Scenario
-
 SHOWN = 5
 """Reasons that are listed; the others are counted."""
+
+
+class Validated(Protocol):
+    """A scenario."""
+
+    def validate(self) -> None: ...
 
 
 class Refusal(NamedTuple):
@@ -19,13 +22,13 @@ class Refusal(NamedTuple):
 
     reason: str
     """The error's code and the key that it is about: what the runs have in common."""
-    count: int
-    """runs"""
+    runs: int
+    """how many"""
     message: str
     """Of the first of these runs."""
 
 
-def refusals_of(scenarios: Iterable[Scenario]) -> list[Refusal]:
+def refusals_of(scenarios: Iterable[Validated]) -> list[Refusal]:
     """The reasons of scenarios that are not valid, the most frequent first. Each counts once, by its first error."""
     found = []
     for scenario in scenarios:
@@ -44,8 +47,8 @@ def merged(parts: Iterable[Sequence[Refusal]]) -> list[Refusal]:
     for part in parts:
         for one in part:
             before = all_of_them.get(one.reason)
-            all_of_them[one.reason] = before._replace(count=before.count + one.count) if before else one
-    return sorted(all_of_them.values(), key=lambda one: -one.count)
+            all_of_them[one.reason] = before._replace(runs=before.runs + one.runs) if before else one
+    return sorted(all_of_them.values(), key=lambda one: -one.runs)
 
 
 def lines_of(refusals: Sequence[Refusal], invalid: int) -> list[str]:
@@ -53,9 +56,9 @@ def lines_of(refusals: Sequence[Refusal], invalid: int) -> list[str]:
 
     invalid: how many runs are.
     """
-    lines = [f"{one.count} invalid, such as: {one.message}" for one in refusals[:SHOWN]]
+    lines = [f"{one.runs} invalid, such as: {one.message}" for one in refusals[:SHOWN]]
     if rest := refusals[SHOWN:]:
-        lines.append(f"{sum(one.count for one in rest)} invalid for {len(rest)} other reasons")
-    if unasked := invalid - sum(one.count for one in refusals):
+        lines.append(f"{sum(one.runs for one in rest)} invalid for {len(rest)} other reasons")
+    if unasked := invalid - sum(one.runs for one in refusals):
         lines.append(f"{unasked} more invalid, which were not asked why")
     return lines

@@ -87,8 +87,8 @@ def parser() -> argparse.ArgumentParser:
         prog="arm3r-plot",
         usage="arm3r-plot RUN [options] | arm3r-plot --compare RUN RUN ... [options]",
         description="Draw a run: its force control, if it controls force, else an overview; or the lecture's figures; "
-        "or several runs over each other. A file names scenario, convention and hash in its metadata. `arm3r docs figures` "
-        "says what stands on the figures.",
+        "or several runs over each other. A file names scenario, convention and hash in its metadata. "
+        "`arm3r docs figures` says what stands on the figures.",
         epilog="arm3r-plot sweep DIR draws the table of a sweep: see arm3r-plot sweep --help.",
     )
     add = parser.add_argument

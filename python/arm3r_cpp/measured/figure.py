@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 MOST_RUNS = 4
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 2, 1, 2)))
-MEASURED: Any = {"ls": "-", "lw": 3.2, "alpha": 0.3, "solid_capstyle": "round"}
+MEASURED: Any = {"ls": "-", "lw": 2.4, "alpha": 0.35, "solid_capstyle": "round"}
 QUANTITIES = {  # of columns that belong together, by the name that they share
     "q": "joint angle, rad",
     "qd": "joint rate, rad/s",

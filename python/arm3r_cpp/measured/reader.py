@@ -41,7 +41,7 @@ def measurement(source: str | os.PathLike[str] | Mapping[str, Any]) -> Measureme
     """A measurement from a CSV file, or from a map of columns.
 
     Raises:
-        UsageError: the file cannot be read, has no column of time, no column that a run has, or a cell that is no number.
+        UsageError: the file cannot be read, has no column of time, no column of a run, or a cell that is no number.
     """
     if isinstance(source, Mapping):
         return _chosen("measured", list(source), [np.asarray(column, np.float64) for column in source.values()])

@@ -16,7 +16,9 @@ AFTER = 1.0  # s of clock until a trial
 WORTH = 10.0  # s left below which nothing is said
 LEAST = 3.0  # times
 RUNS = 8  # of a trial
-SPAN = 0.25  # s, simulated in a trial
+SPAN = 0.25  # s, simulated in the first trial; it is doubled
+ENOUGH = 0.3  # s of clock: a trial that takes so long tells enough
+RESOLUTION = 1e-4  # s: less is not told apart
 LONGEST = 1.0  # s of clock for one trial
 
 
@@ -39,36 +41,46 @@ class Advice:
 
 def sentence(scenario: Scenario) -> str:
     """Which method would be how many times faster; "" where none is, or none can be tried."""
-    method = scenario["solver.method"]
-    now = seconds_by(scenario, None)
-    tried = {other: seconds_by(scenario, other) for other in IN_LANES}
-    found = {other: now / seconds for other, seconds in tried.items() if now and seconds}
-    best = max(found, key=found.__getitem__, default="")
-    if not best or found[best] < LEAST:
+    method, span = scenario["solver.method"], SPAN
+    whole = scenario["time.stop"] - scenario["time.start"]
+    now = seconds_by(scenario, method, span)
+    while 0 < now < ENOUGH and span < whole:
+        span = min(2 * span, whole)
+        now = seconds_by(scenario, method, span)
+    times = {other: now / seconds for other in IN_LANES if (seconds := seconds_by(scenario, other, span))}
+    best = max(times, key=times.__getitem__, default="")
+    if not best or times[best] < LEAST:
         return ""
-    step = f" with its step of {trial_of(scenario, best)['solver.step']:g} s" if best == "rk4" else ""
-    times = f"about {found[best]:.1g}" if found[best] < 10 else f"about {float(f'{found[best]:.1g}'):.0f}"
+    step = f" with its step of {trial_of(scenario, best, span)['solver.step']:g} s" if best == "rk4" else ""
     return (
-        f"solver.method: {best}{step} computes such runs {times} times faster than {method}, in a trial of {RUNS} of them; "
-        "compare a run by both before you rely on it"
+        f"solver.method: {best}{step} computes such runs about {float(f'{times[best]:.1g}'):g} times faster "
+        f"than {method}, by a trial of {span:.3g} s of {RUNS} runs; compare one run by both before you rely on it"
     )
 
 
-def trial_of(scenario: Scenario, method: str | None) -> Scenario:
-    """A short part of the scenario by another method; None: by its own."""
+def trial_of(scenario: Scenario, method: str, span: float) -> Scenario:
+    """The first `span` s of a scenario by a method."""
     trial = scenario.copy()._quiet()
     trial["checks"] = []
-    if method:
+    if method != trial["solver.method"]:
         trial["solver"] = {"method": method}
-    trial["time.stop"] = min(trial["time.stop"], trial["time.start"] + SPAN)
+    trial["time.stop"] = trial["time.start"] + span
     return trial
 
 
-def seconds_by(scenario: Scenario, method: str | None) -> float:
-    """s of one thread for a trial; 0: the method does not take this scenario, or is too slow."""
+def seconds_by(scenario: Scenario, method: str, span: float) -> float:
+    """s that one thread takes for a trial, without what a batch of no length takes.
+
+    0: the method does not take this scenario, or it takes too long.
+    """
+    taken = [_seconds(scenario, method, one) for one in (0.0, span)]
+    return max(taken[1] - taken[0], RESOLUTION) if all(taken) else 0.0
+
+
+def _seconds(scenario: Scenario, method: str, span: float) -> float:
     start = time.perf_counter()
     try:
-        trial = trial_of(scenario, method)
+        trial = trial_of(scenario, method, span)
         again = {"initial.q[0]": np.full(RUNS, trial["initial.q[0]"])}
         batch = run_batch(trial, again, threads=1, progress=lambda *_: time.perf_counter() - start > LONGEST)
     except Arm3rError:
