@@ -67,7 +67,8 @@ constexpr Option options[] = {
 
 constexpr std::string_view exit_codes =
     "Exit codes: 0 ok, 1 bug, 2 usage or unreadable file, 3 scenario, 4 numeric, 5 budget, 6 output, 7 failed runs,\n"
-    "            8 controller, 9 incompatible version, 10 a check failed, 11 a wrong formula, from 128 a signal\n";
+    "            8 controller, 9 incompatible version, 10 a check failed, 11 a wrong formula, 12 a formula that\n"
+    "            cannot be judged, from 128 a signal\n";
 
 [[noreturn]] void usage_error(const std::string& message) { throw Exit{exit_usage, "arm3r: error[usage]: " + message}; }
 
