@@ -45,7 +45,7 @@ gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests wheels
 	ARM3R_SEED=$(SEED) ARM3R_SAMPLE=all ARM3R_RESUME=build/gates/$(SEED)-$(TREE).passed $(PYTEST) -m "gate or sample"
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
 
-# The gates that draw their cases at random, with four seeds that nobody chose, a quarter of an hour each.
+# The gates that draw their cases at random, with four new seeds, a quarter of an hour each.
 seeds: $(VENV)/test
 	@for seed in $$($(BIN)/python -c "import secrets; print(*(secrets.randbits(31) for _ in range(4)))"); do \
 	  echo "ARM3R_SEED=$$seed"; \

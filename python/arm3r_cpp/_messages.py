@@ -21,7 +21,7 @@ def place(file: object, line: int = 0, column: int = 0) -> str:
 _INVISIBLE = re.compile(
     "[\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2800\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef]"
 )
-"""What Python takes for printable, and nobody sees."""
+"""What Python takes for printable, and has no shape on a screen."""
 
 
 def shown(text: str) -> str:

@@ -1,4 +1,4 @@
-"""What is said of a loop before a run, held against the run; and what a bad end says first."""
+"""What is said of a loop before a run, compared with the run; and what a bad end says first."""
 
 from __future__ import annotations
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -334,7 +333,7 @@ def test_what_there_is_of_a_run_that_failed_is_drawn(tmp_path: Path, capsys: pyt
         (["bounce.csv", "-o", "figure.jpg"], 2, "png, pdf, svg"),
         (["bounce.csv", "-o", "figure.png", "--format", "pdf"], 2, "not pdf"),
         (["bounce.csv", "-o", "figure.png", "--lecture"], 2, "folder"),
-        (["alone.csv"], 2, "alone.json"),
+        (["timeless.csv"], 2, "a column `t` or `time`"),
         (["empty.csv"], 2, "empty.csv"),
         (["wrong.yaml"], 3, "stop"),
         (["bounce.csv", "-o", "bounce.csv/figure.png"], 6, "bounce.csv"),
@@ -349,7 +348,7 @@ def test_failures_say_why_and_exit_like_arm3r(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(stored.parent)
-    shutil.copy("bounce.csv", "alone.csv")
+    Path("timeless.csv").write_text("q1,q2\n1,2\n")
     Path("empty.csv").touch()
     Path("text.txt").touch()
     Path("wrong.yaml").write_text("format: 1\ntime: {stop: -1}\n")

@@ -159,7 +159,7 @@ SOLVERS: list[dict[str, Any]] = [
 
 
 def random_impact(rng: np.random.Generator) -> dict[str, Any]:
-    """An arm at rest, held against gravity, and a wall that comes; shifted in time and height."""
+    """An arm at rest, whose weight is compensated, and a wall that comes; shifted in time and height."""
     q = rng.uniform([-2, -0.5, 0.5], [2, 1.0, 1.6])
     normal = rng.normal(size=3)
     normal /= np.linalg.norm(normal)

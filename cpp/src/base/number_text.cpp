@@ -106,12 +106,6 @@ constexpr Unit units[] = {
     {"rad/s", 1, "rad/s"}, {"m/s^2", 1, "m/s^2"}, {"kg/m^3", 1, "kg/m^3"}, {"g/cm^3", 1e-3, "kg/m^3"},
 };
 
-std::string_view trimmed(std::string_view text) {
-    while (text.starts_with(' ')) text.remove_prefix(1);
-    while (text.ends_with(' ')) text.remove_suffix(1);
-    return text;
-}
-
 bool is_degrees(std::string_view unit) {
     return unit == "deg" || unit == "\u00b0" || unit == "degree" || unit == "degrees" || unit == "deg/s";
 }

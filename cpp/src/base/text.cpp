@@ -105,6 +105,12 @@ std::string counted(std::size_t count, std::string_view what) {
     return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");
 }
 
+std::string_view trimmed(std::string_view text) {
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    return text;
+}
+
 std::string listed(const std::vector<std::string>& words, std::string_view between) {
     std::string out;
     for (const std::string& word : words) (out += out.empty() ? "" : between) += word;

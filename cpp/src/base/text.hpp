@@ -27,6 +27,8 @@ std::string visible(std::string_view text, std::size_t limit = 80);
 // "1 item", "2 items"
 std::string counted(std::size_t count, std::string_view what);
 
+std::string_view trimmed(std::string_view text);  // without blanks at its ends
+
 // "a, b, c"
 std::string listed(const std::vector<std::string>& words, std::string_view between = ", ");
 

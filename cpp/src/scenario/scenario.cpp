@@ -390,9 +390,10 @@ private:
                                     .infinity = key.allow_infinity,
                                     .whole = key.kind == Kind::integer,
                                     .unit = key.unit};
-            const auto number = read_number(node.text, rules, fault);
+            const std::string text(node.quoted ? trimmed(node.text) : node.text);
+            const auto number = read_number(text, rules, fault);
             if (number && !node.quoted) return value = *number, true;
-            if (number) fault = {"number.quoted", "a number has no quotes", "write " + node.text};
+            if (number) fault = {"number.quoted", "a number has no quotes", "write " + text};
         }
         if (key.form == Form::vector_or_word && is_infinity(node)) fault.hint = "write " + key.word + ", not a list";
         problem(node.mark, {fault.code, path, fault.message, node_text(node), "", fault.hint});

@@ -60,7 +60,7 @@ class RunFigure(Figure):
         self._number = unseen_figures.made()
 
     def draw(self, renderer: Any) -> None:
-        """As matplotlib's own: whoever draws the figure sees it."""
+        """As matplotlib's own: drawing the figure counts as seeing it."""
         unseen_figures.seen(self._number)
         super().draw(renderer)
 

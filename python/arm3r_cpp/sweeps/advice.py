@@ -18,7 +18,7 @@ LEAST = 3.0  # times
 RUNS = 8  # of a trial
 SPAN = 0.25  # s, simulated in the first trial; it is doubled
 ENOUGH = 0.3  # s of clock: a trial that takes so long tells enough
-RESOLUTION = 1e-4  # s: less is not told apart
+RESOLUTION = 1e-4  # s: of the times that are measured
 LONGEST = 1.0  # s of clock for one trial
 
 

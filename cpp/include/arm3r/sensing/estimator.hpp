@@ -1,7 +1,7 @@
 #pragma once
 // The wall's stiffness, position and speed from force and position alone: least squares with forgetting of
 // f = k s - k s0 + k v t (8.7), kept as a triangular factor that each sample is rotated into, so that the condition of
-// the answer is that of the data and not its square. What the rotations leave over of the samples tells how far the
+// the answer is that of the data and not its square. What remains of the samples after the rotations tells how far the
 // stiffness may be from the truth (8.10).
 
 #include <array>

@@ -55,7 +55,7 @@ def confine(folder: str, hidden_package: str) -> list[str]:
 
 
 def _give_up_privileges(libc: ctypes.CDLL) -> None:
-    """No capability is left or can be gained, by root neither; nobody else can look into this process.
+    """No capability is left or can be gained, by root neither; no other process can look into this one.
 
     Raises:
         OSError: capabilities are left.
