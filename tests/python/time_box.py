@@ -15,7 +15,7 @@ _UNTIL = "ARM3R_UNTIL"  # for the processes of pytest-xdist
 
 def pytest_configure() -> None:
     if minutes := os.environ.get(VARIABLE):
-        os.environ.setdefault(_UNTIL, str(time.time() + 60 * float(minutes)))
+        os.environ.setdefault(_UNTIL, str(time.monotonic() + 60 * float(minutes)))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -24,5 +24,5 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_runtest_setup() -> None:
-    if time.time() > float(os.environ.get(_UNTIL, "inf")):
+    if time.monotonic() > float(os.environ.get(_UNTIL, "inf")):
         pytest.skip(f"{VARIABLE}={os.environ[VARIABLE]} are over")
