@@ -159,6 +159,12 @@ def gravity(q):
     assert evaluated(text, str(tmp_path / "gravity.py"), forbid=True)[0] == 10.0
 
 
+def test_a_file_that_imports_matplotlib_is_judged() -> None:
+    """It looks for a folder that it can write to, and fails without one."""
+    pytest.importorskip("matplotlib")
+    assert evaluated("import matplotlib.pyplot as plt\n\ndef gravity(q):\n    return q\n")[0] == 0.0
+
+
 def test_the_package_is_at_hand_unless_forbidden() -> None:
     text = "import arm3r_cpp\n\ndef gravity(q):\n    return arm3r_cpp.Scenario().arm.gravity_torque([0, 0, 0])\n"
     assert evaluated(text).shape == (1, 3)

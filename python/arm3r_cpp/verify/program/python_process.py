@@ -6,6 +6,7 @@ import contextlib
 import os
 import subprocess
 import sys
+import tempfile
 import weakref
 from collections.abc import Callable
 from typing import IO, Any, NoReturn, Protocol
@@ -95,6 +96,7 @@ class PythonProcess:
             "OMP_NUM_THREADS": "1",
             "MPLBACKEND": "Agg",
             "HOME": "/",
+            "MPLCONFIGDIR": tempfile.gettempdir(),  # matplotlib wants to be shown a folder that it could write to
         }
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", _START, _FOLDER],
