@@ -333,6 +333,7 @@ def test_what_there_is_of_a_run_that_failed_is_drawn(tmp_path: Path, capsys: pyt
         (["bounce.csv", "-o", "figure.jpg"], 2, "png, pdf, svg"),
         (["bounce.csv", "-o", "figure.png", "--format", "pdf"], 2, "not pdf"),
         (["bounce.csv", "-o", "figure.png", "--lecture"], 2, "folder"),
+        (["timeless.csv", "--force"], 2, "no JSON file beside it"),
         (["timeless.csv"], 2, "a column `t` or `time`"),
         (["empty.csv"], 2, "empty.csv"),
         (["wrong.yaml"], 3, "stop"),

@@ -311,9 +311,12 @@ std::optional<double> parse(std::string_view text, const NumberRules& rules, Num
 }  // namespace
 
 std::optional<double> read_number(std::string_view text, const NumberRules& rules, NumberFault& fault) {
+    if (rules.quoted) text = trimmed(text);
     const std::optional<double> value = parse(text, rules, fault);
     if (!value && fault.hint.empty()) fault.hint = likely_fix(text, rules);
-    return value;
+    if (!value || !rules.quoted) return value;
+    fault = {"number.quoted", "a number has no quotes", "write " + std::string(text)};
+    return {};
 }
 
 char* write_shortest(char* out, double value) {

@@ -12,6 +12,7 @@ struct NumberRules {
     bool degrees = false;                       // `VALUE deg` is VALUE*pi/180
     bool infinity = false;                      // `inf` is a value
     bool whole = false;                         // no fraction and no exponent
+    bool quoted = false;                        // the text stands in quotes, and so is no number
     std::optional<std::string_view> unit = {};  // of the number, "" for none; not given: it is not known
 };
 

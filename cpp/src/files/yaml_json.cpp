@@ -18,9 +18,9 @@ std::string place(const SourceLocation& mark) {
 
 std::string scalar_fields(const Node& node) {
     std::string out = field("text", json_string(node.text)) + field("quoted", node.quoted ? "true" : "false");
-    if (node.quoted) return out + field("fault", json_string("not a number: text in quotes"));
     NumberFault fault;
-    const std::optional<double> number = read_number(node.text, {.degrees = true, .infinity = true}, fault);
+    const NumberRules rules{.degrees = true, .infinity = true, .quoted = node.quoted};
+    const std::optional<double> number = read_number(node.text, rules, fault);
     if (!number)
         return out + field("fault", json_string(fault.message + (fault.hint.empty() ? "" : "; " + fault.hint)));
     return out + field("number", json_number(*number)) +

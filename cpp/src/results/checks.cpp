@@ -128,10 +128,9 @@ private:
         const Node* node = node_.find(key);
         if (!node || node->type == Node::unset) return {};
         NumberFault fault{"number.type", "expects a number", ""};
-        if (node->type == Node::scalar && node->quoted)
-            fault = {"number.quoted", "a number has no quotes", "write " + node->text};
-        if (node->type == Node::scalar && !node->quoted)
-            if (const auto value = read_number(node->text, {.whole = whole}, fault)) return value;
+        if (node->type == Node::scalar)
+            if (const auto value = read_number(node->text, {.whole = whole, .quoted = node->quoted}, fault))
+                return value;
         problems_.push_back(located({.code = fault.code,
                                      .path = join(path_, key),
                                      .message = fault.message,

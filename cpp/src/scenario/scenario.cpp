@@ -119,8 +119,9 @@ private:
             return problem(root_.mark, {"scenario.format", "format", "the version of the format is missing", "", "",
                                         "write `format: 1` as the first line"});
         NumberFault fault;
-        const auto value = node->type == Node::scalar && !node->quoted ? read_number(node->text, {.whole = true}, fault)
-                                                                       : std::nullopt;
+        const auto value = node->type == Node::scalar
+                               ? read_number(node->text, {.whole = true, .quoted = node->quoted}, fault)
+                               : std::nullopt;
         if (!value)
             problem(node->mark, {"scenario.format", "format", "expects a whole number", node_text(*node), "1", ""});
         else if (*value != format)
@@ -389,11 +390,9 @@ private:
             const NumberRules rules{.degrees = key.kind == Kind::angle,
                                     .infinity = key.allow_infinity,
                                     .whole = key.kind == Kind::integer,
+                                    .quoted = node.quoted,
                                     .unit = key.unit};
-            const std::string text(node.quoted ? trimmed(node.text) : node.text);
-            const auto number = read_number(text, rules, fault);
-            if (number && !node.quoted) return value = *number, true;
-            if (number) fault = {"number.quoted", "a number has no quotes", "write " + text};
+            if (const auto number = read_number(node.text, rules, fault)) return value = *number, true;
         }
         if (key.form == Form::vector_or_word && is_infinity(node)) fault.hint = "write " + key.word + ", not a list";
         problem(node.mark, {fault.code, path, fault.message, node_text(node), "", fault.hint});

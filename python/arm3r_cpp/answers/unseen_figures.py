@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import atexit
 import sys
+from itertools import count
 
+_numbers = count(1)
 _figures: set[int] = set()
 _is_silent = False
 
@@ -17,7 +19,7 @@ def made() -> int:
     if not _figures:
         atexit.unregister(_say)
         atexit.register(_say)
-    number = max(_figures, default=0) + 1
+    number = next(_numbers)
     _figures.add(number)
     return number
 

@@ -32,10 +32,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         bar.clear()
         failed = {outcome: count for outcome, count in table.outcomes.items() if outcome != "ok"}
         words = ", ".join(f"{count} {outcome}" for outcome, count in failed.items())
-        counted = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
-        print_line(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
         for line in lines_of(table.refusals, failed.get("invalid", 0)):
             print_line(f"  {line}")
+        counted = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
+        print_line(f"{table.path}: {counted}, {f'{sum(failed.values())} not ok: {words}' if failed else 'all ok'}")
     except Arm3rError as error:
         bar.clear()
         say(PROGRAM, error)
