@@ -27,8 +27,8 @@ _INVISIBLE = re.compile(
 def shown(text: str) -> str:
     """Foreign text on one line, as it can do no harm to a terminal, a table or a page, nor pass for another line.
 
-    Escaped, as Python writes them, are line breaks and controls, what turns the direction of writing, what has no width,
-    and halves of characters.
+    Escaped, as Python writes them, are line breaks and controls, what turns the direction of writing, what has no
+    width, and halves of characters.
     """
     if text.isascii() and text.isprintable():
         return text

@@ -21,7 +21,8 @@ SHORT = HEAD + "time: {stop: 0.02}\n"
 ROOT = Path(__file__).parents[2]
 OTHER_ENDINGS = (".mat", ".parquet", ".xlsx", ".html", ".bag", ".mcap", ".json", ".CSVV", ".csv.gz", "")
 ROBOT_KEYS = ("arm.link4", "arm.joints", "arm.link2.offset", "arm.link3.alpha", "dof", "urdf", "arm.urdf", "arm.dh",
-              "joints", "links", "arm.n_joints", "arm.d4", "arm.a1", "robot", "arm.link2.d", "controller.model.joints")  # fmt: skip
+              "joints", "links", "arm.n_joints", "arm.d4", "arm.a1", "robot", "arm.link2.d",
+              "controller.model.joints")  # fmt: skip
 
 
 def command(scripts: Path, folder: Path, *words: object) -> subprocess.CompletedProcess[str]:
@@ -88,8 +89,8 @@ def test_a_run_in_python_is_written_as_its_name_says(tmp_path: Path, ending: str
 UNITS = ("N/m", "kN/m", "m", "cm", "mm", "s", "ms", "N", "kg", "g", "Hz", "m/s", "deg", "rad", "Nm", "furlong")
 MISTAKES = (
     "{n} {unit}", "'{n} {unit}'", "'{n}'", "'{n},5'", "{n}{unit}", "0{n}", "0{n} {unit}", "'{n},5 {unit}'", "{n}_000",
-    "{n}_000 {unit}", "{n}.", "{n}. {unit}", "{n}E1", "{n}E1 {unit}", "0x{n}", "\u2212{n}", "'0{n} deg'", "{n}.0", "'abc'",
-    "{n}:30", "1.{n}.5", "'Yes'", "inf", "'{n} '",
+    "{n}_000 {unit}", "{n}.", "{n}. {unit}", "{n}E1", "{n}E1 {unit}", "0x{n}", "\u2212{n}", "'0{n} deg'", "{n}.0",
+    "'abc'", "{n}:30", "1.{n}.5", "'Yes'", "inf", "'{n} '",
 )  # fmt: skip
 SUGGESTED = re.compile(
     r"(?:write|use a point:|small e:|as -:|would be|exponent:) ([-+\d.][-+\de.]*(?: deg)?)(?: \(.*\))?$"
@@ -171,7 +172,8 @@ def test_one_true_sentence_about_a_number(path: str, text: Any, due: str) -> Non
 
 @pytest.mark.parametrize(
     "text", ["wall:", "wall: {contact: spring}", "controller: joint_pd", "controller: PID", "solver: ode45",
-             "wall: {acts_on_arm: yes}", "wall: {acts_on_arm: 'TRUE'}", "wall: {size: inf}", "wall: {size: [inf, inf]}"],
+             "wall: {acts_on_arm: yes}", "wall: {acts_on_arm: 'TRUE'}", "wall: {size: inf}",
+             "wall: {size: [inf, inf]}"],
 )  # fmt: skip
 def test_words_that_a_message_suggests_are_accepted(text: str) -> None:
     with pytest.raises(arm3r.ScenarioError) as raised:

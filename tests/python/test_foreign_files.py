@@ -15,7 +15,23 @@ from arm3r_cpp.commands import verify
 
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
 EXITS = {0, 2, 3, 11, 12}
-NUMBERS = ["nan", "inf", "-inf", "1e999", "-1e300", "1e-320", "", "0", "-1", "..", "1.2.3", "pi/0", "9" * 400, "1_0", "\0"]
+NUMBERS = [
+    "nan",
+    "inf",
+    "-inf",
+    "1e999",
+    "-1e300",
+    "1e-320",
+    "",
+    "0",
+    "-1",
+    "..",
+    "1.2.3",
+    "pi/0",
+    "9" * 400,
+    "1_0",
+    "\0",
+]
 
 CHAIN = "standard\ntype,a,alpha,d,theta,mass,cx\nR,0,pi/2,0.4,0,1,0\nR,0.5,0,0,0,1,-0.2\nR,0.3,0,0,90 deg,1,0\n"
 URDF = """<robot name="c"><link name="a"/>
@@ -32,7 +48,10 @@ GRAVITY = """function t = gravity(q)
   t = reshape([0; t3 - (m(1)/2 + m(2))*g*a2*cos(q(2)); t3], 3, 1);
 end
 """
-PYTHON = "from math import cos\n\ndef gravity(q):\n    t3 = -3.85 * cos(q[1] + q[2])\n    return [0, t3 - 11.5 * cos(q[1]), t3]\n"
+PYTHON = (
+    "from math import cos\n\ndef gravity(q):\n"
+    "    t3 = -3.85 * cos(q[1] + q[2])\n    return [0, t3 - 11.5 * cos(q[1]), t3]\n"
+)
 
 MATLAB = [
     GRAVITY,
@@ -52,7 +71,8 @@ TABLES = [
 ROBOTS = [
     URDF, URDF.replace('<link name="b">', '<link name="x">'), URDF.replace('value="1"', 'value="-1"'),
     URDF.replace('link="a"', 'link="c"'), URDF.replace('xyz="0 0 1"', 'xyz="0 0 0"'), URDF.replace('"1"', '"1e200"'),
-    "<robot/>", "<robot>" * 3000, "<!DOCTYPE x><robot/>", "<robot><joint/></robot>", "<?xml version='1.0' encoding='x'?><robot/>",
+    "<robot/>", "<robot>" * 3000, "<!DOCTYPE x><robot/>", "<robot><joint/></robot>",
+    "<?xml version='1.0' encoding='x'?><robot/>",
 ]  # fmt: skip
 
 
@@ -67,28 +87,46 @@ def logs() -> list[str]:
     whole = log()
     head, first, *rest = whole.split("\n")
     cells = first.split(",")
-    with_number = ["\n".join([head, ",".join([*cells[:k], number, *cells[k + 1 :]]), *rest]) for number in NUMBERS for k in (0, 5)]
-    return [whole, *with_number, head, f"{head}\n{first}\n", f"{head},g3\n{first},1\n", whole.replace("g2", "g7"), "\0", ""]
+    with_number = [
+        "\n".join([head, ",".join([*cells[:k], number, *cells[k + 1 :]]), *rest]) for number in NUMBERS for k in (0, 5)
+    ]
+    return [
+        whole,
+        *with_number,
+        head,
+        f"{head}\n{first}\n",
+        f"{head},g3\n{first},1\n",
+        whole.replace("g2", "g7"),
+        "\0",
+        "",
+    ]
 
 
 def mutated(data: bytes, chance: random.Random) -> bytes:
     """With some of: bytes flipped, a part cut or doubled, lines swapped, numbers replaced, another encoding."""
     for _ in range(chance.randint(1, 4)):
-        at, to = sorted(chance.randrange(len(data) + 1) for _ in range(2))
-        lines = data.split(b"\n")
-        words = [i for i, c in enumerate(data) if chr(c).isdigit()]
-        number = chance.choice(NUMBERS).encode()
-        place = chance.choice(words) if words else 0
-        ways = [
-            lambda: data[:at] + bytes([chance.randrange(256)]) + data[at + 1 :],
-            lambda: data[:at] + data[to:],
-            lambda: data[:to] + data[at:to] * chance.randint(1, 50) + data[to:],
-            lambda: b"\n".join(chance.sample(lines, len(lines))),
-            lambda: data[:place] + number + data[place + 1 :],
-            lambda: data.decode("latin-1").encode(chance.choice(["utf-16", "utf-8", "utf-8-sig", "utf-32"])),
-        ]
-        data = chance.choice(ways)()[:300_000]
+        data = mutated_once(data, chance)[:300_000]
     return data
+
+
+def mutated_once(data: bytes, chance: random.Random) -> bytes:
+    at, to = sorted(chance.randrange(len(data) + 1) for _ in range(2))
+    lines = data.split(b"\n")
+    digits = [i for i, c in enumerate(data) if chr(c).isdigit()]
+    place = chance.choice(digits) if digits else 0
+    match chance.randrange(6):
+        case 0:
+            return data[:at] + bytes([chance.randrange(256)]) + data[at + 1 :]
+        case 1:
+            return data[:at] + data[to:]
+        case 2:
+            return data[:to] + data[at:to] * chance.randint(1, 50) + data[to:]
+        case 3:
+            return b"\n".join(chance.sample(lines, len(lines)))
+        case 4:
+            return data[:place] + chance.choice(NUMBERS).encode() + data[place + 1 :]
+        case _:
+            return data.decode("latin-1").encode(chance.choice(["utf-16", "utf-8", "utf-8-sig", "utf-32"]))
 
 
 def formula_call(folder: Path, ending: str, data: bytes) -> list[str]:
@@ -116,8 +154,10 @@ def ends_well(tmp_path: Path, capfd: Any) -> Callable[[str, bytes], int]:
 
 
 FILES = [
-    (ending, text) for ending, texts in ((".m", MATLAB), (".dh", TABLES), (".urdf", ROBOTS), (".csv", logs())) for text in texts
-]  # fmt: skip
+    (ending, text)
+    for ending, texts in ((".m", MATLAB), (".dh", TABLES), (".urdf", ROBOTS), (".csv", logs()))
+    for text in texts
+]
 
 
 @pytest.mark.parametrize("ending", [".m", ".dh", ".urdf", ".csv"])

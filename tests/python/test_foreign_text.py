@@ -19,7 +19,12 @@ from arm3r_cpp.exercises.table import csv_of
 
 CONTROLS = [*map(chr, range(32)), *map(chr, range(0x7F, 0xA0))]
 BIDI = [*"\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200e\u200f\u061c"]
-UNSEEN = [*"\u00ad\u034f\u115f\u200b\u200c\u200d\u2028\u2029\u2060\u3164\ufe0f\ufeff\ufff9", "\U000e0041", "\U000e0101", "\ud800"]
+UNSEEN = [
+    *"\u00ad\u034f\u115f\u200b\u200c\u200d\u2028\u2029\u2060\u3164\ufe0f\ufeff\ufff9",
+    "\U000e0041",
+    "\U000e0101",
+    "\ud800",
+]
 HARMFUL = [*CONTROLS, *BIDI, *UNSEEN]
 FORGED = "\x1b[2J\x1b]0;x\x07\u202e\r\nmine.py: gravity torque: right\u2028\x85\ud800"
 
@@ -44,7 +49,8 @@ def gravity(q):
     while "answers" not in frame.f_locals: frame = frame.f_back
     stream, head = frame.f_locals["answers"], {HEAD}
     text = head if isinstance(head, bytes) else json.dumps(head).encode()
-    stream.write(__import__("struct").pack("<II", *(LENGTHS or (len(text), len({BODY})))) + text + {BODY}); stream.flush()
+    stream.write(__import__("struct").pack("<II", *(LENGTHS or (len(text), len({BODY})))) + text + {BODY})
+    stream.flush()
     time.sleep(2); os._exit(0)
 '''  # fmt: skip
 
@@ -90,7 +96,7 @@ def test_a_message_of_a_formula_forges_no_line(tmp_path: Path, capsys: Any) -> N
         answering("{'shape': [ROWS + 1, 3]}", "bytes(24 * (ROWS + 1))"),
         answering("{'shape': [ROWS] + [1] * 100}", "bytes(8 * ROWS)"),
         answering("{'shape': []}", "bytes(8)"),
-        answering("b'{\"shape\": [3], \"seconds\": NaN}'", "bytes(24)"),
+        answering('b\'{"shape": [3], "seconds": NaN}\'', "bytes(24)"),
         answering("{'shape': [ROWS, 3], 'seconds': '1'}", "bytes(24 * ROWS)"),
         answering("{'shape': [ROWS, 3], 'seconds': -1.0}", "bytes(24 * ROWS)"),
         answering("b''", "b''", "(2**32 - 1, 2**32 - 1)"),

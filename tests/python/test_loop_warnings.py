@@ -61,7 +61,10 @@ def disagreements(seed: int, count: int) -> tuple[list[str], int, int]:
     for _ in range(count):
         text = disturbed(chance)
         run = run_anyway(arm3r.Scenario(text))
-        answer, warns = grows(run), any("unstable" in w or "are stable with periods" in w for w in run.summary["warnings"])
+        answer, warns = (
+            grows(run),
+            any("unstable" in w or "are stable with periods" in w for w in run.summary["warnings"]),
+        )
         told += answer is not None
         growing += answer is True
         if answer is not None and answer != warns:
@@ -142,11 +145,14 @@ def test_a_fixed_step_is_held_against_each_rate(key: str) -> None:
 
 
 def test_a_fixed_step_that_is_too_long_is_the_cause_of_a_bad_end() -> None:
-    text = FIXED.replace("stop: 0.01", "stop: 0.8") + """sampling: {rate: 500}
+    text = (
+        FIXED.replace("stop: 0.01", "stop: 0.8")
+        + """sampling: {rate: 500}
 sensors: {force: {analog_cutoff: 500}}
 controller: {type: shaped_impedance}
 wall: {point: [1.67, 0, 0], size: infinite, acts_on_arm: true, motion: {type: constant, velocity: 0.05}}
 """
+    )
     run = run_anyway(arm3r.Scenario(text))
     assert str(run.outcome) == "diverged"
     assert "sensors.force.analog_cutoff" in run.summary["message"] and "singular" not in run.summary["message"]
@@ -165,7 +171,9 @@ def test_a_wanted_force_that_never_meets_a_wall_says_so() -> None:
 
 
 def test_an_adaptive_reference_that_always_controls_the_force_leaves_for_the_wall() -> None:
-    run = run_anyway(arm3r.Scenario(HELD + "controller: {type: adaptive_reference, switching: always, reference_gain: 0.002}\n"))
+    run = run_anyway(
+        arm3r.Scenario(HELD + "controller: {type: adaptive_reference, switching: always, reference_gain: 0.002}\n")
+    )
     assert run.summary["metrics"]["contacts"] if "metrics" in run.summary else len(run.events) > 0
     assert run["f_on_wall_x"][-1] == pytest.approx(10, rel=0.01)
     assert not any("no contact" in warning for warning in run.summary["warnings"])

@@ -416,7 +416,11 @@ def test_the_command_prints_json(written: Any, command: Any) -> None:
 def test_what_cannot_be_read_is_refused(written: Any, command: Any, name: str, text: str | None, words: str) -> None:
     path = written(name, text) if text is not None else name
     done = command(path)
-    assert done.returncode == (12 if "not read" in words else 2) and words in done.stderr and "Traceback" not in done.stderr
+    assert (
+        done.returncode == (12 if "not read" in words else 2)
+        and words in done.stderr
+        and "Traceback" not in done.stderr
+    )
 
 
 HOSTILE = {

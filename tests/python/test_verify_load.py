@@ -18,7 +18,6 @@ import arm3r_cpp as arm3r
 import pytest
 from arm3r_cpp.commands import exercise
 from arm3r_cpp.system.patience import Patience, TooSlow, Waits
-from arm3r_cpp.verify.program import python_process
 
 HERE = Path(__file__).parent
 linux = pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell what a process computes")
@@ -124,7 +123,10 @@ def busy_processes(count: int) -> Iterator[None]:
 
 def verdicts_and_table(folder: Path, table: Path, texts: list[str]) -> list[str]:
     assert exercise.main(["mark", "--trust-code", str(folder), "-o", str(table)]) == 0
-    return [table.read_text(), *(str(arm3r.verify.jacobian(text) if "jacobian" in text else judged(text)) for text in texts)]
+    return [
+        table.read_text(),
+        *(str(arm3r.verify.jacobian(text) if "jacobian" in text else judged(text)) for text in texts),
+    ]
 
 
 def judged(file: str) -> Any:
@@ -146,8 +148,9 @@ def test_every_verdict_and_table_is_the_same_beside_busy_processes(tmp_path: Pat
     (folder / "right" / "observer.py").write_text("def momentum_rate(tau, c, g, r):\n    while True: pass\n")
     wrong = tmp_path / "gravity.py"
     wrong.write_text(Path(of_students("unequal/gravity_weights.py")[0]).read_text().replace("cos", "sin", 1))
-    texts = [*of_students("unequal/mass_sympy_energy.py", "unequal/jacobian_sympy.py", "unequal/gravity_sympy_energy.py"),
-             *of_students("unequal/mass_energy.py", "lecture/mass_slender.py", "lecture/gravity_rod.py"), str(wrong)]  # fmt: skip
+    names = "unequal/mass_sympy_energy unequal/jacobian_sympy unequal/gravity_sympy_energy unequal/mass_energy"
+    names = f"{names} lecture/mass_slender lecture/gravity_rod"
+    texts = [*of_students(*(f"{name}.py" for name in names.split())), str(wrong)]
     quiet = verdicts_and_table(folder, tmp_path / "table.csv", texts)
     with busy_processes(8):
         assert verdicts_and_table(folder, tmp_path / "table.csv", texts) == quiet

@@ -47,8 +47,8 @@ void SampledController<T>::load_lane(int lane, const DigitalController<double>& 
     contact_samples_.load_lane(lane);
     estimator_.reset(estimation.wall_moves, [&](T& x) { set(x, 0.0); });
     for (T* zero : {&count_, &outputs_done_, &state_.contact, &state_.force_phase, &state_.collision, &state_.stiffness,
-                    &state_.stiffness_sigma, &state_.wall_speed, &state_.identifiable, &quiet_since_, &reacts_, &last_potential_, &early_share_,
-                    &estimates_, &samples_in_})
+                    &state_.stiffness_sigma, &state_.wall_speed, &state_.identifiable, &quiet_since_, &reacts_,
+                    &last_potential_, &early_share_, &estimates_, &samples_in_})
         set(*zero, 0.0);
     for (Vec3<T>* zeros : {&state_.q, &state_.qd, &state_.f_on_tip, &state_.residual, &filtered_, &expected_,
                            &hold_pose_, &last_q_, &last_qd_, &last_desired_, &early_torque_})

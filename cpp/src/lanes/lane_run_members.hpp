@@ -90,7 +90,8 @@ void LaneRun<T, N>::update_controller() {
         PlantOutput<T> now = plant_output();
         sampled_.update(is_due(), slack_, plant_.arm, now, plant_.held_torque);
         if (!asks_estimator(plant_.controller)) return;
-        if (sampled_.estimates()) plant_.controller.gains.assumed_stiffness = sampled_.controller_state().assumed_stiffness;
+        if (sampled_.estimates())
+            plant_.controller.gains.assumed_stiffness = sampled_.controller_state().assumed_stiffness;
     });
     if (sampled_.has_failed()) stop_lane(0, ARM3R_RUN_CONTROLLER);
 }

@@ -9,9 +9,7 @@ namespace arm3r {
 
 std::string at_time(double t) { return " at t = " + shortest(t) + " s"; }
 
-std::string step_budget_message(double t) {
-    return "solver.max_steps is used up" + at_time(t);
-}
+std::string step_budget_message(double t) { return "solver.max_steps is used up" + at_time(t); }
 
 std::string too_fast_message(double rate, double t) {
     return "a joint turns at " + rounded(rate, 3) + " rad/s" + at_time(t) + ", beyond 1e5 rad/s";

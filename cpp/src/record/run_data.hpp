@@ -57,9 +57,9 @@ struct Metrics {
     double settling_time = unknown;                                                     // s
     double path_error_rms = unknown, path_error_max = unknown;                          // m
     double saturation_share = 0;
-    std::array<double, 3> work{};                                        // J, of each torque
+    std::array<double, 3> work{};                                                                   // J, of each torque
     double stiffness_estimate = unknown, stiffness_sigma = unknown, wall_speed_estimate = unknown;  // N/m, N/m, m/s
-    double stiff_steps = 0;                                              // accepted steps of the stiff method
+    double stiff_steps = 0;  // accepted steps of the stiff method
 };
 
 // What the end of a run tells beside its metrics, in the arm's convention.

@@ -54,7 +54,8 @@ protected:
     void store_controller_state(const ControllerState<double>& controller_state) {
         controller_state_ = controller_state;
         Controller<double>& law = setup_.plant.controller;
-        if (asks_estimator(law) && setup_.estimation.on) law.gains.assumed_stiffness = controller_state.assumed_stiffness;
+        if (asks_estimator(law) && setup_.estimation.on)
+            law.gains.assumed_stiffness = controller_state.assumed_stiffness;
     }
 
     // The torque of a sampled controller that acts from now on.

@@ -52,7 +52,8 @@ void add_controller(const Setup& setup, std::vector<Rate>& rates) {
     if (setup.digital.sampling.on) return;
     const Vec3<double>& gain = setup.plant.observer.gain;
     if (setup.plant.observer.on) rates.push_back({"observer.gain,", std::max({gain[0], gain[1], gain[2]})});
-    if (const auto loop = fastest_rate(setup)) rates.push_back({"the gains of controller, by the fastest mode,", *loop});
+    if (const auto loop = fastest_rate(setup))
+        rates.push_back({"the gains of controller, by the fastest mode,", *loop});
 }
 
 std::vector<Rate> known_rates(const Setup& setup) {
@@ -71,9 +72,10 @@ void warn_of_fixed_step(const Setup& setup, std::vector<std::string>& warnings) 
         const double product = setup.solver.step * rate.value;
         if (!(product > most_per_step)) continue;
         warnings.push_back("solver.step times the rate of " + rate.key + " " + rounded(rate.value, 4) + " 1/s, is " +
-                           rounded(product, 4) + ": rk4 loses its accuracy above 1 and diverges above 2.8; take a "
-                           "solver.step of at most " + rounded(most_per_step / rate.value, 2) +
-                           " s, or method: dopri5");
+                           rounded(product, 4) +
+                           ": rk4 loses its accuracy above 1 and diverges above 2.8; take a "
+                           "solver.step of at most " +
+                           rounded(most_per_step / rate.value, 2) + " s, or method: dopri5");
     }
 }
 

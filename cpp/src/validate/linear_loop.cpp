@@ -218,8 +218,8 @@ private:
 
     // The force after filters, before its delay.
     Vec3<D> force(const Signals& s) const {
-        Vec3<D> f = sensors_.has_analog_filter ? three(s, filter_)
-                                               : wall_force(setup_, place_, three(s, 0), three(s, 3));
+        Vec3<D> f =
+            sensors_.has_analog_filter ? three(s, filter_) : wall_force(setup_, place_, three(s, 0), three(s, 3));
         if (sensors_.has_filter)
             for (std::size_t i = 0; i < 3; ++i)
                 f[int(i)] = s[filtered_ + i] + force_share_ * (f[int(i)] - s[filtered_ + i]);

@@ -52,7 +52,7 @@ SquareMatrix exponential(const SquareMatrix& a, double h) {
 
 double log_spectral_radius(SquareMatrix a, double enough) {
     constexpr int most = 26;      // squarings
-    double total = 0, power = 1;   // ln of the norm of A^power is total + ln |a|
+    double total = 0, power = 1;  // ln of the norm of A^power is total + ln |a|
     for (int k = 0;; ++k) {
         const double size = norm(a);
         if (size == 0) return -infinite;

@@ -197,8 +197,9 @@ std::string unstable_loop_text(const Setup& setup, TipPlace place, const LoopGro
     const std::string factor = rounded(exp(growth.per_second * growth.period), 5);
     return "the sampled loop of " + rounded(1 / growth.period, 6) + " Hz is unstable" + where +
            " at the pose of the start: its fastest mode grows " + factor + " times a sample; " +
-           (rate > 0 ? "from about " + rounded(rate, 3) + " Hz on it is stable: raise sampling.rate, or take less delay "
-                                                         "or lower gains"
+           (rate > 0 ? "from about " + rounded(rate, 3) +
+                           " Hz on it is stable: raise sampling.rate, or take less delay "
+                           "or lower gains"
                      : std::string("a higher sampling.rate alone does not help: take less delay or lower gains"));
 }
 

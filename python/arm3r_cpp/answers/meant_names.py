@@ -15,7 +15,9 @@ _ONE_ARM = "arm3r is one arm with three joints; verify.Chain.from_urdf and from_
 # By the class or module: names, parted by blanks, and what to write instead.
 _TABLE: dict[str, dict[str, str]] = {
     "arm3r_cpp": {
-        "load loadmat read open load_yaml read_yaml read_csv load_csv load_run": "Scenario.load(path) or Run.load(path)",
+        "load loadmat read open load_yaml read_yaml read_csv load_csv load_run": (
+            "Scenario.load(path) or Run.load(path)"
+        ),
         "simulate sim run ode45 solve solve_ivp odeint set_param": "Scenario.load(path).run()",
         "parsim run_batch many": "scenario.batch({...})",
         "linmod linearize ss": "scenario.arm.linearize(q, qd, tau)",

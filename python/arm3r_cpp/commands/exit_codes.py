@@ -62,7 +62,9 @@ def say(program: str, message: object) -> None:
 
 
 def print_line(line: object) -> None:
-    """Print text on stdout: its lines, and what else is not printable escaped. If its reader has closed the pipe, end by SIGPIPE.
+    """Print lines of text on stdout, with what else is not printable escaped.
+
+    If the reader has closed the pipe, the process ends by SIGPIPE.
 
     Raises:
         OutputError: it cannot be written.

@@ -75,7 +75,7 @@ def end_with_descendants(pid: int) -> None:
 def processor_time(pid: int) -> float | None:
     """Seconds that a process, and all that it started, have computed; None where the system does not tell."""
     every = _statistics()
-    if pid not in every:
+    if sys.platform == "win32" or pid not in every:
         return None
     ticks = sum(sum(map(int, every[one][11:15])) for one in (pid, *_descendants_in(every, pid)))
     return float(ticks / os.sysconf("SC_CLK_TCK"))
@@ -87,7 +87,7 @@ def _descendants(ancestor: int) -> list[int]:
 
 
 def _statistics() -> dict[int, list[str]]:
-    """What Linux tells of each process behind its name: its state, its parent, ..., its own times and its children's."""
+    """What Linux tells of each process behind its name: state, parent, ..., its own times and its children's."""
     found = {}
     for name in os.listdir("/proc") if os.path.isdir("/proc") else []:
         if name.isdigit():

@@ -269,7 +269,9 @@ def _explain(
         if found and found.note and found.note not in verdict.warnings:
             verdict.warnings.append(found.note)
     if budget.is_over() and verdict.unexplained:
-        verdict.warnings.append("the search for an edit that mends it was ended: there are too many, or they are too slow")
+        verdict.warnings.append(
+            "the search for an edit that mends it was ended: there are too many, or they are too slow"
+        )
     if case.kind.name == "forward" and verdict.unexplained:
         _read_torque(verdict, case)
     verdict.alternatives += causes[1:]

@@ -113,9 +113,8 @@ def table(verdict: Judgement) -> str:
             text = "right" if one is None else _cell(one)
             line += f'<td style="background:{colour};color:#000;padding:0.4em;text-align:left">{text}</td>'
         cells.append(f"<tr>{line}</tr>")
-    return (
-        f"<p>{html.escape(shown(_head(verdict)))}</p><table>{''.join(cells)}</table><pre>{html.escape(report(verdict))}</pre>"
-    )
+    head, whole = html.escape(shown(_head(verdict))), html.escape(report(verdict))
+    return f"<p>{head}</p><table>{''.join(cells)}</table><pre>{whole}</pre>"
 
 
 def _cell(finding: Finding) -> str:

@@ -75,7 +75,16 @@ public:
 private:
     // Where the numbers lie: two triangular factors, row by row, the first with the right-hand side behind it and with
     // weights w of the squares, the second with weights w^2; then sums over the residuals.
-    enum : int { fit_at = 0, spread_at = 12, weights_at = 24, squared_weights, squares, products, recent, number_count };
+    enum : int {
+        fit_at = 0,
+        spread_at = 12,
+        weights_at = 24,
+        squared_weights,
+        squares,
+        products,
+        recent,
+        number_count
+    };
 
     ARM3R_INLINE const T& fit(int i, int j) const { return numbers_[fit_at + 4 * i + j]; }
     ARM3R_INLINE const T& spread(int i, int j) const { return numbers_[spread_at + 4 * i + j]; }
@@ -130,9 +139,11 @@ private:
         const T expected = errors.force + square * errors.position + least * least;
         const T moved = 1.0 / (weights * position);
         const T most = expected * (1.0 + 4.0 * sqrt(T(2.0 / samples))) + square * moved * (misfit * misfit);
-        const T repeats = 1.0 + 2.0 * max(T(0.0), T(numbers_[products] / (numbers_[squares] + weights * expected * 1e-3)));
+        const T repeats =
+            1.0 + 2.0 * max(T(0.0), T(numbers_[products] / (numbers_[squares] + weights * expected * 1e-3)));
         const T independent = max(T(samples / repeats), T(2.0));
-        const T by_noise = max(residual, T(0.5 * expected)) * spread_of_k * repeats * (independent / (independent - 2.0));
+        const T by_noise =
+            max(residual, T(0.5 * expected)) * spread_of_k * repeats * (independent / (independent - 2.0));
         const T by_position = stiffness * errors.position / moved, by_rounding = rounding * condition * stiffness;
         const T sigma = sqrt(T(by_noise + by_position * by_position + by_rounding * by_rounding));
         return select(residual <= most, sigma, T(infinite));

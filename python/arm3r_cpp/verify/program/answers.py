@@ -57,7 +57,7 @@ def answer_of(head: dict[str, Any], body: bytes, rows: int) -> Answer:
         _checked(error, type(error) is str and not body)
         _checked(line, line is None or (type(line) is int and 0 < line < _MOST_LINES))
         return Answer(None, seconds, error[:_LONGEST], line)
-    shape = head.get("shape")
+    shape: Any = head.get("shape")
     _checked(shape, type(shape) is list and 0 < len(shape) <= _MOST_AXES)
     _checked(shape, all(type(size) is int and 0 <= size <= len(body) for size in shape))
     _checked(shape, shape[0] == rows and math.prod(shape) * 8 == len(body))
@@ -70,9 +70,8 @@ def unbarred_of(head: dict[str, Any]) -> list[str]:
     Raises:
         BrokenAnswer: the head is that of no such answer.
     """
-    names = head.get("unbarred")
-    _checked(names, type(names) is list and len(names) <= _MOST_AXES and all(type(one) is str for one in names))
-    return names
+    names: Any = head.get("unbarred")
+    return _checked(names, type(names) is list and len(names) <= _MOST_AXES and all(type(one) is str for one in names))
 
 
 def _checked(value: Any, holds: bool) -> Any:

@@ -79,7 +79,8 @@ def _rules(one: Readable) -> Iterator[tuple[str, int]]:
 
 def _allow(libc: ctypes.CDLL, ruleset: int, path: str, right: int, is_foreign: bool) -> None:
     """What is not there, or cannot be reached, stays barred. Where a link has come into a foreign path, too."""
-    assert sys.platform == "linux"
+    if sys.platform != "linux":
+        return
     try:
         file = os.open(path, os.O_PATH | os.O_CLOEXEC | (os.O_NOFOLLOW if is_foreign else 0))
     except OSError:

@@ -17,7 +17,8 @@ from .chain import Joint, SerialChain
 AnyChain = TypeVar("AnyChain", bound=SerialChain)
 
 _NUMBER = re.compile(
-    r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>0*[1-9]\d{0,8}))?|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?P<deg> ?deg)?)"
+    r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>0*[1-9]\d{0,8}))?"
+    r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?P<deg> ?deg)?)"
 )
 LARGEST = 1e12
 _OPTIONAL = ("mass", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz", "armature")

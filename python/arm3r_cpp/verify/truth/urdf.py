@@ -77,9 +77,7 @@ def _name(file: str, joint: ElementTree.Element, end: str) -> str:
     return found.attrib["link"]
 
 
-def _link_of(
-    file: str, joint: ElementTree.Element, links: dict[str, ElementTree.Element]
-) -> ElementTree.Element:
+def _link_of(file: str, joint: ElementTree.Element, links: dict[str, ElementTree.Element]) -> ElementTree.Element:
     name = _name(file, joint, "child")
     if name not in links:
         raise UsageError(f"{file}: the joint {joint.get('name')!r} has the child {name!r}, which is no link")
