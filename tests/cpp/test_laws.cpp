@@ -317,13 +317,14 @@ TEST_CASE(admittance_beyond_reach_stretches_the_arm_towards_the_point) {
 }
 
 TEST_CASE(adaptive_reference_displaces_the_reference_of_shaped_impedance) {
-    for_scenes(ControllerType::adaptive_reference, [](const RowContext& scene) {
+    for_scenes(ControllerType::adaptive_reference, [](RowContext scene) {
+        scene.sensed.contact = 0;  // the phase alone says whether the force is controlled
         const Symbols y(scene);
         const Vector e = y.x - y.x_d - y.s.force_phase * scene.memory[0] * y.p_in;
         const Vector force =
             Vector(y.s.f_on_tip) - y.diagonal(y.g.damping) * (y.xd - y.xd_d) - y.diagonal(y.g.stiffness) * e;
         CHECK(close(y.ID(y.xdd_d + y.diagonal(y.g.mass).inverse() * force), scene.tau()));
-        CHECK(close(y.g.reference_gain * y.e_f, scene.command().rates[0]));
+        CHECK(close(y.s.force_phase * y.g.reference_gain * y.e_f, scene.command().rates[0]));
     });
 }
 

@@ -15,6 +15,8 @@ import numpy as np
 import pytest
 from arm3r_cpp.params import param_key, places
 from arm3r_cpp.sweeps import advice
+from arm3r_cpp.sweeps.table import SweepTable
+from random_scenarios import sample_seed
 
 HEAD = "format: 1\n"
 SHORT = HEAD + "time: {stop: 0.02}\n"
@@ -113,7 +115,7 @@ def suggestion(scenario: arm3r.Scenario, path: str, text: str) -> tuple[str, str
 
 def test_a_number_that_a_message_suggests_is_a_number(scenario_with_all: arm3r.Scenario) -> None:
     """Its range may still be another; its syntax, quotes and unit are not refused next."""
-    seed = Random().randrange(10**9)
+    seed = sample_seed()
     draw = Random(seed)
     paths = [
         path
@@ -133,6 +135,8 @@ def test_a_number_that_a_message_suggests_is_a_number(scenario_with_all: arm3r.S
         one._edit(path, found, "--set")
         try:
             one.validate()
+        except arm3r.BudgetError:  # a number
+            continue
         except arm3r.ScenarioError as error:
             codes = {problem["code"] for problem in error.problems if problem["path"].startswith(path)}
             assert not codes & {"number.syntax", "number.quoted", "number.whole", "scenario.type"}, (
@@ -182,7 +186,7 @@ def test_words_that_a_message_suggests_are_accepted(text: str) -> None:
     found = re.search(r"write (?:`\w+: (.*?)`|(\w+))", problem["hint"])
     assert found, problem
     scenario = arm3r.Scenario(HEAD + "wall: {}\n")
-    scenario._edit(problem["path"], found[1] or found[2], "--set")
+    scenario._edit(problem["path"].split("[")[0], found[1] or found[2], "--set")
     scenario._quiet().validate()
 
 
@@ -260,7 +264,7 @@ def test_a_sweep_counts_the_reasons_of_its_refused_runs(scripts: Path, folder: P
     assert done.returncode == 7 and "5 not ok: 5 invalid" in done.stdout
     assert re.search(r"4 invalid, such as: error\[scenario.range\]: arm.link2.length: .* got -1", done.stdout)
     assert re.search(r"1 invalid, such as: error\[scenario.range\]: arm.link3.length", done.stdout)
-    assert sum(one.runs for one in arm3r.sweeps.table.SweepTable(folder / "out").refusals) == 5
+    assert sum(one.runs for one in SweepTable(folder / "out").refusals) == 5
 
 
 def test_a_method_that_is_much_faster_is_named() -> None:

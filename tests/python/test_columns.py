@@ -23,7 +23,8 @@ FIXED_SPRING = (
 RUNS = [
     f"{ARM}{START}{WALL}controller: {{type: hybrid}}\nreference: {{type: hold, force: {{value: 5}}}}\n"
     "sampling: {rate: 500}\nobserver: {threshold: 0.5}\nestimator: {}\n",
-    f"{ARM}{START}{FIXED_SPRING}controller: {{type: gravity_compensation}}\nestimator: {{wall: fixed}}\n",
+    f"{ARM}{START}{FIXED_SPRING}controller: {{type: hybrid}}\nreference: {{type: hold, force: {{value: 5}}}}\n"
+    "sampling: {rate: 500}\nestimator: {}\n",
     f"{ARM}{START}controller: {{type: joint_pd}}\nreference: {{type: point, q: [0.2, 0.3, 0.6]}}\n",
     f"{ARM}{START}{WALL}controller: {{type: energy_tank}}\nreference: {{type: hold}}\n",
     "format: 1\ninitial: {q: [0.1, -0.2, 0.3], qd: [1.5, 0, 0]}\ntime: {stop: 1}\nchecks: []\n"

@@ -43,7 +43,7 @@ def test_what_does_harm_is_escaped_and_what_does_not_stays() -> None:
 
 
 RAISES = "def gravity(q):\n    raise ValueError(%r)\n"
-ANSWERS = '''import json, os, sys, time
+ANSWERS = '''import json, os, sys
 def gravity(q):
     frame = sys._getframe()
     while "answers" not in frame.f_locals: frame = frame.f_back
@@ -51,7 +51,7 @@ def gravity(q):
     text = head if isinstance(head, bytes) else json.dumps(head).encode()
     stream.write(__import__("struct").pack("<II", *(LENGTHS or (len(text), len({BODY})))) + text + {BODY})
     stream.flush()
-    time.sleep(2); os._exit(0)
+    os._exit(0)
 '''  # fmt: skip
 
 
@@ -61,7 +61,8 @@ def answering(head: str, body: str = "b''", lengths: str = "None") -> str:
     return text.replace("ROWS", "len(frame.f_locals['table'])")
 
 
-def test_a_message_of_a_formula_forges_no_line(tmp_path: Path, capsys: Any) -> None:
+def test_a_message_of_a_formula_forges_no_line(tmp_path: Path, capsys: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("arm3r_cpp.verify.judge.MENDING_EDITS", 10)  # each ends the process of the second formula
     for text in (RAISES % FORGED, answering(repr({"error": FORGED, "line": 2}))):
         path = tmp_path / "gravity.py"
         path.write_text(text)

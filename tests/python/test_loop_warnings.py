@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import random
-import secrets
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from random_scenarios import sample_seed
 
 LAWS = ("joint_pd", "stiffness", "impedance", "computed_torque", "resolved_acceleration", "joint_stiffness")
 SAMPLES = 600
@@ -16,7 +16,7 @@ SAMPLES = 600
 def run_anyway(scenario: arm3r.Scenario) -> arm3r.Run:
     try:
         return scenario.run()
-    except arm3r.Error as error:
+    except (arm3r.NumericalError, arm3r.BudgetError) as error:
         return error.run
 
 
@@ -72,11 +72,9 @@ def disagreements(seed: int, count: int) -> tuple[list[str], int, int]:
     return wrong, growing, told
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(1000, marks=pytest.mark.gate)])
+@pytest.mark.parametrize("count", [40, pytest.param(1000, marks=[pytest.mark.gate, pytest.mark.random])])
 def test_a_sampled_loop_is_warned_of_where_the_run_grows_and_only_there(count: int) -> None:
-    seed = secrets.randbits(32)
-    print("seed", seed)
-    wrong, growing, told = disagreements(seed, count)
+    wrong, growing, told = disagreements(sample_seed(), count)
     assert told > 0.6 * count and 0 < growing < told
     assert wrong == [], "\n".join(wrong)
 
@@ -129,10 +127,10 @@ RATES = {
         "sensors: {force: {analog_cutoff: %g}}\n",
         100,
     ),
-    "observer.gain": ("controller: {type: gravity_compensation}\n", "observer: {gain: %g}\n", 600),
+    "observer.gain": ("controller: {type: gravity_compensation}\n", "observer: {gain: %g}\n", 100),
     "wall.contact.stiffness": ("", WALL % "stiffness: %g", 1e5),
     "wall.contact.damping": ("", WALL % "law: kelvin_voigt, stiffness: 100, damping: %g", 100),
-    "controller": ("controller: {type: joint_pd, joint_stiffness: 10, ", "joint_damping: %g}\n", 1),
+    "controller": ("controller: {type: joint_pd, joint_stiffness: [10, 10, 10], ", "joint_damping: [0, 0, %g]}\n", 1),
 }
 
 
@@ -171,9 +169,7 @@ def test_a_wanted_force_that_never_meets_a_wall_says_so() -> None:
 
 
 def test_an_adaptive_reference_that_always_controls_the_force_leaves_for_the_wall() -> None:
-    run = run_anyway(
-        arm3r.Scenario(HELD + "controller: {type: adaptive_reference, switching: always, reference_gain: 0.002}\n")
-    )
-    assert run.summary["metrics"]["contacts"] if "metrics" in run.summary else len(run.events) > 0
+    run = run_anyway(arm3r.Scenario(HELD + "controller: {type: adaptive_reference, switching: always}\n"))
+    assert run.summary["contacts"] == 1
     assert run["f_on_wall_x"][-1] == pytest.approx(10, rel=0.01)
     assert not any("no contact" in warning for warning in run.summary["warnings"])

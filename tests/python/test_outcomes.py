@@ -366,8 +366,12 @@ time: {stop: 0.3}
     run = _run(text)
     assert run.outcome == "ok"
     (warning,) = run.summary["warnings"]
-    after = np.searchsorted(run.t, float(re.findall(r"passed a singular pose at t = (\S+) s", warning)[0])) + 1
+    told = re.findall(r"passed a singular pose at t = (\S+) s, q = \((\S+), (\S+), (\S+)\) rad; keep", warning)
+    when, *pose = map(float, told[0])
+    after = np.searchsorted(run.t, when)
     assert run["q"][after - 1, 2] * run["q"][after, 2] <= 0 and "solver.max_step" in warning
+    assert pose[2] == pytest.approx(0, abs=1e-6), "the pose of the crossing, not of a row"
+    assert min(run["q"][after - 1, 0], run["q"][after, 0]) <= pose[0] <= max(run["q"][after - 1, 0], run["q"][after, 0])
     assert not _run(text + "sampling: {rate: 1000}").summary["warnings"], "a torque that is held has no such pulse"
 
 

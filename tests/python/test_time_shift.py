@@ -15,7 +15,7 @@ from random_scenarios import random_scenario, sample_seed, yaml_of
 
 SHIFTS = [0.7, 37.0]
 NUDGE = 1e-7  # rad: a perturbation of the start, by which the growth of an error over the run is measured
-MOMENTS = ("t_end", "first_contact", "first_release", "peak_force_time")
+MOMENTS = ("t_end", "first_contact", "first_release", "peak_force_time", "first_contact_peak_time")
 """The numbers of the summary that are instants; all others do not change with time."""
 OWN_ERRORS = ("ledger_residual",)
 """The numbers that are the errors of the run itself, which no other run shares."""

@@ -293,7 +293,7 @@ def test_runs_that_are_cut_short_tell_no_horizon() -> None:
 
 
 def test_a_run_that_fails_has_a_horizon_too() -> None:
-    scenario = arm3r.Scenario("format: 1\nsolver: {method: rk4, step: 0.05}\ntime: {stop: 20, log_every: 0.05}\n")
+    scenario = arm3r.Scenario("format: 1\nsolver: {method: rk4, step: 0.05}\ntime: {stop: 20, log_every: 0.0125}\n")
     scenario.update({"arm.link1.inertia_axial": 1e-6, "initial": {"q": [0.1, 0.2, 0.3], "qd": [40, 1, 2]}})
     with pytest.raises(arm3r.NumericalError) as caught:
         scenario.run(trust=True)

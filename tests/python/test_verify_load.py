@@ -20,6 +20,7 @@ from arm3r_cpp.commands import exercise
 from arm3r_cpp.system.patience import Patience, TooSlow, Waits
 
 HERE = Path(__file__).parent
+BUSY = "import os\nparent = os.getppid()\nwhile os.getppid() == parent: pass"  # until its parent ends
 linux = pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell what a process computes")
 COMPUTES = """
 import time
@@ -79,7 +80,7 @@ def seconds_until(error: type[TimeoutError], patience: Patience) -> float:
 @linux
 def test_patience_counts_what_a_process_computes(process: Any) -> None:
     """Its clock, not ours: a tenth of the processor takes several times as long, and is no sooner too slow."""
-    busy = process("while True: pass")
+    busy = process(BUSY)
     time.sleep(0.2)
     with stopped_now_and_then(busy.pid):
         assert seconds_until(TooSlow, Patience(busy.pid, 0.2)) > 0.5
@@ -87,7 +88,7 @@ def test_patience_counts_what_a_process_computes(process: Any) -> None:
 
 @linux
 def test_patience_counts_what_the_process_has_started(process: Any) -> None:
-    starts = process("import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])")
+    starts = process(f"import subprocess, sys; subprocess.run([sys.executable, '-c', {BUSY!r}])")
     seconds_until(TooSlow, Patience(starts.pid, 0.3))
 
 
@@ -112,7 +113,7 @@ def test_a_formula_is_not_too_slow_where_time_passes_by_itself(tmp_path: Path, m
 
 @contextmanager
 def busy_processes(count: int) -> Iterator[None]:
-    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    busy = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(count)]
     try:
         yield
     finally:

@@ -13,6 +13,15 @@ namespace arm3r {
 
 inline constexpr double event_time_tolerance = 1e-14;  // s
 
+// The largest normal force so far.
+struct Peak {
+    double force = 0, t = 0;  // N, s
+
+    void include(double force_here, double t_here) {
+        if (force_here > force) *this = {force_here, t_here};
+    }
+};
+
 struct Crossing {
     double theta;  // where in the step, in (from, 1]
     ContactMode next;

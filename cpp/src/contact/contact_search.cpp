@@ -118,6 +118,18 @@ void ContactSearch::update_peak(const DenseOutput& dense, double a, const Signal
     include(top, sample(dense, top));
 }
 
+void ContactSearch::include_peak(const DenseOutput& dense, double end, Peak& peak) const {
+    double a = 0;
+    SignalSample at_a = sample(dense, a);
+    for (int n = 1; n < sample_count_; ++n) {
+        const double b = end * n / (sample_count_ - 1);
+        const SignalSample at_b = sample(dense, b);
+        update_peak(dense, a, at_a, b, at_b, peak);
+        a = b;
+        at_a = at_b;
+    }
+}
+
 double ContactSearch::impulse(const DenseOutput& dense, double a, double b) const {
     if (plant_.contact.law != ContactLaw::hunt_crossley) return impulse_by_gauss(dense, a, b);
     constexpr double negligible = 1e-4;  // a depth, as a share of the largest: less than 1e-8 of the impulse lies below

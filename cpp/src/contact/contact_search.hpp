@@ -8,15 +8,6 @@
 
 namespace arm3r {
 
-// The largest normal force so far.
-struct Peak {
-    double force = 0, t = 0;  // N, s
-
-    void include(double force_here, double t_here) {
-        if (force_here > force) *this = {force_here, t_here};
-    }
-};
-
 class ContactSearch {
 public:
     // `sample_count`: at how many points of a step the depth is sampled, ends included.
@@ -27,6 +18,9 @@ public:
     // The first change of mode after `from`, if there is one. `peak` becomes the largest normal force in contact until
     // then.
     std::optional<Crossing> next(const DenseOutput& dense, double from, ContactMode mode, Peak& peak) const;
+
+    // Includes the largest normal force in contact from theta = 0 to `end` in the peak; no change of mode lies between.
+    void include_peak(const DenseOutput& dense, double end, Peak& peak) const;
 
     // Integral of the normal contact force, N s, along the solution from theta = a to b of the step. A force that is a
     // broken power of the depth is integrated in parts, which are the shorter the nearer the depth is to zero.

@@ -13,6 +13,7 @@ void LaneContact<T>::load_lane(int lane, const Contact<double>& law, double star
     for (T* zero : {&max_depth_, &depth_time_, &peak_, &impulse_}) set(*zero, 0.0);
     set(peak_time_, start);
     tally_[lane] = {};
+    store_transient(lane);
 }
 
 template <class T>
@@ -29,33 +30,59 @@ void LaneContact<T>::begin(int lane, double t, double depth, double force) {
     tally_[lane].begin(t);
     Lanes<T>::set(max_depth_, lane, depth);
     Lanes<T>::set(peak_, lane, force);
+    store_transient(lane);
 }
 
 template <class T>
 bool LaneContact<T>::count(int lane, const ContactChange& change) {
+    if (change.breaks()) tally_[lane].end_transient(peak(lane));
     tally_[lane].add(change);
+    store_transient(lane);
     return tally_[lane].is_event_storm();
 }
 
 template <class T>
 void LaneContact<T>::add(int lane, const Contact<double>& law, const Polynomial<double>& depth, const StepPart& part) {
-    if (mode_[lane] != ContactMode::contact) return;
     const auto& [t0, h, a, b] = part;
-    if (!is_elastic_) return add_forces(lane, normal_forces(law, depth, h, a, b), t0 + h * a, h * (b - a));
-    if (range_of(depth).high > Lanes<T>::get(max_depth_, lane)) {
-        const Maximum most = maximum(depth, a, b);
-        update_peak(lane, most.value, t0 + h * most.position, max_depth_);
+    if (const double until = tally_[lane].transient_until; t0 + h * b >= until) {
+        include_peak(lane, law, depth, {t0, h, a, std::max((until - t0) / h, a)});
+        tally_[lane].end_transient(peak(lane));
+        store_transient(lane);
     }
+    if (mode_[lane] != ContactMode::contact) return;
+    if (!is_elastic_) return add_forces(lane, normal_forces(law, depth, h, a, b), t0 + h * a, h * (b - a));
+    include_peak(lane, law, depth, part);
     Lanes<T>::set(depth_time_, lane, Lanes<T>::get(depth_time_, lane) + h * integral(depth, a, b));
 }
 
 template <class T>
-void LaneContact<T>::add_forces(int lane, const std::array<double, 5>& force, double t0, double duration) {
+void LaneContact<T>::include_peak(int lane, const Contact<double>& law, const Polynomial<double>& depth,
+                                  const StepPart& part) {
+    if (mode_[lane] != ContactMode::contact) return;
+    const auto& [t0, h, a, b] = part;
+    if (!is_elastic_) return include_peak(lane, normal_forces(law, depth, h, a, b), t0 + h * a, h * (b - a));
+    if (!(range_of(depth).high > Lanes<T>::get(max_depth_, lane))) return;
+    const Maximum most = maximum(depth, a, b);
+    update_peak(lane, most.value, t0 + h * most.position, max_depth_);
+}
+
+template <class T>
+void LaneContact<T>::include_peak(int lane, const std::array<double, 5>& force, double t0, double duration) {
     const Polynomial<double> over_time = through_five(force);
-    if (range_of(over_time).high > Lanes<T>::get(peak_, lane)) {
-        const Maximum most = maximum(over_time, 0, 1);
-        update_peak(lane, most.value, t0 + duration * most.position, peak_);
-    }
+    if (!(range_of(over_time).high > Lanes<T>::get(peak_, lane))) return;
+    const Maximum most = maximum(over_time, 0, 1);
+    update_peak(lane, most.value, t0 + duration * most.position, peak_);
+}
+
+template <class T>
+void LaneContact<T>::store_transient(int lane) {
+    Lanes<T>::set(transient_until_, lane, tally_[lane].transient_until);
+    is_any_transient_ = std::ranges::any_of(tally_, &ContactTally::is_transient);
+}
+
+template <class T>
+void LaneContact<T>::add_forces(int lane, const std::array<double, 5>& force, double t0, double duration) {
+    include_peak(lane, force, t0, duration);
     Lanes<T>::set(impulse_, lane, Lanes<T>::get(impulse_, lane) + duration * mean_of_five(force));
 }
 

@@ -56,6 +56,8 @@ public:
     ARM3R_INLINE const Mask& embedded() const { return embedded_; }
     ARM3R_INLINE bool any_touching() const { return any_touching_; }
     ARM3R_INLINE bool any_embedded() const { return any_embedded_; }
+    // Where the first contact ceases to be transient by t.
+    ARM3R_INLINE Mask ends_transient(const T& t) const { return is_any_transient_ ? t >= transient_until_ : Mask(false); }
 
     // ---- a step
 
@@ -104,11 +106,12 @@ public:
     // ---- the run so far
 
     const ContactTally& tally(int lane) const { return tally_[lane]; }
-    double peak_force(int lane) const {  // N, normal
-        return is_elastic_ ? stiffness(lane) * Lanes<T>::get(max_depth_, lane) : Lanes<T>::get(peak_, lane);
+    Peak peak(int lane) const {
+        const double force =
+            is_elastic_ ? stiffness(lane) * Lanes<T>::get(max_depth_, lane) : Lanes<T>::get(peak_, lane);
+        return {force, Lanes<T>::get(peak_time_, lane)};
     }
-    double peak_time(int lane) const { return Lanes<T>::get(peak_time_, lane); }  // s
-    double impulse(int lane) const {                                              // N s, normal
+    double impulse(int lane) const {  // N s, normal
         return is_elastic_ ? stiffness(lane) * Lanes<T>::get(depth_time_, lane) : Lanes<T>::get(impulse_, lane);
     }
 
@@ -116,6 +119,10 @@ private:
     double stiffness(int lane) const { return Lanes<T>::get(law_.stiffness[0], lane); }
     // Adds five forces over a part of a step.
     void add_forces(int lane, const std::array<double, 5>& force, double t0, double duration);
+    // Includes the largest depth or force of a part of a step in the peak.
+    void include_peak(int lane, const Contact<double>& law, const Polynomial<double>& depth, const StepPart& part);
+    void include_peak(int lane, const std::array<double, 5>& force, double t0, double duration);
+    void store_transient(int lane);
     void update_peak(int lane, double value, double t, T& peak);
     // Updates `peak`, of the depth or of the force, and its time t, where `here`.
     ARM3R_INLINE void update_peak(const Mask& here, const T& value, const T& t, T& peak) {
@@ -131,6 +138,8 @@ private:
     T max_depth_{0.0}, depth_time_{0.0};  // m, m s: of an elastic contact
     T peak_{0.0}, impulse_{0.0};          // N, N s: of a damped one
     T peak_time_{0.0};                    // s
+    T transient_until_{infinite};         // s
+    bool is_any_transient_ = false;
     std::array<ContactTally, lanes> tally_{};
 };
 

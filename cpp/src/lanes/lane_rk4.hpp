@@ -116,12 +116,14 @@ protected:
         return sums_work() ? scaled(T(h / 6.0), sum) : Base::work_of_held(tau, y0, y1);
     }
 
-    // Whether the contact may change in a step from a to b, or the depth may have its greatest value of the run within it.
+    // Whether the contact may change in a step from a to b, the depth may have its greatest value of the run within it, or
+    // the first contact ceases to be transient.
     ARM3R_INLINE Mask may_be_eventful(const Cubic& depth, const Indentation<T>& a, const Indentation<T>& b, const T& h,
                                       bool is_elastic) const {
         const auto& contact = this->contact_;
         Mask eventful = contact.may_cross(depth.low(), depth.high());
         if (!contact.any_touching()) return eventful;
+        eventful = eventful || contact.ends_transient(this->t_);
         if (is_elastic) eventful = eventful || contact.may_peak(depth.high(), depth.fourth);
         if (this->plant_.wall.has_outline) eventful = eventful || (contact.touching() && is_near_edge(a, b, h));
         return eventful;

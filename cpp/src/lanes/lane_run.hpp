@@ -105,7 +105,7 @@ public:
     }
     Metrics metrics(int lane) const;
     EnergyTotals totals(int lane) const {
-        return balance_.totals(lane, setups_[lane]->plant, contact_.peak_force(lane), Lanes<T>::get(accepted_, lane));
+        return balance_.totals(lane, setups_[lane]->plant, contact_.peak(lane).force, Lanes<T>::get(accepted_, lane));
     }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };

@@ -187,9 +187,7 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
 
     Metrics m;
     m.outcome = outcome_[lane];
-    set_end_values(setup, get(t_), state_of(y_, lane), touches, contact_.tally(lane), m);
-    m.peak_force = contact_.peak_force(lane);
-    if (m.contacts > 0) m.peak_force_time = contact_.peak_time(lane);
+    set_end_values(setup, get(t_), state_of(y_, lane), touches, contact_.tally(lane), contact_.peak(lane), m);
     m.impulse = contact_.impulse(lane);
     m.final_force = touches ? force_of(lane) : 0;
     m.steps = steps(lane);

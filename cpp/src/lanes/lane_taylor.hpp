@@ -137,21 +137,22 @@ private:
             mean = mean + reciprocals[i + 1] * term;
         }
         auto& contact = this->contact_;
-        Mask eventful = moved && is_eventful(low, high, high, end), beside_edge = false;
+        Mask eventful = moved && is_eventful(low, high, high, end), alone = false;
         Coefficients<T> b;
         if (in_any_lane(eventful)) {
             b = bernstein(over_step);
             eventful = eventful && is_eventful_by_bernstein(b);
         }
         if (contact.any_touching()) {
-            if (this->plant_.wall.has_outline) beside_edge = moved && contact.touching() && is_near_edge();
-            const Mask uneventful = contact.touching() && !eventful && !beside_edge && moved;
+            alone = moved && contact.ends_transient(T(t0_ + this->h_));
+            if (this->plant_.wall.has_outline) alone = alone || (moved && contact.touching() && is_near_edge());
+            const Mask uneventful = contact.touching() && !eventful && !alone && moved;
             contact.add_elastic(uneventful, end, mean, this->h_, T(t0_ + this->h_));
         }
-        eventful = eventful && !beside_edge;
+        eventful = eventful && !alone;
         if (in_any_lane(eventful))
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { resolve_once(eventful, over_step, b, high); });
-        eventful = eventful || beside_edge;
+        eventful = eventful || alone;
         if (in_any_lane(eventful)) resolve_contacts(eventful);
     }
 

@@ -13,6 +13,7 @@ constexpr int changes_per_block = 4;
 constexpr double min_swing = 1;    // relative to the largest torque: the torque changed back by half its size
 constexpr double min_growth = 10;  // growth from the first oscillating block to the last one
 constexpr double close_to_singular = 1e-3;
+constexpr double a_visible_share = 0.1;  // of the friction, as a residual
 
 double to_thousandths(double x) { return nearest_integer(1000 * x) / 1000; }
 
@@ -76,26 +77,48 @@ std::optional<std::string> TorqueOscillation::error_message(double period) const
 
 std::optional<std::string> singular_pose(const Setup& setup, const Run& run, const Vec3<double>& q) {
     if (!inverts_jacobian(setup.controller())) return std::nullopt;
+    const std::string inverts = "the law inverts the Jacobian, and the arm ",
+                      advice = "; keep the arm bent, or use a law without an inverse, such as stiffness";
+    if (const auto& passed = run.singular_passage)
+        return inverts + "passed a singular pose at t = " + rounded(passed->t, 9) + " s, q = (" +
+               rounded(passed->q[0], 6) + ", " + rounded(passed->q[1], 6) + ", " + rounded(passed->q[2], 6) + ") rad" +
+               advice;
     const Arm<double>& model = setup.controller().model;
-    double closest = determinant(model, q), before = closest, when = run.t_end;
-    bool passes = false;
+    double closest = determinant(model, q), when = run.t_end;
     const auto t = run.find(ColumnIndex("t"));
     const auto q1 = run.find(ColumnIndex("q1")), q2 = run.find(ColumnIndex("q2")), q3 = run.find(ColumnIndex("q3"));
-    for (std::size_t row = run.rows; row-- > 0 && !passes;) {
+    for (std::size_t row = 0; row < run.rows; ++row) {
         const Vec3<double> there(q1[row], q2[row], q3[row]);
         const double here = determinant(model, setup.simscape ? change_convention(there) : there);
-        passes = (here < 0) != (before < 0);
-        if (passes || std::abs(here) < std::abs(closest)) {
-            closest = here;
-            when = t[row];
-        }
-        before = here;
+        if (std::abs(here) < std::abs(closest)) closest = here, when = t[row];
     }
     const double share = std::abs(closest) / max_determinant(model);
-    if (!passes && !(share < close_to_singular)) return std::nullopt;
-    return "the law inverts the Jacobian, and the arm " + std::string(passes ? "passed" : "came close to") +
-           " a singular pose at t = " + shortest(when) + " s, where det J = " + shortest(closest) + " m^3 is " +
-           shortest(share) + " of the largest; keep the arm bent, or use a law without an inverse, such as stiffness";
+    if (!(share < close_to_singular)) return std::nullopt;
+    return inverts + "came close to a singular pose at t = " + shortest(when) + " s, where det J = " +
+           shortest(closest) + " m^3 is " + shortest(share) + " of the largest" + advice;
+}
+
+std::optional<std::string> friction_in_residual(const Setup& setup, const Run& run) {
+    const Arm<double>&arm = setup.plant.arm, &model = setup.controller().model;
+    double friction = 0;
+    for (int i = 0; i < 3; ++i) friction = std::max({friction, arm.friction[i], model.friction[i]});
+    if (!setup.observes() || friction == 0) return std::nullopt;
+    const ExternalForce<double>& push = setup.plant.external_force;
+    const double until = std::min(run.events.empty() ? infinite : run.events.front().t, push.on ? push.start : infinite);
+    constexpr ColumnIndex residual[] = {"residual1", "residual2", "residual3"};
+    const auto t = run.find(ColumnIndex("t"));
+    double largest = 0, when = 0;
+    int joint = 0;
+    for (int i = 0; i < 3; ++i) {
+        const std::span<const double> r = run.find(residual[i]);
+        for (std::size_t row = 0; row < r.size() && t[row] < until; ++row)
+            if (std::abs(r[row]) > largest) largest = std::abs(r[row]), when = t[row], joint = i + 1;
+    }
+    if (!(largest > a_visible_share * friction)) return std::nullopt;
+    return "the residual of the observer reached " + rounded(largest, 4) + " N m in joint " + std::to_string(joint) +
+           " at t = " + rounded(when, 6) + " s, before anything touched the arm: it takes friction of the joints, up to " +
+           rounded(friction, 4) + " N m, for an external torque; give controller.model the friction of the arm, or keep "
+           "observer.threshold above it";
 }
 
 std::optional<std::string> missed_contact(const Setup& setup, const Run& run, double contacts) {

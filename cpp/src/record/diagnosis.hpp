@@ -41,9 +41,13 @@ private:
 // Advice on how to make the solution more accurate.
 const char* accuracy_advice(const Solver& solver);
 
-// Describes the pose nearest to a singularity, in the rows or at the end, for a law that inverts the Jacobian; empty if
-// it is not near. q: rad, slide.
+// For a law that inverts the Jacobian: the first singular pose that the arm passed, or the pose nearest to one in the
+// rows or at the end, q in rad, slide; empty if none is near.
 std::optional<std::string> singular_pose(const Setup& setup, const Run& run, const Vec3<double>& q);
+
+// Of an observer that takes the friction of the joints for an external torque: the largest residual in the rows before
+// anything has touched or pushed the arm.
+std::optional<std::string> friction_in_residual(const Setup& setup, const Run& run);
 
 // Of a run without contact whose controller was to press: how near to the wall the tip came, in the rows.
 std::optional<std::string> missed_contact(const Setup& setup, const Run& run, double contacts);

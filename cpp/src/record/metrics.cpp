@@ -68,6 +68,9 @@ constexpr SummaryNumber numbers[] = {
      [](R r) { return r.dissipated_parts[2]; }},
     {"energy_dissipated_edges", "J", "the part lost where the tip left the plate across an edge",
      [](R r) { return r.dissipated_parts[3]; }},
+    {"first_contact_peak", "N", "largest normal force in the first 0.5 s of the first contact: transient (ISO/TS 15066)",
+     [](R r) { return r.first_peak; }},
+    {"first_contact_peak_time", "s", "when the first contact had that force", [](R r) { return r.first_peak_time; }},
     {"stiffness_sigma", "N/m", "standard deviation of stiffness_estimate, where it is identifiable",
      [](R r) { return r.stiffness_sigma; }},
 };
@@ -80,7 +83,7 @@ const std::vector<SummaryNumber>& summary_table() {
 }
 
 void set_end_values(const Setup& setup, double t, const FullState& y, bool is_touching, const ContactTally& contacts,
-                    Metrics& metrics) {
+                    const Peak& peak, Metrics& metrics) {
     metrics.t_end = t;
     metrics.q = joints_out(setup, angles(y));
     metrics.qd = joints_out(setup, rates(y));
@@ -93,6 +96,12 @@ void set_end_values(const Setup& setup, double t, const FullState& y, bool is_to
     metrics.first_contact = contacts.first_contact;
     metrics.first_release = contacts.first_separation;
     metrics.contact_time = contacts.contact_time(t, is_touching);
+    metrics.peak_force = peak.force;
+    if (contacts.contacts == 0) return;
+    metrics.peak_force_time = peak.t;
+    const Peak first = contacts.peak_of_first(peak);
+    metrics.first_peak = first.force;
+    metrics.first_peak_time = first.t;
 }
 
 }  // namespace arm3r

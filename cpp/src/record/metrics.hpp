@@ -16,9 +16,9 @@ struct SummaryNumber {
     MetricGroup group = MetricGroup::others;
 };
 
-// Writes the numbers of a run that its end tells: the state `y` at t, and the contacts.
+// Writes the numbers of a run that its end tells: the state `y` at t, and the contacts with the peak of the force.
 void set_end_values(const Setup& setup, double t, const FullState& y, bool is_touching, const ContactTally& contacts,
-                    Metrics& metrics);
+                    const Peak& peak, Metrics& metrics);
 
 // In the order of a batch's table.
 const std::vector<SummaryNumber>& summary_table();

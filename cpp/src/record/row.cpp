@@ -44,11 +44,16 @@ RowPlan with_parts(std::vector<std::size_t> columns, std::vector<std::size_t> hi
 
 }  // namespace
 
-// A law that inverts the Jacobian keeps the angles: a bad end is explained by the poses before it.
+// A bad end is explained by the poses before it, a missed contact by the depths, an observer judged by its residual:
+// what a run says does not depend on its log.
 RowPlan make_row_plan(const Setup& setup, const ColumnSet& kept, bool is_judged) {
     ColumnSet hidden = kept;
-    if (inverts_jacobian(setup.controller()))
-        for (const ColumnIndex angle : {ColumnIndex("q1"), ColumnIndex("q2"), ColumnIndex("q3")}) hidden.set(angle);
+    const auto keep = [&](std::initializer_list<ColumnIndex> columns) {
+        for (const ColumnIndex column : columns) hidden.set(column);
+    };
+    if (inverts_jacobian(setup.controller())) keep({"q1", "q2", "q3"});
+    if (is_judged && tracks_force(setup.controller().type)) keep({"depth"});
+    if (is_judged && setup.observes()) keep({"residual1", "residual2", "residual3"});
     return with_parts(columns_of(setup), in_order(hidden & possible_columns(setup) & ~setup.logged),
                       is_judged ? judged_parts : 0);
 }

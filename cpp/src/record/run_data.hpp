@@ -45,6 +45,8 @@ struct Metrics {
     double contact_time = 0;           // s
     double peak_force = 0;             // N, largest normal contact force, on the dense trajectory
     double peak_force_time = unknown;  // s, when that was
+    double first_peak = unknown;       // N, largest normal force of the first contact while it is transient
+    double first_peak_time = unknown;  // s, when that was
     double final_force = 0;            // N, normal
     double impulse = 0;                // N s, of the normal force
     double ledger_residual = 0;        // J, largest at the end of a step

@@ -115,10 +115,25 @@ std::string event_lines(const Run& run) {
     return out;
 }
 
+// In the words of ISO/TS 15066, by how long the contact has lasted at t.
+std::string kind_of_force(const Run& run, double t) {
+    double since = t;
+    for (const Event& event : run.events)
+        if (event.type == Event::make && event.t <= t) since = event.t;
+    return t - since > longest_transient ? "quasi-static" : "transient";
+}
+
 std::string force_line(const Run& run) {
     if (!run.has_wall || !run.at_end) return {};
-    return line("force on wall", vector_text(run.at_end->f_on_wall) + " N at " + rounded(run.t_end, 9) + " s, peak " +
-                                     rounded(run.peak_force, 10) + " N");
+    const auto peak = [&](double force, double t) {
+        return "peak " + rounded(force, 10) + " N" +
+               (force > 0 ? " (" + kind_of_force(run, t) + ", at " + rounded(t, 6) + " s)" : "");
+    };
+    std::string out =
+        line("force on wall", vector_text(run.at_end->f_on_wall) + " N at " + rounded(run.t_end, 9) + " s, " +
+                                  peak(run.peak_force, run.peak_force_time));
+    if (run.peak_force > run.first_peak) out += line("first contact", peak(run.first_peak, run.first_peak_time));
+    return out;
 }
 
 // The metrics of a controller, if there is one.

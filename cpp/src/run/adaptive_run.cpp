@@ -155,6 +155,7 @@ private:
     void change_mode(const ContactChange& change) {
         state_.y[work_of_wall] += change.gained;
         state_.y[dissipated] += change.lost;
+        if (change.breaks()) contacts_.end_transient(state_.peak);
         record_contact_change(change, state_.y);
         if (contacts_.is_event_storm()) end(ARM3R_RUN_EVENT_STORM, event_storm_message(change.t));
         update_inputs();
@@ -305,11 +306,9 @@ private:
         set_inputs(last ? step_end.latest : infinite);
         const Y y = moving();
         const double error = stepper_.attempt(run_.t_end, y, h);
-        if (!(error < 1)) {
-            reject(h, error);
-            return false;
-        }
+        if (!(error < 1)) return reject(h, error);
         stepper_.interpolate(run_.t_end, y, h, dense_);
+        const Peak peak_before = state_.peak;
         const std::optional<Crossing> crossing = search_.next(dense_, 0, mode_, state_.peak);
         const double theta = crossing ? crossing->theta : 1;
         const double t1 = crossing ? run_.t_end + theta * h : last ? step_end.t : run_.t_end + h;
@@ -318,9 +317,8 @@ private:
         const bool waits = reached && (step_end.is_jump || step_end.is_due);  // for what holds from t1 on
         if (!diverges) log_until(waits ? t1 - setup_.clock_rounding() : t1);
         if (!is_running()) return false;
-        if (seeks_singular_pose()) seek_singular_pose(theta);
-        add_impulse(theta);
-        if (has_performance_) add_performance(theta, t1);
+        if (theta_of_transient_end() <= theta) end_transient(peak_before);
+        observe_step(theta, t1);
         state_.theta = theta;
         if (crossing) state_.y = state_at_crossing(y, h, theta);
         else std::copy_n(stepper_.end().begin(), N, state_.y.begin());
@@ -333,6 +331,22 @@ private:
                             !(crossing || came_to_rest || (reached && step_end.is_knot)),
                             reached && step_end.is_jump};
         return true;
+    }
+
+    // What is summed or looked for along the step, from its start to theta, which is the instant t1.
+    void observe_step(double theta, double t1) {
+        if (seeks_singular_pose()) seek_singular_pose(theta);
+        add_impulse(theta);
+        if (has_performance_) add_performance(theta, t1);
+    }
+
+    // Where in the step the first contact ceases to be transient.
+    double theta_of_transient_end() const {
+        return std::max((contacts_.transient_until - dense_.t0) / dense_.h, 0.0);
+    }
+    void end_transient(Peak peak) {
+        if (mode_ == ContactMode::contact) search_.include_peak(dense_, theta_of_transient_end(), peak);
+        contacts_.end_transient(peak);
     }
 
     // The dense output of RODAS4 has one order less than the end of its step, which is not accurate enough for the
@@ -356,11 +370,13 @@ private:
         if (state_.last_step.at_jump) state_.h = std::min(state_.h, first_step());
     }
 
-    void reject(double h, double error) {
+    // Returns that no step was accepted.
+    bool reject(double h, double error) {
         run_.steps.rejected += 1;
         state_.just_rejected = true;
         state_.trial_was_finite = std::isfinite(error);
         state_.h = state_.trial_was_finite ? h * std::min(1.0, stepper_.factor(error)) : 0.1 * h;
+        return false;
     }
 
     void collapse(double h) {
@@ -408,9 +424,7 @@ private:
 
     void set_end_metrics() {
         run_.steps.evaluations = stepper_.evaluations();
-        set_end_values(setup_, run_.t_end, state_.y, is_touching(mode_), contacts_, run_);
-        run_.peak_force = state_.peak.force;
-        if (contacts_.contacts > 0) run_.peak_force_time = state_.peak.t;
+        set_end_values(setup_, run_.t_end, state_.y, is_touching(mode_), contacts_, state_.peak, run_);
         run_.final_force = force_now();
         if (has_performance_) write_performance(sums_, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());

@@ -157,9 +157,10 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
                                     "; steps may miss torques that last for microseconds there: compare with a "
                                     "small solver.max_step");
     if (options_.rows && options_.judges) run_.at_end = end_values(y, theta);
-    if (is_running() && options_.judges)
-        if (const std::optional<std::string> missed = missed_contact(setup_, run_, contacts_.contacts))
-            run_.warnings.push_back(*missed);
+    if (is_running() && options_.judges) {
+        for (const auto& warning : {missed_contact(setup_, run_, contacts_.contacts), friction_in_residual(setup_, run_)})
+            if (warning) run_.warnings.push_back(*warning);
+    }
     if (run_.link_behind_wall_since >= 0)
         run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +
                                 shortest(run_.link_behind_wall_since) + " s on; only the tip feels the wall");

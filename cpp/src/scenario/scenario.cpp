@@ -421,8 +421,8 @@ private:
     }
 
     void add_warnings() {
-        if (find(root_, parse_path("controller.gravity"))) return;
-        if (const auto warning = default_gravity_warning(result_.setup)) result_.warnings.push_back(*warning);
+        const bool by_default = !find(root_, parse_path("controller.gravity"));
+        if (const auto warning = compensation_warning(result_.setup, by_default)) result_.warnings.push_back(*warning);
     }
 
     // The columns that checks can name; all columns if they cannot be known because something else is wrong.

@@ -228,7 +228,9 @@ private:
 
     // Of a line of values, the latest of which is not in it yet: the value `whole` + `share` samples ago.
     static Vec3<D> delayed(const Signals& s, std::size_t line, const Vec3<D>& now, std::size_t whole, double share) {
-        const Vec3<D> later = whole == 0 ? now : three(s, line + 3 * (whole - 1)), before = three(s, line + 3 * whole);
+        const Vec3<D> later = whole == 0 ? now : three(s, line + 3 * (whole - 1));
+        if (share == 0) return later;  // the one before may have left the line
+        const Vec3<D> before = three(s, line + 3 * whole);
         Vec3<D> seen;
         for (int i = 0; i < 3; ++i) seen[i] = later[i] + share * (before[i] - later[i]);
         return seen;

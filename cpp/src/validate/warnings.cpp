@@ -20,8 +20,10 @@ using std::numbers::pi;
 
 double norm(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
-std::string vector_text(const Vec3<double>& v) {
-    return "[" + shortest(v[0] + 0.0) + ", " + shortest(v[1] + 0.0) + ", " + shortest(v[2] + 0.0) + "]";
+template <class V>
+std::string vector_text(const V& v, int digits = 17) {
+    const auto number = [&](double x) { return digits < 17 ? rounded(x + 0.0, digits) : shortest(x + 0.0); };
+    return "[" + number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]) + "]";
 }
 
 bool uses_gravity(const Controller<double>& controller) {
@@ -33,6 +35,13 @@ bool uses_gravity(const Controller<double>& controller) {
 bool is_nearly_equal(const Vec3<double>& feels, const Vec3<double>& compensates) {
     const double distance = norm(minus(feels, compensates));
     return distance > 0 && distance < 0.01 * norm(feels);
+}
+
+// A law that compensates the weight and nothing else may be meant to compensate a part of it.
+bool is_part_of(const Vec3<double>& given, const Vec3<double>& needed, ControllerType law) {
+    const double square = dot(needed, needed), share = square > 0 ? dot(given, needed) / square : 0;
+    const bool is_along = norm(minus(given, scaled(share, needed))) <= 1e-9 * norm(needed);
+    return law == ControllerType::gravity_compensation && is_along && share >= 0 && share <= 1;
 }
 
 void warn_of_gravity(const Setup& setup, std::vector<std::string>& warnings) {
@@ -121,14 +130,26 @@ void warn_of_wall(const Setup& setup, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-std::optional<std::string> default_gravity_warning(const Setup& setup) {
-    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = setup.controller().model.gravity;
+std::optional<std::string> compensation_warning(const Setup& setup, bool by_default) {
+    const Controller<double>& controller = setup.controller();
+    const Vec3<double>&feels = setup.plant.arm.gravity, &compensates = controller.model.gravity;
+    if (!uses_gravity(controller)) return {};
     const bool differ = norm(minus(feels, compensates)) > 0 && !is_nearly_equal(feels, compensates);
-    if (!differ || !uses_gravity(setup.controller())) return {};
-    return "the plant feels the gravity " + vector_text(feels) + " m/s^2 and the controller compensates " +
-           vector_text(compensates) +
-           " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
-           ", or the value that its model must have";
+    if (differ && by_default)
+        return "the plant feels the gravity " + vector_text(feels) + " m/s^2 and the controller compensates " +
+               vector_text(compensates) +
+               " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
+               ", or the value that its model must have";
+    const auto out = [&](const Vec3<double>& tau) { return setup.simscape ? change_convention(tau) : tau; };
+    const Pose<double> start = pose(setup.q);
+    const Vec3<double> needed = gravity_torque(setup.plant.arm, start),
+                       given = gravity_torque(controller.model, start);
+    if (norm(compensates) == 0 || is_part_of(given, needed, controller.type)) return {};
+    if (norm(minus(given, needed)) <= 0.01 * norm(needed)) return {};
+    return "at its start the weight of the arm takes torques of " + vector_text(out(needed), 6) +
+           " N m to hold, and the controller compensates " + vector_text(out(given), 6) + " N m, " +
+           (differ ? "by a gravity of " + vector_text(compensates) + " m/s^2 where the plant feels " + vector_text(feels)
+                   : std::string("by a controller.model that is not the arm"));
 }
 
 std::optional<std::string> known_cause(const Setup& setup) {

@@ -10,9 +10,9 @@ namespace arm3r {
 // Warnings of what is allowed but probably a mistake, each one sentence with the numbers.
 std::vector<std::string> scenario_warnings(const Setup& setup);
 
-// The warning for a scenario without controller.gravity whose default differs from the plant's gravity. It is not part
-// of scenario_warnings(), because the numbers do not show which keys were given.
-std::optional<std::string> default_gravity_warning(const Setup& setup);
+// The warning for a controller that compensates another weight than that of the arm. `by_default`: the scenario has no
+// controller.gravity; the numbers do not show that, so this is not part of scenario_warnings().
+std::optional<std::string> compensation_warning(const Setup& setup, bool by_default);
 
 // One sentence for each control loop that is unstable at the start: by a formula, or else by its linearisation.
 std::vector<std::string> unstable_loops(const Setup& setup);

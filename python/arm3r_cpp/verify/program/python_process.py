@@ -6,7 +6,6 @@ import contextlib
 import os
 import subprocess
 import sys
-import tempfile
 import weakref
 from collections.abc import Callable
 from typing import IO, Any, NoReturn, Protocol
@@ -96,7 +95,7 @@ class PythonProcess:
             "OMP_NUM_THREADS": "1",
             "MPLBACKEND": "Agg",
             "HOME": "/",
-            "MPLCONFIGDIR": tempfile.gettempdir(),  # matplotlib wants to be shown a folder that it could write to
+            "MPLCONFIGDIR": os.environ.get("TMPDIR") or os.environ.get("TEMP") or "/tmp",  # it insists on a writable one
         }
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", _START, _FOLDER],
