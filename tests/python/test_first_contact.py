@@ -19,24 +19,28 @@ controller: {type: hybrid, switching: always}
 reference: {type: hold, force: {type: step, initial: 10, value: 80, start: 1.3}}
 time: {stop: 1.8, log_every: 1.0e-4}
 """
-CONTACTS = ("spring, stiffness: 4000", "kelvin_voigt, stiffness: 3000, damping: 15", "hunt_crossley, stiffness: 40000, dissipation: 0.5")
+CONTACTS = (
+    "spring, stiffness: 4000",
+    "kelvin_voigt, stiffness: 3000, damping: 15",
+    "hunt_crossley, stiffness: 40000, dissipation: 0.5",
+)
 TRANSIENT = 0.5  # s, ISO/TS 15066
 
 
-def due(run: arm3r.Run) -> tuple[float, float]:
-    """The largest force in the rows of the first contact while it is transient, and its instant."""
+def due(run: arm3r.Run) -> tuple[float, float, float]:
+    """The largest force in the rows of the first contact while it is transient, when that was, its growth in a row."""
     told = run.summary["metrics"]
     end = min(told["first_contact"] + TRANSIENT, told["first_release"] or np.inf)
-    here = (run.t >= told["first_contact"]) & (run.t <= end)
+    here = (run.t >= told["first_contact"]) & (run.t <= end + 1e-4)
     force = np.linalg.norm(run["f_on_wall"], axis=1)[here]
-    return float(force.max()), float(run.t[here][force.argmax()])
+    return float(force.max()), float(run.t[here][force.argmax()]), float(np.abs(np.diff(force))[-3:].max())
 
 
 def is_right(run: arm3r.Run, rel: float) -> bool:
-    force, t = due(run)
+    force, t, slope = due(run)
     told = run.summary["metrics"]
     return bool(
-        abs(told["first_contact_peak"] - force) <= rel * force
+        abs(told["first_contact_peak"] - force) <= rel * force + slope
         and abs(told["first_contact_peak_time"] - t) <= 2e-3
         and told["first_contact_peak"] <= told["peak_force"]
     )
