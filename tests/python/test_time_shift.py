@@ -152,7 +152,7 @@ def same_course(a: arm3r.Run, b: arm3r.Run) -> bool:
 
 
 def is_near(a: arm3r.Run, b: arm3r.Run) -> bool:
-    """Whether a motion is near the other one. At a thousand rad/s, what a nudge changes by a tenth is another motion."""
+    """Whether a motion is near the other one. At 1000 rad/s, what a nudge changes by a tenth is another motion."""
     fastest = np.abs(a["qd"]).max()
     return bool(fastest < 1e3 or np.abs(a["qd"] - b["qd"]).max() < 0.1 * fastest)
 
