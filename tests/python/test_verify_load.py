@@ -100,6 +100,20 @@ def test_patience_ends_with_a_process_that_sleeps(process: Any, monkeypatch: Any
 
 
 @linux
+def test_patience_ends_with_a_process_that_sleeps_a_little_each_time(process: Any, monkeypatch: Any) -> None:
+    """However often it answers: a formula that sleeps for a while would else take hours to judge."""
+    monkeypatch.setattr("arm3r_cpp.system.patience.WAITING_TIME", 1.0)
+    asleep = process("import time; time.sleep(1000)")
+    patience = Patience(asleep.pid, 50.0)
+    with pytest.raises(Waits):
+        for _ in range(50):
+            patience.renew(50.0)
+            for _ in range(4):
+                time.sleep(0.05)
+                patience.check()
+
+
+@linux
 def test_a_formula_is_not_too_slow_where_time_passes_by_itself(tmp_path: Path, monkeypatch: Any) -> None:
     """The clock runs fifty times as fast: by it an evaluation takes longer than the limit, by the processor less."""
     path = tmp_path / "gravity.py"

@@ -28,10 +28,14 @@ class Patience:
     """
 
     def __init__(self, pid: int, seconds: float) -> None:
-        self._pid, self._seconds = pid, seconds
-        self._begun = self._window_begun = processor_time(pid) or 0.0
-        self._last = time.monotonic()
-        self._waited = self._window = 0.0
+        self._pid, self._window = pid, 0.0
+        self.renew(seconds)
+        self._window_begun = self._begun
+
+    def renew(self, seconds: float) -> None:
+        """So many seconds for the next piece of work; how long the process has slept so far is not forgotten."""
+        self._seconds, self._waited = seconds, 0.0
+        self._begun, self._last = processor_time(self._pid) or 0.0, time.monotonic()
 
     def check(self) -> None:
         """To be called at least every `SLICE` seconds.

@@ -128,6 +128,7 @@ class PythonProcess:
 
     def _attach(self, process: Process, answers: SelectedPipe | PumpedPipe) -> None:
         self._process, self._answers = process, answers
+        self._patience = Patience(process.pid, STARTING_TIME)
         self._end = weakref.finalize(self, end_process, process, answers)
 
     def _send(self, head: dict[str, Any], body: bytes) -> None:
@@ -139,11 +140,11 @@ class PythonProcess:
 
     def _receive(self, seconds: float) -> tuple[Any, bytes]:
         assert self._process
-        patience = Patience(self._process.pid, seconds)
-        lengths = HEAD.unpack(self._read(HEAD.size, patience))
+        self._patience.renew(seconds)
+        lengths = HEAD.unpack(self._read(HEAD.size))
         if lengths[0] > _MOST_BYTES_OF_HEAD or lengths[1] > _MOST_BYTES:
             self._fail(BROKEN, Unjudged)
-        text, body = (self._read(length, patience) for length in lengths)
+        text, body = map(self._read, lengths)
         return self._understood(lambda: head_of(text)), body
 
     def _understood(self, parse: Callable[[], Any]) -> Any:
@@ -152,10 +153,10 @@ class PythonProcess:
         except BrokenAnswer:
             self._fail(BROKEN, Unjudged)
 
-    def _read(self, count: int, patience: Patience) -> bytes:
+    def _read(self, count: int) -> bytes:
         assert self._answers and self._process
         try:
-            return self._answers.read(count, patience)
+            return self._answers.read(count, self._patience)
         except TooSlow:
             self._hung += 1
             self._fail("takes too long: it was stopped", Unjudged)
