@@ -23,12 +23,12 @@ public:
         T time{0.0}, position{0.0}, force{0.0};  // s, m, N: of the tip and on it, along the normal
         T touches{0.0};                          // 1: the controller is in contact
         T counts{0.0};                           // 1: taken in contact and not yet used by the estimator
-        SampleErrors<T> errors;
+        T variance{0.0}, force_variance{0.0};    // m^2, N^2: of position and force
     };
 
     void load_lane(int lane) {
         for (T* zero : {&now_.touches, &now_.counts, &last_position_, &last_force_, &lagged_position_, &free_until_,
-                        &now_.errors.position, &now_.errors.force})
+                        &now_.variance, &now_.force_variance, &before_last_position_})
             Lanes<T>::set(*zero, lane, 0.0);
     }
 
@@ -58,9 +58,10 @@ public:
         const Mask settled = seen.t - free_until_ >= settling_time(digital);
         store(due, touches, T(seen.t - age * digital.sampling.period), then[0], then[1]);
         now_.counts = select(due && !settled, o, now_.counts);
+        set_variances(due, digital, seen, T(position - 2.0 * last_position_ + before_last_position_));
+        before_last_position_ = select(due, last_position_, before_last_position_);
         last_position_ = select(due, position, last_position_);
         last_force_ = select(due, pressing, last_force_);
-        set_errors(due, digital, seen);
     }
 
 private:
@@ -74,7 +75,7 @@ private:
         now_.force = select(due, force, now_.force);
         now_.touches = select(due, select(touches, T(1.0), T(0.0)), now_.touches);
         now_.counts = select(due, now_.touches, now_.counts);
-        now_.errors.position = select(due, T(1e-26 * position * position), now_.errors.position);
+        now_.variance = select(due, T(1e-26 * position * position), now_.variance);
     }
 
     // The position behind the analog low-pass of the force, which begins with the contact; exact where the tip moves
@@ -116,19 +117,27 @@ private:
         return time;
     }
 
-    // Noise, and roundings to steps of the sensors; that of numbers comes with every position.
-    ARM3R_INLINE void set_errors(const Mask& due, const DigitalController<T>& digital, const Measurement<T>& seen) {
+    // Noise, and roundings to steps of the sensors; that of numbers comes with every position. Behind the analog low-pass
+    // the position is known but for the part of its way in a sample that was uneven, by the bend of its last three, m.
+    ARM3R_INLINE void set_variances(const Mask& due, const DigitalController<T>& digital, const Measurement<T>& seen,
+                                    const T& bend) {
         const Sensors<T>& sensors = digital.sensors;
         const auto variance = [](const T& step) ARM3R_INLINE_LAMBDA { return T(step * step * (1.0 / 12)); };
         const T force = sensors.noise * sensors.noise + variance(sensors.resolution);
-        now_.errors.force = select(due, force, now_.errors.force);
-        if (!sensors.has_encoder) return;
-        const Vec3<T> per_angle = transposed_times(jacobian(digital.controller.model, seen.pose), seen.n);
-        const T position = variance(sensors.encoder_step) * dot(per_angle, per_angle);
-        now_.errors.position = select(due, T(now_.errors.position + position), now_.errors.position);
+        now_.force_variance = select(due, force, now_.force_variance);
+        T position = now_.variance;
+        if (sensors.has_analog_filter) position = position + uneven * uneven * bend * bend;
+        if (sensors.has_encoder) {
+            const Vec3<T> per_angle = transposed_times(jacobian(digital.controller.model, seen.pose), seen.n);
+            position = position + variance(sensors.encoder_step) * dot(per_angle, per_angle);
+        }
+        now_.variance = select(due, position, now_.variance);
     }
 
+    static constexpr double uneven = 0.25;
+
     Sample now_;
+    T before_last_position_{0.0};                                                      // m
     T last_position_{0.0}, last_force_{0.0}, lagged_position_{0.0}, free_until_{0.0};  // m, N, m, s
     std::array<DelayLine<max_force_delay + 2>, Lanes<T>::count> samples_;  // position, force, force before the low-pass
 };

@@ -42,6 +42,7 @@ void SampledController<T>::load_lane(int lane, const DigitalController<double>& 
     set(estimation_.period, estimation.period), set(estimation_.start, estimation.start);
     set(estimation_.forgetting, estimation.forgetting);
     set(estimation_.max_condition, estimation.max_condition);
+    set(estimation_.damping, estimation.damping), set(estimation_.dissipation, estimation.dissipation);
     set(next_estimate_, estimation.on ? estimation.start : never);
     set(estimation_.assumed, estimation.assumed), set(state_.assumed_stiffness, estimation.assumed);
     contact_samples_.load_lane(lane);
@@ -247,10 +248,11 @@ void SampledController<T>::estimate(const Mask& due) {
         first_position_ = select(first, sample.position, first_position_);
         first_time_ = select(first, sample.time, first_time_);
         estimator_.add_where(counts, T(sample.position - first_position_), T(sample.time - first_time_), sample.force,
-                             estimation_.forgetting);
+                             sample.variance, estimation_.forgetting);
         contact_samples_.use(due);
         samples_in_ = samples_in_ + select(counts, l, o);
-        const WallEstimate<T> answer = estimator_.solve(sample.errors);
+        const WallEstimate<T> answer = estimator_.solve(
+            {sample.force_variance, T(estimation_.damping + estimation_.dissipation * abs(sample.force))});
         const Mask is_valid = samples_in_ >= T(8.0) && answer.condition < estimation_.max_condition &&
                               answer.stiffness > least_certainty * answer.sigma;
         tell(due, is_valid, answer);

@@ -57,7 +57,9 @@ public:
     ARM3R_INLINE bool any_touching() const { return any_touching_; }
     ARM3R_INLINE bool any_embedded() const { return any_embedded_; }
     // Where the first contact ceases to be transient by t.
-    ARM3R_INLINE Mask ends_transient(const T& t) const { return is_any_transient_ ? t >= transient_until_ : Mask(false); }
+    ARM3R_INLINE Mask ends_transient(const T& t) const {
+        return is_any_transient_ ? t >= transient_until_ : Mask(false);
+    }
 
     // ---- a step
 

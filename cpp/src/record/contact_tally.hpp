@@ -17,8 +17,8 @@ struct ContactTally {
     double first_contact = Metrics::unknown, first_separation = Metrics::unknown;  // s
     double time_of_ended = 0;                                                      // s, in contacts that have ended
     double since = 0;                                                              // s, when the present contact began
-    double lost_at_edges = 0;  // J, by springs that lose the tip across an edge of the plate
-    double transient_until = infinite;                     // s: the peak of the first contact is fixed then
+    double lost_at_edges = 0;                             // J, by springs that lose the tip across an edge of the plate
+    double transient_until = infinite;                    // s: the peak of the first contact is fixed then
     Peak first_peak{Metrics::unknown, Metrics::unknown};  // of the first contact, as long as it is transient
 
     void begin(double t) {

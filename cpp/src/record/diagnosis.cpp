@@ -94,8 +94,8 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
     }
     const double share = std::abs(closest) / max_determinant(model);
     if (!(share < close_to_singular)) return std::nullopt;
-    return inverts + "came close to a singular pose at t = " + shortest(when) + " s, where det J = " +
-           shortest(closest) + " m^3 is " + shortest(share) + " of the largest" + advice;
+    return inverts + "came close to a singular pose at t = " + shortest(when) +
+           " s, where det J = " + shortest(closest) + " m^3 is " + shortest(share) + " of the largest" + advice;
 }
 
 std::optional<std::string> friction_in_residual(const Setup& setup, const Run& run) {
@@ -104,7 +104,8 @@ std::optional<std::string> friction_in_residual(const Setup& setup, const Run& r
     for (int i = 0; i < 3; ++i) friction = std::max({friction, arm.friction[i], model.friction[i]});
     if (!setup.observes() || friction == 0) return std::nullopt;
     const ExternalForce<double>& push = setup.plant.external_force;
-    const double until = std::min(run.events.empty() ? infinite : run.events.front().t, push.on ? push.start : infinite);
+    const double until =
+        std::min(run.events.empty() ? infinite : run.events.front().t, push.on ? push.start : infinite);
     constexpr ColumnIndex residual[] = {"residual1", "residual2", "residual3"};
     const auto t = run.find(ColumnIndex("t"));
     double largest = 0, when = 0;
@@ -116,8 +117,9 @@ std::optional<std::string> friction_in_residual(const Setup& setup, const Run& r
     }
     if (!(largest > a_visible_share * friction)) return std::nullopt;
     return "the residual of the observer reached " + rounded(largest, 4) + " N m in joint " + std::to_string(joint) +
-           " at t = " + rounded(when, 6) + " s, before anything touched the arm: it takes friction of the joints, up to " +
-           rounded(friction, 4) + " N m, for an external torque; give controller.model the friction of the arm, or keep "
+           " at t = " + rounded(when, 6) +
+           " s, before anything touched the arm: it takes friction of the joints, up to " + rounded(friction, 4) +
+           " N m, for an external torque; give controller.model the friction of the arm, or keep "
            "observer.threshold above it";
 }
 

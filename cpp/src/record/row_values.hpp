@@ -268,10 +268,11 @@ ARM3R_INLINE void write_observer(const RowContext& context, const RightHandSide<
 template <class T>
 ARM3R_INLINE void write_memory(const RowContext& context, const RowState<T>& now, const State<T, full_size>& y,
                                RowWriter<T>& write) {
-    write.number("stiffness_estimate", T(context.controller_state.stiffness));
-    write.number("stiffness_sigma", T(context.controller_state.stiffness_sigma));
-    write.number("wall_speed_estimate", T(context.controller_state.wall_speed));
-    write.number("identifiable", T(context.controller_state.identifiable));
+    const double touches = is_touching(context.mode) ? 1 : 0;  // an estimate lives for one contact
+    write.number("stiffness_estimate", T(touches * context.controller_state.stiffness));
+    write.number("stiffness_sigma", T(touches * context.controller_state.stiffness_sigma));
+    write.number("wall_speed_estimate", T(touches * context.controller_state.wall_speed));
+    write.number("identifiable", T(touches * context.controller_state.identifiable));
     write.number("tank_energy", context.is_sampled ? T(context.controller_state.memory[0]) : y[law_at]);
     T saturated(0.0);
     for (int i = 0; i < 3; ++i)

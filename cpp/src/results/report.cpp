@@ -129,9 +129,8 @@ std::string force_line(const Run& run) {
         return "peak " + rounded(force, 10) + " N" +
                (force > 0 ? " (" + kind_of_force(run, t) + ", at " + rounded(t, 6) + " s)" : "");
     };
-    std::string out =
-        line("force on wall", vector_text(run.at_end->f_on_wall) + " N at " + rounded(run.t_end, 9) + " s, " +
-                                  peak(run.peak_force, run.peak_force_time));
+    std::string out = line("force on wall", vector_text(run.at_end->f_on_wall) + " N at " + rounded(run.t_end, 9) +
+                                                " s, " + peak(run.peak_force, run.peak_force_time));
     if (run.peak_force > run.first_peak) out += line("first contact", peak(run.first_peak, run.first_peak_time));
     return out;
 }

@@ -341,9 +341,7 @@ private:
     }
 
     // Where in the step the first contact ceases to be transient.
-    double theta_of_transient_end() const {
-        return std::max((contacts_.transient_until - dense_.t0) / dense_.h, 0.0);
-    }
+    double theta_of_transient_end() const { return std::max((contacts_.transient_until - dense_.t0) / dense_.h, 0.0); }
     void end_transient(Peak peak) {
         if (mode_ == ContactMode::contact) search_.include_peak(dense_, theta_of_transient_end(), peak);
         contacts_.end_transient(peak);
@@ -429,7 +427,7 @@ private:
         if (has_performance_) write_performance(sums_, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());
         run_.choices = stepper_.choices();
-        if (controller_state_.identifiable > 0) {
+        if (is_touching(mode_) && controller_state_.identifiable > 0) {
             run_.stiffness_estimate = controller_state_.stiffness;
             run_.stiffness_sigma = controller_state_.stiffness_sigma;
             run_.wall_speed_estimate = controller_state_.wall_speed;

@@ -67,7 +67,7 @@ Observer<double> make_observer(std::span<const double> params) {
     return observer;
 }
 
-Estimation<double> make_estimation(std::span<const double> params) {
+Estimation<double> make_estimation(std::span<const double> params, const Contact<double>& contact) {
     Estimation<double> estimation;
     estimation.on = true;
     estimation.wall_moves = is<"estimator.wall", "moving">(params);
@@ -76,6 +76,8 @@ Estimation<double> make_estimation(std::span<const double> params) {
     estimation.forgetting = at<"estimator.forgetting">(params);
     estimation.max_condition = at<"estimator.largest_condition">(params);
     estimation.assumed = at<"controller.assumed_stiffness">(params);
+    estimation.damping = contact.law == ContactLaw::kelvin_voigt ? contact.damping : 0;
+    estimation.dissipation = contact.law == ContactLaw::hunt_crossley ? contact.dissipation : 0;
     return estimation;
 }
 

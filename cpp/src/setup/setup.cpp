@@ -287,7 +287,7 @@ Setup::Setup(std::span<const double> params) : Setup() {
     log_every = at<"time.log_every">(params);
     logged = logged_columns(params);
     if (at<"push">(params) != 0) plant.external_force = make_external_force(params);
-    if (at<"estimator">(params) != 0) estimation = make_estimation(params);
+    if (at<"estimator">(params) != 0) estimation = make_estimation(params, plant.contact);
     wire_sampling(params, *this);
     set_jumps_on_clock(*this);
 }

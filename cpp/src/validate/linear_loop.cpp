@@ -110,7 +110,7 @@ State<double, full_size> state_at_start(const Setup& setup, TipPlace place) {
 
 // Of motion and memory; the work of the run's own quadratures is left out.
 SquareMatrix continuous_matrix(const Setup& setup, TipPlace place) {
-    constexpr std::size_t memory = full_size - state_size;
+    constexpr std::size_t memory = std::size_t(full_size) - std::size_t(state_size);
     RightHandSide<double, D> rhs(setup.plant);
     rhs.law_function = compiled_law<double, D>();
     rhs.force_mode = force_mode(place);

@@ -142,14 +142,14 @@ std::optional<std::string> compensation_warning(const Setup& setup, bool by_defa
                ", or the value that its model must have";
     const auto out = [&](const Vec3<double>& tau) { return setup.simscape ? change_convention(tau) : tau; };
     const Pose<double> start = pose(setup.q);
-    const Vec3<double> needed = gravity_torque(setup.plant.arm, start),
-                       given = gravity_torque(controller.model, start);
+    const Vec3<double> needed = gravity_torque(setup.plant.arm, start), given = gravity_torque(controller.model, start);
     if (norm(compensates) == 0 || is_part_of(given, needed, controller.type)) return {};
     if (norm(minus(given, needed)) <= 0.01 * norm(needed)) return {};
     return "at its start the weight of the arm takes torques of " + vector_text(out(needed), 6) +
            " N m to hold, and the controller compensates " + vector_text(out(given), 6) + " N m, " +
-           (differ ? "by a gravity of " + vector_text(compensates) + " m/s^2 where the plant feels " + vector_text(feels)
-                   : std::string("by a controller.model that is not the arm"));
+           (differ
+                ? "by a gravity of " + vector_text(compensates) + " m/s^2 where the plant feels " + vector_text(feels)
+                : std::string("by a controller.model that is not the arm"));
 }
 
 std::optional<std::string> known_cause(const Setup& setup) {

@@ -2,7 +2,7 @@
 // The wall's stiffness, position and speed from force and position alone: least squares with forgetting of
 // f = k s - k s0 + k v t (8.7), kept as a triangular factor that each sample is rotated into, so that the condition of
 // the answer is that of the data and not its square. What remains of the samples after the rotations tells how far the
-// stiffness may be from the truth (8.10).
+// stiffness may be from the truth.
 
 #include <array>
 #include <limits>
@@ -19,10 +19,11 @@ struct WallEstimate {
     T sigma;        // N/m, standard deviation of the stiffness; infinite or NaN where the samples do not tell it
 };
 
-// What is known of the errors of a sample: the variances of its position, m^2, and of its force, N^2.
+// What is known of the errors of a fit: the variance of a force, N^2; and the damping of the wall, N s/m, whose force the
+// fit of a spring takes for a part of the spring's.
 template <class T>
-struct SampleErrors {
-    T position{0.0}, force{0.0};
+struct FitErrors {
+    T force, damping;
 };
 
 template <class T>
@@ -35,20 +36,23 @@ public:
         for (T& x : numbers_) clear(x);
     }
 
-    // s: m along the pressing direction; f: N; t: s since the first sample.
-    ARM3R_INLINE void add(const T& s, const T& t, const T& f, const T& forgetting) {
+    // s: m along the pressing direction; f: N; t: s since the first sample; variance: of s, m^2.
+    ARM3R_INLINE void add(const T& s, const T& t, const T& f, const T& variance, const T& forgetting) {
         const T weight = sqrt(forgetting);
         std::array<T, 4> row{s, T(1.0), size_ == 3 ? t : f, f}, again = row;
         rotate_in(row, fit_at, size_ + 1, weight);
         rotate_in(again, spread_at, size_, forgetting);
         add_residual(row[size_], forgetting);
+        add_speed(s, t, forgetting);
+        numbers_[variances] = forgetting * numbers_[variances] + variance;
     }
 
     // The sample enters only where `due`.
     template <class M>
-    ARM3R_INLINE void add_where(const M& due, const T& s, const T& t, const T& f, const T& forgetting) {
+    ARM3R_INLINE void add_where(const M& due, const T& s, const T& t, const T& f, const T& variance,
+                                const T& forgetting) {
         Estimator after = *this;
-        after.add(s, t, f, forgetting);
+        after.add(s, t, f, variance, forgetting);
         for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = select(due, after.numbers_[i], numbers_[i]);
     }
 
@@ -58,7 +62,7 @@ public:
         for (T& x : numbers_) x = select(lost, T(0.0), x);
     }
 
-    ARM3R_INLINE WallEstimate<T> solve(const SampleErrors<T>& errors) const {
+    ARM3R_INLINE WallEstimate<T> solve(const FitErrors<T>& errors) const {
         std::array<T, 3> x{T(0.0), T(0.0), T(0.0)};
         for (int i = size_ - 1; i >= 0; --i) {
             T rest = fit(i, size_);
@@ -83,6 +87,10 @@ private:
         squares,
         products,
         recent,
+        speeds,
+        last_position,
+        last_time,
+        variances,
         number_count
     };
 
@@ -118,8 +126,18 @@ private:
         numbers_[recent] = memory * (numbers_[recent] + residual);
     }
 
-    // (8.10)
-    ARM3R_INLINE T sigma(const T& stiffness, const T& condition, const SampleErrors<T>& errors) const {
+    // Of the tip since the sample before.
+    ARM3R_INLINE void add_speed(const T& s, const T& t, const T& forgetting) {
+        const auto is_first = numbers_[weights_at] == T(1.0);
+        const T way = select(is_first, T(0.0), T(s - numbers_[last_position]));
+        const T speed = way / select(is_first, T(1.0), T(t - numbers_[last_time]));
+        numbers_[speeds] = forgetting * numbers_[speeds] + speed * speed;
+        numbers_[last_position] = s;
+        numbers_[last_time] = t;
+    }
+
+    // (8.7)
+    ARM3R_INLINE T sigma(const T& stiffness, const T& condition, const FitErrors<T>& errors) const {
         const std::array<T, 9> inverse = inverse_of_fit();
         T position(0.0), spread_of_k(0.0), fitted(0.0);
         for (int j = 0; j < size_; ++j) position = position + inverse[j] * inverse[j];
@@ -136,7 +154,8 @@ private:
         const T weights = numbers_[weights_at], freedom = weights - fitted;
         const T samples = freedom * weights / numbers_[squared_weights], least = rounding * force();
         const T square = stiffness * stiffness, residual = numbers_[squares] / freedom;
-        const T expected = errors.force + square * errors.position + least * least;
+        const T variance = numbers_[variances] / weights;
+        const T expected = errors.force + square * variance + least * least;
         const T moved = 1.0 / (weights * position);
         const T most = expected * (1.0 + 4.0 * sqrt(T(2.0 / samples))) + square * moved * (misfit * misfit);
         const T repeats =
@@ -144,8 +163,9 @@ private:
         const T independent = max(T(samples / repeats), T(2.0));
         const T by_noise =
             max(residual, T(0.5 * expected)) * spread_of_k * repeats * (independent / (independent - 2.0));
-        const T by_position = stiffness * errors.position / moved, by_rounding = rounding * condition * stiffness;
-        const T sigma = sqrt(T(by_noise + by_position * by_position + by_rounding * by_rounding));
+        const T by_position = stiffness * variance / moved, by_rounding = rounding * condition * stiffness;
+        const T by_damping = errors.damping * errors.damping * numbers_[speeds] / (weights * moved);
+        const T sigma = sqrt(T(by_noise + by_position * by_position + by_rounding * by_rounding + by_damping));
         return select(residual <= most, sigma, T(infinite));
     }
 

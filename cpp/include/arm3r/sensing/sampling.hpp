@@ -78,10 +78,11 @@ struct EstimationChoices {
 
 template <class P>
 struct Estimation : EstimationChoices {
-    P period, start;  // s
-    P forgetting;     // forgetting factor: the weight of a sample is multiplied by it at each later sample
-    P max_condition;  // the estimate is not valid above it
-    P assumed;        // N/m: what a law that asks the estimator goes by where the wall is not identifiable
+    P period, start;         // s
+    P forgetting;            // forgetting factor: the weight of a sample is multiplied by it at each later sample
+    P max_condition;         // the estimate is not valid above it
+    P assumed;               // N/m: what a law that asks the estimator goes by where the wall is not identifiable
+    P damping, dissipation;  // N s/m, s/m: of the wall, which is fitted as a spring
 };
 
 // An external force on the tip, beside that of the wall: it grows linearly during `rise` and then stays constant.

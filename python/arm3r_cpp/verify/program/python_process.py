@@ -95,7 +95,9 @@ class PythonProcess:
             "OMP_NUM_THREADS": "1",
             "MPLBACKEND": "Agg",
             "HOME": "/",
-            "MPLCONFIGDIR": os.environ.get("TMPDIR") or os.environ.get("TEMP") or "/tmp",  # it insists on a writable one
+            "MPLCONFIGDIR": os.environ.get("TMPDIR")
+            or os.environ.get("TEMP")
+            or "/tmp",  # it insists on a writable one
         }
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", _START, _FOLDER],
