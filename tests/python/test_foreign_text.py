@@ -16,6 +16,7 @@ from arm3r_cpp.commands import exercise, run, verify
 from arm3r_cpp.exercises.folder import Row
 from arm3r_cpp.exercises.mark import Mark
 from arm3r_cpp.exercises.table import csv_of
+from arm3r_cpp.verify.program.python_process import PythonProcess
 
 CONTROLS = [*map(chr, range(32)), *map(chr, range(0x7F, 0xA0))]
 BIDI = [*"\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200e\u200f\u061c"]
@@ -61,8 +62,7 @@ def answering(head: str, body: str = "b''", lengths: str = "None") -> str:
     return text.replace("ROWS", "len(frame.f_locals['table'])")
 
 
-def test_a_message_of_a_formula_forges_no_line(tmp_path: Path, capsys: Any, monkeypatch: Any) -> None:
-    monkeypatch.setattr("arm3r_cpp.verify.judge.MENDING_EDITS", 10)  # each ends the process of the second formula
+def test_a_message_of_a_formula_forges_no_line(tmp_path: Path, capsys: Any) -> None:
     for text in (RAISES % FORGED, answering(repr({"error": FORGED, "line": 2}))):
         path = tmp_path / "gravity.py"
         path.write_text(text)
@@ -73,6 +73,17 @@ def test_a_message_of_a_formula_forges_no_line(tmp_path: Path, capsys: Any, monk
             assert not any(line.startswith(("mine.py", " mine.py")) for line in (out + error).splitlines())
         page = arm3r.verify.gravity(str(path))._repr_html_()
         assert is_harmless(html.unescape(page))
+
+
+def test_a_formula_that_ends_its_process_has_few_edits_tried(tmp_path: Path, monkeypatch: Any) -> None:
+    """Each of them would start a process, and some wait before they end it."""
+    started = []
+    start = PythonProcess._start
+    monkeypatch.setattr(PythonProcess, "_start", lambda self: (started.append(self), start(self)))
+    path = tmp_path / "gravity.py"
+    path.write_text(answering(repr({"error": "no", "line": 2})))
+    assert not arm3r.verify.gravity(str(path))
+    assert len(started) < 10
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ class PythonProcess:
         self._seconds = [0.0]
         self._process: Process | None = None
         self._answers: SelectedPipe | PumpedPipe | None = None
-        self._hung = 0
+        self._ends = 0
 
     @property
     def seconds(self) -> float:
@@ -76,8 +76,8 @@ class PythonProcess:
             ProgramError: the function failed, or its process ended.
             Unjudged: it took too long, needs too much memory, or answered in the process's place.
         """
-        if edit and self._hung > 3:
-            raise ProgramError("too many edits made it hang")
+        if edit and self._ends > 3:
+            raise ProgramError("too many edits ended its process")
         if self._process is None:
             self._start()
         head = {"rows": len(table), "slots": call.slots, "lifted": call.lifted, "edit": edit and list(edit)}
@@ -160,10 +160,8 @@ class PythonProcess:
         try:
             return self._answers.read(count, self._patience)
         except TooSlow:
-            self._hung += 1
             self._fail("takes too long: it was stopped", Unjudged)
         except Waits:
-            self._hung += 1
             self._fail("takes too long: it waits for something", Unjudged)
         except EOFError:
             if (processor_time(self._process.pid) or 0.0) > PROCESSOR_TIME - 1:
@@ -171,6 +169,7 @@ class PythonProcess:
             self._fail("ends its process")
 
     def _fail(self, message: str, kind: type[ProcessEnded] = ProcessEnded) -> NoReturn:
+        self._ends += 1
         self.close()
         raise kind(message)
 
