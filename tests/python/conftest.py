@@ -76,7 +76,7 @@ def cli(executable: Path) -> Cli:
     """cli("run", path, ...): run the executable; text in and out, other arguments as subprocess.run's."""
 
     def call(*arguments: object, **options: object) -> subprocess.CompletedProcess[str]:
-        options = {"capture_output": True, "text": True, "timeout": 120, **options}
+        options = {"capture_output": True, "text": True, "timeout": 600, **options}
         return subprocess.run([executable, *map(str, arguments)], **options)
 
     return call
@@ -88,7 +88,7 @@ def python() -> Cli:
 
     def call(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, env={**os.environ, **environment}
+            [sys.executable, "-c", code], capture_output=True, text=True, timeout=600, env={**os.environ, **environment}
         )
 
     return call

@@ -385,7 +385,7 @@ def test_pace_is_given_once(here: Path) -> None:
 
 
 def test_the_installed_command(scripts: Path) -> None:
-    done = subprocess.run([scripts / "arm3r-animate", "--help"], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([scripts / "arm3r-animate", "--help"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0
     for option in ("-o", "--fps", "--speed", "--every", "--from", "--to", "ffmpeg"):
         assert option in done.stdout

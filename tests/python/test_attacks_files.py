@@ -37,13 +37,13 @@ def run_file(tmp_path: Path) -> Path:
 
 
 def command(scripts: Path, *words: object, **options: Any) -> subprocess.CompletedProcess[str]:
-    options = {"capture_output": True, "text": True, "timeout": 60, **options}
+    options = {"capture_output": True, "text": True, "timeout": 600, **options}
     return subprocess.run(list(map(str, (scripts / words[0], *words[1:]))), **options)
 
 
 def test_a_disk_that_is_full_from_the_start_is_exit_6(scripts: Path, sweep_file: Path, tmp_path: Path) -> None:
     call = f"ulimit -f 0; exec {scripts}/arm3r-sweep {sweep_file} -o {tmp_path}/out"
-    done = subprocess.run(["bash", "-c", call], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(["bash", "-c", call], capture_output=True, text=True, timeout=600)
     assert done.returncode == 6 and "cannot be written" in done.stderr and "Traceback" not in done.stderr, done
     assert command(scripts, "arm3r-sweep", sweep_file, "-o", tmp_path / "out", "--resume").returncode == 0
 
@@ -66,7 +66,7 @@ def test_a_fifo_in_a_sweeps_folder_is_refused(scripts: Path, sweep_file: Path, t
     assert command(scripts, "arm3r-sweep", sweep_file, "-o", folder).returncode == 0
     (folder / name).unlink()
     os.mkfifo(folder / name)
-    done = command(scripts, "arm3r-sweep", sweep_file, "-o", folder, "--resume", timeout=20)
+    done = command(scripts, "arm3r-sweep", sweep_file, "-o", folder, "--resume", timeout=600)
     assert done.returncode in (2, 6) and "Traceback" not in done.stderr, done
     if name == "ledger.jsonl":
         with pytest.raises(arm3r.UsageError):

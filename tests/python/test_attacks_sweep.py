@@ -62,7 +62,7 @@ def test_a_shard_that_is_too_large_for_the_memory_is_refused_by_its_runs(scripts
     call = [scripts / "arm3r-sweep", tmp_path / "s.yaml", "-o", tmp_path / "out"]
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (400 << 20, 400 << 20))  # noqa: E731
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # each would take memory for itself
-    done = subprocess.run(call, capture_output=True, text=True, preexec_fn=limit, env=environment, timeout=120)
+    done = subprocess.run(call, capture_output=True, text=True, preexec_fn=limit, env=environment, timeout=600)
     assert done.returncode == 5, done.stderr
     assert done.stderr.endswith("runs 0 to 999999 take more memory than there is; give a smaller `shard`\n")
     assert not (tmp_path / "out" / "table.csv").exists()

@@ -420,7 +420,7 @@ def test_exit_codes(command: Any, file: Any, words: list[str], code: int, messag
     file("raises.py", "def law(t):\n    return [0, 0, 1/(t - 0.1)]\n")
     file("leaves.py", "raise SystemExit(0)\ndef law(q):\n    return q\n")
     file("import.py", "import nope_not_there\ndef law(q):\n    return q\n")
-    done = command("run", *words, timeout=60)
+    done = command("run", *words, timeout=600)
     assert done.returncode == code and message in done.stderr and "Traceback" not in done.stderr, done.stderr
     assert len([line for line in done.stderr.splitlines() if line.strip()]) <= 2
 

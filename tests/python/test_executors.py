@@ -79,7 +79,7 @@ def test_mpi(expected: bytes, tmp_path: Path, scripts: Path) -> None:
     (tmp_path / "script.py").write_text(MPI)
     (tmp_path / "sweep.yaml").write_text(SWEEP)
     call = [mpiexec, "-n", "3", sys.executable, "-m", "mpi4py.futures", "script.py", "sweep.yaml", "out"]
-    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=120, env={**os.environ})
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=600, env={**os.environ})
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out/table.csv").read_bytes() == expected
 

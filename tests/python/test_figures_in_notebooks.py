@@ -34,7 +34,7 @@ PYPLOT = [
 def pictures(cells: list[tuple[str, int]]) -> tuple[list[int], list[str]]:
     """How many pictures the cells of a notebook show, and the text of each one's value."""
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code) for code, _ in cells])
-    nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+    nbclient.NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
     data = [[output.get("data", {}) for output in cell.outputs] for cell in notebook.cells]
     values = ["".join(part.get("text/plain", "") for part in outputs if "image/png" not in part) for outputs in data]
     return [sum("image/png" in part for part in outputs) for outputs in data], values

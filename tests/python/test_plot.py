@@ -360,10 +360,10 @@ def test_failures_say_why_and_exit_like_arm3r(
 
 
 def test_the_installed_command(stored: Path, scripts: Path) -> None:
-    done = subprocess.run([scripts / "arm3r-plot", "--help"], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([scripts / "arm3r-plot", "--help"], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0
     assert "--lecture" in done.stdout
-    assert subprocess.run([scripts / "arm3r-plot"], capture_output=True, timeout=60).returncode == 2
+    assert subprocess.run([scripts / "arm3r-plot"], capture_output=True, timeout=600).returncode == 2
     plot = [scripts / "arm3r", "plot", stored, "-o", stored.parent]
-    done = subprocess.run(plot, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(plot, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr

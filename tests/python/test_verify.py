@@ -32,7 +32,7 @@ LECTURE_GRAVITY = MATLAB_GRAVITY.replace("SIGN(", "-(")
 def command(scripts: Path) -> Any:
     def call(*arguments: object) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [scripts / "arm3r", "verify", *map(str, arguments)], capture_output=True, text=True, timeout=60
+            [scripts / "arm3r", "verify", *map(str, arguments)], capture_output=True, text=True, timeout=600
         )
 
     return call

@@ -36,7 +36,7 @@ def by_octave(text: str, program: MatlabProgram, folder: Path) -> Any:
         lines.append(f"printf('%.17g ', [{'; '.join(f'{one}(:)' for one in outputs)}]); printf('\\n');")
     done = subprocess.run(
         [str(OCTAVE), "--no-gui", "--quiet", "--norc", "--eval", "\n".join([f"addpath('{folder}');", *lines])],
-        capture_output=True, text=True, timeout=120,
+        capture_output=True, text=True, timeout=600,
     )  # fmt: skip
     return np.array([line.split() for line in done.stdout.splitlines()], float) if done.returncode == 0 else None
 

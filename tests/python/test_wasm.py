@@ -43,7 +43,7 @@ def unpacked(value: dict[str, Any]) -> Any:
 def core(*calls: list[Any]) -> list[Any]:
     """The results of calls of one core, each [method, argument...]."""
     command = ["node", str(TOOLS / "call.mjs"), str(WASM)]
-    done = subprocess.run(command, input=json.dumps(calls), capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, input=json.dumps(calls), capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     results: list[Any] = json.loads(done.stdout, object_hook=unpacked)
     assert len(results) == len(calls)
