@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import random
+import re
 
 import arm3r_cpp as arm3r
 import numpy as np
@@ -173,3 +175,70 @@ def test_an_adaptive_reference_that_always_controls_the_force_leaves_for_the_wal
     assert run.summary["contacts"] == 1
     assert run["f_on_wall_x"][-1] == pytest.approx(10, rel=0.01)
     assert not any("no contact" in warning for warning in run.summary["warnings"])
+
+
+# ---- what a model does not know -------------------------------------------------------------------------------------
+
+HOLDS = (
+    "format: 1\narm: {convention: slide}\ninitial: {q: [0.2, 0.5, -1.1]}\nreference: {type: hold}\ntime: {stop: 0.1}\n"
+)
+
+
+@pytest.mark.parametrize(
+    "law, warns",
+    [
+        ("{type: joint_pd, gravity: 9.80665}", False),
+        ("{type: joint_pd, gravity: 19.6133}", True),
+        ("{type: joint_pd, gravity: 0}", False),
+        ("{type: joint_pd, gravity: [0, 3, -9]}", True),
+        ("{type: gravity_compensation, gravity: 4}", False),
+        ("{type: gravity_compensation, gravity: 19.6133}", True),
+        ("{type: impedance, model: {payload: {mass: 2}}}", True),
+        ("{type: impedance, model: {payload: {mass: 0.02}}}", False),
+        ("{type: impedance, model: {link3: {mass: 3}}}", True),
+    ],
+)
+def test_a_weight_that_is_compensated_wrongly_is_told_with_both_torques(law: str, warns: bool) -> None:
+    text = HOLDS.replace("reference: {type: hold}\n", "") if "compensation" in law else HOLDS
+    scenario = arm3r.Scenario(f"{text}controller: {law}\n")
+    said = [line for line in scenario._quiet().run().warnings if "the weight of the arm takes torques of" in line]
+    assert len(said) == warns
+    if not warns:
+        return
+    needed, given = (np.array(json.loads(found)) for found in re.findall(r"(\[[^\]]*\]) N m", said[0]))
+    arm = scenario.arm
+    assert needed == pytest.approx(arm.gravity_torque([0.2, 0.5, -1.1]), rel=1e-4, abs=1e-4)
+    assert np.linalg.norm(given - needed) > 0.2 * np.linalg.norm(needed)
+
+
+OBSERVED = """format: 1
+arm: {convention: slide, friction: [1.8, 1.2, 0.6]}
+initial: {q: [0.1, 0.4, -0.9]}
+reference: {type: minimum_jerk, q: [0.5, 0.1, -0.4], duration: 1}
+sampling: {rate: 1000}
+observer: {}
+time: {stop: 1, log_columns: [t]}
+"""
+
+
+@pytest.mark.parametrize("model, warns", [("", False), (", model: {friction: [0, 0, 0]}", True)])
+def test_friction_that_an_observer_takes_for_contact_is_told_with_its_size(model: str, warns: bool) -> None:
+    text = f"{OBSERVED}controller: {{type: joint_pd{model}}}\n"
+    said = [line for line in warnings_of(text).split("\n") if "the residual of the observer reached" in line]
+    assert len(said) == warns
+    if warns:
+        size = float(re.findall(r"reached (\S+) N m", said[0])[0])
+        residual = arm3r.Scenario(text.replace("[t]", "[t, residual1, residual2, residual3]")).run()["residual"]
+        assert size == pytest.approx(np.abs(residual).max(), rel=1e-3) and 1 < size < 2
+
+
+def test_a_wanted_force_above_a_floor_that_is_not_reached_says_so() -> None:
+    text = """format: 1
+arm: {convention: slide}
+initial: {q: [0, 0.5, -1.0]}
+wall: {point: [1, 0, -0.3], normal: [0, 0, 1], size: infinite, acts_on_arm: true, motion: {type: fixed}}
+controller: {type: hybrid}
+reference: {type: hold, force: {value: 10}}
+time: {stop: 0.2, log_columns: [t]}
+"""
+    assert "no nearer to the wall than 0.3 m" in warnings_of(text)
