@@ -13,6 +13,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from arm3r_cpp.commands import plot as plot_cli
 from arm3r_cpp.params import param_key, places
 from arm3r_cpp.sweeps import advice
 from arm3r_cpp.sweeps.table import SweepTable
@@ -302,14 +303,18 @@ def log(path: Path, time: str = "time", separator: str = ",", extra: str = "") -
 
 
 @pytest.mark.parametrize(("time", "separator"), [("time", ","), ("t", ";"), ("Time [s]", "\t"), ("t (s)", ",")])
-def test_a_measurement_is_drawn_beside_a_run(scripts: Path, folder: Path, time: str, separator: str) -> None:
+def test_a_measurement_is_drawn_beside_a_run(
+    folder: Path, time: str, separator: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
     log(folder / "log.csv", time, separator, extra="q2_deg")
-    assert command(scripts, folder, "run", "s.yaml", "-o", "run.csv").returncode == 0
+    arm3r.Scenario.load("s.yaml").run().to_csv("run.csv")
     for words in (["--compare", "run.csv", "log.csv"], ["run.csv", "--compare", "log.csv"], ["log.csv"],
                   ["--compare", "s.yaml", "log.csv", "--panels", "tau"]):  # fmt: skip
-        done = command(scripts, folder, "plot", *words, "-o", "figure.svg")
-        assert done.returncode == 0, done
-        assert "not drawn" in done.stderr and "q2_deg" in done.stderr and "degrees" in done.stderr
+        with pytest.warns() as told:
+            assert plot_cli.main([*words, "-o", "figure.svg"]) == 0
+        said = " ".join(str(one.message) for one in told)
+        assert "not drawn" in said and "q2_deg" in said and "degrees" in said
     run = arm3r.Run.load(folder / "run.csv")
     figure = arm3r.plot.measured({"t": [0.0, 0.02], "q2": [0.0, 0.1]}, [run])
     assert len(figure.axes) == 1 and len(figure.axes[0].lines) >= 2
@@ -329,10 +334,14 @@ def test_a_measurement_is_drawn_beside_a_run(scripts: Path, folder: Path, time: 
         ("", "a column `t` or `time`"),
     ],
 )
-def test_what_is_no_measurement_is_refused_in_a_line(scripts: Path, folder: Path, text: str, due: str) -> None:
-    (folder / "log.csv").write_text(text)
-    done = command(scripts, folder, "plot", "--compare", "s.yaml", "log.csv", "-o", "figure.png")
-    assert done.returncode == 2 and due in done.stderr and len(done.stderr.splitlines()) == 1, done
+def test_what_is_no_measurement_is_refused_in_a_line(
+    folder: Path, text: str, due: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    Path("log.csv").write_text(text)
+    assert plot_cli.main(["--compare", "s.yaml", "log.csv", "-o", "figure.png"]) == 2
+    said = capsys.readouterr().err
+    assert due in said and len(said.splitlines()) == 1, said
 
 
 # ---- the controller beside yours, pages, figures, hints --------------------------------------------------------------

@@ -26,7 +26,7 @@ COMPUTES = """
 import time
 
 def gravity(q1, q2, q3):
-    end = time.process_time() + 0.02
+    end = time.process_time() + 0.002
     while time.process_time() < end:
         pass
     return [0, 0, q1]
