@@ -105,7 +105,7 @@ private:
             case ARM3R_RUN_CONTROLLER: return lane_run_.error_message();
             case ARM3R_RUN_ILL_CONDITIONED: return ill_conditioned_message(t);
             case ARM3R_RUN_STEP_COLLAPSE: return step_collapse_message(lane_run_.h(0), t);
-            default: return divergence_message(run_.q, t);
+            default: return divergence_message(run_.q, run_.qd, t);
         }
     }
 
