@@ -115,7 +115,7 @@ class Band:
             ratio = abs(other[name] - self.run[name]) / (limit + own.columns[name] if own else limit)
             if own:
                 ratio = np.where(own.rows, ratio, 0.0)
-            if name == "contact":
+            if name in ("contact", "force_phase"):
                 ratio = np.where(self._tells_contact(other, own), ratio, 0.0)
             row = int(np.argmax(ratio))
             if not ratio[row] <= worst.ratio:
@@ -125,8 +125,8 @@ class Band:
     def _tells_contact(self, other: arm3r.Run, own: OwnError | None) -> np.ndarray:
         """The rows whose depth says on which side of the face the tip is: it exceeds its own error.
 
-        `contact` is 0 or 1, and turns with the last bit of a depth of zero. The instants of contact events are compared
-        by themselves.
+        `contact` and `force_phase` are 0 or 1, and turn with the last bit of a depth of zero. The instants of contact
+        events are compared by themselves.
         """
         if "depth" not in self.limits:
             return np.ones(len(self.run.t), bool)

@@ -71,7 +71,11 @@ def check_random_hybrids(count: int, *, sampled: bool) -> None:
     rng, reached = np.random.default_rng(SEED), 0
     for number in range(count):
         made, gains, limit = random_hybrid(rng, sampled=sampled)
-        z = integral(made, made.run(), gains, made["reference.force.value"])
+        try:
+            run = made.run()
+        except arm3r.BudgetError:  # an unstable loop, whose steps are used up
+            continue
+        z = integral(made, run, gains, made["reference.force.value"])
         if len(z) == 0:
             continue
         largest = np.abs(z).max()

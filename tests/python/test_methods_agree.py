@@ -65,9 +65,15 @@ def worst_gap(scenario: Keys, band: Band, method: str, rates: tuple[int, ...] = 
 
 
 def disagreements(number: int, longest: float, methods: tuple[str, ...]) -> list[str]:
-    """What is wrong in a scenario, one text for each method that leaves the band."""
+    """What is wrong in a scenario, one text for each method that leaves the band.
+
+    Behind a singular pose that a law inverts nothing compares: torques last for microseconds there, which steps of any
+    tolerance may pass over, as the run says.
+    """
     scenario = random_scenario(np.random.default_rng([SEED, number]), longest=longest)
     band, found = band_of(scenario, number), []
+    if band and any("passed a singular pose" in line for line in band.run.warnings):
+        return []
     for method in methods if band and band.growth < UNSTABLE else []:
         gap = worst_gap(scenario, band, method)
         if gap and gap.ratio > 1:  # two disturbances, and three steps, may miss what others tell
