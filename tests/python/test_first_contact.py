@@ -96,6 +96,27 @@ def test_a_batch_has_the_peak_of_single_runs(method: str) -> None:
             assert one == other or (np.isnan(one) and np.isnan(other)), (sample_seed(), k, name, one, other)
 
 
+@pytest.mark.parametrize("method", ["rk4", "taylor", "dopri5", "rodas4"])
+def test_a_force_that_still_grows_after_half_a_second_is_no_transient_peak(method: str) -> None:
+    """A soft wall, and rows so far apart that rk4 takes many steps between two of them."""
+    soft = PRESSES.replace("LAW", "spring, stiffness: 3").replace("log_every: 1.0e-4", "log_every: 0.4")
+    falls = re.sub(r"controller:.*\nreference:.*\n", "controller: {type: gravity_compensation}\n", soft)
+    falls = falls.replace("{type: fixed}", "{type: constant, velocity: 0.1}").replace(
+        "qd: [0, 0.1, 0.1]", "qd: [0, 0, 0]"
+    )
+    falls = falls.replace(", damping: [0.2, 0.1, 0.3]", "")
+    scenario = arm3r.Scenario(falls + f"solver: {{method: {method}}}\n")
+    told = scenario.run().summary["metrics"]
+    until = told["first_contact"] + TRANSIENT
+    assert told["contacts"] == 1 and told["contact_time"] > 0.6
+    assert told["peak_force_time"] > until + 0.05
+    assert told["first_contact_peak_time"] == pytest.approx(until, abs=1e-9)
+    scenario["time.stop"] = until
+    assert scenario.run().summary["final_force"] == pytest.approx(told["first_contact_peak"], rel=1e-6)
+    many = scenario.batch({"time.stop": [1.8] * 9})
+    assert set(many["first_contact_peak"]) == {told["first_contact_peak"]}
+
+
 def test_a_contact_that_has_not_ended_has_the_peak_so_far() -> None:
     scenario = arm3r.Scenario(PRESSES.replace("LAW", CONTACTS[0]))
     scenario["time.stop"] = 0.75

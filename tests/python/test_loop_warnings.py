@@ -221,6 +221,14 @@ time: {stop: 1, log_columns: [t]}
 """
 
 
+def test_a_residual_that_no_friction_explains_is_not_called_friction() -> None:
+    """The model lacks a payload: the joints have friction, too, but a fraction of what the observer sees."""
+    text = f"{OBSERVED}controller: {{type: joint_pd, model: {{payload: {{mass: 0}}}}}}\n"
+    said = warnings_of(text.replace("friction: [1.8, 1.2, 0.6]", "payload: {mass: 2}, friction: [0.1, 0.1, 0.1]"))
+    (line,) = [line for line in said.split("\n") if "the residual of the observer reached" in line]
+    assert "more than its friction, 0.1 N m, explains" in line and "can be taken" not in line
+
+
 @pytest.mark.parametrize("model, warns", [("", False), (", model: {friction: [0, 0, 0]}", True)])
 def test_friction_that_an_observer_takes_for_contact_is_told_with_its_size(model: str, warns: bool) -> None:
     text = f"{OBSERVED}controller: {{type: joint_pd{model}}}\n"
@@ -230,6 +238,19 @@ def test_friction_that_an_observer_takes_for_contact_is_told_with_its_size(model
         size = float(re.findall(r"reached (\S+) N m", said[0])[0])
         residual = arm3r.Scenario(text.replace("[t]", "[t, residual1, residual2, residual3]")).run()["residual"]
         assert size == pytest.approx(np.abs(residual).max(), rel=1e-3) and 1 < size < 2
+
+
+def test_a_tip_beside_the_plate_is_not_said_to_be_before_the_wall() -> None:
+    text = """format: 1
+arm: {convention: slide}
+initial: {q: [0, 0.5, -1.0]}
+wall: {point: [1.6, 0.6, 0], normal: [-1, 0, 0], size: [0.1, 0.1], acts_on_arm: true, motion: {type: fixed}}
+controller: {type: hybrid}
+reference: {type: hold, force: {value: 10}}
+time: {stop: 0.2}
+"""
+    said = warnings_of(text)
+    assert "no contact: reference.force wants 10 N" in said and "nearer" not in said
 
 
 def test_a_wanted_force_above_a_floor_that_is_not_reached_says_so() -> None:

@@ -355,4 +355,9 @@ std::string rounded(double value, int digits) {
     return {text, std::to_chars(text, text + sizeof text, shown, std::chars_format::general, digits).ptr};
 }
 
+std::string rounded(const std::array<double, 3>& values, int digits) {
+    return "(" + rounded(values[0], digits) + ", " + rounded(values[1], digits) + ", " + rounded(values[2], digits) +
+           ")";
+}
+
 }  // namespace arm3r

@@ -1,6 +1,7 @@
 #pragma once
 // The one way in which text becomes a number, strict and free of the locale: [+-]digits[.digits][e[+-]digits], also .5
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -28,6 +29,8 @@ std::string shortest(double value);
 
 // A double for people, to significant digits. No sign on zero.
 std::string rounded(double value, int digits);
+// "(1.5, 0, -2)"
+std::string rounded(const std::array<double, 3>& values, int digits);
 
 // The same value for a YAML file, so that readers of YAML 1.1 take it for a number too: 1.0e-9, 1.0e+6. From a text with
 // the syntax above, or from a double.

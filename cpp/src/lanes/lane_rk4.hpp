@@ -116,14 +116,14 @@ protected:
         return sums_work() ? scaled(T(h / 6.0), sum) : Base::work_of_held(tau, y0, y1);
     }
 
-    // Whether the contact may change in a step from a to b, the depth may have its greatest value of the run within it, or
-    // the first contact ceases to be transient.
+    // Whether the contact may change in a step of h seconds from a to b, which ends at t1, the depth may have its greatest
+    // value of the run within it, or the first contact ceases to be transient.
     ARM3R_INLINE Mask may_be_eventful(const Cubic& depth, const Indentation<T>& a, const Indentation<T>& b, const T& h,
-                                      bool is_elastic) const {
+                                      const T& t1, bool is_elastic) const {
         const auto& contact = this->contact_;
         Mask eventful = contact.may_cross(depth.low(), depth.high());
         if (!contact.any_touching()) return eventful;
-        eventful = eventful || contact.ends_transient(this->t_);
+        eventful = eventful || contact.ends_transient(t1);
         if (is_elastic) eventful = eventful || contact.may_peak(depth.high(), depth.fourth);
         if (this->plant_.wall.has_outline) eventful = eventful || (contact.touching() && is_near_edge(a, b, h));
         return eventful;
@@ -304,7 +304,7 @@ private:
         const Cubic depth(before_.depth, T(h * before_.rate), this->in_.depth, T(h * this->in_.rate));
         auto& contact = this->contact_;
         const bool is_elastic = terms == Terms::common || contact.is_elastic();
-        const Mask eventful = may_be_eventful(depth, before_, this->in_, h, is_elastic);
+        const Mask eventful = may_be_eventful(depth, before_, this->in_, h, this->t_, is_elastic);
         if (contact.any_touching()) {
             const Mask uneventful = contact.touching() && !eventful && moved;
             if (is_elastic) contact.add_elastic(uneventful, depth.fourth, depth.mean(), h, this->t_);

@@ -192,11 +192,7 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
     m.final_force = touches ? force_of(lane) : 0;
     m.steps = steps(lane);
     if (performance_.is_on()) write_performance(performance_.sums(lane), setup, m);
-    if (is_controlled_ && touches && get(sampled_.controller_state().identifiable) > 0) {
-        m.stiffness_estimate = get(sampled_.controller_state().stiffness);
-        m.stiffness_sigma = get(sampled_.controller_state().stiffness_sigma);
-        m.wall_speed_estimate = get(sampled_.controller_state().wall_speed);
-    }
+    if (is_controlled_ && touches) set_estimate(sampled_.controller_state(), lane, m);
     const EnergyTotals totals = this->totals(lane);
     m.ledger_residual = totals.residual;
     const bool balances = totals.residual <= balance_limit(setup.solver, totals);

@@ -52,7 +52,7 @@ ARM3R_INLINE bool SingleRk4::move_indentation(double t1, const Pose<double>& p, 
     Indentation<double> in = now.in;
     set_indentation(even_wall_at(plant_.wall, t1), p, qd, in);
     const Cubic depth(now.in.depth, h * now.in.rate, in.depth, h * in.rate);
-    if (may_be_eventful(depth, now.in, in, h, true)) return false;
+    if (may_be_eventful(depth, now.in, in, h, t1, true)) return false;
     contact_.add_elastic(contact_.touching(), depth.fourth, depth.mean(), h, t1);
     now.in = in;
     return true;

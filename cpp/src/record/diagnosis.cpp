@@ -80,9 +80,8 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
     const std::string inverts = "the law inverts the Jacobian, and the arm ",
                       advice = "; keep the arm bent, or use a law without an inverse, such as stiffness";
     if (const auto& passed = run.singular_passage)
-        return inverts + "passed a singular pose at t = " + rounded(passed->t, 9) + " s, q = (" +
-               rounded(passed->q[0], 6) + ", " + rounded(passed->q[1], 6) + ", " + rounded(passed->q[2], 6) + ") rad" +
-               advice;
+        return inverts + "passed a singular pose at t = " + rounded(passed->t, 9) + " s, q = " + rounded(passed->q, 6) +
+               " rad" + advice;
     const Arm<double>& model = setup.controller().model;
     double closest = determinant(model, q), when = run.t_end;
     const auto t = run.find(ColumnIndex("t"));
@@ -99,27 +98,31 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
 }
 
 std::optional<std::string> friction_in_residual(const Setup& setup, const Run& run) {
-    const Arm<double>&arm = setup.plant.arm, &model = setup.controller().model;
-    double friction = 0;
-    for (int i = 0; i < 3; ++i) friction = std::max({friction, arm.friction[i], model.friction[i]});
-    if (!setup.observes() || friction == 0) return std::nullopt;
+    if (!setup.observes()) return std::nullopt;
     const ExternalForce<double>& push = setup.plant.external_force;
     const double until =
         std::min(run.events.empty() ? infinite : run.events.front().t, push.on ? push.start : infinite);
     constexpr ColumnIndex residual[] = {"residual1", "residual2", "residual3"};
     const auto t = run.find(ColumnIndex("t"));
-    double largest = 0, when = 0;
+    double largest = 0, when = 0, friction = 0;
     int joint = 0;
     for (int i = 0; i < 3; ++i) {
+        const double own = std::max(setup.plant.arm.friction[i], setup.controller().model.friction[i]);
         const std::span<const double> r = run.find(residual[i]);
         for (std::size_t row = 0; row < r.size() && t[row] < until; ++row)
-            if (std::abs(r[row]) > largest) largest = std::abs(r[row]), when = t[row], joint = i + 1;
+            if (own > 0 && std::abs(r[row]) > std::max(largest, a_visible_share * own))
+                largest = std::abs(r[row]), when = t[row], joint = i + 1, friction = own;
     }
-    if (!(largest > a_visible_share * friction)) return std::nullopt;
+    if (joint == 0) return std::nullopt;
+    constexpr double a_sum = 2;  // of the friction of the arm and that of the model
+    const bool is_friction = largest <= a_sum * friction;
     return "the residual of the observer reached " + rounded(largest, 4) + " N m in joint " + std::to_string(joint) +
-           " at t = " + rounded(when, 6) +
-           " s, before anything touched the arm: it takes friction of the joints, up to " + rounded(friction, 4) +
-           " N m, for an external torque; give controller.model the friction of the arm, or keep "
+           " at t = " + rounded(when, 6) + " s, before anything touched the arm: " +
+           (is_friction ? "the friction of this joint, " + rounded(friction, 4) +
+                              " N m, can be taken for an external "
+                              "torque; give controller.model the friction of the arm, or keep "
+                        : "more than its friction, " + rounded(friction, 4) +
+                              " N m, explains; compare controller.model with the arm, or keep ") +
            "observer.threshold above it";
 }
 
@@ -129,8 +132,9 @@ std::optional<std::string> missed_contact(const Setup& setup, const Run& run, do
     if (contacts > 0 || !setup.plant.has_wall || !tracks_force(law.type) || !(wanted > 0)) return std::nullopt;
     std::string message = "no contact: reference.force wants " + shortest(wanted) + " N";
     const std::span<const double> depths = run.find(ColumnIndex("depth"));
-    if (!depths.empty())
-        message += ", and the tip came no nearer to the wall than " + rounded(-std::ranges::max(depths), 4) + " m";
+    const double nearest = depths.empty() ? infinite : -std::ranges::max(depths);
+    if (nearest >= 0 && nearest < infinite)  // below 0 the tip is beside the plate
+        message += ", and in the rows the tip came no nearer to the wall than " + rounded(nearest, 4) + " m";
     return message + (law.switching == Switching::always
                           ? "; move the reference or the wall towards the other"
                           : "; without contact the tip keeps to its reference: let it lead to the wall, or take "

@@ -45,8 +45,8 @@ const char* accuracy_advice(const Solver& solver);
 // rows or at the end, q in rad, slide; empty if none is near.
 std::optional<std::string> singular_pose(const Setup& setup, const Run& run, const Vec3<double>& q);
 
-// Of an observer that takes the friction of the joints for an external torque: the largest residual in the rows before
-// anything has touched or pushed the arm.
+// Of an observer at joints with friction: the largest residual in the rows before anything has touched or pushed the arm,
+// where it is not small beside that friction, and whether that explains it.
 std::optional<std::string> friction_in_residual(const Setup& setup, const Run& run);
 
 // Of a run without contact whose controller was to press: how near to the wall the tip came, in the rows.

@@ -20,6 +20,16 @@ struct SummaryNumber {
 void set_end_values(const Setup& setup, double t, const FullState& y, bool is_touching, const ContactTally& contacts,
                     const Peak& peak, Metrics& metrics);
 
+// The same of what the estimator tells in a lane that is in contact at the end.
+template <class T>
+void set_estimate(const ControllerState<T>& state, int lane, Metrics& metrics) {
+    const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
+    if (!(get(state.identifiable) > 0)) return;
+    metrics.stiffness_estimate = get(state.stiffness);
+    metrics.stiffness_sigma = get(state.stiffness_sigma);
+    metrics.wall_speed_estimate = get(state.wall_speed);
+}
+
 // In the order of a batch's table.
 const std::vector<SummaryNumber>& summary_table();
 

@@ -85,10 +85,6 @@ std::string metrics_json(const Run& run) {
 
 // ---- for people
 
-std::string vector_text(const std::array<double, 3>& v) {
-    return "(" + rounded(v[0], 7) + ", " + rounded(v[1], 7) + ", " + rounded(v[2], 7) + ")";
-}
-
 // The time span of the run; the start is left out if it is 0 s.
 std::string span_text(const Run& run) {
     const std::span<const double> t = run.find(ColumnIndex("t"));
@@ -103,7 +99,7 @@ std::string event_lines(const Run& run) {
         const Event& event = run.events[i];
         out +=
             line(event.type == Event::make ? "contact" : "contact lost",
-                 "at " + fixed(event.t, 6) + " s (" + rounded(event.t, 16) + "), tip " + vector_text(event.tip) + " m");
+                 "at " + fixed(event.t, 6) + " s (" + rounded(event.t, 16) + "), tip " + rounded(event.tip, 7) + " m");
     }
     if (run.events.size() > most)
         out += line("", "... and " + std::to_string(run.events.size() - most) + " more events");
@@ -129,7 +125,7 @@ std::string force_line(const Run& run) {
         return "peak " + rounded(force, 10) + " N" +
                (force > 0 ? " (" + kind_of_force(run, t) + ", at " + rounded(t, 6) + " s)" : "");
     };
-    std::string out = line("force on wall", vector_text(run.at_end->f_on_wall) + " N at " + rounded(run.t_end, 9) +
+    std::string out = line("force on wall", rounded(run.at_end->f_on_wall, 7) + " N at " + rounded(run.t_end, 9) +
                                                 " s, " + peak(run.peak_force, run.peak_force_time));
     if (run.peak_force > run.first_peak) out += line("first contact", peak(run.first_peak, run.first_peak_time));
     return out;

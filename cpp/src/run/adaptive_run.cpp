@@ -421,11 +421,7 @@ private:
         if (has_performance_) write_performance(sums_, setup_, run_);
         run_.stiff_steps = double(stepper_.stiff_steps());
         run_.choices = stepper_.choices();
-        if (is_touching(mode_) && controller_state_.identifiable > 0) {
-            run_.stiffness_estimate = controller_state_.stiffness;
-            run_.stiffness_sigma = controller_state_.stiffness_sigma;
-            run_.wall_speed_estimate = controller_state_.wall_speed;
-        }
+        if (is_touching(mode_)) set_estimate(controller_state_, 0, run_);
     }
 
     Stepper<N> stepper_;

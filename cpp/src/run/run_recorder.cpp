@@ -151,8 +151,9 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
         }
     }
     explain(y);
-    if (is_running() && options_.judges && !setup_.digital.sampling.on && !known_cause(setup_))
-        if (const std::optional<std::string> passed = singular_pose(setup_, run_, angles(y)))
+    if (is_running() && options_.judges && !setup_.digital.sampling.on)
+        if (const std::optional<std::string> passed = singular_pose(setup_, run_, angles(y));
+            passed && !known_cause(setup_))
             run_.warnings.push_back(*passed +
                                     "; steps may miss torques that last for microseconds there: compare with a "
                                     "small solver.max_step");

@@ -96,10 +96,9 @@ struct Comparable {
 };
 
 std::string text_of(const SingularPassage& passage) {
-    const auto& q = passage.q;
-    return "at " + rounded(passage.t, 6) + " s the arm passes the singular pose q = (" + rounded(q[0], 4) + ", " +
-           rounded(q[1], 4) + ", " + rounded(q[2], 4) + ") rad, where the law inverts the Jacobian: its torque may " +
-           "last there for less than a step, and no tolerance tells";
+    return "at " + rounded(passage.t, 6) + " s the arm passes the singular pose q = " + rounded(passage.q, 4) +
+           " rad, where the law inverts the Jacobian: its torque may last there for less than a step, and no tolerance "
+           "tells";
 }
 
 // Torques that are held from sample to sample have no peak between them.
