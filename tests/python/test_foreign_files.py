@@ -167,7 +167,7 @@ def test_a_broken_file_is_one_line(ending: str, ends_well: Callable[[str, bytes]
             ends_well(ending, text.encode())
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(300, marks=pytest.mark.gate)])
+@pytest.mark.parametrize("count", [40, pytest.param(300, marks=[pytest.mark.gate, pytest.mark.random])])
 def test_random_changes_of_files_are_one_line_each(
     count: int, capfd: Any, ends_well: Callable[[str, bytes], int]
 ) -> None:

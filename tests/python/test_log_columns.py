@@ -299,5 +299,6 @@ def test_the_end_of_a_run_does_not_depend_on_what_is_logged() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_the_ends_of_many_runs_do_not_depend_on_what_is_logged() -> None:
     check_ends(1500)

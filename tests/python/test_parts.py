@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from inner_pytest import run_pytest
 
 CONFTEST = """
 from parts import *
@@ -30,13 +28,7 @@ def pytest_with(request: pytest.FixtureRequest, tmp_path: Path):
     """pytest_with(need, tests): pytest's end and output in an empty folder with these tests."""
 
     def call(need: str, tests: str = TESTS) -> tuple[int, str]:
-        (tmp_path / "conftest.py").write_text(CONFTEST)
-        (tmp_path / "test_all.py").write_text(tests)
-        (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = needs")
-        environment = {**os.environ, "ARM3R_NEED": need, "PYTHONPATH": str(Path(__file__).parent)}
-        command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *request.param]
-        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
-        return done.returncode, done.stdout + done.stderr
+        return run_pytest(tmp_path, CONFTEST, tests, *request.param, ARM3R_NEED=need)
 
     return call
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from inner_pytest import run_pytest
 
 TESTS = """
 import os, pytest
@@ -20,16 +18,11 @@ def test_that_is_skipped(): pytest.skip("for now")
 @pytest.fixture(params=[[], ["-n", "2"]], ids=["alone", "with workers"])
 def pytest_again(request: pytest.FixtureRequest, tmp_path: Path):
     """pytest_again(name, **variables): the exit status and the output of pytest that goes on with the run of a name."""
-    (tmp_path / "conftest.py").write_text("import resuming\ndef pytest_configure(config):\n"
-                                          "    config.pluginmanager.register(resuming)\n")  # fmt: skip
-    (tmp_path / "test_all.py").write_text(TESTS)
+    conftest = "import resuming\ndef pytest_configure(config):\n    config.pluginmanager.register(resuming)\n"
 
     def call(name: str, **variables: str) -> tuple[int, str]:
-        here = {"PYTHONPATH": str(Path(__file__).parent), "ARM3R_RESUME": str(tmp_path / "made" / f"{name}.passed")}
-        command = [sys.executable, "-m", "pytest", "-rA", "-p", "no:cacheprovider", *request.param]
-        environment = {**os.environ, **here, **variables}
-        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
-        return done.returncode, done.stdout + done.stderr
+        resume = str(tmp_path / "made" / f"{name}.passed")
+        return run_pytest(tmp_path, conftest, TESTS, "-rA", *request.param, ARM3R_RESUME=resume, **variables)
 
     return call
 

@@ -249,6 +249,7 @@ def test_no_verdict_knows_the_height_of_the_base() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.random
 def test_no_verdict_knows_the_height_of_the_base_in_many() -> None:
     check_height(range(1000, 1400), longest=1.2)
 

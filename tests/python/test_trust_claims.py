@@ -56,7 +56,7 @@ def random_jolt(rng: np.random.Generator) -> dict[str, Any]:
     return drawn | {"push": {"force": rng.uniform(-20, 20, 3), "start": at, "duration": 0.05}}
 
 
-@pytest.mark.parametrize("count", [25, pytest.param(400, marks=pytest.mark.gate)])
+@pytest.mark.parametrize("count", [25, pytest.param(400, marks=[pytest.mark.gate, pytest.mark.random])])
 def test_no_horizon_is_later_than_the_error_allows_wherever_steps_end(count: int) -> None:
     rng = np.random.default_rng(sample_seed())
     early = 0
@@ -94,7 +94,7 @@ def random_passage(rng: np.random.Generator) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("count", [6, pytest.param(80, marks=pytest.mark.gate)])
+@pytest.mark.parametrize("count", [6, pytest.param(80, marks=[pytest.mark.gate, pytest.mark.random])])
 def test_the_horizon_ends_where_a_law_inverts_the_jacobian_of_a_singular_pose(count: int) -> None:
     rng = np.random.default_rng(sample_seed())
     passes = 0
@@ -184,7 +184,7 @@ def random_impact(rng: np.random.Generator) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("count", [12, pytest.param(150, marks=pytest.mark.gate)])
+@pytest.mark.parametrize("count", [12, pytest.param(150, marks=[pytest.mark.gate, pytest.mark.random])])
 def test_a_closed_form_is_the_same_beside_every_solver(count: int) -> None:
     rng = np.random.default_rng(sample_seed())
     compared = 0
@@ -223,7 +223,7 @@ def random_small_gap(rng: np.random.Generator) -> dict[str, Any]:
     return drawn
 
 
-@pytest.mark.parametrize("count", [60, pytest.param(1500, marks=pytest.mark.gate)])
+@pytest.mark.parametrize("count", [60, pytest.param(1500, marks=[pytest.mark.gate, pytest.mark.random])])
 def test_a_small_gap_raises_no_false_alarm(count: int) -> None:
     rng = np.random.default_rng(sample_seed())
     compared = 0
