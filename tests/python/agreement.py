@@ -154,8 +154,8 @@ class OwnError(NamedTuple):
 
     The steps are no multiples of one another and none of a millisecond: a contact that begins just before the end of a
     step must not begin just before the end of a step in every run. Up to one step away from such an instant, and from
-    an estimate that is due between two steps, the controller knows of it at the end of the step only: these rows say
-    nothing.
+    an estimate that is due between two steps, the controller knows of it at the end of the step only; and as long as
+    the error of such an instant is, one run may be in contact while the other is not: these rows say nothing.
     """
 
     columns: dict[str, np.ndarray]
@@ -165,8 +165,9 @@ class OwnError(NamedTuple):
     @classmethod
     def of(cls, scenario: Mapping[str, Any], finest: arm3r.Run, others: Sequence[arm3r.Run], step: float) -> OwnError:
         """From the run with the smallest step and those with others, of which `step` is the longest."""
-        late = [t for run in (finest, *others) for t in instants(run)] + estimates_between_steps(scenario)
-        rows = np.all([abs(finest.t - t) > step for t in late], axis=0) if late else np.ones(len(finest.t), bool)
+        late = [(t, step) for run in others for t in instants(run)] + [(t, step) for t in estimates_between_steps(scenario)]
+        late += [(t, step + error) for t, error in zip(instants(finest), event_errors(finest, others), strict=True)]
+        rows = np.all([abs(finest.t - t) > until for t, until in late], axis=0) if late else np.ones(len(finest.t), bool)
         # An error may turn a rounded reading into the next one.
         quanta = {"force_measured": scenario.get("sensors", {}).get("force", {}).get("resolution", 0.0)}
 
@@ -174,10 +175,8 @@ class OwnError(NamedTuple):
             apart = np.max([abs(run[name] - finest[name]) for run in others], axis=0)
             return TIMES_OWN_ERROR * np.maximum.accumulate(np.where(rows, apart, 0.0)) + quanta.get(name, 0.0)
 
-        events = None
-        if all(kinds(run) == kinds(finest) for run in others):
-            apart = [abs(instants(run) - instants(finest)) for run in others]
-            events = TIMES_OWN_ERROR * np.maximum.accumulate(np.max(apart, axis=0))
+        alike = all(kinds(run) == kinds(finest) for run in others)
+        events = event_errors(finest, others) if alike else None
         return cls({name: error_of(name) for name in finest.columns}, events, rows)
 
 
@@ -187,6 +186,20 @@ def estimates_between_steps(scenario: Mapping[str, Any]) -> list[float]:
         return []
     start, period = scenario["estimator"].get("start", 0), 1 / scenario["estimator"].get("rate", 500)
     return np.arange(start, scenario["time"]["stop"] + period, period).tolist()
+
+
+def event_errors(finest: arm3r.Run, others: Sequence[arm3r.Run]) -> np.ndarray:
+    """The errors of the instants of contact events, s; 0 from where on another run has other events."""
+    errors = np.zeros(len(finest.events))
+    same = min(map(len, (common_start(kinds(finest), kinds(run)) for run in others)))
+    apart = [abs(instants(run)[:same] - instants(finest)[:same]) for run in others]
+    errors[:same] = TIMES_OWN_ERROR * np.maximum.accumulate(np.max(apart, axis=0))
+    return errors
+
+
+def common_start(one: Sequence[str], other: Sequence[str]) -> Sequence[str]:
+    differ = (i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b)
+    return one[: next(differ, min(len(one), len(other)))]
 
 
 def kinds(run: arm3r.Run) -> list[str]:

@@ -126,6 +126,24 @@ std::optional<std::string> friction_in_residual(const Setup& setup, const Run& r
            "observer.threshold above it";
 }
 
+std::optional<std::string> jump_at_contact(const Setup& setup, const Run& run) {
+    if (setup.solver.method != SolverMethod::rk4) return std::nullopt;
+    const Plant<double>& plant = setup.plant;
+    const bool force_jumps =
+        plant.acts_on_arm && plant.contact.law == ContactLaw::kelvin_voigt && plant.contact.damping > 0;
+    const bool law_switches = !setup.digital.sampling.on && tracks_force(setup.controller().type) &&
+                              setup.controller().switching != Switching::always;
+    const auto within =
+        std::ranges::find_if(run.events, [&](const Event& event) { return event.t > setup.start; });
+    if (within == run.events.end() || !(law_switches || force_jumps)) return std::nullopt;
+    return std::string("contact ") + (within->type == Event::make ? "begins" : "ends") + " at t = " +
+           rounded(within->t, 9) + " s within a step of rk4, where " +
+           (law_switches ? "the law switches, which learns of it at the end of the step"
+                         : "the damping makes the force jump") +
+           ": that step is of first order, and so is what follows; compare with a smaller solver.step, or take "
+           "method: dopri5, whose steps end there";
+}
+
 std::optional<std::string> missed_contact(const Setup& setup, const Run& run, double contacts) {
     const Controller<double>& law = setup.controller();
     const double wanted = std::max(law.reference.force, law.reference.force_before);

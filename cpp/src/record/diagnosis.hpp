@@ -49,6 +49,9 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
 // where it is not small beside that friction, and whether that explains it.
 std::optional<std::string> friction_in_residual(const Setup& setup, const Run& run);
 
+// Of a run by rk4: the first contact that began or ended within a step and made the torque or the force jump there (5.1).
+std::optional<std::string> jump_at_contact(const Setup& setup, const Run& run);
+
 // Of a run without contact whose controller was to press: how near to the wall the tip came, in the rows.
 std::optional<std::string> missed_contact(const Setup& setup, const Run& run, double contacts);
 

@@ -159,8 +159,8 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
                                     "small solver.max_step");
     if (options_.rows && options_.judges) run_.at_end = end_values(y, theta);
     if (is_running() && options_.judges) {
-        for (const auto& warning :
-             {missed_contact(setup_, run_, contacts_.contacts), friction_in_residual(setup_, run_)})
+        for (const auto& warning : {missed_contact(setup_, run_, contacts_.contacts),
+                                    friction_in_residual(setup_, run_), jump_at_contact(setup_, run_)})
             if (warning) run_.warnings.push_back(*warning);
     }
     if (run_.link_behind_wall_since >= 0)
