@@ -165,9 +165,11 @@ class OwnError(NamedTuple):
     @classmethod
     def of(cls, scenario: Mapping[str, Any], finest: arm3r.Run, others: Sequence[arm3r.Run], step: float) -> OwnError:
         """From the run with the smallest step and those with others, of which `step` is the longest."""
-        late = [(t, step) for run in others for t in instants(run)] + [(t, step) for t in estimates_between_steps(scenario)]
+        late = [(t, step) for t in estimates_between_steps(scenario) + [t for run in others for t in instants(run)]]
         late += [(t, step + error) for t, error in zip(instants(finest), event_errors(finest, others), strict=True)]
-        rows = np.all([abs(finest.t - t) > until for t, until in late], axis=0) if late else np.ones(len(finest.t), bool)
+        rows = np.ones(len(finest.t), bool)
+        for t, until in late:
+            rows &= abs(finest.t - t) > until
         # An error may turn a rounded reading into the next one.
         quanta = {"force_measured": scenario.get("sensors", {}).get("force", {}).get("resolution", 0.0)}
 

@@ -28,6 +28,22 @@ double max_determinant(const Arm<double>& arm) {
     return a2 * a3 * (a2 + a3);
 }
 
+// What is no continuous function of time where the contact begins or ends; null: nothing.
+const char* what_jumps(const Setup& setup, const Event& event) {
+    const Controller<double>& law = setup.controller();
+    if (!setup.digital.sampling.on && tracks_force(law.type) &&
+        (law.switching != Switching::always || integrates_force(law.type)))
+        return "the law switches, which learns of it at the end of the step";
+    const Plant<double>& plant = setup.plant;
+    if (!plant.acts_on_arm) return nullptr;
+    if (plant.contact.law == ContactLaw::kelvin_voigt && plant.contact.damping > 0)
+        return "the wall's damping makes the force jump";
+    const Vec3<double> tip(event.tip[0], event.tip[1], event.tip[2]);
+    const Indentation<double> in = indentation(plant.wall, wall_at(plant.wall, event.t), tip, {0, 0, 0});
+    const bool at_edge = std::abs(inside_outline(plant.wall, in)) < std::abs(in.depth);
+    return at_edge ? "the tip passes the edge of the plate, and the force jumps" : nullptr;
+}
+
 }  // namespace
 
 const char* accuracy_advice(const Solver& solver) {
@@ -128,20 +144,15 @@ std::optional<std::string> friction_in_residual(const Setup& setup, const Run& r
 
 std::optional<std::string> jump_at_contact(const Setup& setup, const Run& run) {
     if (setup.solver.method != SolverMethod::rk4) return std::nullopt;
-    const Plant<double>& plant = setup.plant;
-    const bool force_jumps =
-        plant.acts_on_arm && plant.contact.law == ContactLaw::kelvin_voigt && plant.contact.damping > 0;
-    const bool law_switches = !setup.digital.sampling.on && tracks_force(setup.controller().type) &&
-                              setup.controller().switching != Switching::always;
-    const auto within =
-        std::ranges::find_if(run.events, [&](const Event& event) { return event.t > setup.start; });
-    if (within == run.events.end() || !(law_switches || force_jumps)) return std::nullopt;
-    return std::string("contact ") + (within->type == Event::make ? "begins" : "ends") + " at t = " +
-           rounded(within->t, 9) + " s within a step of rk4, where " +
-           (law_switches ? "the law switches, which learns of it at the end of the step"
-                         : "the damping makes the force jump") +
-           ": that step is of first order, and so is what follows; compare with a smaller solver.step, or take "
-           "method: dopri5, whose steps end there";
+    for (const Event& event : run.events) {
+        const char* what = event.t > setup.start ? what_jumps(setup, event) : nullptr;
+        if (!what) continue;
+        return std::string("contact ") + (event.type == Event::make ? "begins" : "ends") +
+               " at t = " + rounded(event.t, 9) + " s within a step of rk4, where " + what +
+               ": that step is of first order, and so is what follows; compare with a smaller solver.step, or take "
+               "method: dopri5, whose steps end there";
+    }
+    return std::nullopt;
 }
 
 std::optional<std::string> missed_contact(const Setup& setup, const Run& run, double contacts) {
