@@ -8,6 +8,7 @@ differ by no more than these runs do. No column needs a tolerance of its own.
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -154,8 +155,8 @@ class OwnError(NamedTuple):
 
     The steps are no multiples of one another and none of a millisecond: a contact that begins just before the end of a
     step must not begin just before the end of a step in every run. Up to one step away from such an instant, and from
-    an estimate that is due between two steps, the controller knows of it at the end of the step only; and as long as
-    the error of such an instant is, one run may be in contact while the other is not: these rows say nothing.
+    an estimate that is due between two steps, the controller knows of it at the end of the step only: these rows say
+    nothing.
     """
 
     columns: dict[str, np.ndarray]
@@ -165,11 +166,9 @@ class OwnError(NamedTuple):
     @classmethod
     def of(cls, scenario: Mapping[str, Any], finest: arm3r.Run, others: Sequence[arm3r.Run], step: float) -> OwnError:
         """From the run with the smallest step and those with others, of which `step` is the longest."""
-        late = [(t, step) for t in estimates_between_steps(scenario) + [t for run in others for t in instants(run)]]
-        late += [(t, step + error) for t, error in zip(instants(finest), event_errors(finest, others), strict=True)]
-        rows = np.ones(len(finest.t), bool)
-        for t, until in late:
-            rows &= abs(finest.t - t) > until
+        late = [t for run in (finest, *others) for t in instants(run)] + estimates_between_steps(scenario)
+        until = min(first_order_since(run) for run in (finest, *others)) - step
+        rows = np.all([finest.t < until, *(abs(finest.t - t) > step for t in late)], axis=0)
         # An error may turn a rounded reading into the next one.
         quanta = {"force_measured": scenario.get("sensors", {}).get("force", {}).get("resolution", 0.0)}
 
@@ -177,9 +176,17 @@ class OwnError(NamedTuple):
             apart = np.max([abs(run[name] - finest[name]) for run in others], axis=0)
             return TIMES_OWN_ERROR * np.maximum.accumulate(np.where(rows, apart, 0.0)) + quanta.get(name, 0.0)
 
-        alike = all(kinds(run) == kinds(finest) for run in others)
-        events = event_errors(finest, others) if alike else None
+        events = None
+        if until == np.inf and all(kinds(run) == kinds(finest) for run in others):
+            apart = [abs(instants(run) - instants(finest)) for run in others]
+            events = TIMES_OWN_ERROR * np.maximum.accumulate(np.max(apart, axis=0))
         return cls({name: error_of(name) for name in finest.columns}, events, rows)
+
+
+def first_order_since(run: arm3r.Run) -> float:
+    """When a run by rk4 lost its order at a contact, as it warns, s; infinite if it did not."""
+    told = re.search(r"contact (?:begins|ends) at t = (\S+) s within a step of rk4", "\n".join(run.warnings))
+    return float(told[1]) if told else np.inf
 
 
 def estimates_between_steps(scenario: Mapping[str, Any]) -> list[float]:
@@ -188,20 +195,6 @@ def estimates_between_steps(scenario: Mapping[str, Any]) -> list[float]:
         return []
     start, period = scenario["estimator"].get("start", 0), 1 / scenario["estimator"].get("rate", 500)
     return np.arange(start, scenario["time"]["stop"] + period, period).tolist()
-
-
-def event_errors(finest: arm3r.Run, others: Sequence[arm3r.Run]) -> np.ndarray:
-    """The errors of the instants of contact events, s; 0 from where on another run has other events."""
-    errors = np.zeros(len(finest.events))
-    same = min(map(len, (common_start(kinds(finest), kinds(run)) for run in others)))
-    apart = [abs(instants(run)[:same] - instants(finest)[:same]) for run in others]
-    errors[:same] = TIMES_OWN_ERROR * np.maximum.accumulate(np.max(apart, axis=0))
-    return errors
-
-
-def common_start(one: Sequence[str], other: Sequence[str]) -> Sequence[str]:
-    differ = (i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b)
-    return one[: next(differ, min(len(one), len(other)))]
 
 
 def kinds(run: arm3r.Run) -> list[str]:

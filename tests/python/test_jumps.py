@@ -234,3 +234,27 @@ def test_a_row_at_a_jump_shows_what_holds_after_it(method: str, rate: float | No
         assert abs(run.t[row] - jump) < 1e-12, where
         assert abs(run["qdd"][row]).max() > 1, where
         assert abs(run["qdd"][row - 1]).max() < 1e-6, where
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4", "auto"])
+@pytest.mark.parametrize("rate", [None, 100])
+def test_knots_that_differ_by_rounding_are_one_instant(method: str, rate: float | None) -> None:
+    """The end of a path is its start and its duration, beside the last knot of its table: one bit apart, often."""
+    seed = sample_seed()
+    rng = np.random.default_rng([seed, 8])
+    apart = 0
+    for _ in range(60):
+        begin, end = round(rng.uniform(0.01, 0.3), 3), round(rng.uniform(0.35, 0.7), 3)
+        apart += begin + (end - begin) != end
+        changes = {
+            "controller": {"type": "impedance", "damping": 20},
+            "reference": {"type": "table", "t": [begin, end], "x": [1.0, 1.1], "y": [0.3, 0.2], "z": [0.2, 0.1]},
+            "solver": {"method": method},
+            "time": {"stop": 0.75, "log_every": 0.001},
+            **({"sampling": {"rate": rate}} if rate else {}),
+        }
+        run = scenario(HELD, changes).run()
+        row = round(end / 0.001)
+        for axis in "xyz":
+            assert run[f"tip_dv{axis}"][row] == pytest.approx(run[f"tip_v{axis}"][row], abs=1e-6), (seed, begin, end)
+    assert apart

@@ -280,9 +280,10 @@ private:
 
     StepEnd step_end() const {
         const double knot = next_knot(setup_, run_.t_end), due = sampled_.next(), rounding = setup_.clock_rounding();
-        const double first = std::min({knot, due, setup_.stop});
-        const bool is_end = first >= setup_.stop - rounding;  // no step is as short as the rounding errors of the clock
-        const double t = is_end ? setup_.stop : knot <= first + rounding ? knot : first;
+        double t = std::min({knot, due, setup_.stop});
+        // No step is as short as the rounding errors of the clock.
+        for (double other = knot; other <= t + rounding; other = next_knot(setup_, other)) t = other;
+        if (t >= setup_.stop - rounding) t = setup_.stop;
         const bool is_knot = knot <= t, is_jump = next_jump(setup_, run_.t_end) <= t;
         const bool has_sides = is_jump || (is_knot && setup_.plant.wall.motion == Motion::table);
         return {t, is_knot, is_jump, due <= t + rounding, has_sides ? just_before(knot) : infinite};
