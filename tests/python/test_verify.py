@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import random
@@ -17,10 +18,10 @@ from arm3r_cpp.commands.verify import main as verify_main
 from arm3r_cpp.verify.formula import from_file
 from arm3r_cpp.verify.functions import formula_verdict
 from formulas import reading, runner
+from formulas.draws import draws
 from formulas.foreign import foreign_mutants
 from formulas.mutants import mutants, two_mistakes
 from formulas.programs import MATLAB_GRAVITY, MATLAB_JACOBIAN, PROGRAMS, Program
-from formulas.progress import Progress
 from formulas.rewriting import rewritten
 
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
@@ -275,13 +276,11 @@ def test_right_programs_are_right(program: Program, tmp_path: Path) -> None:
 COUNTED = ("missed", "false", "named", "unexplained", "alarm")
 
 
-def counted(
-    count: int, seed: int, folder: Path, *, two: bool = False, foreign: bool = False, name: str = ""
-) -> Counter[str]:
-    """The outcomes for random mutants that differ from what is right and run; with a name the count can go on later."""
-    progress = Progress(seed, name)
-    for choose in progress.draws():
-        if sum(progress.outcomes[one] for one in COUNTED) >= count:
+def counted(count: int, seed: int, folder: Path, *, two: bool = False, foreign: bool = False) -> Counter[str]:
+    """The outcomes for random mutants that differ from what is right and run."""
+    outcomes: Counter[str] = Counter()
+    for choose in draws(seed):
+        if sum(outcomes[one] for one in COUNTED) >= count:
             break
         program = choose.choice([one for one in PROGRAMS if not foreign or one.language == "python"])
         if foreign:
@@ -292,10 +291,11 @@ def counted(
             text = choose.choice(mutants(program.text, program.language))
         if text is not None:
             outcome = judged(program, text, folder)
-            progress.outcomes[outcome] += 1
+            outcomes[outcome] += 1
             if outcome in ("missed", "false", "alarm", "unexplained"):
                 print(outcome, program.name, text, sep="\n")
-    return progress.finish()
+    print(dict(outcomes))
+    return outcomes
 
 
 def test_single_mistakes_are_found_and_named(tmp_path: Path) -> None:
@@ -312,7 +312,7 @@ def test_mistakes_by_a_foreign_tool_are_found(tmp_path: Path) -> None:
 @pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
-    outcomes = counted(60, SEED + part, tmp_path, foreign=True, name=f"foreign_{part}")
+    outcomes = counted(60, SEED + part, tmp_path, foreign=True)
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
     assert outcomes["named"] >= 59
 
@@ -321,7 +321,7 @@ def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
 @pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
-    outcomes = counted(100, SEED + part, tmp_path, name=f"single_{part}")
+    outcomes = counted(100, SEED + part, tmp_path)
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
     assert outcomes["named"] >= 99
 
@@ -330,25 +330,20 @@ def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
 @pytest.mark.random
 @pytest.mark.parametrize("part", range(5))
 def test_many_pairs_of_mistakes(part: int, tmp_path: Path) -> None:
-    outcomes = counted(60, SEED + part, tmp_path, two=True, name=f"pairs_{part}")
+    outcomes = counted(60, SEED + part, tmp_path, two=True)
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
     assert outcomes["named"] >= 54
 
 
-def no_alarms(count: int, seed: int, folder: Path, name: str = "") -> None:
-    progress = Progress(seed, name)
+def no_alarms(count: int, seed: int, folder: Path) -> None:
     programs = [program for program in PROGRAMS if program.language == "python"]
-    for choose in progress.draws():
-        if progress.done >= count:
-            break
+    for choose in itertools.islice(draws(seed), count):
         program = choose.choice(programs)
         text = rewritten(program.text, choose.randrange(10**9))
         path = folder / "program.py"
         path.write_text(text)
         verdict = formula_verdict(from_file(path), program.kind)
         assert verdict.ok, f"{text}\n{verdict}"
-        progress.outcomes["right"] += 1
-    progress.finish()
 
 
 def test_equivalent_programs_raise_no_alarm(tmp_path: Path) -> None:
@@ -359,7 +354,7 @@ def test_equivalent_programs_raise_no_alarm(tmp_path: Path) -> None:
 @pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_no_alarm_on_ten_thousand_right_programs(part: int, tmp_path: Path) -> None:
-    no_alarms(1000, SEED + part, tmp_path, name=f"alarms_{part}")
+    no_alarms(1000, SEED + part, tmp_path)
 
 
 # ---- coverage -------------------------------------------------------------------------------------------------------

@@ -19,9 +19,9 @@ from arm3r_cpp.verify.kinds import KINDS, standard_form
 from arm3r_cpp.verify.program.nodes import ProgramError
 from arm3r_cpp.verify.samples import Samples
 from formulas import reading
+from formulas.draws import draws
 from formulas.mistakes import Mistakes, pairs, singles, wrong_text
 from formulas.mutants import mutants
-from formulas.progress import Progress
 from numpy.typing import NDArray
 
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
@@ -189,11 +189,11 @@ def number_of(arm: str, quantity: str) -> float:
     return NUMBERS[arm].get(names.get(quantity, ""), float("nan"))
 
 
-def counted(count: int, seed: int, folder: Path, files: list[Path] = FILES, name: str = "") -> Counter[str]:
-    """The outcomes for random mutants that differ from what is right and run; with a name the count can go on later."""
-    progress = Progress(seed, name)
-    for choose in progress.draws():
-        if sum(progress.outcomes[one] for one in ("missed", "false", "named", "unexplained", "alarm")) >= count:
+def counted(count: int, seed: int, folder: Path, files: list[Path] = FILES) -> Counter[str]:
+    """The outcomes for random mutants that differ from what is right and run."""
+    outcomes: Counter[str] = Counter()
+    for choose in draws(seed):
+        if sum(outcomes[one] for one in ("missed", "false", "named", "unexplained", "alarm")) >= count:
             break
         path = choose.choice(files)
         every = mutants(path.read_text(), "matlab" if path.suffix == ".m" else "python")
@@ -201,10 +201,11 @@ def counted(count: int, seed: int, folder: Path, files: list[Path] = FILES, name
             continue
         text = choose.choice(every)
         result, words = outcome(path, text, folder)
-        progress.outcomes[result] += 1
+        outcomes[result] += 1
         if result in ("missed", "false", "alarm", "unexplained"):
             print(result, path.name, text, words, sep="\n")
-    return progress.finish()
+    print(dict(outcomes))
+    return outcomes
 
 
 def test_single_mistakes_of_students(tmp_path: Path) -> None:
@@ -264,7 +265,7 @@ def test_an_exchanged_operator_is_put_back_with_its_brackets(wrong: str, new: st
 @pytest.mark.random
 @pytest.mark.parametrize("part", range(10))
 def test_many_mistakes_of_students(part: int, tmp_path: Path) -> None:
-    outcomes = counted(100, SEED + part, tmp_path, name=f"students_{part}")
+    outcomes = counted(100, SEED + part, tmp_path)
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
     assert outcomes["named"] >= 90
 
