@@ -58,8 +58,24 @@ def parser() -> argparse.ArgumentParser:
     arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: `arm3r docs verify` says how it is written")
     add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: does it see the mistakes?")
     add("--noise", type=float, metavar="X", help="of a log, relative to an entry's scale (default: what a fit shows)")
+    add(
+        "--columns",
+        action="extend",
+        default=[],
+        type=pairs,
+        metavar="FILE=OURS,...",
+        help="of a log: what its columns are, such as joint_a=q1,jac_12=J12; units in brackets: angle=q1[deg]",
+    )
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser
+
+
+def pairs(text: str) -> list[tuple[str, str]]:
+    """ "a=q1,b=q2": a is q1, and b is q2."""
+    found = [tuple(part.strip() for part in one.rpartition("=")[::2]) for one in text.split(",")]
+    if not all(name and ours for name, ours in found):
+        raise argparse.ArgumentTypeError(f"NAME=q1,... is needed, got {text!r}")
+    return found
 
 
 def verify(options: argparse.Namespace, codes: list[int]) -> None:
@@ -77,7 +93,13 @@ def verify(options: argparse.Namespace, codes: list[int]) -> None:
         bar = Bar("repair", "edits")
         try:
             verdict = formula_verdict(
-                formula, options.kind, arm, seen_by=options.seen_by, progress=bar.draw, noise=options.noise
+                formula,
+                options.kind,
+                arm,
+                seen_by=options.seen_by,
+                progress=bar.draw,
+                noise=options.noise,
+                columns=dict(options.columns),
             )
         except Arm3rError as error:
             say(PROGRAM, error)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..arm import Arm
@@ -12,7 +12,7 @@ from ..scenario import Scenario
 from .formula import Formula, from_callable, from_file, kind_of
 from .judge import Progress, judge
 from .kinds import KINDS
-from .log import read_log
+from .log import ENDINGS, read_log
 from .log_judge import judge_log
 from .program.python_process import PythonProcess
 from .truth.chain_files import Chain
@@ -54,12 +54,14 @@ def formula_verdict(
     seen_by: Sequence[Any] = (),
     progress: Progress | None = None,
     noise: float | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> Verdict:
     """Judge a formula: a function, sympy expressions, or the path of a file.
 
     Args:
         kind: one of `KINDS`; None: found from names.
         arm: a `Scenario`, an `Arm`, a `Chain`, or the path of a scenario; None: the lecture's arm.
+        columns: of a log: what a column is, such as q1 or J12, by its name in the file; units in brackets: q1 [deg].
         noise: of a log's numbers, relative to an entry's scale; None: what a fit shows.
         seen_by: tests, of which the verdict says whether they would have seen each mistake.
 
@@ -68,16 +70,22 @@ def formula_verdict(
         UnjudgedError: what it holds is not read, or it is too slow.
     """
     try:
-        return _verdict_of(f, kind, truth_of(arm), seen_by, progress, noise)
+        return _verdict_of(f, kind, truth_of(arm), seen_by, progress, noise, columns)
     except RecursionError:
         raise UnjudgedError(f"{f}: cannot be judged: it is nested too deeply to be read") from None
 
 
 def _verdict_of(
-    f: Any, kind: str | None, truth: Any, seen_by: Sequence[Any], progress: Progress | None, noise: float | None
+    f: Any,
+    kind: str | None,
+    truth: Any,
+    seen_by: Sequence[Any],
+    progress: Progress | None,
+    noise: float | None,
+    columns: Mapping[str, str] | None,
 ) -> Verdict:
-    if isinstance(f, (str, os.PathLike)) and os.fspath(f).endswith(".csv"):
-        log = read_log(f)
+    if isinstance(f, (str, os.PathLike)) and os.fspath(f).endswith(ENDINGS):
+        log = read_log(f, columns)
         return judge_log(log, KINDS[kind] if kind else log.kind(), truth, noise=noise)
     formula = (
         f

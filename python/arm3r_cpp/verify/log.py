@@ -1,25 +1,31 @@
-"""Logs: CSV files with named columns."""
+"""Logs of the numbers of a formula, in named columns."""
 
 from __future__ import annotations
 
-import csv
 import math
 import os
 import re
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from .._messages import place
 from .._native import Floats
 from ..errors import UsageError
+from ..logs.names import Column, columns_of
+from ..logs.table import MOST_SHOWN, Table, read_table
 from .kinds import KINDS, Kind
+from .names import quantities_of
 
-_ENTRIES = {
-    "jacobian": r"J_?(\d)_?(\d)", "gravity": r"(?:g|tau_g)_?(\d)", "mass": r"M_?(\d)_?(\d)", "coriolis": r"h_?(\d)",
-    "kinematics": r"(?:p_?|tip_)([123xyz])", "inverse": r"tau_?(\d)", "forward": r"qdd_?(\d)",
-}  # fmt: skip
-_MOST_ROWS = 1_000_000
+ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".log")
 LARGEST = 1e12  # of a number
+_STATES = re.compile(r"(q|qd|qdd|tau)\d")
+_ENTRIES = {
+    "jacobian": r"J_?[(\[]?(\d)[_,]?(\d)[)\]]?", "gravity": r"(?:g|tau_g)_?(\d)",
+    "mass": r"M_?[(\[]?(\d)[_,]?(\d)[)\]]?", "coriolis": r"h_?(\d)", "kinematics": r"(?:p_?|tip_)([123xyz])",
+    "inverse": r"tau(\d)", "forward": r"qdd(\d)",
+}  # fmt: skip
 
 
 class Log(NamedTuple):
@@ -29,6 +35,11 @@ class Log(NamedTuple):
     columns: dict[str, Floats]
     left_out: list[int]
     """The lines with a cell that is no finite number."""
+    meant: list[Column]
+    """The columns that the file calls otherwise, or gives in other units."""
+    says_unit_of_angles: bool
+    others: list[str]
+    """The columns that nobody knows."""
 
     def vector(self, name: str, joints: int) -> Floats | None:
         """name1, name2, ...: (rows, joints); None where a column is missing."""
@@ -43,13 +54,34 @@ class Log(NamedTuple):
         """
         q = self.vector("q", joints)
         if q is None:
-            raise UsageError(
-                f"{self.file}: a log has the columns {', '.join(f'q{joint + 1}' for joint in range(joints))}"
-            )
+            needed = ", ".join(f"q{joint + 1}" for joint in range(joints))
+            raise UsageError(f"{self.file}: a log has the columns {needed}{self._hint()}")
         found = {"q": q}
         for name in ("qd", "qdd", "tau"):
             values = self.vector(name, joints)
             found[name] = np.zeros_like(q) if values is None else values
+        return found
+
+    @property
+    def may_be_degrees(self) -> bool:
+        """Whether angles of no unit exceed a turn of radians."""
+        angles = [values for name, values in self.columns.items() if re.fullmatch(r"q\d", name)]
+        return not self.says_unit_of_angles and bool(angles) and float(np.abs(angles).max()) > 2 * math.pi
+
+    def in_radians(self) -> Log:
+        """The log, its angles and their rates taken for degrees."""
+        factor = {name: math.pi / 180 for name in self.columns if re.fullmatch(r"q(d|dd)?\d", name)}
+        return self._replace(columns={name: factor.get(name, 1.0) * one for name, one in self.columns.items()})
+
+    def notes(self) -> list[str]:
+        """What was taken for what, and left out."""
+        found = []
+        if self.meant:
+            found.append("read as " + ", ".join(f"{one.name}: {one.given}" for one in self.meant))
+        if self.left_out:
+            lines = ", ".join(map(str, self.left_out[:5])) + (", ..." if len(self.left_out) > 5 else "")
+            rows = f"{len(self.left_out)} row{'s' if len(self.left_out) > 1 else ''}"
+            found.append(f"{rows} with NaN or infinity left out: line {lines}")
         return found
 
     def entries(self, kind: Kind) -> dict[tuple[int, ...], Floats]:
@@ -70,54 +102,60 @@ class Log(NamedTuple):
         for name in _ENTRIES:
             if self.entries(KINDS[name]) and not (name == "forward" and self.entries(KINDS["inverse"])):
                 return KINDS[name]
-        raise UsageError(
-            f"{self.file}: no column is judged; name them J11.., g1.., M11.., h1.., p1.., tau1.. or qdd1.."
-        )
+        needed = "J11.., g1.., M11.., h1.., p1.., tau1.. or qdd1.."
+        raise UsageError(f"{self.file}: no column is judged; name them {needed}{self._hint()}")
+
+    def _hint(self) -> str:
+        """What to say of the columns that nobody knows."""
+        return f"; --columns NAME=q1,... says which they are: {', '.join(self.others)[:200]}" if self.others else ""
 
 
-def read_log(path: str | os.PathLike[str]) -> Log:
-    """The numbers of a CSV file with one line of names. Rows with NaN or infinity are left out.
+def is_known(name: str) -> bool:
+    """Whether a log's column of this name is judged, or says at which state or of which arm a row is."""
+    entries = any(re.fullmatch(pattern, name) for pattern in _ENTRIES.values())
+    return bool(_STATES.fullmatch(name)) or entries or bool(quantities_of([name]))
+
+
+def read_log(path: str | os.PathLike[str], called: Mapping[str, str] | None = None) -> Log:
+    """The numbers of a text file with named columns. Rows with NaN or infinity are left out.
+
+    Args:
+        called: what a column is, q1 or J12, perhaps with a unit in brackets, by its name in the file.
 
     Raises:
         UsageError: the file cannot be read, or a row of it holds what is no number.
     """
-    file = os.fspath(path)
-    try:
-        with open(file, encoding="utf-8", newline="") as stream:
-            reader = csv.reader(stream)
-            names = [name.strip() for name in next(reader, [])]
-            rows: list[list[float]] = []
-            left_out: list[int] = []
-            for number, row in enumerate(reader, start=2):
-                if len(row) != len(names) or number > _MOST_ROWS:
-                    raise UsageError(f"{file}:{number}: a row has {len(names)} numbers, got {len(row)}")
-                numbers = _numbers(f"{file}:{number}", names, row)
-                if all(map(math.isfinite, numbers)):
-                    rows.append(numbers)
-                else:
-                    left_out.append(number)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    if not rows:
-        raise UsageError(f"{file}: the log has no rows{' of finite numbers' if left_out else ''}")
+    table = read_table(path)
+    named = columns_of(table.names, is_known, called=called)
+    known = [(index, column) for index, column in enumerate(named) if is_known(column.name)]
+    names = [column.name for _, column in known]
     if len(names) != len(set(names)):
         twice = next(name for name in names if names.count(name) > 1)
-        raise UsageError(f"{file}:1: two columns are named {twice!r}")
-    return Log(file, dict(zip(names, np.array(rows).T, strict=True)), left_out)
+        raise UsageError(f"{table.file}:1: two columns are named {twice!r}")
+    if not table.rows:
+        raise UsageError(f"{table.file}: the log has no rows")
+    columns = {column.name: column.factor * table.column(index) for index, column in known}
+    _hold_size(table, known, columns)
+    finite = np.all([np.isfinite(one) for one in columns.values()] or [np.ones(len(table.rows), bool)], axis=0)
+    if not finite.any():
+        raise UsageError(f"{table.file}: the log has no rows of finite numbers")
+    return Log(
+        table.file,
+        {name: values[finite] for name, values in columns.items()},
+        [line for line, one in zip(table.lines, finite, strict=True) if not one],
+        [column for _, column in known if column.given != column.name],
+        any(column.has_unit for _, column in known if column.name == "q1"),
+        [column.given for column in named if not is_known(column.name)],
+    )
 
 
-def _numbers(place: str, names: list[str], row: list[str]) -> list[float]:
-    """The numbers of a row; NaN and infinity are some.
-
-    Raises:
-        UsageError: a cell holds no number, or one that no measured quantity has.
+def _hold_size(table: Table, known: Sequence[tuple[int, Column]], columns: Mapping[str, Floats]) -> None:
     """
-    found = []
-    for name, cell in zip(names, row, strict=True):
-        try:
-            found.append(float(cell))
-        except ValueError:
-            raise UsageError(f"{place}: {name} is a number, got {cell[:80]!r}") from None
-        if LARGEST < abs(found[-1]) < math.inf:
-            raise UsageError(f"{place}: {name} is at most {LARGEST:g} either way, got {cell[:80]!r}")
-    return found
+    Raises:
+        UsageError: a number is larger than any measured quantity.
+    """
+    for index, column in known:
+        values = np.abs(columns[column.name])
+        for row in np.flatnonzero((values > LARGEST) & np.isfinite(values))[:1]:
+            where, got = place(table.file, table.lines[row]), table.rows[row][index][:MOST_SHOWN]
+            raise UsageError(f"{where}: {column.given} is at most {LARGEST:g} either way, got {got!r}")

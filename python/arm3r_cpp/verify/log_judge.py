@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .._native import Floats
-from ..errors import UsageError
+from ..errors import UnjudgedError, UsageError
 from .comparison import TOLERANCE, scales
 from .explain.regression import SIGNIFICANT, Fit, columns_of, design, fits
 from .finding import Finding
@@ -16,6 +16,7 @@ from .log import Log
 from .names import SHORT, quantities_of
 from .verdict import Verdict
 
+FEWEST_ROWS = 8
 _LARGER = 4.0  # than the noise of the other entries: then an entry holds what is no such sum
 
 
@@ -25,6 +26,22 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
     Args:
         noise: of the numbers, relative to an entry's scale; None: as large as a fit shows it to be.
     """
+    if len(next(iter(log.columns.values()))) < FEWEST_ROWS:
+        raise UnjudgedError(
+            f"{log.file}: cannot be judged: {FEWEST_ROWS} rows or more are needed, at poses that differ in every joint"
+        )
+    verdict = _judged(log, kind, truth, noise)
+    if not verdict.ok and log.may_be_degrees:
+        other = _judged(log.in_radians(), kind, truth, noise)
+        if len(other.findings) < len(verdict.findings):
+            verdict = other
+            verdict.found.append("angles in degrees")
+    verdict.warnings += log.notes()
+    return verdict
+
+
+def _judged(log: Log, kind: Kind, truth: Any, noise: float | None) -> Verdict:
+    """The verdict in the convention in which fewer entries are wrong; a draw goes to that of the arm."""
     states = log.states(truth.joints)
     entries = log.entries(kind)
     parameters = {
@@ -42,12 +59,7 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
         if best is None or count < best[0]:
             best = count, verdict
     assert best
-    verdict = best[1]
-    if log.left_out:
-        lines = ", ".join(map(str, log.left_out[:5])) + (", ..." if len(log.left_out) > 5 else "")
-        rows = f"{len(log.left_out)} row{'s' if len(log.left_out) > 1 else ''}"
-        verdict.warnings.append(f"{rows} with NaN or infinity left out: line {lines}")
-    return verdict
+    return best[1]
 
 
 def _due(truth: Any, kind: Kind, convention: str, states: dict[str, Floats], given: dict[str, Floats]) -> Floats:
@@ -149,5 +161,5 @@ def _finding(kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floa
 
 def _is_off(fitted: Fit, coefficients: Floats, right: Floats) -> bool:
     """Whether coefficients do not give the values of the fit, up to the noise."""
-    error = fitted.matrix @ (coefficients - fitted.values)
-    return bool(np.abs(error).max() > 3 * max(fitted.noise, 1e-12 * np.abs(right).max()))
+    error, values = fitted.matrix @ (coefficients - fitted.values), fitted.matrix @ fitted.values
+    return bool(np.abs(error).max() > 3 * max(fitted.noise, 1e-12 * max(np.abs(right).max(), np.abs(values).max())))
