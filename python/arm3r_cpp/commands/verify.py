@@ -72,7 +72,7 @@ def parser() -> argparse.ArgumentParser:
 
 def pairs(text: str) -> list[tuple[str, str]]:
     """ "a=q1,b=q2": a is q1, and b is q2."""
-    found = [tuple(part.strip() for part in one.rpartition("=")[::2]) for one in text.split(",")]
+    found = [(one.rpartition("=")[0].strip(), one.rpartition("=")[2].strip()) for one in text.split(",")]
     if not all(name and ours for name, ours in found):
         raise argparse.ArgumentTypeError(f"NAME=q1,... is needed, got {text!r}")
     return found

@@ -54,7 +54,7 @@ class _Joint(NamedTuple):
 def columns_of(
     names: Sequence[str], is_known: Callable[[str], bool], *, called: Mapping[str, str] | None = None
 ) -> list[Column]:
-    """The columns of a log, in their order; what nobody knows keeps its name.
+    """The columns of a log, in their order; one that is not known keeps its name.
 
     Args:
         is_known: whether a run, or a formula, has a column of this name.

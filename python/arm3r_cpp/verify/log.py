@@ -39,7 +39,7 @@ class Log(NamedTuple):
     """The columns that the file calls otherwise, or gives in other units."""
     says_unit_of_angles: bool
     others: list[str]
-    """The columns that nobody knows."""
+    """The columns that are not known."""
 
     def vector(self, name: str, joints: int) -> Floats | None:
         """name1, name2, ...: (rows, joints); None where a column is missing."""
@@ -106,7 +106,7 @@ class Log(NamedTuple):
         raise UsageError(f"{self.file}: no column is judged; name them {needed}{self._hint()}")
 
     def _hint(self) -> str:
-        """What to say of the columns that nobody knows."""
+        """What to say of the columns that are not known."""
         return f"; --columns NAME=q1,... says which they are: {', '.join(self.others)[:200]}" if self.others else ""
 
 

@@ -26,11 +26,11 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
     Args:
         noise: of the numbers, relative to an entry's scale; None: as large as a fit shows it to be.
     """
+    verdict = _judged(log, kind, truth, noise)
     if len(next(iter(log.columns.values()))) < FEWEST_ROWS:
         raise UnjudgedError(
             f"{log.file}: cannot be judged: {FEWEST_ROWS} rows or more are needed, at poses that differ in every joint"
         )
-    verdict = _judged(log, kind, truth, noise)
     if not verdict.ok and log.may_be_degrees:
         other = _judged(log.in_radians(), kind, truth, noise)
         if len(other.findings) < len(verdict.findings):
