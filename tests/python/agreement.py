@@ -22,6 +22,8 @@ FLOOR = SIZE
 """of what may differ, in a column's unit and relative to its largest value: some columns feel no disturbance"""
 NOISY = {"tip_dv": 100.0, "f_estimate": 1000.0}
 """times the floor: the error of an interpolant's slope, and a residual over a Jacobian that is singular to 1e-3"""
+MEASURED_BY = {"stiffness_sigma": "stiffness_estimate"}
+"""whose size says how large a column is: without noise a standard deviation is nothing but rounding errors"""
 TIMES_OWN_ERROR = 5.0
 """how much larger the error of a method of fixed steps may be than the differences between its runs with other steps"""
 
@@ -100,7 +102,8 @@ class Band:
             rows = min(len(other.t), len(column))
             spread[:rows] = np.maximum(spread[:rows], abs(other[name][:rows] - column[:rows]))
         floor = FLOOR * next((factor for stem, factor in NOISY.items() if name.startswith(stem)), 1.0)
-        return np.maximum.accumulate(spread) + floor * (1 + abs(column).max())
+        size = max(abs(column).max(), abs(self.run[MEASURED_BY.get(name, name)]).max())
+        return np.maximum.accumulate(spread) + floor * (1 + size)
 
     @property
     def growth(self) -> float:
