@@ -24,7 +24,7 @@ _MONOMIALS = {
 
 @dataclass
 class Fit:
-    """Coefficients with their standard deviations; `noise` is that of a single number."""
+    """Coefficients with their standard deviations; `noise` is that of a single number, and `left` what is left."""
 
     columns: list[tuple[tuple[str, ...], tuple[Wave, ...]]]
     matrix: Floats
@@ -32,6 +32,7 @@ class Fit:
     values: Floats
     deviations: Floats
     noise: float
+    left: Floats
 
     def differs(self, due: Floats) -> Floats:
         """By how many standard deviations each coefficient differs from what is due."""
@@ -111,6 +112,7 @@ def fits(
         coefficients = inverse @ values
         coefficients += inverse @ (values - matrix @ coefficients)
         scale = float(np.abs(values).max()) or 1.0
-        noise = float(np.sqrt(np.sum((values - matrix @ coefficients) ** 2) / (rows - count)))
-        found[place] = Fit(columns, matrix, inverse, coefficients, max(noise, _FLOOR * scale) * spread, noise)
+        left = values - matrix @ coefficients
+        noise = float(np.sqrt(np.sum(left**2) / (rows - count)))
+        found[place] = Fit(columns, matrix, inverse, coefficients, max(noise, _FLOOR * scale) * spread, noise, left)
     return found

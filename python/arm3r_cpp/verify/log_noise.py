@@ -1,0 +1,153 @@
+"""Whether what is left between a log and what is due follows the states, or is noise: white, coloured or of steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations_with_replacement
+
+import numpy as np
+
+from .._native import Floats
+from .explain.regression import columns_of, design
+from .kinds import Kind
+
+SUSPECT, CERTAIN, CERTAIN_IF_WHITE = 5.0, 7.0, 20.0  # standard deviations of a coefficient
+FEWEST_ROWS = 8
+_MOST_FEATURES = 4000
+_MOST_CHOSEN = 6
+_HALF = 0.5 * (1 + 1e-6)  # of a step: the largest error of rounding
+_ORDERS = 3  # of the autoregressive model of the noise
+_SLIPS = (0.01, 0.1, 0.5)  # rad/s, by which friction has come to its sign
+
+
+def features_of(
+    kind: Kind, groups: Sequence[Sequence[int]], revolute: Sequence[bool], states: dict[str, Floats]
+) -> Floats:
+    """(rows, features): what the terms of such a formula are made of."""
+    q, qd, qdd, tau = (states[name] for name in ("q", "qd", "qdd", "tau"))
+    n = len(revolute)
+    first = _waves("gravity", groups, revolute, q)
+    if kind.name in ("jacobian", "gravity", "kinematics"):
+        return first
+    second = _waves("mass", groups, revolute, q)
+    if kind.name == "mass":
+        return second
+    rates = [qd[:, i] * qd[:, j] for i, j in combinations_with_replacement(range(n), 2)]
+    found = [second * rate[:, None] for rate in rates]
+    if kind.name == "inverse":
+        found += [second * qdd[:, [j]] for j in range(n)] + [first]
+    if kind.name == "forward":
+        found += [second * tau[:, [j]] for j in range(n)] + [second]
+    return np.concatenate(found, axis=1)
+
+
+def _waves(kind: str, groups: Sequence[Sequence[int]], revolute: Sequence[bool], q: Floats) -> Floats:
+    columns = columns_of(kind, groups, revolute, [])
+    if len(columns) > _MOST_FEATURES // 16:  # many joints: what no more than two of them make
+        columns = [(names, waves) for names, waves in columns if sum(len(one.joints) for one in waves) <= 2]
+    return design(columns, q, {})
+
+
+def friction_of(qd: Floats) -> Floats:
+    """(rows, columns): what the friction of a joint of these rates is made of."""
+    return np.stack([qd, qd * np.abs(qd), *(np.tanh(qd / slip) for slip in _SLIPS)], axis=1)
+
+
+def quantum(values: Floats) -> float:
+    """The step between the values of a column that has few of them; 0: none is seen."""
+    steps = np.diff(np.unique(values))
+    if len(steps) == 0:
+        return 0.0
+    step = float(steps.min())
+    count = values / step
+    return step if np.abs(count - np.round(count)).max() < 0.01 and step > 1e-6 * np.abs(values).max() else 0.0
+
+
+def follows(left: Floats, features: Floats, step: float = 0.0) -> bool:
+    """Whether what is left follows the features: no noise that is as smooth as it explains their coefficients.
+
+    Terms are chosen twice: as if the noise were as smooth as what is left, which a slow motion hides from, and as if
+    it were white. The latter overrates them where the noise is smooth, and has to show far more.
+    Numbers that are rounded to steps may be off by half a step everywhere.
+
+    Args:
+        left: measured less due, in the order in which it was measured.
+        step: of the measured numbers.
+    """
+    if np.abs(left).max() <= _HALF * step or len(left) < FEWEST_ROWS:
+        return False
+    norms = np.sqrt(np.mean(features**2, axis=0))
+    features = features[:, norms > 1e-9 * norms.max(initial=0.0)]
+    if not features.size:
+        return False
+    for filtered, certain in ((_filter_of(left - left.mean()), CERTAIN), (np.ones(1), CERTAIN_IF_WHITE)):
+        own = features[:, _chosen(_apply(filtered, left), _apply(filtered, features))]
+        if not own.size:
+            continue
+        part = own @ np.linalg.lstsq(own, left, rcond=None)[0]
+        if np.abs(part).max() > _HALF * step and _strength(_filter_of(left - part), left, own) > certain:
+            return True
+    return False
+
+
+def _chosen(left: Floats, columns: Floats) -> list[int]:
+    """The columns that explain the most, one after the other."""
+    found: list[int] = []
+    rest = left
+    while len(found) < min(_MOST_CHOSEN, len(left) // 30 + 1):
+        scores = _scores(rest, columns)
+        best = int(np.argmax(scores))
+        if scores[best] < SUSPECT or best in found:
+            break
+        found.append(best)
+        rest = left - columns[:, found] @ np.linalg.lstsq(columns[:, found], left, rcond=None)[0]
+    return found
+
+
+def inflation(noise: Floats) -> float:
+    """By how much a coloured noise spoils a smooth fit more than a white one of the same size does."""
+    filtered = _filter_of(noise)
+    size = float(np.sqrt(np.mean(noise**2)))
+    if not size:
+        return 1.0
+    white = float(np.sqrt(np.mean(_apply(filtered, noise) ** 2)))
+    return max(white / max(abs(float(filtered.sum())), 1e-3) / size, 1.0)
+
+
+def _scores(left: Floats, columns: Floats) -> Floats:
+    """How many standard deviations the coefficient of each column alone is from zero."""
+    squares = np.sum(columns**2, axis=0)
+    coefficients = columns.T @ left / np.where(squares > 0, squares, 1.0)
+    spread = np.sqrt(np.maximum(np.sum(left**2) - coefficients**2 * squares, 1e-24 * np.sum(left**2)) / len(left))
+    return np.abs(coefficients) * np.sqrt(squares) / np.maximum(spread, 1e-300)
+
+
+def _strength(filtered: Floats, left: Floats, own: Floats) -> float:
+    """How many standard deviations the coefficients are from zero together, for each of them."""
+    white, columns = _apply(filtered, left), _apply(filtered, own)
+    coefficients = np.linalg.lstsq(columns, white, rcond=None)[0]
+    rest = white - columns @ coefficients
+    inverse = np.linalg.pinv(columns.T @ columns, hermitian=True)
+    spread = columns * rest[:, None]
+    covariance = inverse @ (spread.T @ spread) @ inverse
+    floor = 1e-24 * np.sum(white**2) * inverse
+    distance = float(coefficients @ np.linalg.pinv(covariance + floor, hermitian=True) @ coefficients)
+    return float(np.sqrt(max(distance, 0.0) / len(coefficients)))
+
+
+def _filter_of(noise: Floats) -> Floats:
+    """The coefficients that make an autoregressive noise white (Yule and Walker)."""
+    count = len(noise)
+    lags = np.array([noise[: count - lag] @ noise[lag:] for lag in range(_ORDERS + 1)])
+    if not lags[0] > 0:
+        return np.ones(1)
+    matrix = lags[np.abs(np.subtract.outer(np.arange(_ORDERS), np.arange(_ORDERS)))]
+    return np.concatenate([[1.0], -np.linalg.lstsq(matrix, lags[1:], rcond=1e-12)[0]])
+
+
+def _apply(filtered: Floats, values: Floats) -> Floats:
+    last = len(filtered) - 1
+    found = np.zeros((len(values) - last, *values.shape[1:]))
+    for lag, one in enumerate(filtered):
+        found += one * values[last - lag : len(values) - lag]
+    return found

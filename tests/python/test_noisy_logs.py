@@ -1,0 +1,155 @@
+"""Noisy logs: none that is right is called wrong, whatever its noise; a wrong term of 5 % is found in each."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import arm3r_cpp as arm3r
+import numpy as np
+import pytest
+from arm3r_cpp.verify.functions import formula_verdict, truth_of
+from arm3r_cpp.verify.kinds import KINDS
+from arm3r_cpp.verify.log_noise import features_of
+from numpy.typing import NDArray
+from random_scenarios import sample_seed
+
+Floats = NDArray[np.float64]
+NAMES = {
+    "jacobian": [f"J{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)],
+    "gravity": ["g1", "g2", "g3"],
+    "kinematics": ["p1", "p2", "p3"],
+    "mass": [f"M{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)],
+    "coriolis": ["h1", "h2", "h3"],
+    "inverse": ["tau1", "tau2", "tau3"],
+    "forward": ["qdd1", "qdd2", "qdd3"],
+}
+STATES = {"coriolis": ("q", "qd"), "inverse": ("q", "qd", "qdd"), "forward": ("q", "qd", "tau")}
+TRUTH = truth_of(None)
+
+
+def states(rows: int, *, moves: bool, rng: np.random.Generator) -> dict[str, Floats]:
+    """Random states, or those along a motion of a few sinusoids."""
+    if not moves:
+        widths = {"q": 3, "qd": 2, "qdd": 5, "tau": 10}
+        return {name: rng.uniform(-width, width, (rows, 3)) for name, width in widths.items()}
+    t = np.linspace(0, rng.uniform(2, 10), rows)[:, None, None]
+    size, rate, phase = rng.uniform(0.1, 1, (3, 3)), rng.uniform(0.5, 6, (3, 3)), rng.uniform(0, 6, (3, 3))
+    angle = rate * t + phase
+    q = rng.uniform(-1.5, 1.5, 3) + np.sum(size * np.sin(angle), axis=2)
+    qd, qdd = np.sum(size * rate * np.cos(angle), axis=2), -np.sum(size * rate**2 * np.sin(angle), axis=2)
+    return {"q": q, "qd": qd, "qdd": qdd, "tau": 5 * np.sin(q + 1)}
+
+
+def white(right: Floats, level: float, rng: np.random.Generator) -> Floats:
+    return right + level * rng.standard_normal(right.shape)
+
+
+def coloured(right: Floats, level: float, rng: np.random.Generator) -> Floats:
+    memory, noise = rng.uniform(0.3, 0.97), rng.standard_normal(right.shape)
+    for row in range(1, len(noise)):
+        noise[row] = memory * noise[row - 1] + np.sqrt(1 - memory**2) * noise[row]
+    return right + level * noise
+
+
+def rounded(right: Floats, level: float, rng: np.random.Generator) -> Floats:
+    return np.round(white(right, level * rng.choice([0, 0.3]), rng) / level) * level
+
+
+def exact(right: Floats, level: float, rng: np.random.Generator) -> Floats:
+    return right
+
+
+def friction(qd: Floats, rng: np.random.Generator) -> Floats:
+    """Of a real joint: dry, more of it at rest, and viscous."""
+    dry = rng.uniform(0.1, 0.5, 3) * np.sign(qd) * (1 + 0.5 * np.exp(-((qd / 0.2) ** 2)))
+    return dry + rng.uniform(0, 0.3, 3) * qd
+
+
+def written(path: Path, kind: str, at: dict[str, Floats], values: Floats) -> Path:
+    """The log as text."""
+    used = STATES.get(kind, ("q",))
+    names = [*(f"{name}{joint}" for name in used for joint in (1, 2, 3)), *NAMES[kind]]
+    rows = np.column_stack([*(at[name] for name in used), values])
+    np.savetxt(path, rows, fmt="%.15g", delimiter=",", header=",".join(names), comments="")
+    return path
+
+
+def drawn(number: int, rng: np.random.Generator) -> tuple[str, dict[str, Floats], Floats]:
+    """A kind of formula, states, and what is due there."""
+    kind = list(NAMES)[number % len(NAMES)]
+    at = states(int(rng.integers(200, 2001)), moves=bool(rng.integers(2)), rng=rng)
+    return kind, at, TRUTH.values(kind, TRUTH.convention, at, {}).reshape(len(at["q"]), -1)
+
+
+def right_logs(count: int, seed: int, path: Path) -> None:
+    for number in range(count):
+        rng = np.random.default_rng([seed, number])
+        kind, at, due = drawn(number, rng)
+        noise = (white, coloured, rounded, exact)[int(rng.integers(4))]
+        values = noise(due, 10 ** rng.uniform(-4, -2) * np.abs(due).max(), rng)
+        verdict = formula_verdict(written(path, kind, at, values), kind)
+        assert verdict.ok, (seed, number, noise.__name__, str(verdict))
+
+
+def wrong_logs(count: int, seed: int, path: Path) -> Counter[Any]:
+    """One entry has one term too many: of 5 % or 1 % of it, under a white noise of 1e-3 of the largest entry."""
+    found: Counter[Any] = Counter()
+    for number in range(count):
+        rng = np.random.default_rng([seed, number, 1])
+        kind, at, due = drawn(number, rng)
+        large = np.abs(due).max(axis=0)
+        entry = int(rng.choice(np.flatnonzero(large > 0.2 * large.max())))
+        terms = features_of(KINDS[kind], TRUTH.groups, TRUTH.revolute, at)
+        term = terms[:, rng.integers(terms.shape[1])]
+        share = (0.05, 0.01)[number // len(NAMES) % 2]
+        values = white(due, 1e-3 * large.max(), rng)
+        values[:, entry] += share * large[entry] * term / np.abs(term).max()
+        verdict = formula_verdict(written(path, kind, at, values), kind)
+        place = [entry // 3 + 1, entry % 3 + 1] if len(NAMES[kind]) == 9 else [entry + 1]
+        located = [one.entry for one in verdict.findings]
+        assert located in ([], [place]), (seed, number, place, str(verdict))
+        found[share, bool(located)] += 1
+        if not located:
+            print((seed, number), kind, place, verdict)
+    print(dict(found))
+    return found
+
+
+def hold(count: int, seed: int, folder: Path) -> None:
+    print(f"ARM3R_SEED={seed}")
+    right_logs(count, seed, folder / "log.csv")
+    found = wrong_logs(count, seed, folder / "log.csv")
+    assert found[0.05, False] == 0 and found[0.01, False] <= 0.1 * found.total()
+
+
+def test_noise_is_no_mistake_and_hides_none(tmp_path: Path) -> None:
+    hold(14, sample_seed(), tmp_path)
+
+
+@pytest.mark.gate
+@pytest.mark.random
+@pytest.mark.parametrize("part", range(4))
+def test_noise_is_no_mistake_and_hides_none_in_many(part: int, tmp_path: Path) -> None:
+    hold(500, sample_seed() + 1000 * part, tmp_path)
+
+
+def test_the_friction_of_joints_is_no_mistake_and_is_said(tmp_path: Path) -> None:
+    seed = sample_seed()
+    for number in range(6):
+        rng = np.random.default_rng([seed, number, 2])
+        at = states(int(rng.integers(200, 2001)), moves=bool(rng.integers(2)), rng=rng)
+        due = TRUTH.values("inverse", TRUTH.convention, at, {})
+        measured = white(due + friction(at["qd"], rng), 1e-3 * np.abs(due).max(), rng)
+        verdict = formula_verdict(written(tmp_path / "log.csv", "inverse", at, measured), "inverse")
+        assert verdict.ok, (seed, number, str(verdict))
+        assert sum("as friction does" in one for one in verdict.warnings) == 3, (seed, number, str(verdict))
+
+
+def test_what_has_nothing_to_do_with_the_arm_is_not_judged(tmp_path: Path) -> None:
+    rng = np.random.default_rng(sample_seed())
+    at = states(300, moves=False, rng=rng)
+    path = written(tmp_path / "log.csv", "gravity", at, rng.uniform(-20, 20, (300, 3)))
+    with pytest.raises(arm3r.UnjudgedError, match=r"follows no term of a gravity torque; is this the arm"):
+        formula_verdict(path)
