@@ -14,7 +14,7 @@ import numpy as np
 
 from .._files import regular
 from .._native import Floats
-from ..errors import UsageError
+from ..errors import UnjudgedError, UsageError
 from .kinds import KINDS, Kind
 from .names import quantities_of, slot_of, slots_of
 from .program.c_symbol import text_of
@@ -196,6 +196,12 @@ def from_file(path: str | os.PathLike[str], *, sandbox: Any = None) -> Formula:
     file, function = split_name(os.fspath(path))
     if file.endswith((".so", ".dylib", ".dll")):
         return _from_library(file, function)
+    if file.endswith((".c", ".h", ".cpp", ".cc", ".hpp")):
+        library = f"{Path(file).stem}.so"
+        raise UnjudgedError(
+            f"{file}: cannot be judged as text: compile it, cc -shared -fPIC -O2 {file} -o {library} -lm, "
+            f"and name the function, {library}:{function or 'FUNCTION'}"
+        )
     try:
         text = regular(Path(file)).read_text(encoding="utf-8")
     except (OSError, ValueError) as error:

@@ -149,14 +149,14 @@ class ThreeR:
         params[axes] = (axial, across * ratio, across)
 
     def _axial(self, link: int) -> float:
-        """The inertia about the link's own axis: what remains of M11 when only this link stands beside the axis."""
-        given = self._number(f"arm.link{link}.inertia[0]", -1.0)
-        if given >= 0:
-            return given
-        height, width = (self._number(f"arm.link{link}.section[{axis}]") for axis in (0, 1))
-        radius = self._number(f"arm.link{link}.radius")
-        squares = 6 * radius**2 if radius else height**2 + width**2
-        return self.values_of_quantities[f"mass{link}"] * squares / 12
+        """The inertia about the link's own axis: what it adds to M11 where the links stand upright."""
+        without, own = self._params.copy(), self.values_of_quantities
+        without[param_index(f"arm.link{link}.mass")] = own[f"mass{link}"]
+        for axis, value in enumerate((0.0, own[f"inertia{link}"], own[f"inertia{link}"])):
+            without[param_index(f"arm.link{link}.inertia[{axis}]")] = value
+        upright = np.array([0.0, np.pi / 2, 0.0])
+        with_it, without_it = (Arm(params).mass_matrix(upright)[0, 0] for params in (self._params, without))
+        return float(with_it - without_it)
 
     def _ratio(self, link: int) -> float:
         """I_y / I_z of the link as it is."""
@@ -201,7 +201,7 @@ class ThreeR:
         if self._scenario is None or self._scenario["controller.type"] == "none":
             raise UsageError("a controller is judged by the law of a scenario: name one that has a controller")
         signs = np.array([1.0, -1.0, -1.0]) if convention != self.convention else np.ones(3)
-        here = self._scenario.copy()
+        here = self._scenario.copy()._quiet()
         start = here["time.start"]
         here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}
         torques = []
