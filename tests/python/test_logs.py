@@ -15,7 +15,7 @@ from arm3r_cpp.commands import verify as verify_cli
 from arm3r_cpp.logs.names import columns_of
 from arm3r_cpp.logs.table import read_table
 from arm3r_cpp.verify.functions import formula_verdict
-from arm3r_cpp.verify.log import is_known
+from arm3r_cpp.verify.log.reading import is_known
 from numpy.typing import NDArray
 from random_scenarios import sample_seed
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from arm3r_cpp.verify.functions import formula_verdict, truth_of
 from arm3r_cpp.verify.kinds import KINDS
-from arm3r_cpp.verify.log_noise import features_of
+from arm3r_cpp.verify.log.noise import features_of
 from numpy.typing import NDArray
 from random_scenarios import sample_seed
 

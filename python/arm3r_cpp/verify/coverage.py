@@ -13,7 +13,7 @@ from .._native import Floats
 from ..scenario import Scenario
 from .comparison import Comparison
 from .finding import Finding, Judgement
-from .log import read_log
+from .log.reading import read_log
 from .planted import planted_and_seen
 from .program.nodes import ProgramError
 from .samples import Samples

@@ -12,8 +12,8 @@ from ..scenario import Scenario
 from .formula import Formula, from_callable, from_file, kind_of
 from .judge import Progress, judge
 from .kinds import KINDS
-from .log import ENDINGS, read_log
-from .log_judge import judge_log
+from .log.judge import judge_log
+from .log.reading import ENDINGS, read_log
 from .program.python_process import PythonProcess
 from .truth.chain_files import Chain
 from .truth.three_r import ThreeR

@@ -7,9 +7,9 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
-from .._native import Floats
-from .explain.regression import columns_of, design
-from .kinds import Kind
+from ..._native import Floats
+from ..explain.regression import columns_of, design
+from ..kinds import Kind
 
 SUSPECT, CERTAIN, CERTAIN_IF_WHITE = 5.0, 7.0, 20.0  # standard deviations of a coefficient
 FEWEST_ROWS = 8

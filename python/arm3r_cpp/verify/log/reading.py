@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._messages import place
-from .._native import Floats
-from ..errors import UsageError
-from ..logs.names import Column, columns_of
-from ..logs.table import MOST_SHOWN, Table, read_table
-from .kinds import KINDS, Kind
-from .names import quantities_of
+from ..._messages import place
+from ..._native import Floats
+from ...errors import UsageError
+from ...logs.names import Column, columns_of
+from ...logs.table import MOST_SHOWN, Table, read_table
+from ..kinds import KINDS, Kind
+from ..names import quantities_of
 
 ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".log")
 LARGEST = 1e12  # of a number

@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from .._native import Floats
-from ..errors import UnjudgedError, UsageError
-from .comparison import TOLERANCE, scales
-from .explain.regression import SIGNIFICANT, Fit, columns_of, design, fits
-from .finding import Finding
-from .kinds import Kind, entry_name
-from .log import Log
-from .log_noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, quantum
-from .names import SHORT, quantities_of
-from .verdict import Verdict
+from ..._native import Floats
+from ...errors import UnjudgedError, UsageError
+from ..comparison import TOLERANCE, scales
+from ..explain.regression import SIGNIFICANT, Fit, columns_of, design, fits
+from ..finding import Finding
+from ..kinds import Kind, entry_name
+from ..names import SHORT, quantities_of
+from ..verdict import Verdict
+from .noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, quantum
+from .reading import Log
 
 _LARGER = 4.0  # than the noise of the other entries: then an entry holds what is no such sum
 _NO_NOISE = 0.1  # of the largest entry: no measurement is meant to be as bad
