@@ -258,6 +258,20 @@ def test_what_is_nan_tells_nothing_about_a_length(tmp_path: Path) -> None:
     assert judged(program, program.text.replace("*u + a3*", "*u ** a3*"), tmp_path) == "named"
 
 
+def test_what_is_due_is_left_open_where_the_text_does_not_tell_what_follows_a_length(tmp_path: Path) -> None:
+    """Two mistakes leave no term that tells `a2/2` from a centre of mass that keeps its number."""
+    program = next(one for one in PROGRAMS if one.name == "gravity by centres, slide")
+    path = tmp_path / "program.py"
+    path.write_text(program.text.replace("m2*h2 + m3*h3", "m2*h2*(m3 + h3)"))
+    assert path.read_text() != program.text
+    verdict = formula_verdict(from_file(path), program.kind)
+    second = next(one for one in verdict.findings if one.entry == [2])
+    assert second.reads is not None and second.due is None and "due" not in second.cause
+    notes = [words for words in verdict.warnings if "does not tell what follows a length" in words]
+    assert len(notes) == 2 and "1/2 m2 g C2" in notes[0] and "1/2 m2 g a2 C2" in notes[1]
+    assert judged(program, path.read_text(), tmp_path) == "named"
+
+
 def test_two_edits_are_shown_only_if_they_hold_together(tmp_path: Path) -> None:
     program = next(one for one in PROGRAMS if one.name == "jacobian by transforms, slide")
     text = program.text.replace("s*sa, a*c]", "s*sa, -a*c]").replace("J[:, 0] =", "J[:, -1] =")

@@ -28,14 +28,16 @@ class Patience:
     """
 
     def __init__(self, pid: int, seconds: float) -> None:
-        self._pid, self._window = pid, 0.0
+        self._pid, self._window, self._window_begun = pid, 0.0, processor_time(pid) or 0.0
         self.renew(seconds)
-        self._window_begun = self._begun
 
     def renew(self, seconds: float) -> None:
-        """So many seconds for the next piece of work; how long the process has slept so far is not forgotten."""
-        self._seconds, self._waited = seconds, 0.0
-        self._begun, self._last = processor_time(self._pid) or 0.0, time.monotonic()
+        """So many seconds for the next piece of work; how long the process has slept so far is not forgotten.
+
+        It counts from the first look on, since most work ends before one, and each reads all of /proc.
+        """
+        self._seconds, self._waited, self._last = seconds, 0.0, time.monotonic()
+        self._begun: float | None = None
 
     def check(self) -> None:
         """To be called at least every `SLICE` seconds.
@@ -53,7 +55,9 @@ class Patience:
         self._waited += passed
         self._window += passed
         used = processor_time(self._pid)
-        if (self._waited if used is None else used - self._begun) >= self._seconds:
+        if self._begun is None:
+            self._begun = used
+        if (self._waited if used is None else used - (self._begun or 0.0)) >= self._seconds:
             raise TooSlow
         if self._window >= WAITING_TIME:
             if used is not None and used - self._window_begun < _LEAST_SHARE * self._window:

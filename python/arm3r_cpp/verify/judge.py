@@ -26,6 +26,7 @@ from .kinds import Kind, entry_name
 from .meaning import doubted, is_right_as_it_stands, meant, ways
 from .names import slot_of
 from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, line_and_column
+from .truth.three_r import FOLLOWING_WORDS
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
@@ -67,6 +68,7 @@ def judge(
         if not isinstance(error, ProcessEnded):
             _mend_failure(verdict, formula, kind, truth, progress)
         return verdict
+    _leave_open(verdict, case, verdicts)
     if verdict.findings and is_right_as_it_stands(case):
         _excuse(verdict, case)
     elif other := next((one.convention for _, one in verdicts if one.convention != case.convention), ""):
@@ -100,6 +102,38 @@ def _with_unused_numbers(
         if len(edits) == 1 and verdict.findings[0].old is not None:
             return verdict, strict
     return None
+
+
+def _leave_open(verdict: Verdict, case: Comparison, verdicts: Sequence[tuple[Verdict, Comparison]]) -> None:
+    """Where the formula does not tell what follows a length, no terms of an entry are said to be due without an if."""
+    due = {case.follows: _due_terms(verdict)}
+    for one, meaning in verdicts:
+        if meaning.convention == case.convention and _complexity(one) == _complexity(verdict):
+            due.setdefault(meaning.follows, _due_terms(one))
+    open_entries = {entry for entry in due[case.follows] if len({terms.get(entry) for terms in due.values()}) > 1}
+    for finding in verdict.findings:
+        if finding.entry and tuple(finding.entry) in open_entries:
+            name = entry_name(case.kind, finding.entry)
+            if finding.cause.startswith(f"{name} "):
+                finding.cause = f"{name} reads {finding.reads}."
+            finding.due = None
+    for follows, terms in due.items() if open_entries else ():
+        words = ", ".join(
+            f"{entry_name(case.kind, entry)} = {terms[entry]}" for entry in sorted(open_entries & set(terms))
+        )
+        if words:
+            verdict.warnings.append(
+                f"the formula does not tell what follows a length: if {FOLLOWING_WORDS[follows]}, due is {words}"
+            )
+
+
+def _due_terms(verdict: Verdict) -> dict[tuple[int, ...], str]:
+    """What is due, in terms, in the entries that no edit mends."""
+    return {
+        tuple(one.entry): one.due
+        for one in verdict.findings
+        if one.entry and one.due is not None and one.reads is not None and one.old is None
+    }
 
 
 def _excuse(verdict: Verdict, case: Comparison) -> None:

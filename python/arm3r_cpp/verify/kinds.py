@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -39,7 +40,7 @@ KINDS = {
 }
 
 
-def entry_name(kind: Kind, entry: list[int]) -> str:
+def entry_name(kind: Kind, entry: Sequence[int]) -> str:
     """J(2,3), t1, M(1,2) ..."""
     return f"{kind.letter}({','.join(map(str, entry))})" if len(entry) > 1 else f"{kind.letter}{entry[0]}"
 

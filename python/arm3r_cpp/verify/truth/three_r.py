@@ -16,6 +16,18 @@ from ...scenario import Scenario
 CONVENTIONS = ("simscape", "slide")
 FOLLOWING = (("com", "inertia"), ("com",), (), ("com", "inertia", "mass"))
 """What may follow a link's length and mass, the likeliest first: its shape, or numbers that stand in the text."""
+FOLLOWING_WORDS = dict(
+    zip(
+        FOLLOWING,
+        (
+            "a link's centre of mass and inertia follow its length",
+            "the centre of mass follows the length, and the inertia keeps its number",
+            "the centres of mass keep their numbers",
+            "the mass follows the length",
+        ),
+        strict=True,
+    )
+)
 _RANGES = {"length": (0.5, 1.6), "com": (0.2, 0.45), "mass": (0.4, 2.5), "inertia": (0.02, 0.2)}
 
 
