@@ -22,6 +22,8 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell that starts 
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(arm3r.__file__).parent
+CALLS = "-O0 -DARM3R_INLINE=inline -DARM3R_INLINE_LAMBDA="
+"""Flags of a compiler without inlining, which takes a third of the time."""
 
 
 def pytest_configure(config: pytest.Config) -> None:

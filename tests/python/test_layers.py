@@ -10,6 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from conftest import CALLS
 
 # From the bottom up: a file includes files of its own room and of rooms that stand before it.
 HEADERS = ("numbers", "model", "ode", "control", "sensing")
@@ -286,7 +287,8 @@ def test_one_name_is_one_type(root: Path) -> None:
 def test_one_name_is_one_type_to_the_linker(root: Path, tmp_path: Path, scripts: Path) -> None:
     """All of the library, its programs and its tests as one program: the linker compares the types of one name."""
     environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
-    flags = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O0", "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"]
+    flags = ["-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_FLAGS_RELEASE={CALLS}"]
+    flags += ["-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"]
     flags += ["-DARM3R_LANES=2", "-DARM3R_PCH=OFF", "-DARM3R_UNITY=OFF", "-DARM3R_TESTS=ON", "-DARM3R_PYTHON=OFF"]
     flags += [f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}"]
     make = ["cmake", "--build", str(tmp_path), "--target", "all", "arm3r_tests", "--parallel", "4"]

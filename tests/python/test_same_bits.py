@@ -12,7 +12,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from conftest import scenario_files
+from conftest import CALLS, scenario_files
 
 # Everything that computes: all methods, contact both ways, friction, the recursion, every motion of the wall.
 TEXTS = {
@@ -143,9 +143,6 @@ def test_csv_holds_the_bits_of_the_arrays(cli: Any, tmp_path: Path, name: str) -
 def cores_of_this_worker() -> int:
     """This test's share of the processor, where others run beside it."""
     return max(1, len(os.sched_getaffinity(0)) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1)))
-
-
-CALLS = "-O0 -DARM3R_INLINE=inline -DARM3R_INLINE_LAMBDA="  # without inlining: compiled in a third of the time
 
 
 @pytest.mark.gate

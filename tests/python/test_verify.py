@@ -439,6 +439,8 @@ HOSTILE = {
     "return 'J'": "returns str",
     "return [[1, 2], [3]]": "returns",
     "import sys; sys.exit()": "raises SystemExit",
+    "import numpy; return numpy.zeros((3, 0))": "returns 3x0 numbers",
+    "return []": "returns 0 numbers",
     "import random; return [[random.random()] * 3] * 3": "gives different numbers",
 }
 

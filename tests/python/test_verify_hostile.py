@@ -15,8 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
+import numpy as np
 import pytest
 from arm3r_cpp import verify
+from arm3r_cpp.verify.program.nodes import Call, Edit, ProgramError
+from arm3r_cpp.verify.program.python_in_memory import PythonInMemory
 from arm3r_cpp.verify.program.python_process import PythonProcess
 from formulas.hostile import files
 
@@ -54,6 +57,7 @@ def state() -> dict[str, Any]:
 @pytest.fixture
 def judged(tmp_path: Path, monkeypatch: Any) -> Iterator[Any]:
     monkeypatch.setattr("arm3r_cpp.verify.program.python_process.ANSWER_TIME", 3.0)
+    monkeypatch.setattr("arm3r_cpp.system.patience.WAITING_TIME", 10.0)
     victim, new = tmp_path / "victim", tmp_path / "new"
     victim.write_text("here")
     path, other = tmp_path / "jacobian.py", tmp_path / "other" / "jacobian.py"
@@ -164,3 +168,20 @@ def test_no_edit_of_a_function_in_memory_runs_in_this_process(function: Any, mon
     del verdict
     gc.collect()
     assert state() == before
+
+
+@pytest.mark.parametrize("make", [PythonProcess, PythonInMemory])
+def test_edits_that_crash_the_interpreter_do_not_end_the_search(make: Any) -> None:
+    """Some do, of a right interpreter; each costs a process and its seconds."""
+    text = "import os\n\ndef gravity(q):\n    return [0.0, 1.0, 2.0]\n"
+    program, call, table = make(text, "gravity", "arm.py"), Call(((0, 1, 2),), {}), np.zeros((2, 3))
+    place = text.index("1.0")
+    for _ in range(8):
+        with pytest.raises(ProgramError, match="ends its process"):
+            program.evaluate(call, table, Edit(place, place + 3, "os.abort()", 1))
+        right = program.evaluate(call, table, Edit(place, place + 3, "7.0", 1))
+        assert right.tolist() == [[0.0, 7.0, 2.0]] * 2
+    before = program.seconds
+    with pytest.raises(ProgramError, match="takes too long"):
+        program.evaluate(call, table, Edit(place, place + 3, "[1 for _ in iter(int, 1)]", 1))
+    assert program.seconds > before + 1.5

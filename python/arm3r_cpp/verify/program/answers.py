@@ -59,7 +59,7 @@ def answer_of(head: dict[str, Any], body: bytes, rows: int) -> Answer:
         return Answer(None, seconds, error[:_LONGEST], line)
     shape: Any = head.get("shape")
     _checked(shape, type(shape) is list and 0 < len(shape) <= _MOST_AXES)
-    _checked(shape, all(type(size) is int and 0 <= size <= len(body) for size in shape))
+    _checked(shape, all(type(size) is int and 0 <= size <= max(rows, len(body)) for size in shape))
     _checked(shape, shape[0] == rows and math.prod(shape) * 8 == len(body))
     return Answer(np.frombuffer(body).reshape(shape), seconds)
 

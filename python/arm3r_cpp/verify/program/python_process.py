@@ -34,6 +34,8 @@ main()
 """
 _MOST_BYTES, _MOST_BYTES_OF_HEAD = 64 << 20, 1 << 16  # of an answer
 STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s of processor time
+_MOST_ENDS = 3
+"""Processes that edits may end one after the other."""
 
 
 class Process(Protocol):
@@ -76,7 +78,7 @@ class PythonProcess:
             ProgramError: the function failed, or its process ended.
             Unjudged: it took too long, needs too much memory, or answered in the process's place.
         """
-        if edit and self._ends > 3:
+        if edit and self._ends > _MOST_ENDS:
             raise ProgramError("too many edits ended its process")
         if self._process is None:
             self._start()
@@ -84,7 +86,7 @@ class PythonProcess:
         self._send(head, np.ascontiguousarray(table).tobytes())
         head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
         answer = self._understood(lambda: answer_of(head, body, len(table)))
-        self._seconds[-1] = answer.seconds
+        self._ends, self._seconds[-1] = 0, answer.seconds
         if answer.values is None:
             raise (Unjudged if answer.is_exhausted else ProgramError)(answer.error, answer.line)
         return answer.values
@@ -170,6 +172,8 @@ class PythonProcess:
 
     def _fail(self, message: str, kind: type[ProcessEnded] = ProcessEnded) -> NoReturn:
         self._ends += 1
+        if self._process is not None:
+            self._seconds[-1] = processor_time(self._process.pid) or self._seconds[-1]
         self.close()
         raise kind(message)
 
