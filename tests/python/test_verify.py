@@ -6,6 +6,7 @@ import itertools
 import json
 import os
 import random
+import re
 import subprocess
 from collections import Counter
 from pathlib import Path
@@ -185,6 +186,47 @@ def test_a_black_box_is_read_in_the_arms_names() -> None:
     (finding,) = verdict.findings
     assert finding.due == "-m3 g a2 C2 - 1/2 m2 g a2 C2 - 1/2 m3 g a3 C23"
     assert finding.reads == "-m3 g a2 C2 + 3/10 C2 - 1/2 m2 g a2 C2 - 1/2 m3 g a3 C23"
+
+
+def test_the_convention_that_the_scenario_states_wins(written: Any) -> None:
+    """A formula of the other one is wrong there, by one sentence; it is right where none is stated."""
+    text = """from math import cos
+
+
+def gravity(q1, q2, q3):
+    t3 = 3.849110125*cos(q2 + q3)
+    return [0, 11.547330375*cos(q2) + t3, t3]
+"""
+    path = written("gravity.py", text)
+    assert arm3r.verify.gravity(path).convention == "slide" and arm3r.verify.gravity(path).ok
+    stated = arm3r.Scenario("format: 1\narm: {convention: simscape}\n")
+    verdict = arm3r.verify.gravity(path, stated)
+    assert not verdict.ok and verdict.convention == "simscape"
+    assert {one.cause for one in verdict.findings} == {"The result has the wrong sign."}
+    assert [one.reads for one in verdict.findings] == [
+        "m3 g a2 C2 + 1/2 m2 g a2 C2 + 1/2 m3 g a3 C23",
+        "1/2 m3 g a3 C23",
+    ]
+    assert "it is right in the convention slide; the scenario states simscape" in verdict.alternatives
+    stated["arm.convention"] = "slide"
+    assert arm3r.verify.gravity(path, stated).ok and "states" not in str(arm3r.verify.gravity(path, stated))
+
+
+def test_a_lost_sign_is_put_before_the_whole_term(written: Any) -> None:
+    """Not before a length or a mass in it, with which the values would be the same."""
+    text = """from math import cos
+
+
+def gravity(q1, q2, q3):
+    m2, m3, a2, a3, g = 0.785, 0.785, 1.0, 1.0, 9.80665
+    half = a3/2
+    t3 = m3*g*half*cos(q2 + q3)
+    return [0.0, -g*(m2*a2/2 + m3*a2)*cos(q2) + t3, t3]
+"""
+    verdict = arm3r.verify.gravity(
+        written("gravity.py", text), arm3r.Scenario("format: 1\narm: {convention: simscape}\n")
+    )
+    assert {(one.line, one.new) for one in verdict.findings} == {(7, "-m3*g*half*cos(q2 + q3)")}
 
 
 def test_the_convention_is_found() -> None:
@@ -493,21 +535,72 @@ GROWING = {
     "range.m": ("function J = jacobian(q)\nfor i = 1:1e300\nJ = eye(3);\nend\nend\n", "a range has at most 20000"),
     "infinity.m": ("function J = jacobian(q)\nk = 1/0;\nx = q(k);\nJ = x;\nend\n", "infinity to integer"),
     "cell.m": ("function J = jacobian(q)\nT = cell(1, 1e9);\nJ = eye(3);\nend\n", "of 1 x 1000000000 is too large"),
-    "handle.m": ("function J = jacobian(q)\nf = @(f, x) f(f, x);\nJ = f(f, q);\nend\n", ""),
-    "jacobian.py": ("a = 1 << 99999999999\n\n\ndef jacobian(q):\n    return [[a] * 3] * 3\n", None),
+    "handle.m": (
+        "function J = jacobian(q)\nf = @(f, x) f(f, x);\nJ = f(f, q);\nend\n",
+        "calls functions more than 30 deep",
+    ),
+    "jacobian.py": ("a = 1 << 99999999999\n\n\ndef jacobian(q):\n    return [[a] * 3] * 3\n", "needs too much memory"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", GROWING)
 def test_a_text_that_is_read_takes_no_memory_of_this_process(written: Any, name: str) -> None:
     text, cause = GROWING[name]
-    if cause is None:
-        with pytest.raises(arm3r.UnjudgedError, match="needs too much memory"):
-            arm3r.verify.jacobian(written(name, text))
+    path = written(name, text)
+    if name == "infinity.m":  # which no language takes
+        (finding,) = arm3r.verify.jacobian(path).findings
+        assert cause in finding.cause and finding.line
         return
-    verdict = arm3r.verify.jacobian(written(name, text))
-    (finding,) = verdict.findings
-    assert not verdict.ok and cause in finding.cause and finding.line
+    with pytest.raises(arm3r.UnjudgedError, match=re.escape(cause)) as caught:
+        arm3r.verify.jacobian(path)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+READ = {  # of one Jacobian, right in the convention simscape
+    "a mask": "J(abs(J) < 1e-12) = 0;",
+    "a mask in brackets": "J((J > -1) & ~(J < 1e9)) = 0; J = J0;",
+    "pages": "P = zeros(3, 3, 2); P(:,:,1) = J; P(:,:,2) = 2*J; J = P(:,:,2)/size(P, 3);",
+    "pages that grow": "P(:,:,2) = J; P(1,2,1) = 5; J = P(1:3,:,2) + 0*P(1,2,1);",
+    "an element of a page": "P = zeros(3, 3, 2); P(3,2,2) = -r; J(3,2) = P(3,2,2);",
+    "a power of a matrix": "J = J*eye(3)^2;",
+}
+BODY = """function J = jacobian(q)
+r = cos(q(2)) + cos(q(2)+q(3)); h = sin(q(2)) + sin(q(2)+q(3));
+c1 = cos(q(1)); s1 = sin(q(1)); s23 = sin(q(2)+q(3)); c23 = cos(q(2)+q(3));
+J = [-s1*r, -h*c1, -s23*c1; c1*r, -h*s1, -s23*s1; 0, -r, -c23]; J0 = J;
+%s
+end
+"""
+
+
+@pytest.mark.parametrize("name", READ)
+def test_matlab_as_it_is_written(written: Any, name: str) -> None:
+    verdict = arm3r.verify.jacobian(written("jacobian.m", BODY % READ[name]))
+    assert verdict.ok and verdict.convention == "simscape", str(verdict)
+
+
+def test_a_misspelt_name_is_a_mistake(written: Any) -> None:
+    """It is one where another name of the text makes the formula right."""
+    verdict = arm3r.verify.jacobian(written("jacobian.m", (BODY % "").replace("-s23*c1", "-s32*c1")))
+    assert {(one.old, one.new) for one in verdict.findings} == {("s32", "s23")}, str(verdict)
+
+
+UNREAD = {
+    "x = erf(q(1));": "'erf' is not known",
+    "J = J*l9;": "'l9' has no value in this file: write l9 = NUMBER; above, or make it an argument",
+    "[a, b] = max(q);": "several outputs come only from a local function",
+    "J(J > 0) = [1; 2];": "more is not read",
+    "P = zeros(3, 3, 2); J = P(:, :);": "is read by three indices",
+    "J = J(:, :, 1);": "an index of three dimensions",
+}
+
+
+@pytest.mark.parametrize("line", UNREAD)
+def test_what_is_not_read_is_no_mistake(written: Any, command: Any, line: str) -> None:
+    """Its language may take it: the line that is not read is named, and nothing is called wrong."""
+    done = command(written("jacobian.m", BODY % line))
+    assert done.returncode == 12 and not done.stdout, done.stdout
+    assert "jacobian.m:5: cannot be judged: " in done.stderr and UNREAD[line] in done.stderr
 
 
 @pytest.mark.parametrize("body", HOSTILE)

@@ -59,9 +59,11 @@ STATES = {name: _random.uniform(-2.6, 2.6, (6, 3)) for name in ("q", "qd", "qdd"
 
 
 @cache
-def arm_of(name: str, convention: str = "simscape") -> arm3r.Scenario:
+def arm_of(name: str, convention: str | None = None) -> arm3r.Scenario:
+    """The arm, which states its convention where one is given."""
     scenario = arm3r.Scenario.load(FOLDER / "unequal.yaml") if name == "unequal" else arm3r.Scenario()
-    scenario["arm.convention"] = convention
+    if convention is not None:
+        scenario["arm.convention"] = convention
     return scenario
 
 

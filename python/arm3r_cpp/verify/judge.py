@@ -25,7 +25,7 @@ from .formula import Formula
 from .kinds import Kind, entry_name
 from .meaning import doubted, is_right_as_it_stands, meant, ways
 from .names import slot_of
-from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, line_and_column
+from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, Unread, line_and_column
 from .truth.three_r import FOLLOWING_WORDS
 from .verdict import Finding, Verdict
 
@@ -47,7 +47,8 @@ def judge(
     """The verdict on a formula of a known kind.
 
     Raises:
-        UnjudgedError: it is too slow, needs too much memory, or breaks the connection to its judge.
+        UnjudgedError: it holds what is not read, is too slow, needs too much memory, or breaks the connection to its
+            judge.
     """
     try:
         cases = meant(formula, kind, truth)
@@ -65,14 +66,19 @@ def judge(
         raise UnjudgedError(f"{formula.file}: cannot be judged: it {error}") from None
     except ProgramError as error:
         verdict = _failed(Verdict(True, kind.name, truth.convention, 0.0, file=formula.file, text=formula.text), error)
-        if not isinstance(error, ProcessEnded):
+        if not isinstance(error, ProcessEnded) and not (isinstance(error, Unread) and not error.name):
             _mend_failure(verdict, formula, kind, truth, progress)
+        if isinstance(error, Unread) and not _is_renamed(verdict.findings[0], error.name):
+            place = f"{formula.file}:{error.line}" if error.line else formula.file
+            raise UnjudgedError(f"{place}: cannot be judged: {error}") from None
         return verdict
     _leave_open(verdict, case, verdicts)
     if verdict.findings and is_right_as_it_stands(case):
         _excuse(verdict, case)
     elif other := next((one.convention for _, one in verdicts if one.convention != case.convention), ""):
         verdict.alternatives.append(f"in the convention {other} as many entries would be wrong")
+    elif verdict.findings:
+        _compare_with_other_convention(verdict, formula, kind, truth)
     _judge_constants(verdict, case)
     verdict.ok = not verdict.findings
     seen_by_tests(verdict, case, seen_by)
@@ -154,6 +160,17 @@ def _has_other_names(verdict: Verdict, case: Comparison) -> bool:
     return set(readings) == wrong and all(one.has_due_units for one in readings.values())
 
 
+def _compare_with_other_convention(verdict: Verdict, formula: Formula, kind: Kind, truth: Any) -> None:
+    """Say that a formula is right in the convention that the scenario does not state."""
+    other = truth.in_other_convention()
+    if other is not None:
+        case = meant(formula, kind, other)[0]
+        if not case.wrong(case.values(case.second), case.second):
+            verdict.alternatives.append(
+                f"it is right in the convention {other.convention}; the scenario states {truth.convention}"
+            )
+
+
 def _without_cause(verdict: Verdict) -> int:
     """The findings that neither an edit nor a mistake of the whole explains."""
     words = (" reads ", " has ", " explain it")
@@ -210,6 +227,11 @@ def _failed(verdict: Verdict, error: ProgramError) -> Verdict:
     finding = Finding(None, f"the formula fails: {error}", line=error.line)
     verdict.ok, verdict.residual, verdict.findings = False, float("inf"), [finding]
     return verdict
+
+
+def _is_renamed(finding: Finding, name: str) -> bool:
+    """Whether the edit that mends a failure puts another name for this one."""
+    return finding.old == name and str(finding.new).isidentifier()
 
 
 def _mend_failure(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None) -> None:
@@ -285,7 +307,7 @@ def _explain(
     if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
         chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)
-    if causes and left:  # what explains everything goes before edits that do not
+    if causes and (left or len(chosen) > 1):  # one sentence for everything goes before several edits
         chosen, left = [], frozenset()
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):

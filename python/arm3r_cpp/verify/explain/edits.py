@@ -137,7 +137,7 @@ class Editor:
         if parent.kind == "index" or (value == int(value) and parent.kind in ("call", "matrix")):
             values = [0, 1, 2, 3, value + 1, value - 1, -value]
         for new in dict.fromkeys(values):
-            yield self._at(node, f"{new:.10g}", 2, parent if new < 0 else None)
+            yield self._at(node, f"{new:.10g}", 2 if new >= 0 else 4, parent if new < 0 else None)
         yield from (self._at(node, name, 6) for name in self.factors)
         if value == 1 and parent.kind != "index":
             yield from (
@@ -240,6 +240,16 @@ class Editor:
                 yield Edit(one.start, other.end, self._of(other) + self.text[one.end : other.start] + self._of(one), 3)
         yield Edit(node.end, node.end, "'" if self.language == "matlab" else ".T", 4)
 
+    def _rank_of_sign(self, node: Node, parent: Node) -> int:
+        """A sign is lost before a whole term with its wave rather than before a factor of one."""
+        is_factor = parent.kind == "binary" and parent.word in _MULTIPLICATIVE
+        if node.kind == "name" and is_factor:
+            return 4
+        has_wave = any(
+            one.word in self.waves or (one.kind == "call" and _last(one.word) in _TRIGONOMETRIC) for one in node.walk()
+        )
+        return 1 if has_wave and not is_factor and parent.kind != "unary" else 2
+
     # ---- for any expression ------------------------------------------------------------------------------------------
 
     def _wrapped(self, node: Node, parent: Node) -> Iterator[Edit]:
@@ -249,7 +259,7 @@ class Editor:
         is_sum = node.kind == "binary" and node.word in _ADDITIVE
         if node.kind != "number" and parent.kind != "transpose":
             if parent.kind != "unary":
-                yield self._at(node, f"-{whole if is_sum else text}", 2, parent)
+                yield self._at(node, f"-{whole if is_sum else text}", self._rank_of_sign(node, parent), parent)
             yield self._at(node, "0", 3)
             yield self._at(node, "1", 4)
         if node.kind in ("name", "call", "other", "index") or (

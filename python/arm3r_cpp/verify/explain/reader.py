@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import combinations_with_replacement
 from typing import Any, NamedTuple
 
@@ -13,7 +14,7 @@ from ..program.nodes import ProgramError
 from ..samples import Samples
 from .parts import Part, parts_of
 from .spectrum import Spectrum, read
-from .terms import Parameters, Term, is_simple_number, sum_words, terms_of
+from .terms import RATIOS, Parameters, Term, is_simple_number, sum_words, terms_of
 
 _VARIED: dict[str, tuple[str, ...]] = {
     "jacobian": ("length2", "length3"),
@@ -124,14 +125,15 @@ class _Reader:
         due_words = sum_words(due_terms) if due_terms is not None else None
         if terms is None or not self._is_whole(place):
             return Reading(None, due_words)
-        units = {self._units(term) for term in (*terms, *(due_terms or []))}
+        units = {self._units(term.powers) for term in (*terms, *(due_terms or []))}
         is_simple = all(is_simple_number(term.number) for term in (*terms, *(due_terms or [])))
         return Reading(sum_words(terms), due_words, self._note(), is_simple and len(units) == 1)
 
-    def _units(self, term: Term) -> tuple[int, ...]:
+    def _units(self, powers: Iterable[tuple[str, int]]) -> tuple[int, ...]:
+        """Of names with their powers: kilograms, m/s^2 and metres."""
         quantities = {shown: quantity for quantity, shown in self.shown.items()}
         total = np.zeros(3, int)
-        for name, power in term.powers:
+        for name, power in powers:
             total += power * np.array(_UNITS.get(quantities.get(name, "").rstrip("0123456789"), (0, 0, 1)))
         return tuple(map(int, total))
 
@@ -170,6 +172,9 @@ class _Reader:
         values = {self.shown[name]: np.array([arm[name] for arm in self.arms]) for name in known}
         parameters = Parameters(values, fixed, len(self.arms))
         parameters.candidates = self._candidates(part, known, parameters)
+        units = {self._units(powers.items()) for found in monomials_due.values() for _, powers in found}
+        if units and not self.case.truth.named_numbers:  # of which nobody says what they measure
+            parameters.may_stand = lambda names: self._units((name, 1) for name in names) in units
         spectrum = self._spectrum(index, False)
         if spectrum is None:
             return None
@@ -235,8 +240,8 @@ def _hints(monomials: Any, parameters: Parameters, fixed: dict[str, float]) -> A
             left = tuple(powers.get(name, 0) for name in parameters.names)
             hints[waves].append((whole, left))
             named = tuple((name, power) for name, power in powers.items() if power)
-            if named:
-                parameters.known_terms[waves, whole, left] = Term(number, named, waves)
+            for ratio in RATIOS if named else ():
+                parameters.known_terms[waves, ratio * whole, left] = Term(ratio * number, named, waves)
     return hints
 
 

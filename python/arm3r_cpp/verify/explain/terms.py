@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
@@ -14,7 +14,7 @@ import numpy as np
 from ..._native import Floats
 from .spectrum import Spectrum, Wave
 
-_RATIOS = (1, -1, 0.5, -0.5, 2, -2, 1.5, -1.5, 0.25, -0.25, 1 / 3, -1 / 3)  # of a number to a product of named ones
+RATIOS = (1, -1, 0.5, -0.5, 2, -2, 1.5, -1.5, 0.25, -0.25, 1 / 3, -1 / 3)  # of a number to a product of named ones
 _MANY = 5  # terms that two sums have in common: then only the others are said
 _FEW = 30  # monomials of which a sum of two is looked for before one of all
 _ORDER = "mgaLlrcIJ"  # of the letters in a term: masses, gravity, lengths
@@ -112,6 +112,8 @@ class Parameters:
         """What terms with these numbers are called."""
         self.candidates: list[tuple[int, ...]] = []
         """The powers of the monomials of which a coefficient may be any sum."""
+        self.may_stand: Callable[[Iterable[str]], bool] = lambda names: True
+        """Whether names may stand together in a term: their product has the units of the entry."""
         self.is_determined = arms >= len(self.names) + 2 or not self.names
 
     def monomial(self, powers: Sequence[int]) -> Floats:
@@ -195,13 +197,13 @@ class Parameters:
         every: Sequence[Sequence[tuple[float, tuple[int, ...]]]],
         limit: float,
     ) -> list[tuple[float, tuple[int, ...]]] | None:
-        """The monomials that are due here, or none of them, and those of another wave times a simple number."""
-        for kept in (list(due), []):
+        """The monomials that are due times a simple number; or those of a wave, alone or beside those that are due."""
+        for kept, others in (([], [due]), (list(due), every), ([], every)):
             rest = coefficient - self._total(kept)
-            for other in every:
+            for other in others:
                 total = self._total(other)
                 ratio = float(np.sum(rest * total)) / max(float(np.sum(total**2)), 1e-300)
-                simple = min(_RATIOS, key=lambda one: abs(one - ratio))
+                simple = min(RATIOS, key=lambda one: abs(one - ratio))
                 if np.abs(rest - simple * total).max() <= limit:
                     return [*kept, *((simple * number, powers) for number, powers in other)]
         return None
@@ -244,7 +246,8 @@ class Parameters:
         for size in (1, 2, 3):
             for names in combinations(self.fixed, size):
                 value = float(np.prod([self.fixed[name] for name in names]))
-                if value and any(abs(number / value - ratio) < 1e-9 * abs(ratio) for ratio in _RATIOS):
+                ratios = (abs(number / value - ratio) < 1e-9 * abs(ratio) for ratio in RATIOS if value)
+                if self.may_stand(names) and any(ratios):
                     return number / value, [(name, 1) for name in names]
         return None
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .nodes import ProgramError
+from .nodes import ProgramError, Unread
 
 Floats = NDArray[np.float64]
 MAX_SIZE = 12
@@ -78,7 +78,7 @@ def counted(name: str, parts: list[Any], count: int) -> list[Any]:
 
 def check_size(rows: int, columns: int) -> None:
     if not (0 <= rows <= MAX_SIZE and 0 <= columns <= MAX_SIZE):
-        raise ProgramError(f"a matrix of {rows} x {columns} is too large")
+        raise Unread(f"a matrix of {rows} x {columns} is too large")
 
 
 def number(value: float) -> Floats:
@@ -104,8 +104,17 @@ def stacked(parts: list[Floats], axis: int) -> Floats:
     return np.concatenate(whole, axis=axis)
 
 
-def _filled(name: str, parts: list[Floats]) -> Floats:
+class Pages(list[Any]):
+    """An array of three dimensions: a matrix for each place along the third."""
+
+
+def _filled(name: str, parts: list[Floats]) -> Any:
     sizes = [integer(part) for part in parts] or [1]
+    if len(sizes) == 3:
+        check_size(1, sizes[2])
+        return Pages([_filled(name, parts[:2])] * sizes[2])
+    if len(sizes) > 3:
+        raise Unread(f"{name} of more than three dimensions is not read")
     rows, columns = (sizes * 2)[:2]
     check_size(rows, columns)
     return (np.eye(rows, columns) if name == "eye" else np.full((rows, columns), float(name == "ones")))[None]
@@ -127,7 +136,7 @@ def _along(name: str, parts: list[Floats]) -> Floats:
     array, *given = parts if len(parts) == 2 else counted(name, parts, 1)
     axis = integer(given[0]) if given else 2 if array.shape[1] == 1 else 1
     if axis not in (1, 2):
-        raise ProgramError(f"{name} of a matrix goes along dimension 1 or 2")
+        raise Unread(f"{name} of a matrix goes along dimension 1 or 2")
     if name == "cumsum":
         return array.cumsum(axis=axis)
     return np.asarray((np.sum if name == "sum" else np.prod)(array, axis=axis, keepdims=True))
@@ -173,10 +182,14 @@ def _blocks(name: str, parts: list[Floats]) -> Floats:
 def _size(name: str, parts: list[Any]) -> Floats:
     """numel, length, and size(A, dimension)."""
     array, *given = parts
+    if isinstance(array, Pages):
+        if name != "size" or len(given) != 1 or integer(given[0]) != 3:
+            raise Unread(f"{name} of an array of three dimensions is read along the third alone")
+        return number(len(array))
     shape = (1, len(array)) if isinstance(array, list) else array.shape[1:]
     if name == "size":
         if len(given) != 1 or integer(given[0]) not in (1, 2):
-            raise ProgramError("size takes a matrix and the dimension 1 or 2")
+            raise Unread("size takes a matrix and the dimension 1 or 2")
         return number(shape[integer(given[0]) - 1])
     counted(name, parts, 1)
     return number(max(shape) if name == "length" else shape[0] * shape[1])
@@ -185,7 +198,7 @@ def _size(name: str, parts: list[Any]) -> Floats:
 def _cell(name: str, parts: list[Floats]) -> list[None]:
     sizes = [integer(part) for part in parts]
     if not sizes or max(sizes) > MAX_SIZE or (len(sizes) > 1 and min(sizes) != 1):
-        raise ProgramError(f"a cell array of {' x '.join(map(str, sizes))} is too large: one row or column is read")
+        raise Unread(f"a cell array of {' x '.join(map(str, sizes))} is too large: one row or column is read")
     return [None] * max(sizes)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from .matlab_functions import (
     FUNCTIONS,
     MAX_SIZE,
     OPERATORS,
+    Pages,
     check_size,
     integer,
     number,
@@ -23,7 +25,7 @@ from .matlab_functions import (
     stacked,
 )
 from .matlab_reader import Function, Statement, read, read_expression
-from .nodes import Call, Constant, Edit, Node, ProgramError, Unjudged, line_and_column
+from .nodes import Call, Constant, Edit, Node, ProgramError, Unjudged, Unread, line_and_column
 
 Floats = NDArray[np.float64]
 _MAX_CALLS, _MAX_DEPTH = 2000, 30
@@ -169,9 +171,9 @@ class MatlabProgram:
         """A call of a function: how many there may be, and how many inside each other."""
         self._calls += 1
         if self._calls > _MAX_CALLS:
-            raise ProgramError(f"calls functions more than {_MAX_CALLS} times", line)
+            raise Unread(f"calls functions more than {_MAX_CALLS} times", line)
         if self._depth >= _MAX_DEPTH:
-            raise ProgramError(f"calls functions more than {_MAX_DEPTH} deep")
+            raise Unread(f"calls functions more than {_MAX_DEPTH} deep")
         self._depth += 1
         try:
             yield
@@ -197,7 +199,7 @@ class MatlabProgram:
             self._steps += 1
             if self._steps > _MAX_STEPS:
                 line, _ = line_and_column(self.text, statement.start)
-                raise ProgramError(f"takes more than {_MAX_STEPS} steps", line)
+                raise Unread(f"takes more than {_MAX_STEPS} steps", line)
             if statement.body is None:
                 self._assign(statement, variables)
                 continue
@@ -262,7 +264,7 @@ class MatlabProgram:
     def _several(self, node: Node, variables: dict[str, Any]) -> list[Any]:
         if node.kind == "call" and node.word in self.functions:
             return self._run(self.functions[node.word], [self._value(part, variables) for part in node.parts])
-        raise ProgramError("several outputs come only from a local function")
+        raise Unread("several outputs come only from a local function")
 
     def _array(self, node: Node, variables: dict[str, Any]) -> Floats:
         """The value of a node that is a matrix of numbers."""
@@ -314,7 +316,7 @@ class MatlabProgram:
         if node.kind == "handle":
             names = node.info if isinstance(node.info, tuple) else ()
             return Handle(names, node.parts[0], dict(variables))
-        raise ProgramError(f"{self.text[node.start : node.end]!r} is not read here")
+        raise Unread(f"{self.text[node.start : node.end]!r} is not read here")
 
     def _row(self, row: Node, variables: dict[str, Any]) -> Floats:
         return stacked([self._array(part, variables) for part in row.parts], 2)
@@ -324,7 +326,7 @@ class MatlabProgram:
         first, *step, last = (self._array(part, variables) for part in node.parts)
         start, change, end = integer(first), integer(step[0]) if step else 1, integer(last)
         if change == 0 or abs(end - start) > _MAX_STEPS:
-            raise ProgramError(f"a range has at most {_MAX_STEPS} numbers")
+            raise Unread(f"a range has at most {_MAX_STEPS} numbers")
         return [float(one) for one in range(start, end + (1 if change > 0 else -1), change)]
 
     def _binary(self, word: str, left: Floats, right: Floats) -> Floats:
@@ -336,7 +338,7 @@ class MatlabProgram:
         if word == "\\":
             return right / left if left.shape[1:] == (1, 1) else np.matmul(np.linalg.inv(left), right)
         if word == "^" and left.shape[1:] != (1, 1):
-            raise ProgramError("a power of a matrix is not read; write .^ for that of its elements")
+            return np.linalg.matrix_power(left, integer(right))
         return np.asarray(OPERATORS[word if word in OPERATORS else f".{word}"](left, right))
 
     def _call(self, node: Node, variables: dict[str, Any]) -> Any:
@@ -347,6 +349,8 @@ class MatlabProgram:
                 return self._apply(held, [self._value(part, variables) for part in node.parts])
             if node.info == "element":
                 return self._element(held, node, variables)
+            if isinstance(held, Pages):
+                return self._index(self._page(held, node.parts, variables)[1], node.parts[:2], variables)
             if isinstance(held, list):
                 raise ProgramError(f"an element of the cell array {name} is taken by {name}{{...}}")
             return self._index(held, node.parts, variables)
@@ -358,7 +362,10 @@ class MatlabProgram:
             return outputs[0]
         if name in FUNCTIONS and node.info is None:
             return result_of(name, parts)
-        raise ProgramError(f"{name!r} is not known: no variable, no local function and none of {', '.join(FUNCTIONS)}")
+        if node.kind == "name":
+            remedy = f"write {name} = NUMBER; above, or make it an argument"
+            raise Unread(f"{name!r} has no value in this file: {remedy}", name=name)
+        raise Unread(f"{name!r} is not known: no variable, no local function and none of {', '.join(FUNCTIONS)}")
 
     def _apply(self, handle: Handle, inputs: list[Any]) -> Any:
         if len(inputs) != len(handle.names):
@@ -378,10 +385,21 @@ class MatlabProgram:
     def _place_in_cell(self, parts: tuple[Node, ...], size: int, variables: dict[str, Any]) -> int:
         places = [self._places(part, size, variables) for part in parts]
         if not 1 <= len(places) <= 2 or any(len(one) != 1 for one in places):
-            raise ProgramError("one element of a cell array is taken at a time")
+            raise Unread("one element of a cell array is taken at a time")
         if len(places) == 2 and 0 not in (places[0][0], places[1][0]):
-            raise ProgramError("cell arrays of one row or one column are read")
+            raise Unread("cell arrays of one row or one column are read")
         return max(one[0] for one in places)
+
+    def _page(self, pages: Pages, parts: Sequence[Node], variables: dict[str, Any]) -> tuple[int, Floats]:
+        """The place along the third dimension, and the matrix there; an empty one behind the last."""
+        if len(parts) != 3:
+            raise Unread("an array of three dimensions is read by three indices")
+        places = self._places(parts[2], len(pages), variables)
+        if len(places) != 1:
+            raise Unread("one page of an array of three dimensions is taken at a time")
+        if places[0] < 0:
+            raise ProgramError("an index is out of range")
+        return places[0], pages[places[0]] if places[0] < len(pages) else np.zeros((1, 0, 0))
 
     def _places(self, part: Node, size: int, variables: dict[str, Any]) -> list[int]:
         if part.kind == "all":
@@ -393,6 +411,8 @@ class MatlabProgram:
 
     def _index(self, array: Floats, parts: tuple[Node, ...], variables: dict[str, Any]) -> Floats:
         rows, columns = array.shape[1:]
+        if len(parts) > 2:
+            raise Unread("an index of three dimensions is read of what zeros(rows, columns, pages) has made")
         if len(parts) == 1:
             flat = np.swapaxes(array, 1, 2).reshape(len(array), rows * columns)
             places = self._places(parts[0], flat.shape[1], variables)
@@ -405,8 +425,12 @@ class MatlabProgram:
         return array[:, first][:, :, second]
 
     def _put(self, array: Any, index: Node, given: Any, variables: dict[str, Any]) -> Any:
+        if len(index.parts) == 3 and (array is None or isinstance(array, Pages)):
+            return self._put_page(Pages(array or ()), index, given, variables)
         if index.word == "{" or isinstance(array, list):
             return self._put_element(array, index, given, variables)
+        if len(index.parts) == 1 and is_mask(index.parts[0]):
+            return self._put_where(array, index.parts[0], given, variables)
         array = np.zeros((1, 0, 0)) if array is None else array
         sizes = [*array.shape[1:]]
         if len(index.parts) == 1:
@@ -423,6 +447,22 @@ class MatlabProgram:
         result[np.ix_(range(len(result)), *places)] = given
         return result
 
+    def _put_page(self, pages: Pages, index: Node, given: Any, variables: dict[str, Any]) -> Pages:
+        """The pages with a part of one of them replaced; they grow as matrices do."""
+        place, page = self._page(pages, index.parts, variables)
+        whole = [one.kind == "all" for one in index.parts[:2]]
+        page = given if all(whole) else self._put(page, replace(index, parts=index.parts[:2]), given, variables)
+        check_size(1, place + 1)
+        empty = np.zeros((1, *page.shape[1:]))
+        return Pages([*pages[:place], *[empty] * (place - len(pages)), page, *pages[place + 1 :]])
+
+    def _put_where(self, array: Any, mask: Node, given: Any, variables: dict[str, Any]) -> Floats:
+        """The matrix with a number where a comparison holds, which it may do at some states and not at others."""
+        here = self._array(mask, variables)
+        if not isinstance(array, np.ndarray) or here.shape[1:] != array.shape[1:] or given.shape[1:] != (1, 1):
+            raise Unread("a number is put where a comparison of the whole matrix holds; more is not read")
+        return np.where(here != 0, given, array)
+
     def _put_element(self, cell: Any, index: Node, given: Any, variables: dict[str, Any]) -> list[Any]:
         """The cell array with an element replaced or appended."""
         if index.word != "{" or not isinstance(cell, (list, type(None))):
@@ -433,6 +473,13 @@ class MatlabProgram:
         result = [*(cell or ()), *[None] * (place + 1 - len(cell or ()))]
         result[place] = given
         return result
+
+
+def is_mask(node: Node) -> bool:
+    """Whether an index is a comparison: it chooses the elements for which it holds."""
+    while node.kind == "group":
+        (node,) = node.parts
+    return node.kind in ("compare", "logic", "not")
 
 
 def _fields(variables: dict[str, Any], name: str) -> dict[str, Any]:

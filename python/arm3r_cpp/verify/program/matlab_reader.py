@@ -238,7 +238,8 @@ class _Reader:
     def statement(self) -> Statement:
         start = self.peek()
         if start.text in _REFUSED:
-            raise self.refusal(f"`{start.text}` is not read; {KNOWN}")
+            remedy = "write the numbers into the file, or make them arguments" if start.text == "global" else KNOWN
+            raise self.refusal(f"`{start.text}` is not read; {remedy}")
         if start.text in ("for", "if"):
             self.depth += 1
             if self.depth > MAX_DEPTH:

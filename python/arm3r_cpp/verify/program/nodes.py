@@ -77,6 +77,18 @@ class ProgramError(Exception):
         self.line = line
 
 
+class Unread(ProgramError):
+    """The program holds what this package does not read, or more of it: its language may take it.
+
+    Attributes:
+        name: without a value; it may be another one, misspelt.
+    """
+
+    def __init__(self, message: str, line: int | None = None, name: str = "") -> None:
+        super().__init__(message, line)
+        self.name = name
+
+
 class ProcessEnded(ProgramError):
     """The process that runs the user's program ended."""
 

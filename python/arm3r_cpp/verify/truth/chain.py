@@ -78,6 +78,9 @@ class SerialChain:
         self.values_of_quantities: dict[str, float] = {}
         self.named_numbers = dict(named_numbers or {})
 
+    def in_other_convention(self) -> None:
+        """A chain has one convention."""
+
     def _parallel_groups(self) -> tuple[tuple[int, ...], ...]:
         """Neighbouring revolute joints with parallel axes."""
         groups: list[list[int]] = [[0]]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -31,6 +33,12 @@ FOLLOWING_WORDS = dict(
 _RANGES = {"length": (0.5, 1.6), "com": (0.2, 0.45), "mass": (0.4, 2.5), "inertia": (0.02, 0.2)}
 
 
+def _states_convention(scenario: Scenario) -> bool:
+    """Whether the scenario gives arm.convention itself: its annotated text says where each value comes from."""
+    found = re.search(r"^ +convention: \w+ +# (.*)$", scenario.to_yaml(annotate=True), re.M)
+    return found is not None and found[1] != "lecture"
+
+
 class ThreeR:
     """An arm of a scenario.
 
@@ -42,7 +50,6 @@ class ThreeR:
     revolute = (True, True, True)
     groups = ((0,), (1, 2))
     """Joints with parallel axes: their angles occur as sums."""
-    conventions: tuple[str, ...] = CONVENTIONS
     named_numbers: Mapping[str, float] = {}
 
     def __init__(self, scenario: Scenario | Arm | None = None) -> None:
@@ -51,6 +58,9 @@ class ThreeR:
         self._scenario = scenario.copy() if isinstance(scenario, Scenario) else None
         self.is_default = scenario is None
         self.convention = CONVENTIONS[int(self._params[param_index("arm.convention")])]
+        is_stated = self._scenario is not None and _states_convention(self._scenario)
+        self.conventions: tuple[str, ...] = (self.convention,) if is_stated else CONVENTIONS
+        """Those that a formula may be meant in: the one that the scenario states, else both."""
         self._arms: dict[tuple[Any, ...], Arm] = {}
         self.values_of_quantities = self._measure()
 
@@ -86,6 +96,14 @@ class ThreeR:
             "height": number("arm.base_height"),
             "gravity": float(np.linalg.norm(gravity)),
         }
+
+    def in_other_convention(self) -> ThreeR | None:
+        """The arm in the convention that its scenario does not state; None where it states none."""
+        if len(self.conventions) > 1:
+            return None
+        other = copy.copy(self)
+        [other.convention] = other.conventions = tuple(one for one in CONVENTIONS if one != self.convention)
+        return other
 
     def _number(self, name: str, otherwise: float = 0.0) -> float:
         value = float(self._params[param_index(name)])
