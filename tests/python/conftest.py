@@ -136,3 +136,14 @@ def written(tmp_path: Path) -> Callable[[str, str], Path]:
         return path
 
     return write
+
+
+@pytest.fixture
+def command(scripts: Path) -> Cli:
+    """command(path, ...): `arm3r verify` of these arguments."""
+
+    def call(*arguments: object) -> subprocess.CompletedProcess[str]:
+        words = [scripts / "arm3r", "verify", *map(str, arguments)]
+        return subprocess.run(words, capture_output=True, text=True, timeout=600)
+
+    return call

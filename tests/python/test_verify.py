@@ -7,7 +7,6 @@ import json
 import os
 import random
 import re
-import subprocess
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -28,16 +27,6 @@ from formulas.rewriting import rewritten
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
 LECTURE_JACOBIAN = MATLAB_JACOBIAN.replace("SIGN(j32)", "-j32").replace("SIGN(j33)", "-j33")
 LECTURE_GRAVITY = MATLAB_GRAVITY.replace("SIGN(", "-(")
-
-
-@pytest.fixture
-def command(scripts: Path) -> Any:
-    def call(*arguments: object) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [scripts / "arm3r", "verify", *map(str, arguments)], capture_output=True, text=True, timeout=600
-        )
-
-    return call
 
 
 # ---- the lecture ----------------------------------------------------------------------------------------------------

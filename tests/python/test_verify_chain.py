@@ -48,7 +48,7 @@ def pinocchio_of(chain: Chain) -> tuple[Any, Any]:
 def compare(chain: Chain, model: Any, data: Any, tip: int) -> None:
     q, qd, qdd, tau = states(chain.joints)
     given = {"q": q, "qd": qd, "qdd": qdd, "tau": tau}
-    ours = {kind: chain.values(kind, "", given, {}, rows=6) for kind in
+    ours = {kind: chain.values(kind, "", given, {}, rows=tuple(range(6 if kind == "jacobian" else 3))) for kind in
             ("jacobian", "kinematics", "gravity", "mass", "coriolis", "inverse", "forward")}  # fmt: skip
     for row in range(len(q)):
         pin.crba(model, data, q[row])
@@ -282,3 +282,154 @@ def test_what_is_no_urdf_is_refused(tmp_path: Path) -> None:
         path.write_text(text)
         with pytest.raises(UsageError, match=words):
             Chain.from_urdf(path)
+
+
+BRANCHED = """<robot name="arm_with_gripper">
+<link name="base"/><link name="upper"><inertial><origin xyz="0.25 0.02 0" rpy="0.3 0.1 -0.2"/><mass value="2"/>
+  <inertia ixx="0.004" iyy="0.05" izz="0.06" ixy="0.001" ixz="0" iyz="0.002"/></inertial></link>
+<link name="fore"><inertial><origin xyz="0.2 0 0.01"/><mass value="1.1"/>
+  <inertia ixx="0.003" iyy="0.03" izz="0.03" ixy="0" ixz="0.001" iyz="0"/></inertial></link>
+<link name="camera"><inertial><origin xyz="0 0 0.03"/><mass value="0.3"/>
+  <inertia ixx="1e-4" iyy="2e-4" izz="2e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="hand"><inertial><mass value="0.4"/>
+  <inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="finger"><inertial><origin xyz="0.02 0 0"/><mass value="0.05"/>
+  <inertia ixx="1e-5" iyy="1e-5" izz="1e-5" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="tool"/>
+<joint name="j1" type="revolute"><parent link="base"/><child link="upper"/><origin xyz="0 0 0.3" rpy="1.2 0 0.4"/>
+  <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="9" velocity="3"/></joint>
+<joint name="jc" type="fixed"><parent link="upper"/><child link="camera"/>
+  <origin xyz="0.1 0.05 0" rpy="0 0.5 0"/></joint>
+<joint name="j2" type="revolute"><parent link="upper"/><child link="fore"/><origin xyz="0.5 0 0" rpy="0 0 0.2"/>
+  <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="9" velocity="3"/></joint>
+<joint name="jh" type="fixed"><parent link="fore"/><child link="hand"/><origin xyz="0.4 0 0" rpy="0.2 0 0"/></joint>
+<joint name="jf" type="prismatic"><parent link="hand"/><child link="finger"/><origin xyz="0 0.03 0"/>
+  <axis xyz="0 1 0"/><limit lower="0" upper="0.04" effort="9" velocity="3"/></joint>
+<joint name="jt" type="fixed"><parent link="hand"/><child link="tool"/><origin xyz="0.1 0 0"/></joint>
+</robot>
+"""
+
+
+@pytest.fixture
+def branched(tmp_path: Path) -> Path:
+    path = tmp_path / "branched.urdf"
+    path.write_text(BRANCHED)
+    return path
+
+
+def test_what_hangs_beside_the_chain_is_counted(branched: Path) -> None:
+    """A camera, a hand and its finger, which a joint holds at zero; a payload at the tip, and a base that is turned."""
+    chain = Chain.from_urdf(branched, tip="tool").placed(payload=0.7, base_rotation=[0.1, -0.4, 0.9])
+    turn = pin.rpy.rpyToMatrix(0.1, -0.4, 0.9)
+    whole = pin.buildModelFromXML(BRANCHED)
+    model = pin.buildReducedModel(whole, [whole.getJointId("jf")], np.zeros(3))
+    model.gravity.linear = turn.T @ [0, 0, -9.80665]
+    frame = model.frames[model.getFrameId("tool")]
+    point = pin.Inertia(0.7, frame.placement.translation, np.zeros((3, 3)))
+    model.inertias[frame.parentJoint] = model.inertias[frame.parentJoint] + point
+    data, (q, qd, qdd, _) = model.createData(), states(2)
+    given = {"q": q, "qd": qd, "qdd": qdd}
+    torque, mass = (chain.values(kind, "", given, {}) for kind in ("inverse", "mass"))
+    for row in range(len(q)):
+        assert torque[row] == pytest.approx(pin.rnea(model, data, q[row], qd[row], qdd[row]), rel=1e-12, abs=1e-12)
+        inertia = pin.crba(model, data, q[row])
+        assert mass[row] == pytest.approx(np.triu(inertia) + np.triu(inertia, 1).T, rel=1e-12, abs=1e-12)
+        pin.framesForwardKinematics(model, data, q[row])
+        place = turn @ data.oMf[model.getFrameId("tool")].translation
+        assert chain.values("kinematics", "", given, {})[row] == pytest.approx(place, abs=1e-14)
+
+
+def test_a_tree_asks_for_the_tip(branched: Path, command: Any) -> None:
+    done = command(branched.with_name("x.py"), "--urdf", branched)
+    assert done.returncode == 2 and "ends in camera, finger, tool; name the tip's link: --tip LINK" in done.stderr
+    for options, words in {
+        ("--tip", "tool"): "--tip: it names a link of --urdf",
+        ("--base-rotation", "0,0,1"): "--base-rotation: it turns the base of --urdf or --dh",
+        ("--gravity", "0,0"): "three numbers with commas between them are needed, got '0,0'",
+        ("--urdf", str(branched), "--tip", "tool", "--payload", "-1"): "the payload is -1 kg; none is negative",
+    }.items():
+        done = command("x.py", *options)
+        assert done.returncode == 2 and words in done.stderr, done.stderr
+
+
+PLANAR = """standard
+type,a,alpha,d,theta,mass,cx,cy,cz,Ixx,Iyy,Izz
+R,0.9,0,0,0,2,-0.4,0,0,0,0.1,0.1
+R,0.6,0,0,0,1.3,-0.25,0,0,0,0.05,0.05
+R,0.35,0,0,0,0.7,-0.1,0,0,0,0.02,0.02
+"""
+IN_THE_PLANE = """function %s = %s(q)
+l1 = 0.9; l2 = 0.6; l3 = 0.35; phi = q(1)+q(2)+q(3);
+s1 = sin(q(1)); s2 = sin(q(1)+q(2)); s3 = sin(phi); c1 = cos(q(1)); c2 = cos(q(1)+q(2)); c3 = cos(phi);
+x = l1*c1 + l2*c2 + l3*c3; y = l1*s1 + l2*s2 + l3*s3;
+%s
+end
+"""
+J_OF_PLANE = "J = [-y, -l2*s2-l3*s3, -l3*s3; x, l2*c2+l3*c3, l3*c3"
+
+
+@pytest.mark.parametrize(
+    ("name", "last"),
+    [
+        ("jacobian", f"{J_OF_PLANE}];"),
+        ("jacobian", f"{J_OF_PLANE}; 1 1 1];"),
+        ("jacobian", f"{J_OF_PLANE}; 0 0 0];"),
+        ("fk", "p = [x; y];"),
+        ("fk", "p = [x; y; phi];"),
+        ("fk", "p = [x; y; 0];"),
+    ],
+)
+def test_planar_arms_have_rows_of_their_plane(name: str, last: str, written: Any) -> None:
+    chain = Chain.from_dh(written("planar.csv", PLANAR))
+    text = IN_THE_PLANE % (last[0], name, last)
+    verdict = verify.formula_verdict(written(f"{name}.m", text), None, chain)
+    assert verdict.ok, str(verdict)
+    assert ("third row about z" in str(verdict)) == ("1 1 1" in last or "phi" in last)
+    wrong = verify.formula_verdict(written(f"{name}.m", text.replace("l2*c2 + l3", "l2*c2 + l2")), None, chain)
+    assert {(one.old, one.new) for one in wrong.findings} == {("l2", "l3")}, str(wrong)
+
+
+FALLS = """function G = gravity(q%s)
+G = %s*[2*cos(q(1)) + 0.4*cos(q(1)+q(2)); 0.4*cos(q(1)+q(2))];
+end
+"""
+UPRIGHT = """<robot name="upright"><link name="base"/>
+<link name="l1"><inertial><origin xyz="0.5 0 0"/><mass value="2"/>
+  <inertia ixx="0" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="l2"><inertial><origin xyz="0.4 0 0"/><mass value="1"/>
+  <inertia ixx="0" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="tip"/>
+<joint name="j1" type="revolute"><parent link="base"/><child link="l1"/>
+  <origin rpy="1.5707963267948966 0 0" xyz="0 0 0.4"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="revolute"><parent link="l1"/><child link="l2"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/></joint>
+<joint name="jt" type="fixed"><parent link="l2"/><child link="tip"/><origin xyz="0.8 0 0"/></joint></robot>
+"""
+
+
+@pytest.mark.parametrize("g", ["9.80665", "9.81", "9.8", "10", "g", "9.7"])
+def test_what_the_file_does_not_say_of_gravity_is_found(g: str, written: Any, command: Any) -> None:
+    """A number that people use is taken and said; another one is wrong, until it is given."""
+    urdf, path = written("arm.urdf", UPRIGHT), written("gravity.m", FALLS % (", g" if g == "g" else "", g))
+    done = command(path, "--urdf", urdf)
+    assert done.returncode == (11 if g == "9.7" else 0), done.stdout
+    if g == "g":
+        assert "m/s^2" not in done.stdout
+    elif g != "9.7":
+        assert done.stdout.startswith(f"{path}: gravity torque, g = {g} m/s^2: right")
+        stated = command(path, "--urdf", urdf, "--gravity", "0,0,-9.7")
+        assert stated.returncode == 11 and "g = 9.7 m/s^2" in stated.stdout
+    else:
+        assert command(path, "--urdf", urdf, "--gravity", "0,0,-9.7").returncode == 0
+
+
+def test_the_frame_of_the_first_joint_is_said(written: Any, command: Any) -> None:
+    text = """function J = jacobian(q)
+J = [-sin(q(1))-0.8*sin(q(1)+q(2)), -0.8*sin(q(1)+q(2)); cos(q(1))+0.8*cos(q(1)+q(2)), 0.8*cos(q(1)+q(2)); 0 0];
+end
+"""
+    done = command(written("jacobian.m", text), "--urdf", written("arm.urdf", UPRIGHT))
+    words = "in the frame of joint 1, which is turned by 90 deg about x and is moved by [0, 0, 0.4] m in the base"
+    assert done.returncode == 0 and f"{words}, tip tip: right" in done.stdout, done.stdout
+    second = "cos(q(1))+0.8*cos(q(1)+q(2)), 0.8*cos(q(1)+q(2))"
+    turned = text.replace(f"{second}; 0 0]", f"0 0; {second}]")
+    done = command(written("jacobian.m", turned), "--urdf", written("arm.urdf", UPRIGHT))
+    assert done.returncode == 0 and "frame of joint 1" not in done.stdout

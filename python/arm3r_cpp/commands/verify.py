@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from .._messages import as_json
 from .._progress_bar import Bar
-from ..errors import Arm3rError
+from ..errors import Arm3rError, UsageError
 from .exit_codes import UNJUDGED, WRONG_FORMULA, attempt, exit_code, print_line, say
 
 if TYPE_CHECKING:
@@ -56,6 +57,10 @@ def parser() -> argparse.ArgumentParser:
     arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
     arm.add_argument("--urdf", metavar="FILE", help="a serial chain of up to 7 joints")
     arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: `arm3r docs verify` says how it is written")
+    add("--tip", metavar="LINK", help="of a URDF: the link whose frame is the tip (default: the last one)")
+    add("--gravity", type=vector, metavar="X,Y,Z", help="in the base frame, m/s^2 (default: the arm's own)")
+    add("--base-rotation", type=vector, metavar="R,P,Y", help="of a chain: roll, pitch, yaw of its base, rad or 90deg")
+    add("--payload", type=float, metavar="KG", help="a mass at the tip")
     add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: does it see the mistakes?")
     add("--noise", type=float, metavar="X", help="of a log, relative to an entry's scale (default: what a fit shows)")
     add(
@@ -78,16 +83,25 @@ def pairs(text: str) -> list[tuple[str, str]]:
     return found
 
 
+def vector(text: str) -> list[float]:
+    """ "0,0,-9.81", of angles "90deg,0,0", too."""
+    try:
+        found = [math.radians(float(one[:-3])) if one.endswith("deg") else float(one) for one in text.split(",")]
+    except ValueError:
+        found = []
+    if len(found) != 3 or not all(map(math.isfinite, found)):
+        raise argparse.ArgumentTypeError(f"three numbers with commas between them are needed, got {text!r}")
+    return found
+
+
 def verify(options: argparse.Namespace, codes: list[int]) -> None:
     """Judge each formula: its exit code. What one cannot be judged for is said, and the others are judged."""
-    from ..verify.functions import Chain, formula_verdict, truth_of
+    from ..verify.functions import formula_verdict
     from ..verify.program.python_process import PythonProcess
 
     PythonProcess.report = say_once
 
-    arm: Any = truth_of(options.arm)
-    if options.urdf or options.dh:
-        arm = Chain.from_urdf(options.urdf) if options.urdf else Chain.from_dh(options.dh)
+    arm = arm_of(options)
     verdicts: list[Verdict] = []
     for formula in options.formulas:
         bar = Bar("repair", "edits")
@@ -115,6 +129,32 @@ def verify(options: argparse.Namespace, codes: list[int]) -> None:
         print_line(as_json([verdict.to_dict() for verdict in verdicts]))
     elif verdicts and (len(verdicts) > 1 or not verdicts[0].ok):
         print_line(summary(verdicts))
+
+
+def arm_of(options: argparse.Namespace) -> Any:
+    """The arm that formulas are judged by, as the options change it.
+
+    Raises:
+        UsageError: an option does not go with the arm.
+    """
+    from ..scenario import Scenario
+    from ..verify.functions import Chain, truth_of
+
+    given = {"payload": options.payload, "gravity": options.gravity}
+    given = {name: value for name, value in given.items() if value is not None}
+    if options.tip and not options.urdf:
+        raise UsageError("--tip: it names a link of --urdf")
+    if options.urdf or options.dh:
+        chain = Chain.from_urdf(options.urdf, tip=options.tip) if options.urdf else Chain.from_dh(options.dh)
+        return chain.placed(**given, base_rotation=options.base_rotation)
+    if options.base_rotation:
+        raise UsageError("--base-rotation: it turns the base of --urdf or --dh; a scenario has arm.gravity")
+    if not given:
+        return truth_of(options.arm)
+    scenario = Scenario.load(options.arm) if options.arm else Scenario()
+    paths = {"payload": "arm.payload.mass", "gravity": "arm.gravity"}
+    scenario.update({paths[name]: value for name, value in given.items()})
+    return truth_of(scenario)
 
 
 def say_once(unbarred: list[str]) -> None:

@@ -12,7 +12,7 @@ from .._native import Floats
 from ..errors import UsageError
 from .explain.repair import wrong_entries
 from .formula import Formula
-from .kinds import KINDS, Kind, standard_form
+from .kinds import KINDS, SPATIAL, Kind, Rows, standard_form
 from .program.nodes import Edit, ProgramError
 from .samples import Samples, random_states
 from .truth.three_r import FOLLOWING
@@ -35,7 +35,7 @@ class Comparison:
     convention: str = ""
     follows: tuple[str, ...] = FOLLOWING[0]
     """What changes with a link's length: see `ThreeR.arm`."""
-    rows: int = 3
+    rows: Rows = SPATIAL
     degrees: bool = False
     shape: tuple[int, ...] = ()
     error: float = 0.0

@@ -23,7 +23,7 @@ from .explain.repair import Repair, cover, influential, tried, wrong_entries
 from .explain.terms import difference_words
 from .formula import Formula
 from .kinds import Kind, entry_name
-from .meaning import doubted, is_right_as_it_stands, meant, ways
+from .meaning import assumed, doubted, is_right_as_it_stands, meant, ways
 from .names import slot_of
 from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, Unread, line_and_column
 from .truth.three_r import FOLLOWING_WORDS
@@ -50,7 +50,9 @@ def judge(
         UnjudgedError: it holds what is not read, is too slow, needs too much memory, or breaks the connection to its
             judge.
     """
+    kind = truth.allowing(kind)
     try:
+        truth = assumed(formula, kind, truth)
         cases = meant(formula, kind, truth)
         values = cases[0].values(cases[0].second)
         if not np.array_equal(values, cases[0].values(cases[0].second), equal_nan=True):
@@ -280,7 +282,7 @@ def _found(case: Comparison) -> list[str]:
         found.append("angles in degrees")
     if case.convention:
         found.append(f"convention {case.convention}")
-    return found
+    return found + case.truth.assumed(case.kind, case.rows, case.known)
 
 
 def _only_structured(verdict: Verdict, values: Floats, due: Floats, wrong: frozenset[int]) -> frozenset[int]:

@@ -10,6 +10,10 @@ import numpy as np
 from .._native import Floats
 from ..errors import UsageError
 
+Rows = tuple[int, ...]
+"""Rows of a Jacobian, linear ones first, or of a position: 0 to 2 along the base's axes, 3 to 5 about them."""
+SPATIAL: Rows = (0, 1, 2)
+
 
 class Kind(NamedTuple):
     """A kind of formula of an arm with n joints."""

@@ -23,6 +23,17 @@ _MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
 _DYNAMIC = ("mass", "coriolis", "inverse", "forward")
 
 
+def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
+    """Of the arms that a file may mean, the one by which fewest entries are wrong, the likeliest of equals."""
+
+    def wrong(one: Any) -> int:
+        case = meant(formula, kind, one)[0]
+        return len(case.wrong(case.values(case.second), case.second))
+
+    others = truth.open_to(kind)
+    return min([truth, *others], key=wrong) if others else truth
+
+
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
     """The comparisons in which fewest entries are wrong; where some are, all that may be meant, the likeliest first."""
     counted: list[tuple[int, Comparison]] = []
@@ -115,14 +126,14 @@ def _counted(formula: Formula, kind: Kind, truth: Any, parameters: dict[str, str
     """How many entries are wrong, in each convention, unit of angles, and for all that may follow a length."""
     base = Comparison(formula, truth, kind, parameters)
     values = base.values(base.second)
-    rows = 6 if kind.name == "jacobian" and values.shape[1] == 6 else 3
     units = _units_of_angles(formula)
     varied = {quantity.rstrip("23") for quantity in parameters.values()} & {"length", "mass"}
     following = FOLLOWING if varied and (kind.name == "gravity" or kind.name in _DYNAMIC) else FOLLOWING[:1]
     first = truth.convention
     conventions = (first, *(one for one in truth.conventions if one != first))
     refuted: dict[bool, set[tuple[str, ...]]] = {}
-    for convention, follows, degrees in product(conventions, following, units):
+    returned = truth.rows_of(kind, values.shape[1])
+    for convention, rows, follows, degrees in product(conventions, returned, following, units):
         case = replace(base, convention=convention, follows=follows, rows=rows, degrees=degrees)
         result = case.values(case.second) if degrees else values
         due = case.due(case.second)

@@ -3,42 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
+from ..kinds import SPATIAL, Rows
+from .bodies import Joint, rotation_about
 
 MAX_JOINTS = 7
 GRAVITY = (0.0, 0.0, -9.80665)  # m/s^2
 
 
-def rotation_about(axis: Floats, angle: Floats) -> Floats:
-    """Rodrigues' formula: (S, 3, 3) for angles (S,)."""
-    x, y, z = axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    sine, cosine = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
-    return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
-
-
-@dataclass
-class Joint:
-    """A joint and the link behind it; the link's frame is the joint's, moved by the joint."""
-
-    is_revolute: bool
-    axis: Floats
-    """A unit vector in the joint's frame."""
-    rotation: Floats
-    """Of the joint's frame in the frame before it, (3, 3)."""
-    origin: Floats
-    """Of the joint's frame in the frame before it, (3,), m."""
-    mass: float = 0.0
-    centre: Floats = field(default_factory=lambda: np.zeros(3))
-    """Of mass, in the link's frame, m."""
-    inertia: Floats = field(default_factory=lambda: np.zeros((3, 3)))
-    """About the centre of mass, in the axes of the link's frame, kg m^2."""
-    armature: float = 0.0
+AnyChain = TypeVar("AnyChain", bound="SerialChain")
 
 
 class SerialChain:
@@ -54,14 +32,18 @@ class SerialChain:
         *,
         tool_rotation: Floats | None = None,
         tool: Sequence[float] | Floats = (0, 0, 0),
-        gravity: Sequence[float] = GRAVITY,
+        gravity: Sequence[float] | Floats = GRAVITY,
         name: str = "the chain",
+        states_gravity: bool = False,
+        tip: str = "",
         named_numbers: Mapping[str, float] | None = None,
     ) -> None:
         """
         Args:
             tool: the tip in the frame of the last link, m.
             gravity: in the base frame, m/s^2.
+            tip: what the tip's frame is called; "" where it has no name.
+            states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
 
         Raises:
@@ -75,11 +57,17 @@ class SerialChain:
         self.tool_rotation = np.eye(3) if tool_rotation is None else tool_rotation
         self.tool, self.gravity = np.array(tool, float), np.array(gravity, float)
         self.groups = self._parallel_groups()
-        self.values_of_quantities: dict[str, float] = {}
+        g = float(np.linalg.norm(self.gravity))
+        self.values_of_quantities: dict[str, float] = {"gravity": g} if g and self._has_masses() else {}
+        self.states_gravity, self.tip, self.frame = states_gravity, tip, ""
         self.named_numbers = dict(named_numbers or {})
 
-    def in_other_convention(self) -> None:
-        """A chain has one convention."""
+    def plane(self) -> int | None:
+        """The axis of the base across which the chain moves, 0 for x; None where it leaves every such plane."""
+        if not all(self.revolute) or len(self.groups) > 1:
+            return None
+        axis = np.abs(self.parts[0].rotation @ self.parts[0].axis)
+        return int(np.argmax(axis)) if np.max(axis) > 1 - 1e-12 else None
 
     def _parallel_groups(self) -> tuple[tuple[int, ...], ...]:
         """Neighbouring revolute joints with parallel axes."""
@@ -94,7 +82,8 @@ class SerialChain:
         return tuple(tuple(group) for group in groups)
 
     def random_quantities(self, names: set[str], random: np.random.Generator) -> dict[str, float]:
-        return {}
+        """Generic values for some of the quantities, of which there is one: g."""
+        return {name: float(random.uniform(4.0, 13.0)) for name in sorted(names)}
 
     # ---- kinematics --------------------------------------------------------------------------------------------------
 
@@ -139,6 +128,15 @@ class SerialChain:
         """Of the tip's frame in the base frame."""
         return self.frames(q)[0][-1]
 
+    def _position(self, q: Floats, rows: Rows) -> Floats:
+        position = self.frames(q)[1][-1]
+        axes = np.stack([rotation @ joint.axis for rotation, joint in zip(self._at_rest(), self.parts, strict=True)])
+        return np.concatenate([position, q @ axes], axis=1)[:, list(rows)]
+
+    def _at_rest(self) -> list[Floats]:
+        """The rotations of the links in the base where all joints are at zero."""
+        return [rotation[0] for rotation in self.frames(np.zeros((1, self.joints)))[0][:-1]]
+
     # ---- dynamics ----------------------------------------------------------------------------------------------------
 
     def torque(self, q: Floats, qd: Floats, qdd: Floats, gravity: Floats) -> Floats:
@@ -177,6 +175,9 @@ class SerialChain:
             moment = moment + np.cross(origin, force)
         return tau
 
+    def _has_masses(self) -> bool:
+        return any(joint.mass for joint in self.parts)
+
     def mass_matrix(self, q: Floats) -> Floats:
         """(S, n, n): a column is the torque of a unit acceleration."""
         zero = np.zeros_like(q)
@@ -184,24 +185,26 @@ class SerialChain:
         return np.stack(columns, axis=2)
 
     def values(self, kind: str, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],
-               *, follows: tuple[str, ...] = (), rows: int = 3) -> Floats:  # fmt: skip
+               *, follows: tuple[str, ...] = (), rows: Rows = SPATIAL) -> Floats:  # fmt: skip
         """What is right at the states, (S, ...)."""
         q, qd = states["q"], states["qd"]
-        zero = np.zeros_like(q)
+        zero, gravity = np.zeros_like(q), self.gravity
+        if "gravity" in quantities:
+            gravity = gravity * (quantities["gravity"] / self.values_of_quantities["gravity"])
         if kind == "jacobian":
-            return self.jacobian(q)[:, :rows]
+            return self.jacobian(q)[:, list(rows)]
         if kind == "kinematics":
-            return self.frames(q)[1][-1]
-        if not any(joint.mass for joint in self.parts):
+            return self._position(q, rows)
+        if not self._has_masses():
             raise UsageError(f"{self.name} has no masses, which a {kind} formula needs")
         if kind == "gravity":
-            return self.torque(q, zero, zero, self.gravity)
+            return self.torque(q, zero, zero, gravity)
         if kind == "mass":
             return self.mass_matrix(q)
         if kind == "coriolis":
             return self.torque(q, qd, zero, np.zeros(3))
         if kind == "inverse":
-            return self.torque(q, qd, states["qdd"], self.gravity)
-        bias = self.torque(q, qd, zero, self.gravity)
+            return self.torque(q, qd, states["qdd"], gravity)
+        bias = self.torque(q, qd, zero, gravity)
         acceleration = np.linalg.solve(self.mass_matrix(q), (states["tau"] - bias)[..., None])[..., 0]
         return np.asarray(acceleration, np.float64)

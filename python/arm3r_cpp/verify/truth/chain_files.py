@@ -1,12 +1,24 @@
-"""Chains, and the files that they come from."""
+"""Chains from files, and what such a file leaves open."""
 
 from __future__ import annotations
 
+import copy
 import os
+from collections.abc import Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from ...errors import UsageError
+from ..kinds import SPATIAL, Kind, Rows
+from .bodies import pose_words, rotation_of, vector_words, with_mass
 from .chain import SerialChain
 from .dh import read_dh
 from .urdf import read_urdf
+
+_OTHER_GRAVITIES = (9.81, 9.8, 10.0)
+_WEIGHED, _PLACED = ("gravity", "inverse", "forward"), ("jacobian", "kinematics")
+"""Kinds of formulas that depend on gravity, and on where the base stands."""
 
 
 class Chain(SerialChain):
@@ -25,3 +37,96 @@ class Chain(SerialChain):
     def from_dh(cls, path: str | os.PathLike[str]) -> Chain:
         """The chain of a DH table, see `arm3r docs verify`."""
         return read_dh(path, cls)
+
+    # ---- what a formula of the chain may mean ----------------------------------------------------------------------
+
+    def in_other_convention(self) -> None:
+        """A chain has one convention."""
+
+    def placed(
+        self,
+        *,
+        gravity: Sequence[float] | None = None,
+        base_rotation: Sequence[float] | None = None,
+        payload: float | None = None,
+    ) -> Chain:
+        """The chain elsewhere, and with more at its tip.
+
+        Args:
+            gravity: in the frame in which the base stands, m/s^2.
+            base_rotation: roll, pitch and yaw of the base in that frame, rad.
+            payload: a mass at the tip, kg.
+
+        Raises:
+            UsageError: the payload is negative.
+        """
+        if payload is not None and payload < 0:
+            raise UsageError(f"{self.name}: the payload is {payload:g} kg; none is negative")
+        parts, turn = list(self.parts), rotation_of(base_rotation or (0.0, 0.0, 0.0))
+        if base_rotation is not None:
+            parts[0] = replace(parts[0], rotation=turn @ parts[0].rotation, origin=turn @ parts[0].origin)
+        if payload:
+            parts[-1] = with_mass(parts[-1], payload, self.tool)
+        return type(self)(
+            parts,
+            tool_rotation=self.tool_rotation,
+            tool=self.tool,
+            gravity=self.gravity if gravity is None else gravity,
+            name=self.name,
+            states_gravity=self.states_gravity or gravity is not None,
+            tip=self.tip,
+            named_numbers=self.named_numbers,
+        )
+
+    def with_gravity(self, g: float) -> Chain:
+        """The chain where gravity is as large, m/s^2."""
+        other = copy.copy(self)
+        other.gravity = self.gravity * (g / np.linalg.norm(self.gravity))
+        other.values_of_quantities = {"gravity": g}
+        return other
+
+    def in_frame_of_first_joint(self) -> Chain:
+        """The chain in the frame in which its first joint stands, instead of the base."""
+        other, (first, *rest) = copy.copy(self), self.parts
+        other.parts = [replace(first, rotation=np.eye(3), origin=np.zeros(3)), *rest]
+        other.gravity = first.rotation.T @ self.gravity
+        other.frame = f"the frame of joint 1, which {pose_words(first.rotation, first.origin)} in the base"
+        return other
+
+    def open_to(self, kind: Kind) -> list[Chain]:
+        """Other chains that its file may mean: it says nothing of g, and a base may stand anywhere."""
+        if kind.name in _WEIGHED and not self.states_gravity and np.linalg.norm(self.gravity) > 0:
+            return [self.with_gravity(g) for g in _OTHER_GRAVITIES]
+        first = self.parts[0]
+        stands_apart = not (np.array_equal(first.rotation, np.eye(3)) and not first.origin.any())
+        return [self.in_frame_of_first_joint()] if kind.name in _PLACED and stands_apart else []
+
+    def rows_of(self, kind: Kind, count: int) -> list[Rows]:
+        """Which rows of what is right a formula may return that has so many: of a planar chain those in its plane.
+
+        Rows 0 to 2 are linear, 3 to 5 angular; of a position, 3 to 5 are the sums of the joint angles about the axes.
+        """
+        plane = self.plane()
+        whole = [tuple(range(6)) if count == 6 else SPATIAL]
+        if plane is None or count not in (2, 3) or kind.name not in _PLACED:
+            return whole
+        across = tuple(axis for axis in range(3) if axis != plane)
+        return [across] if count == 2 else [*whole, (*across, 3 + plane)]
+
+    def allowing(self, kind: Kind) -> Kind:
+        """The kind with the shapes that a formula of this chain may return: of a planar one two rows."""
+        flat = {"jacobian": "2xn", "kinematics": "2"}.get(kind.name)
+        return kind._replace(shapes=(*kind.shapes, flat)) if flat and self.plane() is not None else kind
+
+    def assumed(self, kind: Kind, rows: Rows, varied: Sequence[str]) -> list[str]:
+        """What is taken for granted, as its file does not say it or a formula may mean another."""
+        found = [f"in {self.frame}"] if self.frame and kind.name in _PLACED else []
+        if kind.name in _PLACED:
+            found += [f"tip {self.tip}"] if self.tip else []
+            found += [f"third row about {'xyz'[rows[2] - 3]}"] if len(rows) == 3 and rows[2] > 2 else []
+        if kind.name in _WEIGHED and "gravity" not in varied:
+            size = float(np.linalg.norm(self.gravity))
+            down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)
+            words = "" if down or not size else f" along {vector_words(self.gravity / size)}"
+            found.append(f"g = {size:.7g} m/s^2{words}")
+        return found

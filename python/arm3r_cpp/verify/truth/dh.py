@@ -12,7 +12,8 @@ import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from .chain import Joint, SerialChain
+from .bodies import Joint
+from .chain import SerialChain
 
 AnyChain = TypeVar("AnyChain", bound=SerialChain)
 

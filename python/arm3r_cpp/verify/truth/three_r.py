@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from ...arm import Arm
 from ...errors import UsageError
 from ...params import param_index
 from ...scenario import Scenario
+from ..kinds import SPATIAL, Kind, Rows
 
 CONVENTIONS = ("simscape", "slide")
 FOLLOWING = (("com", "inertia"), ("com",), (), ("com", "inertia", "mass"))
@@ -96,6 +97,22 @@ class ThreeR:
             "height": number("arm.base_height"),
             "gravity": float(np.linalg.norm(gravity)),
         }
+
+    def open_to(self, kind: Kind) -> list[ThreeR]:
+        """Other arms that the scenario may mean: it says all."""
+        return []
+
+    def rows_of(self, kind: Kind, count: int) -> list[Rows]:
+        """Which rows of what is right a formula may return that has so many."""
+        return [tuple(range(6)) if count == 6 else SPATIAL]
+
+    def allowing(self, kind: Kind) -> Kind:
+        """The kind with the shapes that a formula of this arm may return."""
+        return kind
+
+    def assumed(self, kind: Kind, rows: Rows, varied: Sequence[str]) -> list[str]:
+        """What is taken for granted, but for the convention."""
+        return []
 
     def in_other_convention(self) -> ThreeR | None:
         """The arm in the convention that its scenario does not state; None where it states none."""
@@ -201,7 +218,7 @@ class ThreeR:
         quantities: Mapping[str, float],
         *,
         follows: tuple[str, ...] = FOLLOWING[0],
-        rows: int = 3,
+        rows: Rows = SPATIAL,
     ) -> Floats:
         """What is right at the states, (N, ...)."""
         if kind == "controller":
@@ -209,7 +226,7 @@ class ThreeR:
         arm = self.arm(convention, quantities, follows)
         q, qd = states["q"], states["qd"]
         if kind == "jacobian":
-            return arm.geometric_jacobian(q) if rows == 6 else arm.jacobian(q)
+            return arm.geometric_jacobian(q) if len(rows) == 6 else arm.jacobian(q)
         if kind == "gravity":
             return arm.gravity_torque(q)
         if kind == "kinematics":

@@ -4,28 +4,27 @@ from __future__ import annotations
 
 import os
 import xml.etree.ElementTree as ElementTree
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from .chain import Joint, SerialChain
-
-AnyChain = TypeVar("AnyChain", bound=SerialChain)
+from .bodies import Body, Joint, joined, rotation_of
+from .chain import AnyChain
 
 _MOST_BYTES = 10_000_000
 LARGEST = 1e12  # of a number
 
 
-class _Link(NamedTuple):
-    mass: float
-    centre: Floats
-    inertia: Floats
+class _Tree(NamedTuple):
+    links: dict[str, ElementTree.Element]
+    behind: dict[str, list[ElementTree.Element]]
+    """The joints beside the chain, by the links on which they stand."""
 
 
 def read_urdf(path: str | os.PathLike[str], tip: str | None, make: type[AnyChain]) -> AnyChain:
-    """The chain from the root link to a link; fixed joints join links into one.
+    """The chain from the root link to a link; what hangs on it by other joints belongs to its links, held at zero.
 
     Raises:
         UsageError: the file is no URDF, branches and names no tip, or has joints of other types.
@@ -38,7 +37,8 @@ def read_urdf(path: str | os.PathLike[str], tip: str | None, make: type[AnyChain
     if tip is None:
         ends = [name for name in links if name not in parents]
         if len(ends) != 1:
-            raise UsageError(f"{file}: the tree ends in {', '.join(ends) or 'no link'}; name the tip's link")
+            words = f"the tree ends in {', '.join(ends) or 'no link'}; name the tip's link: --tip LINK, in Python tip="
+            raise UsageError(f"{file}: {words}")
         (tip,) = ends
     if tip not in links:
         raise UsageError(f"{file}: there is no link {tip!r}; it has {', '.join(links)}")
@@ -49,7 +49,11 @@ def read_urdf(path: str | os.PathLike[str], tip: str | None, make: type[AnyChain
         name = _name(file, by_child[name], "parent")
     if name in by_child:
         raise UsageError(f"{file}: the joints make a ring through {name!r}; a chain begins at a link that is no child")
-    return _chain(file, path_of_joints, links, make)
+    behind: dict[str, list[ElementTree.Element]] = {}
+    for joint in by_child.values():
+        if not any(joint is one for one in path_of_joints):
+            behind.setdefault(_name(file, joint, "parent"), []).append(joint)
+    return _chain(file, path_of_joints, _Tree(links, behind), tip, make)
 
 
 def _parsed(file: str) -> ElementTree.Element:
@@ -77,11 +81,11 @@ def _name(file: str, joint: ElementTree.Element, end: str) -> str:
     return found.attrib["link"]
 
 
-def _link_of(file: str, joint: ElementTree.Element, links: dict[str, ElementTree.Element]) -> ElementTree.Element:
+def _child(file: str, joint: ElementTree.Element, links: dict[str, ElementTree.Element]) -> str:
     name = _name(file, joint, "child")
     if name not in links:
         raise UsageError(f"{file}: the joint {joint.get('name')!r} has the child {name!r}, which is no link")
-    return links[name]
+    return name
 
 
 def _numbers(file: str, element: ElementTree.Element | None, key: str, default: str) -> Floats:
@@ -99,19 +103,14 @@ def _numbers(file: str, element: ElementTree.Element | None, key: str, default: 
 def _pose(file: str, element: ElementTree.Element | None) -> tuple[Floats, Floats]:
     """Rotation and origin of an <origin>: roll, pitch, yaw about fixed axes x, y, z."""
     origin = element.find("origin") if element is not None else None
-    (cr, cp, cy), (sr, sp, sy) = (one(_numbers(file, origin, "rpy", "0 0 0")) for one in (np.cos, np.sin))
-    rotation = np.array([
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ])  # fmt: skip
+    rotation = rotation_of(_numbers(file, origin, "rpy", "0 0 0"))
     return rotation, _numbers(file, origin, "xyz", "0 0 0")
 
 
-def _link(file: str, element: ElementTree.Element) -> _Link:
+def _link(file: str, element: ElementTree.Element) -> Body:
     inertial = element.find("inertial")
     if inertial is None:
-        return _Link(0.0, np.zeros(3), np.zeros((3, 3)))
+        return Body(0.0, np.zeros(3), np.zeros((3, 3)))
     rotation, centre = _pose(file, inertial)
     (mass,) = _numbers(file, inertial.find("mass"), "value", "0")
     if mass < 0:
@@ -121,34 +120,32 @@ def _link(file: str, element: ElementTree.Element) -> _Link:
         for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     )
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return _Link(float(mass), centre, rotation @ inertia @ rotation.T)
+    return Body(float(mass), centre, rotation @ inertia @ rotation.T)
 
 
-def _joined(one: _Link, other: _Link, rotation: Floats, origin: Floats) -> _Link:
-    """Two links that a fixed joint joins, in the frame of the first (parallel axis theorem)."""
-    moved = _Link(other.mass, origin + rotation @ other.centre, rotation @ other.inertia @ rotation.T)
-    mass = one.mass + moved.mass
-    if mass == 0:
-        return one
-    centre = (one.mass * one.centre + moved.mass * moved.centre) / mass
-    inertia = np.zeros((3, 3))
-    for part in (one, moved):
-        arm = part.centre - centre
-        inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return _Link(mass, centre, inertia)
+def _joined(one: Body, other: Body, rotation: Floats, origin: Floats) -> Body:
+    """Two links that a fixed joint joins, in the frame of the first."""
+    return joined(one, Body(other.mass, origin + rotation @ other.centre, rotation @ other.inertia @ rotation.T))
 
 
-def _chain(
-    file: str, path: list[ElementTree.Element], links: dict[str, ElementTree.Element], make: type[AnyChain]
-) -> AnyChain:
+def _with_branches(file: str, name: str, tree: _Tree) -> Body:
+    """A link with all that hangs on it beside the chain: fixed, or held by joints at zero."""
+    body = _link(file, tree.links[name])
+    for joint in tree.behind.get(name, ()):
+        rotation, origin = _pose(file, joint)
+        body = _joined(body, _with_branches(file, _child(file, joint, tree.links), tree), rotation, origin)
+    return body
+
+
+def _chain(file: str, path: list[ElementTree.Element], tree: _Tree, tip: str, make: type[AnyChain]) -> AnyChain:
     joints: list[Joint] = []
-    bodies: list[_Link] = []
+    bodies: list[Body] = []
     rotation, origin = np.eye(3), np.zeros(3)  # of the current link in the frame of the last moving one
     for element in path:
         step_rotation, step_origin = _pose(file, element)
         origin, rotation = origin + rotation @ step_origin, rotation @ step_rotation
         kind = element.get("type")
-        link = _link(file, _link_of(file, element, links))
+        link = _with_branches(file, _child(file, element, tree.links), tree)
         if kind == "fixed":
             if bodies:
                 bodies[-1] = _joined(bodies[-1], link, rotation, origin)
@@ -166,4 +163,4 @@ def _chain(
         rotation, origin = np.eye(3), np.zeros(3)
     for joint, body in zip(joints, bodies, strict=True):
         joint.mass, joint.centre, joint.inertia = body
-    return make(joints, tool=origin, tool_rotation=rotation, name=os.path.basename(file))
+    return make(joints, tool=origin, tool_rotation=rotation, name=os.path.basename(file), tip=tip)
