@@ -31,6 +31,7 @@ from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
 MENDING_EDITS = 3000  # of a formula that fails
+_MOST_ALTERNATIVES = 3
 REPAIR_EDITS = 10_000  # of all that a formula may mean
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
@@ -82,6 +83,7 @@ def judge(
     elif verdict.findings:
         _compare_with_other_convention(verdict, formula, kind, truth)
     _judge_constants(verdict, case)
+    verdict.alternatives = _few(verdict.alternatives)
     verdict.ok = not verdict.findings
     seen_by_tests(verdict, case, seen_by)
     return verdict
@@ -160,6 +162,11 @@ def _has_other_names(verdict: Verdict, case: Comparison) -> bool:
     wrong = case.wrong(case.values(case.second), case.second)
     readings = read_entries(case, wrong)
     return set(readings) == wrong and all(one.has_due_units for one in readings.values())
+
+
+def _few(alternatives: Sequence[str]) -> list[str]:
+    """Those that are said: each once, those of another convention first."""
+    return sorted(dict.fromkeys(alternatives), key=lambda one: " the convention " not in one)[:_MOST_ALTERNATIVES]
 
 
 def _compare_with_other_convention(verdict: Verdict, formula: Formula, kind: Kind, truth: Any) -> None:
@@ -369,7 +376,6 @@ def _hypotheses(case: Comparison) -> list[str]:
 
     def list_at(samples: Any) -> Any:
         states = {vector: samples.tiled(vector) for vector in samples.states}
-        rotation = getattr(case.truth, "rotation", None)
 
         def truth(here: dict[str, Floats], changes: dict[str, Any]) -> Floats:
             return case.due(samples, changes, here)
@@ -379,11 +385,15 @@ def _hypotheses(case: Comparison) -> list[str]:
             truth,
             states,
             case.truth.joints,
-            rotation and (lambda: rotation(case.convention, states["q"])),
+            lambda: case.truth.pose(case.convention, states["q"]),
             case.given(samples),
             in_degrees=case.degrees,
         )
 
+    for words, truth in case.truth.variants(case.kind):
+        other = replace(case, truth=truth)
+        if not case.wrong(values, fitting, other.due(fitting)) and not case.wrong(check, fresh, other.due(fresh)):
+            found.append((1, words))
     for one, other in zip(list_at(fitting), list_at(fresh), strict=True):
         try:
             expected = one.values()

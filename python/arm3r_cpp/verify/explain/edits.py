@@ -12,6 +12,8 @@ _TRIGONOMETRIC = {"sin": "cos", "cos": "sin", "sind": "cosd", "cosd": "sind", "t
 _ADDITIVE, _MULTIPLICATIVE = ("+", "-"), ("*", "/", ".*", "./")
 _COMPARISONS = ("<", "<=", ">", ">=", "==", "!=", "~=")
 _MOST = 8000
+_OF_DATA = 3
+"""By how many ranks an edit is less likely where nothing but numbers is assigned."""
 
 
 class Editor:
@@ -72,10 +74,15 @@ class Editor:
         """The edits of some statements, each once, without those that change nothing, the likely ones first."""
         seen, found = set(), []
         for statement in statements:
+            is_data = _is_data(statement)
             for node, parent in _with_parents(statement):
                 if parent is None:
                     continue
                 for edit in self._of_node(node, parent):
+                    if is_data:  # a length is another number rather than none, and a formula wrong rather than both
+                        if edit.new == "0":
+                            continue
+                        edit = edit._replace(rank=edit.rank + _OF_DATA)
                     new = " ".join(edit.new.split())
                     if (
                         new != " ".join(self.text[edit.start : edit.end].split())
@@ -285,6 +292,15 @@ class Editor:
             yield Edit(node.end, node.end, ".T", 6)
         elif self.language == "matlab" and node.kind in ("name", "group", "call"):
             yield Edit(node.end, node.end, "'", 6)
+
+
+def _is_data(statement: Node) -> bool:
+    """Whether a statement holds numbers alone, in lists or by names: the arm's, which the formula uses."""
+    return all(
+        node.kind in ("assign", "number", "matrix", "row", "unary", "group")
+        or (node.kind == "other" and node.word[:1] in ("{", "'", '"'))
+        for node in statement.walk()
+    )
 
 
 def _assigned(text: str) -> list[str]:

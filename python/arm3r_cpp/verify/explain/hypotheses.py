@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import permutations
+from itertools import permutations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +14,10 @@ from ..._native import Floats
 States = dict[str, Floats]
 Truth = Callable[[States, dict[str, float]], Floats]
 """What is right at the joint vectors of all rows, with factors or replacements of quantities: (rows, ...)."""
+
+
+STEINER_MISSING = "the parallel-axis term m l^2 is missing: the inertias are about the centres of mass"
+STEINER_TWICE = "the parallel-axis term m l^2 is counted twice: the inertias are about the joints already"
 
 
 class Hypothesis(NamedTuple):
@@ -28,7 +32,7 @@ def hypotheses(
     truth: Truth,
     states: States,
     joints: int,
-    rotation: Callable[[], Floats] | None,
+    pose: Callable[[], tuple[Floats, Floats]] | None,
     scales: dict[str, Floats],
     *,
     in_degrees: bool = False,
@@ -36,10 +40,11 @@ def hypotheses(
     """All of them, each to be evaluated when it is asked for.
 
     Args:
+        pose: the rotation of the tip's frame and the tip's position, in all rows; None where nobody knows it.
         in_degrees: whether the formula is given angles in degrees; `states` are in radians.
     """
     yield from _inputs(truth, states, joints, kind, in_degrees)
-    yield from _outputs(kind, lambda: truth(states, {}), joints, rotation)
+    yield from _outputs(kind, lambda: truth(states, {}), joints, pose)
     yield from _quantities(truth, states, scales)
 
 
@@ -90,7 +95,7 @@ def _absolute_columns(due: Callable[[], Floats], joint: int) -> Floats:
 
 
 def _outputs(
-    kind: str, due: Callable[[], Floats], joints: int, rotation: Callable[[], Floats] | None
+    kind: str, due: Callable[[], Floats], joints: int, pose: Callable[[], tuple[Floats, Floats]] | None
 ) -> Iterator[Hypothesis]:
     values = due()
     rows = values.shape[1]
@@ -128,8 +133,36 @@ def _outputs(
                 f"the columns stand in the order {', '.join(str(one + 1) for one in order)}",
                 partial(np.take, values, order, axis=2),
             )
-    if kind == "jacobian" and rotation is not None:
-        yield Hypothesis("the rows are in the tip's frame; the base frame is due", lambda: _rotated(rotation(), values))
+    if kind == "jacobian" and pose is not None and rows in (3, 6):
+        yield from _of_other_frames(values, *pose())
+
+
+def _of_other_frames(values: Floats, rotation: Floats, position: Floats) -> Iterator[Hypothesis]:
+    """Jacobians that are right in another frame, or of another point."""
+    turned = [("", values)]
+    if values.shape[1] == 6:
+        turned.append((", and the angular rows stand above the linear ones", np.roll(values, 3, axis=1)))
+    for (number, axes), (also, rows) in product(enumerate(_AXES), turned):
+        which = "the tip's frame" if number == 0 else "a frame that moves with the tip"
+        words = f"the rows are in {which}; the base frame is due{also}"
+        yield Hypothesis(words, partial(_rotated, rotation @ axes, rows), 1 + (number > 0) + bool(also))
+    if values.shape[1] == 6:
+        across = np.cross(values[:, 3:], position[:, :, None], axis=1)
+        whole = np.concatenate([values[:, :3] - across, values[:, 3:]], axis=1)
+        words = "the linear rows are of the last link's point at the base's origin; those of the tip are due"
+        yield Hypothesis(words, lambda: whole)
+
+
+def _right_handed_axes() -> Iterator[Floats]:
+    """The rotations that take axes to axes, the one that leaves them first."""
+    for order in permutations(range(3)):
+        for signs in product((1.0, -1.0), repeat=3):
+            axes = np.eye(3)[:, order] * signs
+            if np.linalg.det(axes) > 0:
+                yield axes
+
+
+_AXES = tuple(_right_handed_axes())
 
 
 def _rotated(rotation: Floats, values: Floats) -> Floats:
@@ -164,6 +197,10 @@ def _quantities(truth: Truth, states: States, given: dict[str, Floats]) -> Itera
             "the centres of mass of links 2 and 3 are taken at the links' ends",
             changed(com2=given["length2"], com3=given["length3"]),
         )
+    if {"inertia2", "mass2", "com2", "inertia3", "mass3", "com3"} <= set(given):
+        doubled = {f"inertia{link}": given[f"inertia{link}"] + given[f"mass{link}"] * given[f"com{link}"] ** 2
+                   for link in (2, 3)}  # fmt: skip
+        yield Hypothesis(STEINER_TWICE, changed(**doubled))
     if "gravity" in given:
         g = given["gravity"]
         yield Hypothesis("g is missing", changed(gravity=np.ones_like(g)))

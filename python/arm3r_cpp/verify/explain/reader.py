@@ -120,7 +120,8 @@ class _Reader:
             index = place * len(self.parts) + number
             due, monomials_due = self._due(index, part)
             due_terms = None if due is None or due_terms is None else due_terms + due
-            read_ones = self._read(index, part, monomials_due)
+            names = None if due is None else {name for term in due for name, _ in term.powers}
+            read_ones = self._read(index, part, monomials_due, names)
             terms = None if read_ones is None or terms is None else terms + _like(read_ones, due or [])
         due_words = sum_words(due_terms) if due_terms is not None else None
         if terms is None or not self._is_whole(place):
@@ -164,11 +165,11 @@ class _Reader:
             for waves, found in result[1].items()
         }
 
-    def _read(self, index: int, part: Part, monomials_due: Any) -> list[Term] | None:
-        """The terms of the formula."""
+    def _read(self, index: int, part: Part, monomials_due: Any, due: set[str] | None) -> list[Term] | None:
+        """The terms of the formula; its numbers are called as the table's only where these are due in this entry."""
         known = self.case.known
         fixed = {self.shown[name]: self.own[name] for name in self.varied if name not in known and self.own.get(name)}
-        fixed |= self.case.truth.named_numbers
+        fixed |= {name: value for name, value in self.case.truth.named_numbers.items() if due is None or name in due}
         values = {self.shown[name]: np.array([arm[name] for arm in self.arms]) for name in known}
         parameters = Parameters(values, fixed, len(self.arms))
         parameters.candidates = self._candidates(part, known, parameters)

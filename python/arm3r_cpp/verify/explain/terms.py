@@ -163,7 +163,8 @@ class Parameters:
         if alone and (is_simple_number(alone[0]) or not due):
             return [alone]
         return (
-            self._nearest(coefficient, due, limit)
+            self._moved(coefficient, [], [due], limit)
+            or self._nearest(coefficient, due, limit)
             or self._moved(coefficient, due, every, limit)
             or ([alone] if alone else self._double(coefficient, limit))
             or (self._nearest(coefficient, due, limit, any_number=True) if self.arms > 1 else None)
@@ -185,6 +186,12 @@ class Parameters:
                 chosen = [due[place] for place in places]
                 if np.abs(rest).max() <= limit:
                     return chosen
+                if len(places) == len(due) - 1 and not self.names:  # numbers alone: that of the last one is another
+                    (lost,) = set(range(len(due))) - set(places)
+                    number, powers = due[lost]
+                    ratio = next((one for one in RATIOS if abs(rest[0] - one * number) <= limit), None)
+                    if ratio is not None:
+                        return [*chosen, (ratio * number, powers)]
                 other = self.single(rest, limit)
                 if other and (any_number or is_simple_number(other[0])):
                     return [*chosen, other]
@@ -197,10 +204,12 @@ class Parameters:
         every: Sequence[Sequence[tuple[float, tuple[int, ...]]]],
         limit: float,
     ) -> list[tuple[float, tuple[int, ...]]] | None:
-        """The monomials that are due times a simple number; or those of a wave, alone or beside those that are due."""
-        for kept, others in (([], [due]), (list(due), every), ([], every)):
+        """The monomials that are due here, or none of them, and those of another wave times a simple number."""
+        for kept in (list(due), []) if due else ([],):
             rest = coefficient - self._total(kept)
-            for other in others:
+            for other in every:
+                if other == due:
+                    continue
                 total = self._total(other)
                 ratio = float(np.sum(rest * total)) / max(float(np.sum(total**2)), 1e-300)
                 simple = min(RATIOS, key=lambda one: abs(one - ratio))
@@ -242,13 +251,18 @@ class Parameters:
         return Term(number, tuple(sorted(named, key=lambda one: (_ORDER.find(one[0][0]) % 99, one[0]))), waves)
 
     def _named_number(self, number: float) -> tuple[float, list[tuple[str, int]]] | None:
-        """A number of the plant as a simple number times its named quantities, the fewest that do."""
+        """A number of the plant as a simple number times its named quantities, the fewest and the simplest that do."""
         for size in (1, 2, 3):
+            found = []
             for names in combinations(self.fixed, size):
                 value = float(np.prod([self.fixed[name] for name in names]))
                 ratios = (abs(number / value - ratio) < 1e-9 * abs(ratio) for ratio in RATIOS if value)
-                if self.may_stand(names) and any(ratios):
-                    return number / value, [(name, 1) for name in names]
+                place = next((place for place, is_near in enumerate(ratios) if is_near), None)
+                if place is not None and self.may_stand(names):
+                    found.append((place // 2, number / value, names))
+            if found:
+                _, ratio, names = min(found, key=lambda one: one[0])
+                return ratio, [(name, 1) for name in names]
         return None
 
 

@@ -124,9 +124,10 @@ class SerialChain:
                 columns.append(np.concatenate([axis, np.zeros_like(axis)], axis=1))
         return np.stack(columns, axis=2)
 
-    def rotation(self, convention: str, q: Floats) -> Floats:
-        """Of the tip's frame in the base frame."""
-        return self.frames(q)[0][-1]
+    def pose(self, convention: str, q: Floats) -> tuple[Floats, Floats]:
+        """The rotation of the tip's frame in the base frame, and its position."""
+        rotations, origins = self.frames(q)
+        return rotations[-1], origins[-1]
 
     def _position(self, q: Floats, rows: Rows) -> Floats:
         position = self.frames(q)[1][-1]

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import UsageError
+from ..explain.hypotheses import STEINER_MISSING, STEINER_TWICE
 from ..kinds import SPATIAL, Kind, Rows
 from .bodies import pose_words, rotation_of, vector_words, with_mass
 from .chain import SerialChain
@@ -19,6 +20,7 @@ from .urdf import read_urdf
 _OTHER_GRAVITIES = (9.81, 9.8, 10.0)
 _WEIGHED, _PLACED = ("gravity", "inverse", "forward"), ("jacobian", "kinematics")
 """Kinds of formulas that depend on gravity, and on where the base stands."""
+_MOVED = ("mass", "coriolis", "inverse", "forward")
 
 
 class Chain(SerialChain):
@@ -100,6 +102,18 @@ class Chain(SerialChain):
         first = self.parts[0]
         stands_apart = not (np.array_equal(first.rotation, np.eye(3)) and not first.origin.any())
         return [self.in_frame_of_first_joint()] if kind.name in _PLACED and stands_apart else []
+
+    def variants(self, kind: Kind) -> list[tuple[str, Chain]]:
+        """Chains with a mistake in their masses, in words."""
+        if kind.name not in _MOVED or not self._has_masses():
+            return []
+        twice, without = copy.copy(self), copy.copy(self)
+        shifts = [joint.mass * (joint.centre @ joint.centre * np.eye(3) - np.outer(joint.centre, joint.centre))
+                  for joint in self.parts]  # fmt: skip
+        for other, sign in ((twice, 1), (without, -1)):
+            other.parts = [replace(joint, inertia=joint.inertia + sign * shift)
+                           for joint, shift in zip(self.parts, shifts, strict=True)]  # fmt: skip
+        return [(STEINER_TWICE, twice), (STEINER_MISSING, without)]
 
     def rows_of(self, kind: Kind, count: int) -> list[Rows]:
         """Which rows of what is right a formula may return that has so many: of a planar chain those in its plane.

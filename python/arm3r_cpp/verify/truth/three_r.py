@@ -257,8 +257,15 @@ class ThreeR:
             torques.append(signs * here.run()["tau"][0])
         return np.array(torques)
 
-    def rotation(self, convention: str, q: Floats) -> Floats:
-        """From the tip's axes to the base: x along link 3, y across the arm's plane."""
+    def variants(self, kind: Kind) -> list[tuple[str, ThreeR]]:
+        """Arms with a mistake that its quantities do not tell."""
+        return []
+
+    def pose(self, convention: str, q: Floats) -> tuple[Floats, Floats]:
+        """The rotation from the tip's axes to the base, x along link 3, y across the arm's plane; and its position."""
+        return self._rotation(convention, q), self.values("kinematics", convention, {"q": q, "qd": q}, {})
+
+    def _rotation(self, convention: str, q: Floats) -> Floats:
         sign = 1.0 if convention == "simscape" else -1.0
         pitch = sign * (q[:, 1] + q[:, 2])
         c1, s1, c, s = np.cos(q[:, 0]), np.sin(q[:, 0]), np.cos(pitch), np.sin(pitch)
