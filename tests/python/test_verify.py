@@ -599,3 +599,30 @@ def test_a_hostile_file_is_one_clear_line(written: Any, body: str, monkeypatch: 
     (finding,) = verdict.findings
     assert not verdict.ok and finding.entry is None and HOSTILE[body] in finding.cause
     assert len(str(verdict).splitlines()) <= 4
+
+
+SEVERAL = """import numpy as np
+from numpy import cos, sin
+
+
+def jacobian(q):
+    q1, q2, q3 = q
+    r, h = cos(q2) + cos(q2 + q3), sin(q2) + sin(q2 + q3)
+    Jv = np.array([[-sin(q1)*r, -h*cos(q1), -sin(q2 + q3)*cos(q1)],
+                   [cos(q1)*r, -h*sin(q1), -sin(q2 + q3)*sin(q1)], [0, -r, -cos(q2 + q3)]])
+    Jw = np.array([[0, -sin(q1), -sin(q1)], [0, cos(q1), cos(q1)], [1, 0, 0]])
+    return %s
+"""
+
+
+@pytest.mark.parametrize(
+    ("returned", "output"),
+    [("Jv, Jw", 1), ("Jw, Jv", 2), ("[Jw, Jv, np.linalg.det(Jv)]", 2), ("np.eye(4), Jv", 2), ("3.0, 'J', Jv", 3)],
+)
+def test_one_of_several_results_is_judged(returned: str, output: int, written: Any) -> None:
+    path = written("jacobian.py", SEVERAL % returned)
+    verdict = arm3r.verify.jacobian(path)
+    assert verdict.ok and f"its output {output}" in str(verdict), str(verdict)
+    path = written("jacobian.py", (SEVERAL % returned).replace("-h*sin(q1)", "h*sin(q1)"))
+    wrong = arm3r.verify.jacobian(path)
+    assert {(one.line, one.new) for one in wrong.findings} == {(9, "-h*sin(q1)")}, str(wrong)

@@ -6,7 +6,7 @@ import inspect
 import os
 import textwrap
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -44,7 +44,7 @@ class CallableProgram:
         for row in table:
             values = [float(row[slot]) if isinstance(slot, int) else row[list(slot)] for slot in call.slots]
             try:
-                results.append(_numbers(self.function(*values)))
+                results.append(_numbers(self.function(*values), call.output))
             except ProgramError:
                 raise
             except Exception as error:
@@ -72,6 +72,8 @@ class Formula:
     """The arguments that have a default."""
     global_numbers: dict[str, float] = field(default_factory=dict)
     """Numbers outside of the text that a function in memory uses."""
+    output: int | None = None
+    """Which of several results is meant, from 0; None: there is one."""
 
     def edited(self, edit: Edit) -> Formula | None:
         """The formula of a file with an edit of its text."""
@@ -81,7 +83,8 @@ class Formula:
         if isinstance(program, PythonInMemory) and program.has_surroundings:
             return None
         sandbox = type(program) if isinstance(program, PythonProcess) else PythonProcess
-        return from_text(edit.apply(self.text), self.file, self.name, sandbox=sandbox)
+        edited = from_text(edit.apply(self.text), self.file, self.name, sandbox=sandbox)
+        return replace(edited, output=self.output)
 
     @property
     def order(self) -> list[int] | None:
@@ -117,7 +120,7 @@ class Formula:
         if self.language == "c":
             return Call(tuple(columns(vector, joints) for vector in kind.inputs), {})
         if self.arguments == ["*"]:
-            return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {})
+            return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {}, self.output)
         slots: list[Any] = []
         arguments = self._given(kind, parameters)
         for vector, joint in slots_of(arguments, kind, joints, parameters):
@@ -127,7 +130,7 @@ class Formula:
                 place = columns(vector, joints)
                 slots.append(place if joint is None else place[joint])
         lifted = {name: first + known.index(quantity) for name, quantity in parameters.items() if name not in arguments}
-        return Call(tuple(slots), lifted)
+        return Call(tuple(slots), lifted, self.output)
 
     def values(self, call: Call, samples: Samples, known: list[str], edit: Edit | None = None) -> Floats:
         """What the formula returns, a row for each arm and state, outputs in their order."""

@@ -23,7 +23,7 @@ from .explain.repair import Repair, cover, influential, tried, wrong_entries
 from .explain.terms import difference_words
 from .formula import Formula
 from .kinds import Kind, entry_name
-from .meaning import assumed, doubted, is_right_as_it_stands, meant, ways
+from .meaning import assumed, doubted, is_right_as_it_stands, meant, ways, with_output
 from .names import slot_of
 from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, Unread, line_and_column
 from .truth.three_r import FOLLOWING_WORDS
@@ -53,6 +53,7 @@ def judge(
     """
     kind = truth.allowing(kind)
     try:
+        formula = with_output(formula, kind, truth)
         truth = assumed(formula, kind, truth)
         cases = meant(formula, kind, truth)
         values = cases[0].values(cases[0].second)
@@ -285,6 +286,8 @@ def _found(case: Comparison) -> list[str]:
         found.append(f"arguments in the order {', '.join(states)}")
     if formula.order and formula.order != sorted(formula.order):
         found.append(f"outputs in the order {', '.join(formula.outputs)}")
+    if formula.output is not None:
+        found.append(f"its output {formula.output + 1}")
     if case.degrees:
         found.append("angles in degrees")
     if case.convention:

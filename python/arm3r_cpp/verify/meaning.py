@@ -14,7 +14,7 @@ from ..errors import UsageError
 from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
 from .kinds import Kind
-from .program.nodes import ProgramError
+from .program.nodes import ProcessEnded, ProgramError
 from .samples import Samples
 from .truth.three_r import FOLLOWING
 
@@ -23,15 +23,38 @@ _MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
 _DYNAMIC = ("mass", "coriolis", "inverse", "forward")
 
 
+_MOST_OUTPUTS = 4
+
+
+def with_output(formula: Formula, kind: Kind, truth: Any) -> Formula:
+    """A function that returns several results, with the one that fits by its shape, and by fewest wrong entries."""
+    if formula.language != "python" or formula.output is not None or _has_fitting_shape(formula, kind, truth):
+        return formula
+    others = [replace(formula, output=output) for output in range(_MOST_OUTPUTS)]
+    fitting = [one for one in others if _has_fitting_shape(one, kind, truth)]
+    return min(fitting, key=lambda one: _wrong_entries(one, kind, truth), default=formula)
+
+
+def _has_fitting_shape(formula: Formula, kind: Kind, truth: Any) -> bool:
+    """Whether it returns numbers in a shape of its kind; also where nothing of it will come, as it hangs or crashes."""
+    case = Comparison(formula, truth, kind, _parameters(formula, kind, truth))
+    try:
+        case.values(case.first)
+    except ProgramError as error:
+        return isinstance(error, ProcessEnded)
+    return True
+
+
+def _wrong_entries(formula: Formula, kind: Kind, truth: Any) -> int:
+    case = meant(formula, kind, truth)[0]
+    return len(case.wrong(case.values(case.second), case.second))
+
+
 def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
     """Of the arms that a file may mean, the one by which fewest entries are wrong, the likeliest of equals."""
 
-    def wrong(one: Any) -> int:
-        case = meant(formula, kind, one)[0]
-        return len(case.wrong(case.values(case.second), case.second))
-
     others = truth.open_to(kind)
-    return min([truth, *others], key=wrong) if others else truth
+    return min([truth, *others], key=lambda one: _wrong_entries(formula, kind, one)) if others else truth
 
 
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:

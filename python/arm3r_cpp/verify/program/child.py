@@ -53,7 +53,9 @@ def say_what_is_barred(event: str, _: object) -> None:
 def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> None:
     head, body = receive(requests)
     table = np.frombuffer(body).reshape(head["rows"], -1) if head["rows"] else np.zeros((0, 1))
-    call = Call(tuple(one if isinstance(one, int) else tuple(one) for one in head["slots"]), head["lifted"])
+    call = Call(
+        tuple(one if isinstance(one, int) else tuple(one) for one in head["slots"]), head["lifted"], head["output"]
+    )
     try:
         values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
         send(answers, {"shape": values.shape, "seconds": time.process_time()}, np.ascontiguousarray(values).tobytes())

@@ -63,6 +63,8 @@ class Call(NamedTuple):
     """For each argument the column of a scalar, or the columns of a vector."""
     lifted: dict[str, int]
     """Constants of the program whose values are taken from columns."""
+    output: int | None = None
+    """Which of the results that it returns, from 0; None: all that it returns is one."""
 
 
 class ProgramError(Exception):

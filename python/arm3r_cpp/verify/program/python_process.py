@@ -82,7 +82,13 @@ class PythonProcess:
             raise ProgramError("too many edits ended its process")
         if self._process is None:
             self._start()
-        head = {"rows": len(table), "slots": call.slots, "lifted": call.lifted, "edit": edit and list(edit)}
+        head = {
+            "rows": len(table),
+            "slots": call.slots,
+            "lifted": call.lifted,
+            "output": call.output,
+            "edit": edit and list(edit),
+        }
         self._send(head, np.ascontiguousarray(table).tobytes())
         head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
         answer = self._understood(lambda: answer_of(head, body, len(table)))

@@ -160,7 +160,8 @@ class PythonProgram:
                     function = self.namespace.get(self.function)
                     if not callable(function):
                         raise ProgramError(f"there is no function {self.function}")
-                    results.append(_numbers(function(*(self._argument(slot, row) for slot in call.slots))))
+                    result = function(*(self._argument(slot, row) for slot in call.slots))
+                    results.append(_numbers(result, call.output))
         except ProgramError:
             raise
         except BaseException as error:  # whatever a user's program raises, SystemExit too
@@ -201,12 +202,16 @@ class PythonProgram:
         ].lineno if frames else None
 
 
-def _numbers(result: Any) -> Floats:
-    """An array of real numbers.
+def _numbers(result: Any, output: int | None) -> Floats:
+    """An array of real numbers, of one of several results where an output is given.
 
     Raises:
         ProgramError: the result is none.
     """
+    if output is not None:
+        if not isinstance(result, (tuple, list)) or output >= len(result):
+            raise ProgramError(f"returns no output {output + 1}")
+        result = result[output]
     kind = type(result).__name__
     if result is None:
         raise ProgramError("returns None instead of numbers")
