@@ -299,7 +299,7 @@ def test_what_is_due_is_left_open_where_the_text_does_not_tell_what_follows_a_le
     second = next(one for one in verdict.findings if one.entry == [2])
     assert second.reads is not None and second.due is None and "due" not in second.cause
     notes = [words for words in verdict.warnings if "does not tell what follows a length" in words]
-    assert len(notes) == 2 and "1/2 m2 g C2" in notes[0] and "1/2 m2 g a2 C2" in notes[1]
+    assert len(notes) == 2 and "m2 g l2 C2" in notes[0] and "1/2 m2 g a2 C2" in notes[1]
     assert judged(program, path.read_text(), tmp_path) == "named"
 
 

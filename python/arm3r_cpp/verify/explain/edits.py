@@ -74,7 +74,7 @@ class Editor:
         """The edits of some statements, each once, without those that change nothing, the likely ones first."""
         seen, found = set(), []
         for statement in statements:
-            is_data = _is_data(statement)
+            is_data = self._is_data(statement)
             for node, parent in _with_parents(statement):
                 if parent is None:
                     continue
@@ -91,6 +91,15 @@ class Editor:
                         seen.add((edit.start, edit.end, new))
                         found.append(edit)
         return sorted(found, key=lambda edit: edit.rank)[:_MOST]
+
+    def _is_data(self, statement: Node) -> bool:
+        """Whether a statement assigns numbers alone, in lists or by names: the arm's, which the formula uses."""
+        is_whole = re.match(r"[ \t]*([\n;#%]|\Z)", self.text[statement.end :]) is not None  # no argument of a call
+        return is_whole and all(
+            node.kind in ("assign", "number", "matrix", "row", "unary", "group")
+            or (node.kind == "other" and node.word[:1] in ("{", "'", '"'))
+            for node in statement.walk()
+        )
 
     def _of_node(self, node: Node, parent: Node) -> Iterator[Edit]:
         if node.kind in ("other", "row", "all", "last", "range", "cell", "handle", "assign", "logic", "not"):
@@ -292,15 +301,6 @@ class Editor:
             yield Edit(node.end, node.end, ".T", 6)
         elif self.language == "matlab" and node.kind in ("name", "group", "call"):
             yield Edit(node.end, node.end, "'", 6)
-
-
-def _is_data(statement: Node) -> bool:
-    """Whether a statement holds numbers alone, in lists or by names: the arm's, which the formula uses."""
-    return all(
-        node.kind in ("assign", "number", "matrix", "row", "unary", "group")
-        or (node.kind == "other" and node.word[:1] in ("{", "'", '"'))
-        for node in statement.walk()
-    )
 
 
 def _assigned(text: str) -> list[str]:

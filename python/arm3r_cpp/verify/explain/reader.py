@@ -70,6 +70,8 @@ class _Reader:
         known = self.case.known
         if self.kind in _VARIED:
             varied = [name for name in _VARIED[self.kind] if self.own.get(name) or name in known]
+            if self.kind == "gravity" and "com" not in self.case.follows:  # a centre that keeps its number has a name
+                varied += [name for name in ("com2", "com3") if self.own.get(name)]
             return varied, [name for name in known if name in varied or name in ("com2", "com3")]
         varied = list(known) or [name for name in _DYNAMIC if self.own.get(name)]
         return [name for name in varied if name != "gravity" or self.kind == "inverse"], list(known)
