@@ -626,3 +626,20 @@ def test_one_of_several_results_is_judged(returned: str, output: int, written: A
     path = written("jacobian.py", (SEVERAL % returned).replace("-h*sin(q1)", "h*sin(q1)"))
     wrong = arm3r.verify.jacobian(path)
     assert {(one.line, one.new) for one in wrong.findings} == {(9, "-h*sin(q1)")}, str(wrong)
+
+
+def test_a_number_that_is_not_used_is_missed_beside_another_mistake(written: Any) -> None:
+    """The text has a3, and 1 in its place; the other mistake stands in another entry."""
+    text = """from math import cos
+
+a2, a3, m2, m3, g = 1.0, 1.0, 0.785, 0.785, 9.80665
+
+
+def gravity(q1, q2, q3):
+    n3 = m3*g*1/2*cos(q2 + q3)
+    n2 = n3 + (m3*g + a2)*cos(q2) + m2*g*a2/2*cos(q2)
+    return [0, -n2, -n3]
+"""
+    verdict = arm3r.verify.gravity(written("gravity.py", text))
+    assert [one.entry for one in verdict.findings] in ([[2], [3]], [[3], [2]])
+    assert any("a3" in str(one.new) for one in verdict.findings), str(verdict)

@@ -63,9 +63,9 @@ def judge(
             raise ProgramError("returns NaN or infinity instead of numbers")
         budget = Budget(formula.program, REPAIR_EDITS)
         verdicts = _verdicts(cases, progress, budget)
-        if not verdicts[0][0].findings and (strict := _with_unused_numbers(cases[0], progress, budget)):
-            verdicts = [strict]
         verdict, case = min(verdicts, key=lambda one: _complexity(one[0]))
+        if strict := _with_unused_numbers(verdict, case, progress, budget):
+            verdicts, (verdict, case) = [strict], strict
     except Unjudged as error:
         raise UnjudgedError(f"{formula.file}: cannot be judged: it {error}") from None
     except ProgramError as error:
@@ -104,13 +104,21 @@ def _verdicts(
 
 
 def _with_unused_numbers(
-    case: Comparison, progress: Progress | None, budget: Budget
+    loose: Verdict, case: Comparison, progress: Progress | None, budget: Budget
 ) -> tuple[Verdict, Comparison] | None:
-    """The verdict on a right formula with others of the numbers that it does not use, if one edit puts them in."""
+    """The verdict with others of the numbers that a formula does not use, if one edit puts them in.
+
+    Args:
+        loose: the verdict with these numbers as they stand, of a formula that is right, or that edits mend.
+    """
+    if any(one.old is None for one in loose.findings):
+        return None
+    entries = [one.entry for one in loose.findings]
     for strict in doubted(case.formula, case.kind, case.truth, case):
         verdict = _verdict(strict, progress, budget)
-        edits = {(one.line, one.column, one.old, one.new) for one in verdict.findings}
-        if len(edits) == 1 and verdict.findings[0].old is not None:
+        more = [one for one in verdict.findings if one.entry not in entries]
+        edits = {(one.line, one.column, one.old, one.new) for one in more}
+        if len(edits) == 1 and more[0].old is not None and not verdict.unexplained:
             return verdict, strict
     return None
 
