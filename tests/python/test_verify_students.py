@@ -313,3 +313,13 @@ def test_mistakes_by_hand(tmp_path: Path) -> None:
 def test_pairs_of_mistakes_by_hand(tmp_path: Path) -> None:
     outcomes = of_hand(pairs(), tmp_path)
     assert set(outcomes) <= {"named", "unexplained"} and outcomes["named"] >= 0.9 * len(pairs())
+
+
+def test_a_value_that_grows_far_away_hides_no_terms(tmp_path: Path) -> None:
+    """A hyperbolic cosine is 1e70 where an angle in degrees would be looked for: the other terms are not nothing."""
+    path = FOLDER / "unequal" / "jacobian_expm.py"
+    text = path.read_text()
+    slip = text.replace("[x[2], 0, -x[0]]", "[x[2], 0, -x[1]]")
+    assert slip != text
+    result, words = outcome(path, slip, tmp_path)
+    assert result == "named" and "reads 0" not in words, words

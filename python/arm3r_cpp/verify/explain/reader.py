@@ -193,11 +193,17 @@ class _Reader:
         return read(lambda q: self._at(q, of_truth), truth.groups, truth.revolute, index, scale=scale)
 
     def _scale(self, index: int, of_truth: bool) -> float:
-        """The largest value of all parts of an entry; what a formula returns may be rounding beside what is due."""
-        first = index - index % len(self.parts)
-        here = [values[..., first : first + len(self.parts)] for (truth, _), values in self._sampled.items()
-                if truth or not of_truth]  # fmt: skip
-        return max((float(np.abs(values).max()) for values in here), default=0.0) or 1.0
+        """The largest value of all parts of an entry; what a formula returns may be rounding beside what is due.
+
+        Of turns up to one: where it is looked for degrees, a hyperbolic sine would hide all else.
+        """
+        first, largest = index - index % len(self.parts), 0.0
+        for (truth, angles), values in self._sampled.items():
+            if truth or not of_truth:
+                near = np.abs(np.frombuffer(angles).reshape(-1, self.case.truth.joints)).max(axis=1) <= 2 * np.pi
+                here = values[:, near, first : first + len(self.parts)]
+                largest = max(largest, float(np.abs(here).max(initial=0.0)))
+        return largest or 1.0
 
     def _candidates(self, part: Part, names: list[str], parameters: Parameters) -> list[tuple[int, ...]]:
         """The powers of the monomials that a part may hold."""
