@@ -327,7 +327,8 @@ def _explain(
     if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
         chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)
-    if causes and (left or len(chosen) > 1):  # one sentence for everything goes before several edits
+    whole = bool(causes) and len(chosen) > 1 and causes[0].startswith("the result ")
+    if causes and (left or whole):  # what explains everything goes before edits that do not, or that are several
         chosen, left = [], frozenset()
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):

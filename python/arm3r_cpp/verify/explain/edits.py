@@ -264,7 +264,8 @@ class Editor:
         has_wave = any(
             one.word in self.waves or (one.kind == "call" and _last(one.word) in _TRIGONOMETRIC) for one in node.walk()
         )
-        return 1 if has_wave and not is_factor and parent.kind != "unary" else 2
+        is_term = node.kind == "binary" and node.word in _MULTIPLICATIVE and not is_factor
+        return 1 if has_wave and is_term and parent.kind != "unary" else 2
 
     # ---- for any expression ------------------------------------------------------------------------------------------
 

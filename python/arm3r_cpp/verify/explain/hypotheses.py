@@ -40,7 +40,7 @@ def hypotheses(
     """All of them, each to be evaluated when it is asked for.
 
     Args:
-        pose: the rotation of the tip's frame and the tip's position, in all rows; None where nobody knows it.
+        pose: the rotation of the tip's frame and the tip's position, in all rows; None where it is not known.
         in_degrees: whether the formula is given angles in degrees; `states` are in radians.
     """
     yield from _inputs(truth, states, joints, kind, in_degrees)

@@ -176,7 +176,7 @@ class _Reader:
         parameters = Parameters(values, fixed, len(self.arms))
         parameters.candidates = self._candidates(part, known, parameters)
         units = {self._units(powers.items()) for found in monomials_due.values() for _, powers in found}
-        if units and not self.case.truth.named_numbers:  # of which nobody says what they measure
+        if units and not self.case.truth.named_numbers:  # whose units are not known
             parameters.may_stand = lambda names: self._units((name, 1) for name in names) in units
         spectrum = self._spectrum(index, False)
         if spectrum is None:
