@@ -276,7 +276,9 @@ class Editor:
         is_sum = node.kind == "binary" and node.word in _ADDITIVE
         if node.kind != "number" and parent.kind != "transpose":
             if parent.kind != "unary":
-                yield self._at(node, f"-{whole if is_sum else text}", self._rank_of_sign(node, parent), parent)
+                rank = self._rank_of_sign(node, parent)
+                is_product = node.kind == "binary" and rank > 1  # whose first factor is no negative number
+                yield self._at(node, f"-{whole if is_sum or is_product else text}", rank, parent)
             yield self._at(node, "0", 3)
             yield self._at(node, "1", 4)
         if node.kind in ("name", "call", "other", "index") or (
