@@ -220,3 +220,10 @@ def test_a_task_can_be_read(task: FunctionTask | ScenarioTask) -> None:
     assert task.title and not task.title.endswith(".") and len(set(task.hints)) == 3
     assert all(len(line) <= 110 for line in task.text.splitlines())
     assert all(len(hint) <= 130 for hint in task.hints)
+
+
+def test_what_the_matlab_reader_does_not_take_is_no_mistake(tmp_path: Path) -> None:
+    path = tmp_path / "half_link.m"
+    path.write_text("function tau = half_link(q)\n[a, b] = max(q);\ntau = [0; a; b];\nend\n")
+    mark = judge_file(TASKS["half_link"], path)
+    assert mark.word == UNCLEAR and "several outputs" in mark.reason, mark

@@ -552,6 +552,9 @@ READ = {  # of one Jacobian, right in the convention simscape
     "pages that grow": "P(:,:,2) = J; P(1,2,1) = 5; J = P(1:3,:,2) + 0*P(1,2,1);",
     "an element of a page": "P = zeros(3, 3, 2); P(3,2,2) = -r; J(3,2) = P(3,2,2);",
     "a power of a matrix": "J = J*eye(3)^2;",
+    "a matrix that gets pages": "T = J; T(:,:,2) = 2*J; J = T(:,:,1);",
+    "a mask that chooses": "v = [1 2 3]; w = v(v > 1); J = J*w(1)/2;",
+    "a mask that chooses at some states": "J = J + 0*sum(q(q > 0));",
 }
 BODY = """function J = jacobian(q)
 r = cos(q(2)) + cos(q(2)+q(3)); h = sin(q(2)) + sin(q(2)+q(3));
@@ -581,6 +584,12 @@ UNREAD = {
     "J(J > 0) = [1; 2];": "more is not read",
     "P = zeros(3, 3, 2); J = P(:, :);": "is read by three indices",
     "J = J(:, :, 1);": "an index of three dimensions",
+    "P = zeros(3, 3, 2); P(:,:,1) = J; P = 2*P; J = P(:,:,1)/2;": "one page at a time is read",
+    "P = zeros(3, 3, 2); P(:,:,2) = J; J = sum(P, 3);": "sum of an array of three dimensions is not read",
+    "P = zeros(3, 3, 2); P(:,:,1) = P; J = P(:,:,1);": "a matrix is put into an array of three dimensions",
+    "P = zeros(3, 3, 2); P(1, 2) = 5;": "is set by three indices",
+    "J = J*eye(3)^0.5;": "a power of a matrix is read to a whole number",
+    "J = J*2^eye(3);": "a matrix as an exponent is not read",
 }
 
 
@@ -643,3 +652,9 @@ def gravity(q1, q2, q3):
     verdict = arm3r.verify.gravity(written("gravity.py", text))
     assert [one.entry for one in verdict.findings] in ([[2], [3]], [[3], [2]])
     assert any("a3" in str(one.new) for one in verdict.findings), str(verdict)
+
+
+def test_the_rows_of_a_matrix_are_no_results(written: Any) -> None:
+    path = written("gravity.py", "def gravity(q):\n    return [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]\n")
+    verdict = arm3r.verify.gravity(path)
+    assert "returns 2x3 numbers, where a gravity torque has 3" in verdict.findings[0].cause

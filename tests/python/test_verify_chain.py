@@ -345,6 +345,9 @@ def test_a_tree_asks_for_the_tip(branched: Path, command: Any) -> None:
     for options, words in {
         ("--tip", "tool"): "--tip: it names a link of --urdf",
         ("--base-rotation", "0,0,1"): "--base-rotation: it turns the base of --urdf or --dh",
+        ("--gravity", "90deg,0,0"): "three numbers with commas between them are needed, got '90deg,0,0'",
+        ("--urdf", str(branched), "--tip", "tool", "--payload", "nan"): "the payload is nan kg; at most 1e+12 kg",
+        ("--urdf", str(branched), "--tip", "tool", "--payload", "inf"): "the payload is inf kg; at most 1e+12 kg",
         ("--gravity", "0,0"): "three numbers with commas between them are needed, got '0,0'",
         ("--urdf", str(branched), "--tip", "tool", "--payload", "-1"): "the payload is -1 kg; none is negative",
     }.items():

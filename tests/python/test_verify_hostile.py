@@ -185,3 +185,16 @@ def test_edits_that_crash_the_interpreter_do_not_end_the_search(make: Any) -> No
     with pytest.raises(ProgramError, match="takes too long"):
         program.evaluate(call, table, Edit(place, place + 3, "[1 for _ in iter(int, 1)]", 1))
     assert program.seconds > before + 1.5
+
+
+def test_edits_that_hang_end_the_search_however_many_answer_between_them(monkeypatch: Any) -> None:
+    monkeypatch.setattr("arm3r_cpp.verify.program.python_process.EDIT_TIME", 0.2)
+    text = "def gravity(q):\n    return [0.0, 1.0, 2.0]\n"
+    program, call, table = PythonProcess(text, "gravity", "arm.py"), Call(((0, 1, 2),), {}), np.zeros((1, 3))
+    place = text.index("1.0")
+    for _ in range(4):
+        with pytest.raises(ProgramError, match="takes too long"):
+            program.evaluate(call, table, Edit(place, place + 3, "[1 for _ in iter(int, 1)]", 1))
+        program.evaluate(call, table)
+    with pytest.raises(ProgramError, match="too many edits"):
+        program.evaluate(call, table, Edit(place, place + 3, "7.0", 1))

@@ -58,8 +58,13 @@ def parser() -> argparse.ArgumentParser:
     arm.add_argument("--urdf", metavar="FILE", help="a serial chain of up to 7 joints")
     arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: `arm3r docs verify` says how it is written")
     add("--tip", metavar="LINK", help="of a URDF: the link whose frame is the tip (default: the last one)")
-    add("--gravity", type=vector, metavar="X,Y,Z", help="in the base frame, m/s^2 (default: the arm's own)")
-    add("--base-rotation", type=vector, metavar="R,P,Y", help="of a chain: roll, pitch, yaw of its base, rad or 90deg")
+    add(
+        "--gravity",
+        type=vector,
+        metavar="X,Y,Z",
+        help="in the base frame, m/s^2 (default: the arm's own); --gravity=-9.81,0,0 where it begins with a minus",
+    )
+    add("--base-rotation", type=angles, metavar="R,P,Y", help="of a chain: roll, pitch, yaw of its base, rad or 90deg")
     add("--payload", type=float, metavar="KG", help="a mass at the tip")
     add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: does it see the mistakes?")
     add("--noise", type=float, metavar="X", help="of a log, relative to an entry's scale (default: what a fit shows)")
@@ -84,14 +89,20 @@ def pairs(text: str) -> list[tuple[str, str]]:
 
 
 def vector(text: str) -> list[float]:
-    """ "0,0,-9.81", of angles "90deg,0,0", too."""
+    """ "0,0,-9.81"."""
     try:
-        found = [math.radians(float(one[:-3])) if one.endswith("deg") else float(one) for one in text.split(",")]
+        found = list(map(float, text.split(",")))
     except ValueError:
         found = []
     if len(found) != 3 or not all(map(math.isfinite, found)):
         raise argparse.ArgumentTypeError(f"three numbers with commas between them are needed, got {text!r}")
     return found
+
+
+def angles(text: str) -> list[float]:
+    """ "1.57,0,0" or "90deg,0,0"."""
+    units = [math.radians(1.0) if one.endswith("deg") else 1.0 for one in text.split(",")]
+    return [unit * value for unit, value in zip(units, vector(text.replace("deg", "")), strict=True)]
 
 
 def verify(options: argparse.Namespace, codes: list[int]) -> None:

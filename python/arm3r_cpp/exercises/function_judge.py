@@ -20,7 +20,7 @@ from ..verify.formula import Formula, from_file
 from ..verify.judge import judge
 from ..verify.kinds import KINDS, standard_form
 from ..verify.names import quantities_of, slot_of
-from ..verify.program.nodes import Call, ProgramError, Unjudged
+from ..verify.program.nodes import Call, ProgramError, Unjudged, Unread
 from ..verify.program.python_process import PythonProcess
 from ..verify.samples import VECTORS, Samples
 from ..verify.truth.three_r import ThreeR
@@ -48,7 +48,7 @@ def judge_function(task: FunctionTask, path: Path, *, forbid_own_package: bool =
         values, again = _values(task, formula, states), _values(task, formula, states)
         mark = _mark(task, values, again, states)
         return _in_the_loop(task, formula, mark) if task.loop and mark.word != UNCLEAR else mark
-    except Unjudged as error:
+    except (Unjudged, Unread) as error:
         return Mark(UNCLEAR, str(error).split(":")[0], message=one_line(str(error), 400))
     except (UsageError, ProgramError) as error:
         return _failed(error, path)
@@ -81,7 +81,7 @@ def _in_the_loop(task: FunctionTask, formula: Formula, mark: Mark) -> Mark:
     try:
         word, off = task.loop.judged(function)
     except ControllerError as error:
-        if isinstance(error.__cause__, Unjudged):
+        if isinstance(error.__cause__, (Unjudged, Unread)):
             return Mark(UNCLEAR, f"{str(error.__cause__).split(':')[0]} in the loop")
         if mark.word == RIGHT:
             return Mark(WRONG, "right at single states, and fails in the loop", message=one_line(str(error), 400))

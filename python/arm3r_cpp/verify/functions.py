@@ -41,7 +41,7 @@ def truth_of(arm: Any) -> Any:
         return ThreeR(arm)
     if isinstance(arm, (str, os.PathLike)):
         return ThreeR(Scenario.load(arm))
-    if hasattr(arm, "joints"):
+    if isinstance(arm, (Chain, ThreeR)):
         return arm
     raise UsageError(f"arm: a Scenario, an Arm, a Chain or the path of a scenario is needed, got {type(arm).__name__}")
 

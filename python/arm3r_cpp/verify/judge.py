@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -17,13 +18,13 @@ from .comparison import TOLERANCE, Comparison, Solved, scales
 from .coverage import seen_by_tests
 from .explain.budget import Budget
 from .explain.edits import Editor
-from .explain.hypotheses import hypotheses
+from .explain.hypotheses import Hypothesis, hypotheses
 from .explain.reader import read_entries
 from .explain.repair import Repair, cover, influential, tried, wrong_entries
 from .explain.terms import difference_words
 from .formula import Formula
-from .kinds import Kind, entry_name
-from .meaning import assumed, doubted, is_right_as_it_stands, meant, ways, with_output
+from .kinds import SPATIAL, Kind, entry_name
+from .meaning import assumed, doubted, is_right_as_it_stands, meant, ways, with_output, wrong_count
 from .names import slot_of
 from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, Unread, line_and_column
 from .truth.three_r import FOLLOWING_WORDS
@@ -181,12 +182,10 @@ def _few(alternatives: Sequence[str]) -> list[str]:
 def _compare_with_other_convention(verdict: Verdict, formula: Formula, kind: Kind, truth: Any) -> None:
     """Say that a formula is right in the convention that the scenario does not state."""
     other = truth.in_other_convention()
-    if other is not None:
-        case = meant(formula, kind, other)[0]
-        if not case.wrong(case.values(case.second), case.second):
-            verdict.alternatives.append(
-                f"it is right in the convention {other.convention}; the scenario states {truth.convention}"
-            )
+    if other is not None and wrong_count(formula, kind, other) == 0:
+        verdict.alternatives.append(
+            f"it is right in the convention {other.convention}; the scenario states {truth.convention}"
+        )
 
 
 def _without_cause(verdict: Verdict) -> int:
@@ -320,15 +319,15 @@ def _only_structured(verdict: Verdict, values: Floats, due: Floats, wrong: froze
 def _explain(
     verdict: Verdict, case: Comparison, wrong: frozenset[int], progress: Progress | None, budget: Budget
 ) -> None:
-    causes = _hypotheses(case)
+    whole = _hypotheses(case)
+    causes = [one.cause for one in whole]
     repairs = _repairs(case, wrong, progress, budget=budget)
     reads = read_entries(case, wrong)
     chosen = cover(repairs, wrong)
     if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
         chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)
-    whole = bool(causes) and len(chosen) > 1 and causes[0].startswith("the result ")
-    if causes and (left or whole):  # what explains everything goes before edits that do not, or that are several
+    if whole and (left or (whole[0].is_of_result and len(chosen) > 1)):  # one sentence says more than these edits
         chosen, left = [], frozenset()
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):
@@ -380,40 +379,39 @@ def _read_torque(verdict: Verdict, case: Comparison) -> None:
     verdict.unexplained = []
 
 
-def _hypotheses(case: Comparison) -> list[str]:
+def _hypotheses(case: Comparison) -> list[Hypothesis]:
     """The mistakes of the formula as a whole that explain it at all samples, the simplest ones first."""
     found = []
     fitting, fresh = case.second, case.fresh
     values, check = case.values(fitting), case.values(fresh)
 
-    def list_at(samples: Any) -> Any:
+    def list_at(samples: Any) -> Iterator[Hypothesis]:
         states = {vector: samples.tiled(vector) for vector in samples.states}
 
         def truth(here: dict[str, Floats], changes: dict[str, Any]) -> Floats:
             return case.due(samples, changes, here)
 
-        return hypotheses(
+        for words, other in case.truth.variants(case.kind):
+            yield Hypothesis(words, partial(replace(case, truth=other).due, samples))
+        is_spatial = case.rows[:3] == SPATIAL
+        yield from hypotheses(
             case.kind.name,
             truth,
             states,
             case.truth.joints,
-            lambda: case.truth.pose(case.convention, states["q"]),
+            (lambda: case.truth.pose(case.convention, states["q"])) if is_spatial else None,
             case.given(samples),
             in_degrees=case.degrees,
         )
 
-    for words, truth in case.truth.variants(case.kind):
-        other = replace(case, truth=truth)
-        if not case.wrong(values, fitting, other.due(fitting)) and not case.wrong(check, fresh, other.due(fresh)):
-            found.append((1, words))
     for one, other in zip(list_at(fitting), list_at(fresh), strict=True):
         try:
             expected = one.values()
             if not case.wrong(values, fitting, expected) and not case.wrong(check, fresh, other.values()):
-                found.append((one.weight, one.cause))
+                found.append(one)
         except (ProgramError, ValueError, ArithmeticError):
             continue
-    return [cause for _, cause in sorted(found, key=lambda one: one[0])]
+    return sorted(found, key=lambda one: one.weight)
 
 
 def _repairs(

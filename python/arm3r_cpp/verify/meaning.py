@@ -21,8 +21,6 @@ from .truth.three_r import FOLLOWING
 _CHANGE = 1e-6  # of the largest: what changes less does not change
 _MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
 _DYNAMIC = ("mass", "coriolis", "inverse", "forward")
-
-
 _MOST_OUTPUTS = 4
 
 
@@ -32,7 +30,7 @@ def with_output(formula: Formula, kind: Kind, truth: Any) -> Formula:
         return formula
     others = [replace(formula, output=output) for output in range(_MOST_OUTPUTS)]
     fitting = [one for one in others if _has_fitting_shape(one, kind, truth)]
-    return min(fitting, key=lambda one: _wrong_entries(one, kind, truth), default=formula)
+    return min(fitting, key=lambda one: wrong_count(one, kind, truth), default=formula)
 
 
 def _has_fitting_shape(formula: Formula, kind: Kind, truth: Any) -> bool:
@@ -45,16 +43,16 @@ def _has_fitting_shape(formula: Formula, kind: Kind, truth: Any) -> bool:
     return True
 
 
-def _wrong_entries(formula: Formula, kind: Kind, truth: Any) -> int:
+def wrong_count(formula: Formula, kind: Kind, truth: Any) -> int:
+    """How many entries are wrong in the likeliest meaning."""
     case = meant(formula, kind, truth)[0]
     return len(case.wrong(case.values(case.second), case.second))
 
 
 def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
     """Of the arms that a file may mean, the one by which fewest entries are wrong, the likeliest of equals."""
-
     others = truth.open_to(kind)
-    return min([truth, *others], key=lambda one: _wrong_entries(formula, kind, one)) if others else truth
+    return min([truth, *others], key=lambda one: wrong_count(formula, kind, one)) if others else truth
 
 
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:

@@ -25,6 +25,8 @@ class Hypothesis(NamedTuple):
     values: Callable[[], Floats]
     weight: int = 1
     """How far-fetched it is."""
+    is_of_result: bool = False
+    """Whether all of the result is so, which several edits could mend as well."""
 
 
 def hypotheses(
@@ -99,8 +101,8 @@ def _outputs(
 ) -> Iterator[Hypothesis]:
     values = due()
     rows = values.shape[1]
-    yield Hypothesis("the result has the wrong sign", lambda: -values)
-    yield Hypothesis("the result is in degrees; radians are due", lambda: np.rad2deg(values), 2)
+    yield Hypothesis("the result has the wrong sign", lambda: -values, is_of_result=True)
+    yield Hypothesis("the result is in degrees; radians are due", lambda: np.rad2deg(values), 2, is_of_result=True)
     for factor, words in (
         (2, "twice what is due"),
         (0.5, "half of what is due"),
@@ -108,7 +110,7 @@ def _outputs(
         (1e-3, "a thousandth of what is due"),
         (1e6, "1e6 times what is due: millimetres?"),
     ):
-        yield Hypothesis(f"the result is {words}", partial(np.multiply, factor, values), 2)
+        yield Hypothesis(f"the result is {words}", partial(np.multiply, factor, values), 2, is_of_result=True)
     for row in range(rows):
         signs = np.where(np.arange(rows) == row, -1.0, 1.0)
         yield Hypothesis(

@@ -183,8 +183,8 @@ def _size(name: str, parts: list[Any]) -> Floats:
     """numel, length, and size(A, dimension)."""
     array, *given = parts
     if isinstance(array, Pages):
-        if name != "size" or len(given) != 1 or integer(given[0]) != 3:
-            raise Unread(f"{name} of an array of three dimensions is read along the third alone")
+        if len(given) != 1 or integer(given[0]) != 3:
+            raise Unread("the size of an array of three dimensions is read along the third")
         return number(len(array))
     shape = (1, len(array)) if isinstance(array, list) else array.shape[1:]
     if name == "size":
@@ -236,6 +236,8 @@ def result_of(name: str, parts: list[Any]) -> Any:
     Raises:
         ProgramError: the arguments are not what it takes.
     """
+    if any(isinstance(part, Pages) for part in parts) and name != "size":
+        raise Unread(f"{name} of an array of three dimensions is not read")
     if name in ELEMENTWISE:
         return ELEMENTWISE[name](*counted(name, parts, 2 if name in _OF_TWO else 1))
     if any(not isinstance(part, np.ndarray) for part in parts) and name not in ("numel", "length", "size"):

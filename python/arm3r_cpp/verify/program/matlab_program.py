@@ -269,6 +269,8 @@ class MatlabProgram:
     def _array(self, node: Node, variables: dict[str, Any]) -> Floats:
         """The value of a node that is a matrix of numbers."""
         value = self._value(node, variables)
+        if isinstance(value, Pages):
+            raise Unread("of an array of three dimensions one page at a time is read, such as T(:,:,1)")
         if not isinstance(value, np.ndarray):
             raise ProgramError(f"{self.text[node.start : node.end]!r} is no number")
         return value
@@ -338,7 +340,11 @@ class MatlabProgram:
         if word == "\\":
             return right / left if left.shape[1:] == (1, 1) else np.matmul(np.linalg.inv(left), right)
         if word == "^" and left.shape[1:] != (1, 1):
+            if right.shape[1:] != (1, 1) or np.any(right != np.round(right[0])):
+                raise Unread("a power of a matrix is read to a whole number, the same at every state")
             return np.linalg.matrix_power(left, integer(right))
+        if word == "^" and right.shape[1:] != (1, 1):
+            raise Unread("a matrix as an exponent is not read; write .^ for its elements")
         return np.asarray(OPERATORS[word if word in OPERATORS else f".{word}"](left, right))
 
     def _call(self, node: Node, variables: dict[str, Any]) -> Any:
@@ -405,6 +411,11 @@ class MatlabProgram:
         if part.kind == "all":
             return list(range(size))
         inside = {**variables, "end": number(size)}
+        if _is_mask(part):
+            holds = np.swapaxes(self._array(part, inside), 1, 2).reshape(-1, size if size else 1) != 0
+            if (holds != holds[0]).any():
+                raise _Divided
+            return [int(place) for place in np.flatnonzero(holds[0])]
         if part.kind == "range":
             return [int(one) - 1 for one in self._range(part, inside)]
         return [round(float(one)) - 1 for one in self._array(part, inside)[0].ravel()]
@@ -425,11 +436,18 @@ class MatlabProgram:
         return array[:, first][:, :, second]
 
     def _put(self, array: Any, index: Node, given: Any, variables: dict[str, Any]) -> Any:
-        if len(index.parts) == 3 and (array is None or isinstance(array, Pages)):
-            return self._put_page(Pages(array or ()), index, given, variables)
+        if len(index.parts) == 3 and not isinstance(given, np.ndarray):
+            raise Unread("a matrix is put into an array of three dimensions; more is not read")
+        if len(index.parts) == 3 and (array is None or isinstance(array, (Pages, np.ndarray))):
+            pages = Pages([array]) if isinstance(array, np.ndarray) else Pages(array or ())
+            return self._put_page(pages, index, given, variables)
+        if isinstance(array, Pages):
+            raise Unread("an array of three dimensions is set by three indices")
         if index.word == "{" or isinstance(array, list):
             return self._put_element(array, index, given, variables)
-        if len(index.parts) == 1 and is_mask(index.parts[0]):
+        if not isinstance(given, np.ndarray):
+            raise Unread("an element of a matrix is set to a number; more is not read")
+        if len(index.parts) == 1 and _is_mask(index.parts[0]):
             return self._put_where(array, index.parts[0], given, variables)
         array = np.zeros((1, 0, 0)) if array is None else array
         sizes = [*array.shape[1:]]
@@ -475,7 +493,7 @@ class MatlabProgram:
         return result
 
 
-def is_mask(node: Node) -> bool:
+def _is_mask(node: Node) -> bool:
     """Whether an index is a comparison: it chooses the elements for which it holds."""
     while node.kind == "group":
         (node,) = node.parts

@@ -35,7 +35,7 @@ main()
 _MOST_BYTES, _MOST_BYTES_OF_HEAD = 64 << 20, 1 << 16  # of an answer
 STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s of processor time
 _MOST_ENDS = 3
-"""Processes that edits may end one after the other."""
+"""Processes that edits may end one after the other, by a crash of the interpreter; and in all, by taking too long."""
 
 
 class Process(Protocol):
@@ -64,7 +64,7 @@ class PythonProcess:
         self._seconds = [0.0]
         self._process: Process | None = None
         self._answers: SelectedPipe | PumpedPipe | None = None
-        self._ends = 0
+        self._ends = self._stops = 0
 
     @property
     def seconds(self) -> float:
@@ -92,7 +92,7 @@ class PythonProcess:
         self._send(head, np.ascontiguousarray(table).tobytes())
         head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
         answer = self._understood(lambda: answer_of(head, body, len(table)))
-        self._ends, self._seconds[-1] = 0, answer.seconds
+        self._ends, self._seconds[-1] = self._stops, answer.seconds
         if answer.values is None:
             raise (Unjudged if answer.is_exhausted else ProgramError)(answer.error, answer.line)
         return answer.values
@@ -178,6 +178,7 @@ class PythonProcess:
 
     def _fail(self, message: str, kind: type[ProcessEnded] = ProcessEnded) -> NoReturn:
         self._ends += 1
+        self._stops += kind is Unjudged
         if self._process is not None:
             self._seconds[-1] = processor_time(self._process.pid) or self._seconds[-1]
         self.close()

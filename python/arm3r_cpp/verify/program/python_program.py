@@ -202,6 +202,16 @@ class PythonProgram:
         ].lineno if frames else None
 
 
+def _has_results(result: Any) -> bool:
+    """Whether a function returns several results: a tuple, or a list that is no matrix row by row."""
+    if not isinstance(result, list):
+        return isinstance(result, tuple)
+    try:
+        return np.ndim(result) > 2
+    except ValueError:
+        return True
+
+
 def _numbers(result: Any, output: int | None) -> Floats:
     """An array of real numbers, of one of several results where an output is given.
 
@@ -209,7 +219,7 @@ def _numbers(result: Any, output: int | None) -> Floats:
         ProgramError: the result is none.
     """
     if output is not None:
-        if not isinstance(result, (tuple, list)) or output >= len(result):
+        if not _has_results(result) or output >= len(result):
             raise ProgramError(f"returns no output {output + 1}")
         result = result[output]
     kind = type(result).__name__

@@ -10,6 +10,9 @@ import numpy as np
 
 from ..._native import Floats
 
+LARGEST = 1e12
+"""Of a number that describes a chain, either way."""
+
 
 def rotation_about(axis: Floats, angle: Floats) -> Floats:
     """Rodrigues' formula: (S, 3, 3) for angles (S,)."""

@@ -12,7 +12,7 @@ import numpy as np
 from ...errors import UsageError
 from ..explain.hypotheses import STEINER_MISSING, STEINER_TWICE
 from ..kinds import SPATIAL, Kind, Rows
-from .bodies import pose_words, rotation_of, vector_words, with_mass
+from .bodies import LARGEST, pose_words, rotation_of, vector_words, with_mass
 from .chain import SerialChain
 from .dh import read_dh
 from .urdf import read_urdf
@@ -60,10 +60,11 @@ class Chain(SerialChain):
             payload: a mass at the tip, kg.
 
         Raises:
-            UsageError: the payload is negative.
+            UsageError: the payload is negative or no number.
         """
-        if payload is not None and payload < 0:
-            raise UsageError(f"{self.name}: the payload is {payload:g} kg; none is negative")
+        if payload is not None and not 0 <= payload <= LARGEST:
+            rule = "none is negative" if payload < 0 else f"at most {LARGEST:g} kg are known"
+            raise UsageError(f"{self.name}: the payload is {payload:g} kg; {rule}")
         parts, turn = list(self.parts), rotation_of(base_rotation or (0.0, 0.0, 0.0))
         if base_rotation is not None:
             parts[0] = replace(parts[0], rotation=turn @ parts[0].rotation, origin=turn @ parts[0].origin)

@@ -6,22 +6,18 @@ import csv
 import os
 import re
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from .bodies import Joint
-from .chain import SerialChain
-
-AnyChain = TypeVar("AnyChain", bound=SerialChain)
+from .bodies import LARGEST, Joint
+from .chain import AnyChain
 
 _NUMBER = re.compile(
     r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>0*[1-9]\d{0,8}))?"
     r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?P<deg> ?deg)?)"
 )
-LARGEST = 1e12
 _OPTIONAL = ("mass", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz", "armature")
 
 

@@ -59,6 +59,7 @@ class ThreeR:
         self._scenario = scenario.copy() if isinstance(scenario, Scenario) else None
         self.is_default = scenario is None
         self.convention = CONVENTIONS[int(self._params[param_index("arm.convention")])]
+        self._own_convention = self.convention
         is_stated = self._scenario is not None and _states_convention(self._scenario)
         self.conventions: tuple[str, ...] = (self.convention,) if is_stated else CONVENTIONS
         """Those that a formula may be meant in: the one that the scenario states, else both."""
@@ -247,7 +248,7 @@ class ThreeR:
         """
         if self._scenario is None or self._scenario["controller.type"] == "none":
             raise UsageError("a controller is judged by the law of a scenario: name one that has a controller")
-        signs = np.array([1.0, -1.0, -1.0]) if convention != self.convention else np.ones(3)
+        signs = np.array([1.0, -1.0, -1.0]) if convention != self._own_convention else np.ones(3)
         here = self._scenario.copy()._quiet()
         start = here["time.start"]
         here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}

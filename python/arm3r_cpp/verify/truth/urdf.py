@@ -10,11 +10,10 @@ import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from .bodies import Body, Joint, joined, rotation_of
+from .bodies import LARGEST, Body, Joint, joined, rotation_of
 from .chain import AnyChain
 
 _MOST_BYTES = 10_000_000
-LARGEST = 1e12  # of a number
 
 
 class _Tree(NamedTuple):
