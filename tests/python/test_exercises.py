@@ -226,4 +226,4 @@ def test_what_the_matlab_reader_does_not_take_is_no_mistake(tmp_path: Path) -> N
     path = tmp_path / "half_link.m"
     path.write_text("function tau = half_link(q)\n[a, b] = max(q);\ntau = [0; a; b];\nend\n")
     mark = judge_file(TASKS["half_link"], path)
-    assert mark.word == UNCLEAR and "several outputs" in mark.reason, mark
+    assert mark.word == UNCLEAR and "line 2" in mark.reason and "several outputs" in mark.message, mark

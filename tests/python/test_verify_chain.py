@@ -320,6 +320,7 @@ def branched(tmp_path: Path) -> Path:
 def test_what_hangs_beside_the_chain_is_counted(branched: Path) -> None:
     """A camera, a hand and its finger, which a joint holds at zero; a payload at the tip, and a base that is turned."""
     chain = Chain.from_urdf(branched, tip="tool").placed(payload=0.7, base_rotation=[0.1, -0.4, 0.9])
+    assert "mass matrix, jf at zero: right" in str(verify.mass(lambda q: chain.mass_matrix(np.array([q]))[0], chain))
     turn = pin.rpy.rpyToMatrix(0.1, -0.4, 0.9)
     whole = pin.buildModelFromXML(BRANCHED)
     model = pin.buildReducedModel(whole, [whole.getJointId("jf")], np.zeros(3))

@@ -48,7 +48,9 @@ def judge_function(task: FunctionTask, path: Path, *, forbid_own_package: bool =
         values, again = _values(task, formula, states), _values(task, formula, states)
         mark = _mark(task, values, again, states)
         return _in_the_loop(task, formula, mark) if task.loop and mark.word != UNCLEAR else mark
-    except (Unjudged, Unread) as error:
+    except Unread as error:
+        return replace(_failed(error, path), word=UNCLEAR)
+    except Unjudged as error:
         return Mark(UNCLEAR, str(error).split(":")[0], message=one_line(str(error), 400))
     except (UsageError, ProgramError) as error:
         return _failed(error, path)

@@ -36,6 +36,7 @@ class SerialChain:
         name: str = "the chain",
         states_gravity: bool = False,
         tip: str = "",
+        held: Sequence[str] = (),
         named_numbers: Mapping[str, float] | None = None,
     ) -> None:
         """
@@ -43,6 +44,7 @@ class SerialChain:
             tool: the tip in the frame of the last link, m.
             gravity: in the base frame, m/s^2.
             tip: what the tip's frame is called; "" where it has no name.
+            held: joints beside the chain, which are taken at zero.
             states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
 
@@ -60,6 +62,7 @@ class SerialChain:
         g = float(np.linalg.norm(self.gravity))
         self.values_of_quantities: dict[str, float] = {"gravity": g} if g and self._has_masses() else {}
         self.states_gravity, self.tip, self.frame = states_gravity, tip, ""
+        self.held = tuple(held)
         self.named_numbers = dict(named_numbers or {})
 
     def plane(self) -> int | None:

@@ -78,6 +78,7 @@ class Chain(SerialChain):
             name=self.name,
             states_gravity=self.states_gravity or gravity is not None,
             tip=self.tip,
+            held=self.held,
             named_numbers=self.named_numbers,
         )
 
@@ -139,6 +140,8 @@ class Chain(SerialChain):
         if kind.name in _PLACED:
             found += [f"tip {self.tip}"] if self.tip else []
             found += [f"third row about {'xyz'[rows[2] - 3]}"] if len(rows) == 3 and rows[2] > 2 else []
+        if self.held and kind.name not in _PLACED:
+            found.append(f"{', '.join(self.held)} at zero")
         if kind.name in _WEIGHED and "gravity" not in varied:
             size = float(np.linalg.norm(self.gravity))
             down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)

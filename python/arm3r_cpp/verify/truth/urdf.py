@@ -20,6 +20,8 @@ class _Tree(NamedTuple):
     links: dict[str, ElementTree.Element]
     behind: dict[str, list[ElementTree.Element]]
     """The joints beside the chain, by the links on which they stand."""
+    held: list[str]
+    """Those of them that move, and stand on what moves."""
 
 
 def read_urdf(path: str | os.PathLike[str], tip: str | None, make: type[AnyChain]) -> AnyChain:
@@ -52,7 +54,7 @@ def read_urdf(path: str | os.PathLike[str], tip: str | None, make: type[AnyChain
     for joint in by_child.values():
         if not any(joint is one for one in path_of_joints):
             behind.setdefault(_name(file, joint, "parent"), []).append(joint)
-    return _chain(file, path_of_joints, _Tree(links, behind), tip, make)
+    return _chain(file, path_of_joints, _Tree(links, behind, []), tip, make)
 
 
 def _parsed(file: str) -> ElementTree.Element:
@@ -131,6 +133,8 @@ def _with_branches(file: str, name: str, tree: _Tree) -> Body:
     """A link with all that hangs on it beside the chain: fixed, or held by joints at zero."""
     body = _link(file, tree.links[name])
     for joint in tree.behind.get(name, ()):
+        if joint.get("type") != "fixed":
+            tree.held.append(joint.get("name", ""))
         rotation, origin = _pose(file, joint)
         body = _joined(body, _with_branches(file, _child(file, joint, tree.links), tree), rotation, origin)
     return body
@@ -148,6 +152,8 @@ def _chain(file: str, path: list[ElementTree.Element], tree: _Tree, tip: str, ma
         if kind == "fixed":
             if bodies:
                 bodies[-1] = _joined(bodies[-1], link, rotation, origin)
+            else:
+                tree.held.clear()  # it stands on the base
             continue
         if kind not in ("revolute", "continuous", "prismatic"):
             raise UsageError(
@@ -162,4 +168,4 @@ def _chain(file: str, path: list[ElementTree.Element], tree: _Tree, tip: str, ma
         rotation, origin = np.eye(3), np.zeros(3)
     for joint, body in zip(joints, bodies, strict=True):
         joint.mass, joint.centre, joint.inertia = body
-    return make(joints, tool=origin, tool_rotation=rotation, name=os.path.basename(file), tip=tip)
+    return make(joints, tool=origin, tool_rotation=rotation, name=os.path.basename(file), tip=tip, held=tree.held)
