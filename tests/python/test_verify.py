@@ -658,3 +658,17 @@ def test_the_rows_of_a_matrix_are_no_results(written: Any) -> None:
     path = written("gravity.py", "def gravity(q):\n    return [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]\n")
     verdict = arm3r.verify.gravity(path)
     assert "returns 2x3 numbers, where a gravity torque has 3" in verdict.findings[0].cause
+
+
+def test_numbers_of_one_value_are_said_to_be_so(written: Any) -> None:
+    """The text has numbers alone: their letters are those that are due, and the note says which could be others."""
+    text = """from math import cos
+
+
+def gravity(q1, q2, q3):
+    t3 = -3.849110125*cos(q2 + q3)
+    return [0, -7.69822025*cos(q2) - 3.849110125*cos(q2) - t3, t3]
+"""
+    verdict = arm3r.verify.gravity(written("gravity.py", text))
+    assert verdict.findings[0].reads == "-m3 g a2 C2 - 1/2 m2 g a2 C2 + 1/2 m3 g a3 C23"
+    assert "cannot tell a2 from a3, m2 from m3 here: they are equal" in verdict.warnings

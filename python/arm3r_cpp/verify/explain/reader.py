@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import combinations_with_replacement
 from typing import Any, NamedTuple
 
@@ -215,7 +217,7 @@ class _Reader:
         equal = [
             f"{shown[a]} from {shown[b]}"
             for a, b in (("length2", "length3"), ("mass2", "mass3"))
-            if {a, b} <= set(self.varied) and not {a, b} & known and self.own[a] == self.own[b]
+            if {a, b} <= set(self.varied) and not {a, b} & known and math.isclose(self.own[a], self.own[b])
         ]
         return f"cannot tell {', '.join(equal)} here: they are equal" if equal else ""
 
@@ -239,6 +241,7 @@ def monomials(names: list[str], *, is_torque: bool) -> list[tuple[str, ...]]:
 def _hints(monomials: Any, parameters: Parameters, fixed: dict[str, float]) -> Any:
     """The monomials that are due, with the numbers of the quantities that are not varied put in."""
     hints: dict[Any, Any] = {}
+    terms: list[tuple[float, tuple[int, ...], Term]] = []
     for waves, found in monomials.items():
         hints[waves] = []
         for number, powers in found:
@@ -249,8 +252,10 @@ def _hints(monomials: Any, parameters: Parameters, fixed: dict[str, float]) -> A
             left = tuple(powers.get(name, 0) for name in parameters.names)
             hints[waves].append((whole, left))
             named = tuple((name, power) for name, power in powers.items() if power)
-            for ratio in RATIOS if named else ():
-                parameters.known_terms[waves, ratio * whole, left] = Term(ratio * number, named, waves)
+            terms += [(whole, left, Term(number, named, waves))] if named else []
+    for ratio in reversed(RATIOS):  # what is due itself goes before what is a multiple of it
+        for whole, left, term in terms:
+            parameters.known_terms[term.waves, ratio * whole, left] = replace(term, number=ratio * term.number)
     return hints
 
 
