@@ -16,6 +16,7 @@ from arm3r_cpp.commands import exercise
 from arm3r_cpp.exercises import worker
 from arm3r_cpp.exercises.mark import WORDS
 from arm3r_cpp.exercises.tasks import TASKS
+from arm3r_cpp.verify.program.start import COPIES
 
 SUBMISSIONS = Path(__file__).parent / "submissions"
 SECONDS = str(10_000_000 + os.getpid())  # of this process: another one may run the same test
@@ -245,7 +246,8 @@ def test_a_judge_that_does_not_end_is_ended(tmp_path: Path, monkeypatch: Any) ->
     monkeypatch.setattr("arm3r_cpp.system.patience.WAITING_TIME", 2.0)
     file, before = tmp_path / "observer.py", descendants(os.getpid())
     file.write_text("import time\ntime.sleep(1e6)\ndef momentum_rate(a, b, c, d):\n    return a\n")
-    mark = worker.judge_apart(TASKS["observer"], file)
+    with worker.Worker() as judge:
+        mark = judge.mark(TASKS["observer"], file)
     assert mark.word in WORDS and mark.reason == "takes too long"
     left = [pid for pid in descendants(os.getpid()) if pid not in before]
     for _ in range(600):  # what is killed may take a moment to end
@@ -272,13 +274,14 @@ def test_ctrl_c_ends_the_marking_and_the_files_that_are_judged(scripts: Path, tm
     student.mkdir(parents=True)
     (student / "observer.py").write_text("while True: pass\ndef momentum_rate(a, b, c, d):\n    return a\n")
     command = [scripts / "arm3r-exercise", "mark", "--trust-code", tmp_path / "class", "--task", "observer"]
+    expected = 5 if COPIES else 2  # a judge, and the process that it judges; copies of others, and who looked for bars
     with subprocess.Popen(command, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         for _ in range(600):
             time.sleep(0.1)
             started = descendants(process.pid)
-            if len(started) == 2:  # a judge, and the process that it judges
+            if len(started) == expected:
                 break
-        assert len(started) == 2
+        assert len(started) == expected
         process.send_signal(signal.SIGINT)
         assert process.wait(600) == -signal.SIGINT
     for _ in range(600):

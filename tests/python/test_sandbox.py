@@ -18,6 +18,7 @@ import arm3r_cpp
 import numpy as np
 import pytest
 from arm3r_cpp.commands import exercise
+from arm3r_cpp.verify.program import start
 from arm3r_cpp.verify.program.nodes import Call, ProgramError
 from arm3r_cpp.verify.program.python_process import PythonProcess
 from formulas import ways_out
@@ -118,6 +119,48 @@ def test_no_way_out(user: str, class_of_two: tuple[str, ...]) -> None:
 
 def test_no_way_out_where_the_system_refuses_namespaces(class_of_two: tuple[str, ...]) -> None:
     assert tried(0, False, class_of_two) == []
+
+
+def test_no_way_out_of_a_process_that_is_no_copy(class_of_two: tuple[str, ...], monkeypatch: Any) -> None:
+    monkeypatch.setattr(start, "COPIES", False)
+    assert open_ways(class_of_two) == []
+
+
+def test_every_file_gets_a_copy_of_its_own_that_nothing_was_done_to() -> None:
+    """What one file does to numpy, to the modules and to its own memory is not there for the next."""
+    text = (
+        "import numpy as np, sys\nfound = getattr(np, 'mark', 0.0)\nnp.mark = 1.0\ndef gravity(q):\n    return found\n"
+    )
+    assert [evaluated(text)[0] for _ in range(3)] == [0.0, 0.0, 0.0]
+
+
+def test_a_server_of_copies_that_has_ended_is_started_anew() -> None:
+    text = "def gravity(q):\n    return 1.0\n"
+    assert evaluated(text)[0] == 1.0
+    server = start._servers[-1]._process
+    server.kill()
+    server.wait()
+    assert evaluated(text)[0] == 1.0 and start._servers[-1]._process.pid != server.pid
+
+
+def test_copies_of_a_process_use_the_server_that_it_has_prepared() -> None:
+    text = """
+import os, sys
+import numpy as np
+from arm3r_cpp.verify.program import start
+from arm3r_cpp.verify.program.nodes import Call
+from arm3r_cpp.verify.program.python_process import PythonProcess
+start.prepare()
+for _ in range(3):
+    if os.fork() == 0:
+        process = PythonProcess("def gravity(q): return 7.0", "gravity", "gravity.py")
+        value = process.evaluate(Call((0,), {}), np.zeros((1, 1)))[0]
+        process.close()
+        os._exit(int(value) if start._servers[-1]._owner == os.getppid() else 1)
+print(sorted(os.wait()[1] >> 8 for _ in range(3)))
+"""
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    assert done.stdout == "[7, 7, 7]\n", done.stderr
 
 
 def test_the_ways_are_open_outside(class_of_two: tuple[str, ...], tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.system import cpus, file_lock, processes, timed_pipe
 from arm3r_cpp.system.patience import Patience, TooSlow
-from arm3r_cpp.verify.program import python_process
+from arm3r_cpp.verify.program import python_process, start
 
 
 @pytest.fixture(params=[timed_pipe.SelectedPipe, timed_pipe.PumpedPipe])
@@ -49,7 +49,8 @@ def test_a_pipe_whose_writer_is_gone_has_an_end(pipe: Any) -> None:
 
 
 def test_formulas_are_judged_through_either_pipe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(python_process, "TimedPipe", timed_pipe.PumpedPipe)
+    monkeypatch.setattr(start, "COPIES", False)  # of another process, which reads all through the first pipe
+    monkeypatch.setattr(start, "TimedPipe", timed_pipe.PumpedPipe)
     file = tmp_path / "gravity.py"
     file.write_text("def gravity(q):\n    return [0, 0, q[0]]\n")
     verdict = verify.gravity(str(file))

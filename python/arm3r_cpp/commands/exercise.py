@@ -76,14 +76,15 @@ def show(options: argparse.Namespace, _: list[str]) -> None:
 
 def check(options: argparse.Namespace, marks: list[str]) -> None:
     from ..exercises.feedback import answer
-    from ..exercises.worker import judge_apart
+    from ..exercises.worker import Worker
 
     task = task_of(options.name)
     if not options.file.is_file():
         raise UsageError(f"{options.file}: is no file that can be read", code="usage")
     if options.file.suffix == ".py":
         say_what_is_not_barred()
-    mark = judge_apart(task, options.file, with_reading=options.hint == 3)
+    with Worker() as worker:
+        mark = worker.mark(task, options.file, with_reading=options.hint == 3)
     print_line(answer(task, str(options.file), mark, options.hint))
     marks.append(mark.word)
 

@@ -11,7 +11,7 @@ from .._messages import did_you_mean
 from ..errors import UsageError
 from .mark import MISSING, WRONG, Mark
 from .task import Task
-from .worker import judge_apart
+from .worker import Worker
 
 Progress = Callable[[int, int], None]
 
@@ -86,11 +86,19 @@ def marks(
 ) -> list[Row]:
     """The rows of the table, in the order of the submissions, whatever the number of jobs."""
 
+    jobs = max(jobs, 1)
+    workers = [Worker() for _ in range(jobs)]
+    idle = list(workers)
+
     def judge(one: Submission) -> Row:
-        return Row(one.student, one.task.name, _mark(one, forbid_own_package))
+        worker = idle.pop()
+        try:
+            return Row(one.student, one.task.name, _mark(one, worker, forbid_own_package))
+        finally:
+            idle.append(worker)
 
     rows = []
-    pool = ThreadPoolExecutor(max(jobs, 1))
+    pool = ThreadPoolExecutor(jobs)
     try:
         for row in pool.map(judge, found):
             rows.append(row)
@@ -98,10 +106,12 @@ def marks(
                 progress(len(rows), len(found))
     finally:
         pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C waits for no file
+        for worker in workers:
+            worker.close()
     return rows
 
 
-def _mark(one: Submission, forbid_own_package: bool) -> Mark:
+def _mark(one: Submission, worker: Worker, forbid_own_package: bool) -> Mark:
     if not one.files:
         return Mark(MISSING)
     if len(one.files) > 1:
@@ -109,4 +119,4 @@ def _mark(one: Submission, forbid_own_package: bool) -> Mark:
         return Mark(WRONG, f"there are {len(one.files)} files of this name ({names}); hand in one")
     if one.files[0].is_symlink():
         return Mark(WRONG, "is a link; hand in the file itself")
-    return judge_apart(one.task, one.files[0], forbid_own_package=forbid_own_package)
+    return worker.mark(one.task, one.files[0], forbid_own_package=forbid_own_package)

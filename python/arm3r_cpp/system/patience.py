@@ -28,7 +28,8 @@ class Patience:
     """
 
     def __init__(self, pid: int, seconds: float) -> None:
-        self._pid, self._window, self._window_begun = pid, 0.0, processor_time(pid) or 0.0
+        self._pid, self._window = pid, 0.0
+        self._window_begun: float | None = None
         self.renew(seconds)
 
     def renew(self, seconds: float) -> None:
@@ -57,9 +58,11 @@ class Patience:
         used = processor_time(self._pid)
         if self._begun is None:
             self._begun = used
+        if self._window_begun is None:
+            self._window_begun = used
         if (self._waited if used is None else used - (self._begun or 0.0)) >= self._seconds:
             raise TooSlow
         if self._window >= WAITING_TIME:
-            if used is not None and used - self._window_begun < _LEAST_SHARE * self._window:
+            if used is not None and used - (self._window_begun or 0.0) < _LEAST_SHARE * self._window:
                 raise Waits
-            self._window, self._window_begun = 0.0, used or 0.0
+            self._window, self._window_begun = 0.0, used

@@ -7,12 +7,12 @@ import os
 import struct
 import sys
 import time
-from typing import IO, Any
+from typing import IO, Any, NoReturn
 
 import numpy as np
 
-from .confinement import confine, end_with_parent
-from .limits import limit_resources
+from ...system.confinement import confine, end_with_parent
+from ...system.limits import limit_resources
 from .nodes import Call, Edit, ProgramError
 from .python_program import PythonProgram
 
@@ -21,12 +21,21 @@ _STARTS = {"os.fork", "os.forkpty", "os.exec", "os.posix_spawn", "os.system", "s
 
 
 def main() -> None:
-    """Requests come from standard input, answers go to standard output. The first request describes the program."""
-    answers = os.fdopen(os.dup(1), "wb")
-    requests = os.fdopen(os.dup(0), "rb")
+    """Requests come from standard input, answers go to standard output."""
+    serve(*own_streams())
+
+
+def own_streams() -> tuple[IO[bytes], IO[bytes]]:
+    """Standard input and output for requests and answers alone: what else reads or writes there finds nothing."""
+    streams = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     null = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2):
         os.dup2(null, descriptor)
+    return streams
+
+
+def serve(requests: IO[bytes], answers: IO[bytes]) -> NoReturn:
+    """Answer requests until they end. The first one describes the program."""
     end_with_parent()
     head, _ = receive(requests)
     limit_resources()

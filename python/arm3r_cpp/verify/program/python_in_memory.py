@@ -13,10 +13,10 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from ...system.confinement import end_with_parent
+from ...system.limits import limit_copy
 from ...system.timed_pipe import SelectedPipe
 from .child import answer
-from .confinement import end_with_parent
-from .limits import limit_copy
 from .nodes import Call, Edit, ProgramError
 from .python_process import PythonProcess
 from .python_program import PythonProgram

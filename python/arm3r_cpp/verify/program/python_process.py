@@ -4,50 +4,28 @@ from __future__ import annotations
 
 import contextlib
 import os
-import subprocess
-import sys
 import weakref
 from collections.abc import Callable
-from typing import IO, Any, NoReturn, Protocol
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...system.limits import PROCESSOR_TIME
 from ...system.patience import Patience, TooSlow, Waits
-from ...system.processes import bare_environment, end_with_descendants, processor_time
-from ...system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
+from ...system.processes import end_with_descendants, processor_time
+from ...system.timed_pipe import PumpedPipe, SelectedPipe
 from .answers import BROKEN, BrokenAnswer, answer_of, head_of, unbarred_of
 from .child import HEAD, send
-from .limits import PROCESSOR_TIME
 from .nodes import Call, Edit, ProcessEnded, ProgramError, Unjudged
+from .start import STARTING_TIME, Process, start
 
 Floats = NDArray[np.float64]
-_FOLDER = os.path.dirname(os.path.abspath(__file__))
-_PACKAGE = os.path.dirname(os.path.dirname(_FOLDER))
-# The modules of this folder alone, under a name of their own: what is right is not in the process that is judged.
-_START = """
-import sys, types
-package = sys.modules["_arm3r_program"] = types.ModuleType("_arm3r_program")
-package.__path__ = sys.argv[1:]
-from _arm3r_program.child import main
-main()
-"""
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 _MOST_BYTES, _MOST_BYTES_OF_HEAD = 64 << 20, 1 << 16  # of an answer
-STARTING_TIME, ANSWER_TIME, EDIT_TIME = 20.0, 10.0, 2.0  # s of processor time
+ANSWER_TIME, EDIT_TIME = 10.0, 2.0  # s of processor time
 _MOST_ENDS = 3
 """Processes that edits may end one after the other, by a crash of the interpreter; and in all, by taking too long."""
-
-
-class Process(Protocol):
-    """A process that reads requests from `stdin`."""
-
-    @property
-    def pid(self) -> int: ...
-
-    @property
-    def stdin(self) -> IO[bytes] | None: ...
-
-    def wait(self) -> Any: ...
 
 
 class PythonProcess:
@@ -98,28 +76,7 @@ class PythonProcess:
         return answer.values
 
     def _start(self) -> None:
-        environment = {
-            **bare_environment(),
-            "OMP_NUM_THREADS": "1",
-            "MPLBACKEND": "Agg",
-            "HOME": "/",
-            "MPLCONFIGDIR": os.environ.get("TMPDIR")
-            or os.environ.get("TEMP")
-            or "/tmp",  # it insists on a writable one
-        }
-        process = subprocess.Popen(
-            [sys.executable, "-I", "-c", _START, _FOLDER],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            env=environment,
-            start_new_session=True,
-            cwd="/",
-        )
-        assert process.stdout
-        answers = TimedPipe(os.dup(process.stdout.fileno()))
-        process.stdout.close()
-        self._attach(process, answers)
+        self._attach(*start())
         folder = os.path.dirname(os.path.abspath(self.file)) if os.path.isfile(self.file) else ""
         self._send(
             {

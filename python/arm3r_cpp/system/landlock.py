@@ -61,9 +61,13 @@ def read_only(libc: ctypes.CDLL, readable: Iterable[Readable]) -> bool:
     return bool(is_done)
 
 
-def _rules(one: Readable) -> Iterator[tuple[str, int]]:
-    """Paths, and what is allowed beneath them; a folder that holds something hidden is taken apart."""
-    real = os.path.realpath(one.path)
+def _rules(one: Readable, is_link: bool = True) -> Iterator[tuple[str, int]]:
+    """Paths, and what is allowed beneath them; a folder that holds something hidden is taken apart.
+
+    Args:
+        is_link: whether a part of the path may be one.
+    """
+    real = os.path.realpath(one.path) if is_link else one.path
     is_apart = one.is_foreign or any(hidden.startswith(real.rstrip("/") + "/") for hidden in one.hidden)
     if real in one.hidden:
         return
@@ -74,7 +78,7 @@ def _rules(one: Readable) -> Iterator[tuple[str, int]]:
     with contextlib.suppress(OSError), os.scandir(real) as entries:
         for entry in entries:
             if not (one.is_foreign and (entry.name.startswith(".") or entry.is_symlink())):
-                yield from _rules(Readable(entry.path, one.hidden))
+                yield from _rules(Readable(entry.path, one.hidden), entry.is_symlink())
 
 
 def _allow(libc: ctypes.CDLL, ruleset: int, path: str, right: int, is_foreign: bool) -> None:

@@ -1,0 +1,54 @@
+"""A process that has loaded what a user's file needs, and copies itself for each file: none waits for numpy.
+
+It runs no file itself. Its input is a socket: a message with two pipes asks for a copy that reads its requests from the
+first and answers through the second; a message with a number asks to wait for the copy with that number.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import socket
+import struct
+import sys
+from typing import NoReturn
+
+from .child import serve
+
+PID = struct.Struct("<i")
+"""The first bytes that a copy answers: its number."""
+_LONGEST = 32  # bytes of a message
+
+
+def main() -> None:
+    """Serve until every process that holds the other end of the socket has ended."""
+    if sys.platform == "win32":
+        return
+    asked = socket.socket(fileno=os.dup(0))
+    null = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (0, 1, 2):
+        os.dup2(null, descriptor)
+    gc.freeze()  # what is loaded here is not for a copy to end
+    while True:
+        message, pipes, _, _ = socket.recv_fds(asked, _LONGEST, 2)
+        if pipes:
+            if os.fork() == 0:
+                asked.close()
+                _serve_apart(*pipes)
+            for pipe in pipes:
+                os.close(pipe)
+        elif message:
+            os.waitpid(int(message), 0)
+        else:
+            return
+
+
+def _serve_apart(requests: int, answers: int) -> NoReturn:
+    """In a copy: it never comes back to the loop of the server."""
+    try:
+        if sys.platform != "win32":
+            os.setsid()
+        os.write(answers, PID.pack(os.getpid()))
+        serve(os.fdopen(requests, "rb"), os.fdopen(answers, "wb"))
+    finally:
+        os._exit(1)
