@@ -16,7 +16,7 @@ from arm3r_cpp.commands import exercise
 from arm3r_cpp.exercises import worker
 from arm3r_cpp.exercises.mark import WORDS
 from arm3r_cpp.exercises.tasks import TASKS
-from arm3r_cpp.verify.program.start import COPIES
+from arm3r_cpp.user_functions.start import COPIES
 
 SUBMISSIONS = Path(__file__).parent / "submissions"
 SECONDS = str(10_000_000 + os.getpid())  # of this process: another one may run the same test

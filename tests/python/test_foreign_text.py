@@ -16,7 +16,7 @@ from arm3r_cpp.commands import exercise, run, verify
 from arm3r_cpp.exercises.folder import Row
 from arm3r_cpp.exercises.mark import Mark
 from arm3r_cpp.exercises.table import csv_of
-from arm3r_cpp.verify.program.python_process import PythonProcess
+from arm3r_cpp.user_functions.python_process import PythonProcess
 
 CONTROLS = [*map(chr, range(32)), *map(chr, range(0x7F, 0xA0))]
 BIDI = [*"\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200e\u200f\u061c"]

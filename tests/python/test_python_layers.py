@@ -16,6 +16,7 @@ ROOMS = [
     "_files _native _progress_bar",
     "_messages",
     "answers",
+    "user_functions",
     "logs",
     "examples",
     "rows",

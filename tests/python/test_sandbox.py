@@ -18,9 +18,9 @@ import arm3r_cpp
 import numpy as np
 import pytest
 from arm3r_cpp.commands import exercise
-from arm3r_cpp.verify.program import start
-from arm3r_cpp.verify.program.nodes import Call, ProgramError
-from arm3r_cpp.verify.program.python_process import PythonProcess
+from arm3r_cpp.user_functions import start
+from arm3r_cpp.user_functions.nodes import Call, ProgramError
+from arm3r_cpp.user_functions.python_process import PythonProcess
 from formulas import ways_out
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems bar little, and say so")
@@ -147,9 +147,9 @@ def test_copies_of_a_process_use_the_server_that_it_has_prepared() -> None:
     text = """
 import os, sys
 import numpy as np
-from arm3r_cpp.verify.program import start
-from arm3r_cpp.verify.program.nodes import Call
-from arm3r_cpp.verify.program.python_process import PythonProcess
+from arm3r_cpp.user_functions import start
+from arm3r_cpp.user_functions.nodes import Call
+from arm3r_cpp.user_functions.python_process import PythonProcess
 start.prepare()
 for _ in range(3):
     if os.fork() == 0:
@@ -244,8 +244,8 @@ def test_nothing_outlives_the_judge(tmp_path: Path) -> None:
     """A file that runs for ever ends with the process that has started it, whatever ends that."""
     text = """
 import numpy as np, sys, threading, time
-from arm3r_cpp.verify.program.nodes import Call
-from arm3r_cpp.verify.program.python_process import PythonProcess
+from arm3r_cpp.user_functions.nodes import Call
+from arm3r_cpp.user_functions.python_process import PythonProcess
 process = PythonProcess("def gravity(q):\\n    while True: pass\\n", "gravity", "gravity.py")
 threading.Thread(target=lambda: process.evaluate(Call((0,), {}), np.zeros((1, 1))), daemon=True).start()
 while not (process._process and process.unbarred == []): time.sleep(0.01)

@@ -13,7 +13,7 @@ import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.system import cpus, file_lock, processes, timed_pipe
 from arm3r_cpp.system.patience import Patience, TooSlow
-from arm3r_cpp.verify.program import python_process, start
+from arm3r_cpp.user_functions import python_process, start
 
 
 @pytest.fixture(params=[timed_pipe.SelectedPipe, timed_pipe.PumpedPipe])

@@ -18,9 +18,9 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
-from arm3r_cpp.verify.program.nodes import Call, Edit, ProgramError
-from arm3r_cpp.verify.program.python_in_memory import PythonInMemory
-from arm3r_cpp.verify.program.python_process import PythonProcess
+from arm3r_cpp.user_functions.nodes import Call, Edit, ProgramError
+from arm3r_cpp.user_functions.python_in_memory import PythonInMemory
+from arm3r_cpp.user_functions.python_process import PythonProcess
 from formulas.hostile import files
 
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
@@ -56,7 +56,7 @@ def state() -> dict[str, Any]:
 
 @pytest.fixture
 def judged(tmp_path: Path, monkeypatch: Any) -> Iterator[Any]:
-    monkeypatch.setattr("arm3r_cpp.verify.program.python_process.ANSWER_TIME", 3.0)
+    monkeypatch.setattr("arm3r_cpp.user_functions.python_process.ANSWER_TIME", 3.0)
     monkeypatch.setattr("arm3r_cpp.system.patience.WAITING_TIME", 10.0)
     victim, new = tmp_path / "victim", tmp_path / "new"
     victim.write_text("here")
@@ -161,7 +161,7 @@ def gravity_that_may_hang(q1: float, q2: float, q3: float) -> list[float]:
 @pytest.mark.parametrize("function", [gravity_that_may_crash, gravity_that_may_hang])
 def test_no_edit_of_a_function_in_memory_runs_in_this_process(function: Any, monkeypatch: Any) -> None:
     """An edit of `2` to `0` ends the process or hangs; the edit that mends the formula is found all the same."""
-    monkeypatch.setattr("arm3r_cpp.verify.program.python_process.EDIT_TIME", 0.3)
+    monkeypatch.setattr("arm3r_cpp.user_functions.python_process.EDIT_TIME", 0.3)
     before = state()
     verdict = verify.gravity(function)
     assert {(one.old, one.new) for one in verdict.findings} == {("m3", "m3/2")}, str(verdict)
@@ -188,7 +188,7 @@ def test_edits_that_crash_the_interpreter_do_not_end_the_search(make: Any) -> No
 
 
 def test_edits_that_hang_end_the_search_however_many_answer_between_them(monkeypatch: Any) -> None:
-    monkeypatch.setattr("arm3r_cpp.verify.program.python_process.EDIT_TIME", 0.2)
+    monkeypatch.setattr("arm3r_cpp.user_functions.python_process.EDIT_TIME", 0.2)
     text = "def gravity(q):\n    return [0.0, 1.0, 2.0]\n"
     program, call, table = PythonProcess(text, "gravity", "arm.py"), Call(((0, 1, 2),), {}), np.zeros((1, 3))
     place = text.index("1.0")

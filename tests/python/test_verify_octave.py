@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arm3r_cpp.verify.program.matlab_program import MatlabProgram
-from arm3r_cpp.verify.program.nodes import Call, ProgramError
+from arm3r_cpp.user_functions.matlab.program import MatlabProgram
+from arm3r_cpp.user_functions.nodes import Call, ProgramError
 from formulas.mutants import matlab_mutants
 from formulas.programs import PROGRAMS
 

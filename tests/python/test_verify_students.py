@@ -14,9 +14,9 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
+from arm3r_cpp.user_functions.nodes import ProgramError
 from arm3r_cpp.verify.formula import from_text
 from arm3r_cpp.verify.kinds import KINDS, standard_form
-from arm3r_cpp.verify.program.nodes import ProgramError
 from arm3r_cpp.verify.samples import Samples
 from formulas import reading
 from formulas.draws import draws

@@ -12,9 +12,9 @@ from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ControllerError, UsageError
+from ..user_functions.matlab.program import MatlabProgram
+from ..user_functions.python_nodes import PythonText
 from ..verify.formula import Formula, from_file, from_text, split_name
-from ..verify.program.matlab_program import MatlabProgram
-from ..verify.program.python_nodes import PythonText
 from ..verify.truth.three_r import ThreeR
 from .inputs import Input, check_numbers, input_of, is_angle, numbers_of_arm
 from .law import BlockLaw, Place, failure
@@ -40,7 +40,7 @@ class Block:
             UsageError: the text cannot be read, has no such function, or an argument is not known.
         """
         self.file, self.text, self.function = file, text, function
-        formula = from_text(text, file, function)
+        formula = from_text(text, file, function, folder=_folder_of(file))
         self.arguments = formula.arguments
         program = formula.program
         if isinstance(program, MatlabProgram):
@@ -97,7 +97,7 @@ class Block:
         given: dict[str, Input] = {name: _constant(number) for name, number in numbers.items()}
         given |= {name: found for name in self.arguments if (found := input_of(name))}
         inputs = {name: given[name] for name in self.arguments if name in given}
-        formula = from_text(self.text, self.file, self.function)
+        formula = from_text(self.text, self.file, self.function, folder=_folder_of(self.file))
         return BlockLaw(self._place, self._caller(formula, inputs), formula.order)
 
     def _caller(self, formula: Formula, inputs: Mapping[str, Input]) -> Callable[[Any], Any]:
@@ -116,11 +116,15 @@ class Block:
         """The function, of a new execution of the file."""
         namespace = {"__name__": "__block__", "__file__": self.file, "__builtins__": builtins}
         try:
-            with _importing_from(os.path.dirname(os.path.abspath(self.file))):
+            with _importing_from(_folder_of(self.file)):
                 exec(compile(self.text, self.file, "exec", dont_inherit=True), namespace)
         except (Exception, SystemExit) as error:
             raise ControllerError(failure(self._place, error), code="run.controller") from error
         return namespace[self.function]
+
+
+def _folder_of(file: str) -> str:
+    return os.path.dirname(os.path.abspath(file))
 
 
 def _constant(number: float) -> Input:

@@ -107,8 +107,8 @@ def angles(text: str) -> list[float]:
 
 def verify(options: argparse.Namespace, codes: list[int]) -> None:
     """Judge each formula: its exit code. What one cannot be judged for is said, and the others are judged."""
+    from ..user_functions.python_process import PythonProcess
     from ..verify.functions import formula_verdict
-    from ..verify.program.python_process import PythonProcess
 
     PythonProcess.report = say_once
 
@@ -170,7 +170,7 @@ def arm_of(options: argparse.Namespace) -> Any:
 
 def say_once(unbarred: list[str]) -> None:
     """Say what this system cannot keep a user's file from, once."""
-    from ..verify.program.python_process import PythonProcess
+    from ..user_functions.python_process import PythonProcess
 
     PythonProcess.report = None
     say(PROGRAM, f"this system cannot bar a formula from: {', '.join(unbarred)}")

@@ -14,14 +14,14 @@ import numpy as np
 from .._native import Floats
 from ..errors import BudgetError, ControllerError, UsageError
 from ..scenario import Scenario
+from ..user_functions.nodes import Call, ProgramError, Unjudged, Unread
+from ..user_functions.python_process import PythonProcess
 from ..verify.comparison import scales
 from ..verify.finding import Finding
 from ..verify.formula import Formula, from_file
 from ..verify.judge import judge
 from ..verify.kinds import KINDS, standard_form
 from ..verify.names import quantities_of, slot_of
-from ..verify.program.nodes import Call, ProgramError, Unjudged, Unread
-from ..verify.program.python_process import PythonProcess
 from ..verify.samples import VECTORS, Samples
 from ..verify.truth.three_r import ThreeR
 from .mark import RIGHT, UNCLEAR, WORDS, WRONG, Mark, one_line, word_of
@@ -100,9 +100,9 @@ def formula_of(task: FunctionTask, path: Path, sandbox: type[PythonProcess]) -> 
         UsageError: the file cannot be read.
     """
     try:
-        return from_file(f"{path}:{task.function}", sandbox=sandbox)
+        return from_file(f"{path}:{task.function}", sandbox=sandbox, is_alone=True)
     except UsageError:
-        return from_file(path, sandbox=sandbox)
+        return from_file(path, sandbox=sandbox, is_alone=True)
 
 
 def reading(task: FunctionTask, path: Path) -> str:

@@ -20,10 +20,10 @@ from ..system.limits import limit_judge
 from ..system.patience import Patience
 from ..system.processes import bare_environment, end_with_descendants
 from ..system.timed_pipe import TimedPipe
-from ..verify.program import start
-from ..verify.program.child import HEAD, own_streams, receive, send
-from ..verify.program.nodes import Call, ProgramError
-from ..verify.program.python_process import PythonProcess
+from ..user_functions import start
+from ..user_functions.child import HEAD, own_streams, receive, send
+from ..user_functions.nodes import Call, ProgramError
+from ..user_functions.python_process import PythonProcess
 from .function_judge import reading
 from .judge import judge_file
 from .mark import RIGHT, UNCLEAR, Mark

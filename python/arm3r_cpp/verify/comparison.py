@@ -10,10 +10,10 @@ import numpy as np
 
 from .._native import Floats
 from ..errors import UsageError
+from ..user_functions.nodes import Edit, ProgramError
 from .explain.repair import wrong_entries
 from .formula import Formula
 from .kinds import KINDS, SPATIAL, Kind, Rows, standard_form
-from .program.nodes import Edit, ProgramError
 from .samples import Samples, random_states
 from .truth.three_r import FOLLOWING
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from .._native import Floats
 from ..scenario import Scenario
+from ..user_functions.nodes import ProgramError
 from .comparison import Comparison
 from .finding import Finding, Judgement
 from .log.reading import read_log
 from .planted import planted_and_seen
-from .program.nodes import ProgramError
 from .samples import Samples
 from .truth.three_r import CONVENTIONS, ThreeR
 

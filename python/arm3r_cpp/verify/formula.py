@@ -15,15 +15,15 @@ import numpy as np
 from .._files import regular
 from .._native import Floats
 from ..errors import UnjudgedError, UsageError
+from ..user_functions.c_symbol import text_of
+from ..user_functions.matlab.program import MatlabProgram
+from ..user_functions.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
+from ..user_functions.python_in_memory import PythonInMemory
+from ..user_functions.python_nodes import PythonText
+from ..user_functions.python_process import PythonProcess
+from ..user_functions.python_program import _numbers
 from .kinds import KINDS, Kind
 from .names import quantities_of, slot_of, slots_of
-from .program.c_symbol import text_of
-from .program.matlab_program import MatlabProgram
-from .program.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
-from .program.python_in_memory import PythonInMemory
-from .program.python_nodes import PythonText
-from .program.python_process import PythonProcess
-from .program.python_program import _numbers
 from .samples import Samples, columns
 
 
@@ -83,7 +83,9 @@ class Formula:
         if isinstance(program, PythonInMemory) and program.has_surroundings:
             return None
         sandbox = type(program) if isinstance(program, PythonProcess) else PythonProcess
-        edited = from_text(edit.apply(self.text), self.file, self.name, sandbox=sandbox)
+        edited = from_text(
+            edit.apply(self.text), self.file, self.name, sandbox=sandbox, folder=getattr(program, "folder", None)
+        )
         return replace(edited, output=self.output)
 
     @property
@@ -190,8 +192,11 @@ def _from_sympy(expression: Any) -> Formula:
     return Formula("expression", "expression", CallableProgram(function), [symbol.name for symbol in symbols])
 
 
-def from_file(path: str | os.PathLike[str], *, sandbox: Any = None) -> Formula:
+def from_file(path: str | os.PathLike[str], *, sandbox: Any = None, is_alone: bool = False) -> Formula:
     """A function of a file: `file.py:function`, `file.m`, `file.m:function`.
+
+    Args:
+        is_alone: whether a MATLAB function may not call those in files beside it.
 
     Raises:
         UsageError: the file cannot be read, or has no such function.
@@ -206,10 +211,20 @@ def from_file(path: str | os.PathLike[str], *, sandbox: Any = None) -> Formula:
             f"and name the function, {library}:{function or 'FUNCTION'}"
         )
     try:
-        text = regular(Path(file)).read_text(encoding="utf-8")
+        text = decoded(regular(Path(file)).read_bytes())
     except (OSError, ValueError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    return from_text(text, file, function, sandbox=sandbox)
+    folder = None if is_alone else os.path.dirname(os.path.abspath(file))
+    return from_text(text, file, function, sandbox=sandbox, folder=folder)
+
+
+def decoded(content: bytes) -> str:
+    """The text of a file in UTF-8 or, as older editors write it, in Latin-1; its lines end with a line feed."""
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _from_library(file: str, function: str | None) -> Formula:
@@ -222,14 +237,17 @@ def _from_library(file: str, function: str | None) -> Formula:
     return Formula(file, function, program, [], language="c")
 
 
-def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None) -> Formula:
+def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None, folder: str | None = None) -> Formula:
     """A function of a text.
+
+    Args:
+        folder: where a MATLAB function finds those in files of their own; None: nowhere.
 
     Raises:
         UsageError: the text cannot be read, or has no such function.
     """
     if file.endswith(".m"):
-        program = MatlabProgram(text, file, function)
+        program = MatlabProgram(text, file, function, folder)
         outputs = program.outputs if len(program.outputs) > 1 else []
         return Formula(
             file,
@@ -243,6 +261,7 @@ def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None
             "matlab",
             program.comments(),
             outputs,
+            program.optional,
         )
     source = PythonText(text, file)
     name = function or likely_function(source, file)

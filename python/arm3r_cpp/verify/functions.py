@@ -9,12 +9,12 @@ from typing import Any
 from ..arm import Arm
 from ..errors import UnjudgedError, UsageError
 from ..scenario import Scenario
+from ..user_functions.python_process import PythonProcess
 from .formula import Formula, from_callable, from_file, kind_of
 from .judge import Progress, judge
 from .kinds import KINDS
 from .log.judge import judge_log
 from .log.reading import ENDINGS, read_log
-from .program.python_process import PythonProcess
 from .truth.chain_files import Chain
 from .truth.three_r import ThreeR
 from .verdict import Finding, Verdict

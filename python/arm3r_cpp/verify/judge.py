@@ -14,6 +14,7 @@ import numpy as np
 
 from .._native import Floats
 from ..errors import UnjudgedError
+from ..user_functions.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, Unread, line_and_column
 from .comparison import TOLERANCE, Comparison, Solved, scales
 from .coverage import seen_by_tests
 from .explain.budget import Budget
@@ -26,11 +27,12 @@ from .formula import Formula
 from .kinds import SPATIAL, Kind, entry_name
 from .meaning import assumed, doubted, is_right_as_it_stands, meant, ways, with_output, wrong_count
 from .names import slot_of
-from .program.nodes import Edit, Node, ProcessEnded, ProgramError, Unjudged, Unread, line_and_column
 from .truth.three_r import FOLLOWING_WORDS
 from .verdict import Finding, Verdict
 
 Progress = Callable[[int, int], None]
+_MOST_PARTS = 3000
+"""Of a statement that is edited: what programs write in one is read back, and not mended."""
 MENDING_EDITS = 3000  # of a formula that fails
 _MOST_ALTERNATIVES = 3
 REPAIR_EDITS = 10_000  # of all that a formula may mean
@@ -432,7 +434,7 @@ def _repairs(
         return []
     angles = [name for name in formula.arguments if (slot := slot_of(name)) and slot[0] == "q" and slot[1] is not None]
     angles = sorted(angles) or _indexed_angles(formula, case.truth.joints)
-    editor = Editor(formula.text, formula.nodes, formula.language, angles, list(case.parameters))
+    editor = Editor(formula.text, formula.nodes, formula.language, angles, list(case.parameters), formula.outputs)
     due = {everywhere: case.due(case.second if everywhere else case.first) for everywhere in (False, True)}
 
     def evaluate(edit: Edit, everywhere: bool) -> Floats:
@@ -444,8 +446,15 @@ def _repairs(
     def wrong_at(everywhere: bool) -> Callable[[Floats], frozenset[int]]:
         return lambda values: case.wrong(values, case.second if everywhere else case.first, due[everywhere])
 
-    statements = statements or influential(formula.nodes, formula.text, evaluate, as_it_is, wrong)
-    found = tried(editor.all(statements), evaluate, wrong_at(False), wrong_at(True), wrong, progress, budget)
+    short = [one for one in formula.nodes if sum(1 for _ in one.walk()) <= _MOST_PARTS]
+    statements = statements or influential(short, formula.text, evaluate, as_it_is, wrong)
+
+    def evaluate_in_order(edit: Edit, everywhere: bool) -> Floats:
+        if everywhere and formula.order and (edited := formula.edited(edit)) and edited.order != formula.order:
+            raise ProgramError("the edit takes away the names that tell the order of the outputs")
+        return evaluate(edit, everywhere)
+
+    found = tried(editor.all(statements), evaluate_in_order, wrong_at(False), wrong_at(True), wrong, progress, budget)
     return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
 
 

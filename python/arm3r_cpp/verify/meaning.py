@@ -11,10 +11,10 @@ import numpy as np
 
 from .._native import Floats
 from ..errors import UsageError
+from ..user_functions.nodes import ProcessEnded, ProgramError
 from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
 from .kinds import Kind
-from .program.nodes import ProcessEnded, ProgramError
 from .samples import Samples
 from .truth.three_r import FOLLOWING
 

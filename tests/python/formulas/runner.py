@@ -9,8 +9,8 @@ from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
-from arm3r_cpp.verify.program.matlab_program import MatlabProgram
-from arm3r_cpp.verify.program.nodes import Call, ProgramError
+from arm3r_cpp.user_functions.matlab.program import MatlabProgram
+from arm3r_cpp.user_functions.nodes import Call, ProgramError
 from numpy.typing import NDArray
 
 from .programs import Program

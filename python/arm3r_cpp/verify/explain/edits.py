@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
-from ..program.nodes import Edit, Node
+from ...user_functions.nodes import Edit, Node
 
 _TRIGONOMETRIC = {"sin": "cos", "cos": "sin", "sind": "cosd", "cosd": "sind", "tan": "sin"}
 _ADDITIVE, _MULTIPLICATIVE = ("+", "-"), ("*", "/", ".*", "./")
@@ -20,13 +20,21 @@ class Editor:
     """Lists the edits of a text that may mend it, the likely ones first."""
 
     def __init__(
-        self, text: str, nodes: Sequence[Node], language: str, angles: Sequence[str], factors: Sequence[str]
+        self,
+        text: str,
+        nodes: Sequence[Node],
+        language: str,
+        angles: Sequence[str],
+        factors: Sequence[str],
+        outputs: Sequence[str] = (),
     ) -> None:
         """
         Args:
             angles: what joint angles are called in the text, in the order of the joints.
             factors: the names of parameters.
+            outputs: the names of results.
         """
+        self.outputs = set(outputs)
         self.text, self.nodes, self.language = text, list(nodes), language
         self.factors = list(dict.fromkeys(factors))[:8]
         every = [inner for node in self.nodes for inner in node.walk()]
@@ -95,10 +103,16 @@ class Editor:
     def _is_data(self, statement: Node) -> bool:
         """Whether a statement assigns numbers alone, in lists or by names: the arm's, which the formula uses."""
         is_whole = re.match(r"[ \t]*([\n;#%]|\Z)", self.text[statement.end :]) is not None  # no argument of a call
-        return is_whole and all(
-            node.kind in ("assign", "number", "matrix", "row", "unary", "group")
-            or (node.kind == "other" and node.word[:1] in ("{", "'", '"'))
-            for node in statement.walk()
+        name = re.match(r"\w*", self.text[statement.start : statement.parts[0].start])
+        is_result = name is not None and name[0] in self.outputs
+        return (
+            is_whole
+            and not is_result
+            and all(
+                node.kind in ("assign", "number", "matrix", "row", "unary", "group")
+                or (node.kind == "other" and node.word[:1] in ("{", "'", '"'))
+                for node in statement.walk()
+            )
         )
 
     def _of_node(self, node: Node, parent: Node) -> Iterator[Edit]:
@@ -331,7 +345,10 @@ def _last(word: str) -> str:
     return word.rsplit(".", 1)[-1]
 
 
-def _with_parents(node: Node, parent: Node | None = None) -> Iterator[tuple[Node, Node | None]]:
-    yield node, parent
-    for part in node.parts:
-        yield from _with_parents(part, node)
+def _with_parents(node: Node) -> Iterator[tuple[Node, Node | None]]:
+    """A node and all in it, in the order of `walk`."""
+    left: list[tuple[Node, Node | None]] = [(node, None)]
+    while left:
+        inner, parent = left.pop()
+        yield inner, parent
+        left.extend((part, inner) for part in reversed(inner.parts))

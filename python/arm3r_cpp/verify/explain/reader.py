@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..._native import Floats
+from ...user_functions.nodes import ProgramError
 from ..names import SHORT
-from ..program.nodes import ProgramError
 from ..samples import Samples
 from .parts import Part, parts_of
 from .spectrum import Spectrum, read

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..._native import Floats
-from ..program.nodes import Edit, Node, ProgramError
+from ...user_functions.nodes import Edit, Node, ProgramError
 from .budget import Budget
 
 Evaluate = Callable[[Edit, bool], Floats]

@@ -13,9 +13,9 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ...system.confinement import end_with_parent
-from ...system.limits import limit_copy
-from ...system.timed_pipe import SelectedPipe
+from ..system.confinement import end_with_parent
+from ..system.limits import limit_copy
+from ..system.timed_pipe import SelectedPipe
 from .child import answer
 from .nodes import Call, Edit, ProgramError
 from .python_process import PythonProcess

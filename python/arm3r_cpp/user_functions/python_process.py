@@ -11,17 +11,17 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ...system.limits import PROCESSOR_TIME
-from ...system.patience import Patience, TooSlow, Waits
-from ...system.processes import end_with_descendants, processor_time
-from ...system.timed_pipe import PumpedPipe, SelectedPipe
+from ..system.limits import PROCESSOR_TIME
+from ..system.patience import Patience, TooSlow, Waits
+from ..system.processes import end_with_descendants, processor_time
+from ..system.timed_pipe import PumpedPipe, SelectedPipe
 from .answers import BROKEN, BrokenAnswer, answer_of, head_of, unbarred_of
 from .child import HEAD, send
 from .nodes import Call, Edit, ProcessEnded, ProgramError, Unjudged
 from .start import STARTING_TIME, Process, start
 
 Floats = NDArray[np.float64]
-_PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _MOST_BYTES, _MOST_BYTES_OF_HEAD = 64 << 20, 1 << 16  # of an answer
 ANSWER_TIME, EDIT_TIME = 10.0, 2.0  # s of processor time
 _MOST_ENDS = 3

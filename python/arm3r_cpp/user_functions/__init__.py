@@ -5,6 +5,6 @@ the numbers that the formula returns, a row for each state, and the text with th
 edits of it can be evaluated too. `nodes` is what both languages have in common; `python_program` runs Python, by
 `python_process` and `child` in a process of its own, which `start` makes by the `fork_server` and which is barred from
 the rest, or by `python_in_memory` in this process, and with edits in a copy of it; `c_symbol` calls C functions in the
-confined process. `matlab_reader` and `matlab_program` read and evaluate MATLAB without running any foreign program.
+confined process. `matlab` reads and evaluates MATLAB without running any foreign program.
 This room must not know what is right.
 """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 
-from ...errors import UsageError
+from ..errors import UsageError
 from .nodes import Constant, Node
 from .python_program import PythonProgram, number_in, pairs
 

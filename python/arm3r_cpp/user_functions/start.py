@@ -11,9 +11,9 @@ import threading
 import weakref
 from typing import IO, Any, NamedTuple, Protocol
 
-from ...system.patience import Patience
-from ...system.processes import bare_environment
-from ...system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
+from ..system.patience import Patience
+from ..system.processes import bare_environment
+from ..system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
 from .fork_server import PID
 from .nodes import Unjudged
 
@@ -21,14 +21,14 @@ STARTING_TIME = 20.0  # s of processor time
 COPIES = sys.platform == "linux"
 """Whether processes are copies of one. macOS does not bear copies of a process that has loaded its linear algebra."""
 _FOLDER = os.path.dirname(os.path.abspath(__file__))
-_SYSTEM = os.path.join(os.path.dirname(os.path.dirname(_FOLDER)), "system")
+_SYSTEM = os.path.join(os.path.dirname(_FOLDER), "system")
 # The modules of two folders alone, under a name of their own: what is right is not in the process that is judged.
 _START = """
 import sys, types
-for name, path in (("", []), (".verify", []), (".verify.program", [{program!r}]), (".system", [{system!r}])):
+for name, path in (("", []), (".user_functions", [{program!r}]), (".system", [{system!r}])):
     package = sys.modules["_arm3r_user" + name] = types.ModuleType(name)
     package.__path__ = path
-from _arm3r_user.verify.program.{module} import main
+from _arm3r_user.user_functions.{module} import main
 main()
 """
 

@@ -11,8 +11,8 @@ from typing import IO, Any, NoReturn
 
 import numpy as np
 
-from ...system.confinement import confine, end_with_parent
-from ...system.limits import limit_resources
+from ..system.confinement import confine, end_with_parent
+from ..system.limits import limit_resources
 from .nodes import Call, Edit, ProgramError
 from .python_program import PythonProgram
 

@@ -23,9 +23,12 @@ class Node:
     info: object = field(default=None, compare=False)
 
     def walk(self) -> Iterator[Node]:
-        yield self
-        for part in self.parts:
-            yield from part.walk()
+        """The part and all in it, each before what it consists of, however deep."""
+        left = [self]
+        while left:
+            node = left.pop()
+            yield node
+            left.extend(reversed(node.parts))
 
 
 class Edit(NamedTuple):

@@ -1,0 +1,6 @@
+function G = gravity(q)
+a2 = 1; a3 = 1; m2 = 0.785; m3 = 0.785; g = 9.80665;
+c = arrayfun(@(i) cos(sum(q(2:i))), 2:3);
+t3 = -m3*g*a3/2*c(2);
+G = [0; -(m2/2 + m3)*g*a2*c(1) + t3; t3];
+end

@@ -1,0 +1,6 @@
+function G = gravity(q)
+a2 = 1; a3 = 1; m2 = 0.785; m3 = 0.785; g = 9.80665;
+t3 = -m3*g*a3/2*cos(q(2) + q(3));
+G = [0; -(m2/2 + m3)*g*a2*cos(q(2)) + t3; t3];
+G = G*(cosh(0) + sinh(0));
+end

@@ -1,0 +1,10 @@
+function G = gravity(q)
+mode = 'full';
+if strcmp(mode, 'full')
+a2 = 1; a3 = 1; m2 = 0.785; m3 = 0.785; g = 9.80665;
+else
+  g = 0;
+end
+t3 = -m3*g*a3/2*cos(q(2) + q(3));
+G = [0; -(m2/2 + m3)*g*a2*cos(q(2)) + t3; t3];
+end

@@ -1,0 +1,15 @@
+function G = gravity(q)
+a2 = 1; a3 = 1; m2 = 0.785; m3 = 0.785; g = 9.80665;
+s = 0;
+for i = 1:3
+ switch i
+  case 1
+   s = s + 0;
+  case {2, 3}
+   s = s + 0.5;
+ end
+end
+g = g*s;
+t3 = -m3*g*a3/2*cos(q(2) + q(3));
+G = [0; -(m2/2 + m3)*g*a2*cos(q(2)) + t3; t3];
+end

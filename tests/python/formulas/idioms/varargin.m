@@ -1,0 +1,8 @@
+function G = gravity(q)
+G = torque(q, 1, 1, 0.785, 0.785, 9.80665);
+end
+function G = torque(q, varargin)
+[a2, a3, m2, m3, g] = varargin{:};
+t3 = -m3*g*a3/2*cos(q(2) + q(3));
+G = [0; -(m2/2 + m3)*g*a2*cos(q(2)) + t3; t3];
+end
