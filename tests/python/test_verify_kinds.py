@@ -194,3 +194,20 @@ def test_a_verdict_is_a_table_in_a_notebook(written: Any) -> None:
     verdict = verify.gravity(lambda q: ARM.gravity_torque(q) + np.array([q[0], 0, 0]))
     page = verdict._repr_html_()
     assert page.count("<td") == 3 and page.count("#f8d0d0") == 1 and "<u>q1</u>" in page
+
+
+def test_functions_of_time_are_the_joints_of_sympy() -> None:
+    """As sympy.physics.mechanics makes them, with their derivatives."""
+    sympy = pytest.importorskip("sympy")
+    from sympy.physics.mechanics import dynamicsymbols
+
+    q1, q2, q3 = dynamicsymbols("q1 q2 q3")
+    a2, a3, time = sympy.symbols("a2 a3 t")
+    reach = a2 * sympy.cos(q2) + a3 * sympy.cos(q2 + q3)
+    tip = sympy.Matrix([sympy.cos(q1) * reach, sympy.sin(q1) * reach, -a2 * sympy.sin(q2) - a3 * sympy.sin(q2 + q3)])
+    assert verify.jacobian(tip.jacobian([q1, q2, q3])).ok
+    assert verify.kinematics(tip).ok
+    weight = sympy.Matrix([0, -1.5 * sympy.cos(q2) - sympy.cos(q2 + q3) / 2, -sympy.cos(q2 + q3) / 2]) * 0.785 * 9.80665
+    assert verify.gravity(weight).ok and verify.gravity(weight.subs(q3, 2 * q3)).findings
+    wrong = verify.coriolis(sympy.Matrix([0, q1.diff(time), q2.diff(time, 1) * 0]))
+    assert not wrong.ok and "qd1" in str(wrong)

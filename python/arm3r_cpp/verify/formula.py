@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 import textwrap
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
@@ -187,9 +188,24 @@ def _from_sympy(expression: Any) -> Formula:
     """Expressions become a function of their symbols; the order of the arguments follows their names."""
     import sympy
 
+    expression = _without_time(expression)
     symbols = sorted(expression.free_symbols, key=lambda symbol: symbol.name)
     function = sympy.lambdify(symbols, expression, "numpy")
     return Formula("expression", "expression", CallableProgram(function), [symbol.name for symbol in symbols])
+
+
+def _without_time(expression: Any) -> Any:
+    """Functions of time, as `dynamicsymbols` makes them, become symbols: q1(t) is q1, its derivatives qd1 and qdd1."""
+    import sympy
+    from sympy.core.function import AppliedUndef
+
+    rates = {
+        rate: sympy.Symbol(re.sub(r"(?=\d*$)", "d" * rate.derivative_count, rate.expr.func.__name__, count=1))
+        for rate in expression.atoms(sympy.Derivative)
+        if isinstance(rate.expr, AppliedUndef)
+    }
+    expression = expression.xreplace(rates)
+    return expression.xreplace({one: sympy.Symbol(one.func.__name__) for one in expression.atoms(AppliedUndef)})
 
 
 def from_file(path: str | os.PathLike[str], *, sandbox: Any = None, is_alone: bool = False) -> Formula:
