@@ -33,7 +33,7 @@ HOSTILE = {
     "tip_torque.py": ("def torque(q, f):\n    while True:\n        pass\n", "takes too long"),
     "mass_matrix.m": ("function M = f(q)\nM = f(q);\n", "cannot be evaluated in line 2"),
     "first_joint.py": ("x = " + "(" * 5000 + ")" * 5000 + "\n", ""),
-    "half_link.m": ("\udcff\udcfe", "cannot be read"),
+    "half_link.m": ("\udcff\udcfe", "is not read"),
     "reversed_arguments.py": (
         "def gravity(q1, q2, q3):\n    raise ValueError('=cmd\\n\\x1b[31m' + str(id(object())))\n",
         "raises ValueError in line 2",
