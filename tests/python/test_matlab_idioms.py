@@ -175,8 +175,8 @@ def test_functions_in_files_beside_it_are_called(tmp_path: Path) -> None:
     (tmp_path / "numbers.m").write_text("function [a2, a3] = numbers()\nx = [1 2];\na2 = x(3);\na3 = 1;\nend\n")
     (finding,) = arm3r.verify.gravity(path).findings
     assert "index 3 is out of range" in finding.cause and "(in numbers.m:3)" in finding.cause and finding.line == 2
-    (tmp_path / "numbers.m").write_text("function [a2, a3] = numbers()\nglobal a2 a3\nend\n")
-    with pytest.raises(arm3r.UnjudgedError, match=r"numbers\.m:2:1: `global` is not read"):
+    (tmp_path / "numbers.m").write_text("function [a2, a3] = numbers()\nsyms a2 a3\nend\n")
+    with pytest.raises(arm3r.UnjudgedError, match=r"numbers\.m:2:1: `syms` is not read"):
         arm3r.verify.gravity(path)
 
 

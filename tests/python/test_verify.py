@@ -447,7 +447,7 @@ def test_the_command_prints_json(written: Any, command: Any) -> None:
     ("name", "text", "words"),
     [
         ("missing.m", None, "cannot be read"),
-        ("x.m", "function J = jac(q)\nglobal a2\n", "x.m:2:1: `global` is not read"),
+        ("x.m", "function J = jac(q)\nsyms a2\n", "x.m:2:1: `syms` is not read"),
         ("x.m", "function J = jac(q)\nwhile q\n", "x.m:2:1: `while` is not closed by `end`: line 3 has 'the end of"),
         ("x.py", "def jacobian(q:\n", "x.py:1: this is not Python"),
         ("x.py", "def f(q):\n    return q\n", "--kind"),
@@ -580,7 +580,7 @@ def test_a_misspelt_name_is_a_mistake(written: Any) -> None:
 
 UNREAD = {
     "x = erf(q(1));": "'erf' is not known",
-    "J = J*l9;": "'l9' has no value in this file: write l9 = NUMBER; above, or make it an argument",
+    "J = J*l9;": "'l9' has no value in this file: write l9 = NUMBER; above, make it an argument, or say it by",
     "[a, b] = max(q);": "several outputs come from functions of this file and its folder",
     "J(J > 0) = [1; 2];": "more is not read",
     "P = zeros(3, 3, 2); J = P(:, :);": "is read by three indices",

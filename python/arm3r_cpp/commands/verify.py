@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import sys
 from collections.abc import Sequence
@@ -76,8 +77,40 @@ def parser() -> argparse.ArgumentParser:
         metavar="FILE=OURS,...",
         help="of a log: what its columns are, such as joint_a=q1,jac_12=J12; units in brackets: angle=q1[deg]",
     )
+    add(
+        "--args",
+        type=names,
+        default=[],
+        metavar="NAME,...",
+        help="what the function's arguments are, in their order: q, qd, q1, a2, or names that --set gives values",
+    )
+    add(
+        "--set",
+        action="append",
+        default=[],
+        type=setting,
+        metavar="NAME=VALUE",
+        help="of an argument or a name that the file does not define: a number or [1, 2]; p.l1 is a field of p",
+    )
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser
+
+
+def names(text: str) -> list[str]:
+    """ "q,qd,p"."""
+    found = [one.strip() for one in text.split(",")]
+    if not all(one.isidentifier() for one in found):
+        raise argparse.ArgumentTypeError(f"names with commas between them are needed, got {text!r}")
+    return found
+
+
+def setting(text: str) -> tuple[str, Any]:
+    """ "p.l1=0.5", "m=[1, 2]"."""
+    name, _, value = text.partition("=")
+    try:
+        return name.strip(), json.loads(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"NAME=NUMBER or NAME=[NUMBER, ...] is needed, got {text!r}") from None
 
 
 def pairs(text: str) -> list[tuple[str, str]]:
@@ -125,6 +158,8 @@ def verify(options: argparse.Namespace, codes: list[int]) -> None:
                 progress=bar.draw,
                 noise=options.noise,
                 columns=dict(options.columns),
+                args=options.args,
+                given=dict(options.set),
             )
         except Arm3rError as error:
             say(PROGRAM, error)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..system.confinement import confine, end_with_parent
 from ..system.limits import limit_resources
-from .nodes import Call, Edit, ProgramError
+from .nodes import Call, Edit, Given, ProgramError
 from .python_program import PythonProgram
 
 HEAD = struct.Struct("<II")  # lengths of the JSON and of the numbers that follow
@@ -62,9 +62,11 @@ def say_what_is_barred(event: str, _: object) -> None:
 def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> None:
     head, body = receive(requests)
     table = np.frombuffer(body).reshape(head["rows"], -1) if head["rows"] else np.zeros((0, 1))
-    call = Call(
-        tuple(one if isinstance(one, int) else tuple(one) for one in head["slots"]), head["lifted"], head["output"]
+    slots = tuple(
+        Given(one["given"]) if isinstance(one, dict) else one if isinstance(one, int) else tuple(one)
+        for one in head["slots"]
     )
+    call = Call(slots, head["lifted"], head["output"], head["outside"])
     try:
         values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
         send(answers, {"shape": values.shape, "seconds": time.process_time()}, np.ascontiguousarray(values).tobytes())

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 
 @dataclass
@@ -59,15 +60,24 @@ def line_and_column(text: str, offset: int) -> tuple[int, int]:
     return line, offset - (text.rfind("\n", 0, offset) + 1) + 1
 
 
+@dataclass(frozen=True)
+class Given:
+    """An argument that is the same in each evaluation: a number, nested lists of numbers, or a structure of these."""
+
+    value: Any
+
+
 class Call(NamedTuple):
     """How a program is given its inputs: from the columns of a table with a row for each evaluation."""
 
-    slots: tuple[tuple[int, ...] | int, ...]
-    """For each argument the column of a scalar, or the columns of a vector."""
+    slots: tuple[tuple[int, ...] | int | Given, ...]
+    """For each argument the column of a scalar, the columns of a vector, or its value."""
     lifted: dict[str, int]
     """Constants of the program whose values are taken from columns."""
     output: int | None = None
     """Which of the results that it returns, from 0; None: all that it returns is one."""
+    outside: Mapping[str, Any] = MappingProxyType({})
+    """Values of names that the program uses and does not define, as those of `Given`."""
 
 
 class ProgramError(Exception):

@@ -17,7 +17,7 @@ from ..system.processes import end_with_descendants, processor_time
 from ..system.timed_pipe import PumpedPipe, SelectedPipe
 from .answers import BROKEN, BrokenAnswer, answer_of, head_of, unbarred_of
 from .child import HEAD, send
-from .nodes import Call, Edit, ProcessEnded, ProgramError, Unjudged
+from .nodes import Call, Edit, Given, ProcessEnded, ProgramError, Unjudged
 from .start import STARTING_TIME, Process, start
 
 Floats = NDArray[np.float64]
@@ -62,7 +62,8 @@ class PythonProcess:
             self._start()
         head = {
             "rows": len(table),
-            "slots": call.slots,
+            "slots": [{"given": one.value} if isinstance(one, Given) else one for one in call.slots],
+            "outside": dict(call.outside),
             "lifted": call.lifted,
             "output": call.output,
             "edit": edit and list(edit),

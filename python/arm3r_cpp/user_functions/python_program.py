@@ -8,12 +8,13 @@ import contextlib
 import io
 import traceback
 import warnings
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .nodes import Call, Edit, ProgramError
+from .nodes import Call, Edit, Given, ProgramError
 
 Floats = NDArray[np.float64]
 LIFTED = "__arm3r_lifted__"
@@ -51,6 +52,22 @@ def pairs(statement: ast.AST) -> list[tuple[ast.Name, ast.expr]]:
                 (one, other) for one, other in zip(target.elts, value.elts, strict=True) if isinstance(one, ast.Name)
             ]
     return found
+
+
+class Structure(dict[str, Any]):
+    """Values by names, as p["l1"] and as p.l1."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in self:
+            raise AttributeError(f"there is no field {name}")
+        return self[name]
+
+
+def value_of(given: Any, make_array: bool = True) -> Any:
+    """What a function gets for a number, nested lists of numbers, or a structure of these."""
+    if isinstance(given, dict):
+        return Structure({name: value_of(inner, make_array) for name, inner in given.items()})
+    return np.array(given, np.float64) if isinstance(given, list) and make_array else given
 
 
 class PythonProgram:
@@ -129,12 +146,15 @@ class PythonProgram:
         lines = "\n" * self.text.count("\n", 0, start)
         return compile(lines + segment, self.file, "exec", dont_inherit=True)
 
-    def _run_body(self, values: dict[str, float], replaced: tuple[int, Any] | None = None) -> None:
+    def _run_body(
+        self, values: dict[str, float], outside: Mapping[str, Any], replaced: tuple[int, Any] | None = None
+    ) -> None:
         if self.given is None:
             self.namespace = {"__name__": "__formula__", "__file__": self.file, "__builtins__": builtins}
         else:
             self.namespace = dict(self.given)
             self.namespace.update({name: value for name, value in values.items() if name in self.given})
+        self.namespace.update({name: value_of(value, self.make_array) for name, value in outside.items()})
         self.namespace[LIFTED] = values
         for number, (_, _, code) in enumerate(self._body):
             exec(replaced[1] if replaced and replaced[0] == number else code, self.namespace)
@@ -155,7 +175,7 @@ class PythonProgram:
                 for row in table:
                     values = {name: float(row[column]) for name, column in call.lifted.items()}
                     if values != before:
-                        self._run_body(values, replaced)
+                        self._run_body(values, call.outside, replaced)
                         before = values
                     function = self.namespace.get(self.function)
                     if not callable(function):
@@ -175,6 +195,8 @@ class PythonProgram:
         return np.array(results)
 
     def _argument(self, slot: Any, row: Floats) -> Any:
+        if isinstance(slot, Given):
+            return value_of(slot.value, self.make_array)
         if isinstance(slot, int):
             return float(row[slot])
         values = row[list(slot)]

@@ -18,11 +18,11 @@ from .._native import Floats
 from ..errors import UnjudgedError, UsageError
 from ..user_functions.c_symbol import text_of
 from ..user_functions.matlab.program import MatlabProgram
-from ..user_functions.nodes import Call, Constant, Edit, Node, ProgramError, numbers_of
+from ..user_functions.nodes import Call, Constant, Edit, Given, Node, ProgramError, numbers_of
 from ..user_functions.python_in_memory import PythonInMemory
 from ..user_functions.python_nodes import PythonText
 from ..user_functions.python_process import PythonProcess
-from ..user_functions.python_program import _numbers
+from ..user_functions.python_program import _numbers, value_of
 from .kinds import KINDS, Kind
 from .names import quantities_of, slot_of, slots_of
 from .samples import Samples, columns
@@ -43,7 +43,14 @@ class CallableProgram:
     def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats:
         results = []
         for row in table:
-            values = [float(row[slot]) if isinstance(slot, int) else row[list(slot)] for slot in call.slots]
+            values = [
+                value_of(slot.value)
+                if isinstance(slot, Given)
+                else float(row[slot])
+                if isinstance(slot, int)
+                else row[list(slot)]
+                for slot in call.slots
+            ]
             try:
                 results.append(_numbers(self.function(*values), call.output))
             except ProgramError:
@@ -75,6 +82,13 @@ class Formula:
     """Numbers outside of the text that a function in memory uses."""
     output: int | None = None
     """Which of several results is meant, from 0; None: there is one."""
+    given: dict[str, Any] = field(default_factory=dict)
+    """Values of arguments and of names outside of the text, as the user says them; a structure holds others."""
+
+    @property
+    def outside(self) -> dict[str, Any]:
+        """Values of names that are no arguments."""
+        return {name: value for name, value in self.given.items() if name not in self.arguments}
 
     def edited(self, edit: Edit) -> Formula | None:
         """The formula of a file with an edit of its text."""
@@ -87,7 +101,7 @@ class Formula:
         edited = from_text(
             edit.apply(self.text), self.file, self.name, sandbox=sandbox, folder=getattr(program, "folder", None)
         )
-        return replace(edited, output=self.output)
+        return replace(edited, output=self.output, given=self.given, arguments=self.arguments, optional=self.optional)
 
     @property
     def order(self) -> list[int] | None:
@@ -108,12 +122,14 @@ class Formula:
         """The parameters of the arm among arguments and constants, by the names of the formula."""
         known = quantities_of([name for name in self.arguments if not _is_state(name, kind)])
         names = [*self._given(kind, known), *self.constants, *self.global_numbers]
+        names = [name for name in names if name not in self.given]
         return quantities_of([name for name in names if not _is_state(name, kind) and name != "self"])
 
     def _given(self, kind: Kind, parameters: Iterable[str]) -> list[str]:
         """The arguments up to the first one that may be left out and is neither a state nor a parameter."""
         left_out = [
-            name in self.optional and name not in parameters and not _is_state(name, kind) for name in self.arguments
+            name in self.optional and name not in (*parameters, *self.given) and not _is_state(name, kind)
+            for name in self.arguments
         ]
         return self.arguments[: left_out.index(True)] if any(left_out) else self.arguments
 
@@ -126,14 +142,16 @@ class Formula:
             return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {}, self.output)
         slots: list[Any] = []
         arguments = self._given(kind, parameters)
-        for vector, joint in slots_of(arguments, kind, joints, parameters):
-            if joint == -1:
+        for vector, joint in slots_of(arguments, kind, joints, [*parameters, *self.given]):
+            if vector in self.given:
+                slots.append(Given(self.given[vector]))
+            elif joint == -1:
                 slots.append(first + known.index(parameters[vector]))
             else:
                 place = columns(vector, joints)
                 slots.append(place if joint is None else place[joint])
         lifted = {name: first + known.index(quantity) for name, quantity in parameters.items() if name not in arguments}
-        return Call(tuple(slots), lifted, self.output)
+        return Call(tuple(slots), lifted, self.output, self.outside)
 
     def values(self, call: Call, samples: Samples, known: list[str], edit: Edit | None = None) -> Floats:
         """What the formula returns, a row for each arm and state, outputs in their order."""
@@ -197,15 +215,15 @@ def _from_sympy(expression: Any) -> Formula:
 def _without_time(expression: Any) -> Any:
     """Functions of time, as `dynamicsymbols` makes them, become symbols: q1(t) is q1, its derivatives qd1 and qdd1."""
     import sympy
-    from sympy.core.function import AppliedUndef
 
+    of_time = sympy.core.function.AppliedUndef
     rates = {
         rate: sympy.Symbol(re.sub(r"(?=\d*$)", "d" * rate.derivative_count, rate.expr.func.__name__, count=1))
         for rate in expression.atoms(sympy.Derivative)
-        if isinstance(rate.expr, AppliedUndef)
+        if isinstance(rate.expr, of_time)
     }
     expression = expression.xreplace(rates)
-    return expression.xreplace({one: sympy.Symbol(one.func.__name__) for one in expression.atoms(AppliedUndef)})
+    return expression.xreplace({one: sympy.Symbol(one.func.__name__) for one in expression.atoms(of_time)})
 
 
 def from_file(path: str | os.PathLike[str], *, sandbox: Any = None, is_alone: bool = False) -> Formula:

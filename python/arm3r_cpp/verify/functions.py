@@ -15,6 +15,7 @@ from .judge import Progress, judge
 from .kinds import KINDS
 from .log.judge import judge_log
 from .log.reading import ENDINGS, read_log
+from .told import told
 from .truth.chain_files import Chain
 from .truth.three_r import ThreeR
 from .verdict import Finding, Verdict
@@ -55,6 +56,8 @@ def formula_verdict(
     progress: Progress | None = None,
     noise: float | None = None,
     columns: Mapping[str, str] | None = None,
+    args: Sequence[str] = (),
+    given: Mapping[str, Any] | None = None,
 ) -> Verdict:
     """Judge a formula: a function, sympy expressions, or the path of a file.
 
@@ -62,6 +65,8 @@ def formula_verdict(
         kind: one of `KINDS`; None: found from names.
         arm: a `Scenario`, an `Arm`, a `Chain`, or the path of a scenario; None: the lecture's arm.
         columns: of a log: what a column is, such as q1 or J12, by its name in the file; units in brackets: q1 [deg].
+        args: what the function's arguments are, in their order: q, qd, q1, a2, or names that `given` has.
+        given: values of arguments and of names that the text does not define: a number, a list; "p.l1" is a field.
         noise: of a log's numbers, relative to an entry's scale; None: what a fit shows.
         seen_by: tests, of which the verdict says whether they would have seen each mistake.
 
@@ -70,7 +75,7 @@ def formula_verdict(
         UnjudgedError: what it holds is not read, or it is too slow.
     """
     try:
-        return _verdict_of(f, kind, truth_of(arm), seen_by, progress, noise, columns)
+        return _verdict_of(f, kind, truth_of(arm), seen_by, progress, noise, columns, args, given or {})
     except RecursionError:
         raise UnjudgedError(f"{f}: cannot be judged: it is nested too deeply to be read") from None
 
@@ -83,6 +88,8 @@ def _verdict_of(
     progress: Progress | None,
     noise: float | None,
     columns: Mapping[str, str] | None,
+    args: Sequence[str],
+    given: Mapping[str, Any],
 ) -> Verdict:
     if isinstance(f, (str, os.PathLike)) and os.fspath(f).endswith(ENDINGS):
         log = read_log(f, columns)
@@ -94,45 +101,46 @@ def _verdict_of(
         if isinstance(f, (str, os.PathLike))
         else from_callable(f)
     )
+    formula = told(formula, args, given)
     chosen = KINDS[kind] if kind else kind_of(formula, truth.joints)
     return judge(formula, chosen, truth, seen_by=seen_by, progress=progress)
 
 
-def jacobian(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def jacobian(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge the Jacobian of the tip: f(q) -> (3, n), or (6, n) with linear rows first."""
-    return formula_verdict(f, "jacobian", arm, seen_by=seen_by)
+    return formula_verdict(f, "jacobian", arm, seen_by=seen_by, **told)
 
 
-def gravity(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def gravity(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge the torque that holds the arm: f(q) -> (n,), N m."""
-    return formula_verdict(f, "gravity", arm, seen_by=seen_by)
+    return formula_verdict(f, "gravity", arm, seen_by=seen_by, **told)
 
 
-def kinematics(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def kinematics(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge the tip's position: f(q) -> (3,), or (4, 4), m."""
-    return formula_verdict(f, "kinematics", arm, seen_by=seen_by)
+    return formula_verdict(f, "kinematics", arm, seen_by=seen_by, **told)
 
 
-def mass(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def mass(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge the mass matrix: f(q) -> (n, n), kg m^2."""
-    return formula_verdict(f, "mass", arm, seen_by=seen_by)
+    return formula_verdict(f, "mass", arm, seen_by=seen_by, **told)
 
 
-def coriolis(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def coriolis(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge the Coriolis and centrifugal torque: f(q, qd) -> (n,), or a matrix (n, n) by its product with qd, N m."""
-    return formula_verdict(f, "coriolis", arm, seen_by=seen_by)
+    return formula_verdict(f, "coriolis", arm, seen_by=seen_by, **told)
 
 
-def inverse(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def inverse(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge the inverse dynamics: f(q, qd, qdd) -> (n,), N m."""
-    return formula_verdict(f, "inverse", arm, seen_by=seen_by)
+    return formula_verdict(f, "inverse", arm, seen_by=seen_by, **told)
 
 
-def forward(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def forward(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge the forward dynamics: f(q, qd, tau) -> (n,), rad/s^2."""
-    return formula_verdict(f, "forward", arm, seen_by=seen_by)
+    return formula_verdict(f, "forward", arm, seen_by=seen_by, **told)
 
 
-def controller(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = ()) -> Verdict:
+def controller(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
     """Judge a control law: f(q, qd) -> (n,), N m, against that of the scenario `arm`."""
-    return formula_verdict(f, "controller", arm, seen_by=seen_by)
+    return formula_verdict(f, "controller", arm, seen_by=seen_by, **told)

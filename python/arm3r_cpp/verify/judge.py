@@ -297,6 +297,8 @@ def _found(case: Comparison) -> list[str]:
         found.append(f"outputs in the order {', '.join(formula.outputs)}")
     if formula.output is not None:
         found.append(f"its output {formula.output + 1}")
+    if formula.given:
+        found.append(f"with {', '.join(sorted(formula.given))} as it is given")
     if case.degrees:
         found.append("angles in degrees")
     if case.convention:

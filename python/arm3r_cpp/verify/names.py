@@ -119,15 +119,19 @@ def slots_of(
             found.append(slot)
         else:
             found.append((name, -1) if name in parameters else None)
-    needed = len(kind.inputs)
-    if None in found and len(arguments) == needed:
-        return [(vector, None) for vector in kind.inputs]  # q, qd, ... in the order of the field
-    if None in found and len(arguments) == needed * joints:
-        return [(vector, joint) for vector in kind.inputs for joint in range(joints)]
+    in_order: list[list[tuple[str, int | None]]] = [
+        [(vector, None) for vector in kind.inputs],  # q, qd, ... in the order of the field
+        [(vector, joint) for vector in kind.inputs for joint in range(joints)],
+    ]
+    for meant in in_order:
+        fits = len(meant) == len(found) and all(known in (None, one) for known, one in zip(found, meant, strict=True))
+        if None in found and fits:
+            return meant
     unknown = [name for name, slot in zip(arguments, found, strict=True) if slot is None]
     if unknown:
         raise UsageError(
             f"the argument {unknown[0]} is not understood; a {kind.words} takes {', '.join(kind.inputs)}, or "
-            f"{', '.join(f'{kind.inputs[0]}{n + 1}' for n in range(joints))}, and parameters such as a2, m3, g"
+            f"{', '.join(f'{kind.inputs[0]}{n + 1}' for n in range(joints))}, and parameters such as a2, m3, g; "
+            f"--args {','.join(kind.inputs)},... says what the arguments are, --set {unknown[0]}=VALUE gives it a value"
         )
     return [slot for slot in found if slot is not None]

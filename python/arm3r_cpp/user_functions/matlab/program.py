@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import Arm3rError, UsageError
-from ..nodes import Call, Constant, Edit, Node, ProgramError, Unjudged, Unread, line_and_column
+from ..nodes import Call, Constant, Edit, Given, Node, ProgramError, Unjudged, Unread, line_and_column
 from .functions import COMPARISONS, FUNCTIONS, OPERATORS, result_of
 from .indexing import Places, part_of, with_element, with_part, without
 from .reader import read, read_expression
-from .syntax import Assignment, For, Function, If, Leave, Persistent, Statement, Switch, Target, Try, While
+from .syntax import Assignment, For, Function, If, Kept, Leave, Statement, Switch, Target, Try, While
 from .values import Floats, Pages, Structures, as_numbers, check_size, integer, number, stacked, text_in
 
 _MAX_CALLS, _MAX_DEPTH = 2000, 30
@@ -47,11 +47,11 @@ class Handle(NamedTuple):
 
 
 class Workspace(dict[str, Any]):
-    """The variables of a call; those of `kept` stay until the next call of its function."""
+    """The variables of a call; those of `kept` stay until the next call: of a function, or "" of all."""
 
     def __init__(self, function: Function) -> None:
         self.function = function
-        self.kept: set[str] = set()
+        self.kept: dict[str, str] = {}
 
 
 class MatlabProgram:
@@ -74,6 +74,7 @@ class MatlabProgram:
         self._calls = self._steps = self._depth = 0
         self._known: dict[str, Floats] = {}
         self._kept: dict[tuple[str, str], Any] = {}
+        self._outside: dict[str, Any] = {}
         self._beside: dict[str, MatlabProgram | None] = {}
         self._replaced: tuple[Statement, Node] | None = None
 
@@ -145,8 +146,16 @@ class MatlabProgram:
         """
         self._begin()
         self._kept = {}
+        self._outside = {}
+        for name, value in call.outside.items():
+            _put_variable(self._outside, name, _value_given(value))
         self._known = {name: table[:, column].reshape(-1, 1, 1) for name, column in call.lifted.items()}
-        inputs = [table[:, [slot] if isinstance(slot, int) else list(slot)][:, :, None] for slot in call.slots]
+        inputs = [
+            _value_given(slot.value)
+            if isinstance(slot, Given)
+            else table[:, [slot] if isinstance(slot, int) else list(slot)][:, :, None]
+            for slot in call.slots
+        ]
         with np.errstate(all="ignore"):
             outputs = self._run(self.functions[self.function], inputs)
         if not all(isinstance(one, np.ndarray) for one in outputs):
@@ -243,7 +252,7 @@ class MatlabProgram:
             if left.word != "return":
                 raise ProgramError(f"`{left.word}` stands outside of a loop", function.line) from None
         finally:
-            self._kept.update({(function.name, name): variables.get(name, _NOTHING) for name in variables.kept})
+            self._kept.update({(of, name): variables[name] for name, of in variables.kept.items() if name in variables})
         for name in function.outputs:
             if name not in variables and not _fields(variables, name):
                 raise ProgramError(f"the output {name} is not assigned", function.line)
@@ -297,8 +306,8 @@ class MatlabProgram:
                     self._try(body, otherwise, variables)
                 case Leave(word=word):
                     raise _Left(word)
-                case Persistent(names=names):
-                    self._keep(names, variables)
+                case Kept():
+                    self._keep(statement, variables)
 
     def _turn(self, statement: Statement, variables: dict[str, Any]) -> bool:
         """Whether the loop goes on after its body."""
@@ -325,12 +334,14 @@ class MatlabProgram:
         except ProgramError:
             self._execute(otherwise, variables)
 
-    def _keep(self, names: list[str], variables: dict[str, Any]) -> None:
+    def _keep(self, statement: Kept, variables: dict[str, Any]) -> None:
         if not isinstance(variables, Workspace):
             raise Unread("persistent variables of an anonymous function are not read")
-        for name in names:
-            variables.kept.add(name)
-            variables[name] = self._kept.get((variables.function.name, name), _NOTHING)
+        for name in statement.names:
+            of = "" if statement.is_global else variables.function.name
+            variables.kept[name] = of
+            if (of, name) in self._kept or not statement.is_global:
+                variables[name] = self._kept.get((of, name), _NOTHING)
 
     def _value_of(self, statement: Statement) -> Node:
         if self._replaced and self._replaced[0] is statement:
@@ -626,11 +637,13 @@ class MatlabProgram:
             return getattr(self, f"_{name}")(node, variables)
         if node.info is None and (name in self.functions or name in FUNCTIONS):
             return self._result(name, self._values(node.parts, variables), variables)
-        fields = _fields(variables, name)
+        if name in self._outside:
+            return self._step(self._outside[name], node, variables)
+        fields = _fields(variables, name) or _fields(self._outside, name)
         if fields:
             return self._step(fields, node, variables) if node.kind == "call" else fields
         if node.kind == "name" and self._function_beside(name) is None:
-            remedy = f"write {name} = NUMBER; above, or make it an argument"
+            remedy = f"write {name} = NUMBER; above, make it an argument, or say it by --set {name}=NUMBER"
             raise Unread(f"{name!r} has no value in this file: {remedy}", name=name)
         return self._result(name, self._values(node.parts, variables), variables)
 
@@ -775,6 +788,14 @@ class MatlabProgram:
 
 
 _OF_PROGRAM = ("exist", "feval", "cellfun", "arrayfun")
+
+
+def _value_given(given: Any) -> Any:
+    """A number, a column for a list, or a structure."""
+    if isinstance(given, dict):
+        return {name: _value_given(inner) for name, inner in given.items()}
+    array = np.asarray(given, np.float64)
+    return array.reshape(1, -1, 1) if array.ndim < 2 else array[None]
 
 
 def _is_true(array: Any) -> bool:

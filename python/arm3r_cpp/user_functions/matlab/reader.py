@@ -15,22 +15,21 @@ from contextlib import contextmanager
 
 from ...errors import UnjudgedError
 from ..nodes import Node, line_and_column
-from .syntax import Assignment, For, Function, If, Leave, Persistent, Statement, Switch, Target, Try, While
+from .syntax import Assignment, For, Function, If, Kept, Leave, Statement, Switch, Target, Try, While
 from .tokens import KNOWN, Token, tokens_of
 
 _REMEDIES = {
-    "global": "write the numbers into the file, or make them arguments",
     "classdef": "write the method as a function of the joint angles",
     "load": "write the numbers into the file",
     "syms": "turn the expressions into a function by matlabFunction(..., 'File', 'name')",
 }
 _REFUSED = frozenset(
-    ["parfor", "spmd", "global", "classdef", "import", "load", "save", "eval", "evalin", "assignin", "syms", "sym"]
+    ["parfor", "spmd", "classdef", "import", "load", "save", "eval", "evalin", "assignin", "syms", "sym"]
 )
 _LEAVES = frozenset(["break", "continue", "return"])
 _BLOCKS = frozenset(["for", "while", "if", "switch", "try"])
 _STOPS = frozenset(["end", "else", "elseif", "case", "otherwise", "catch", "function"])
-_KEYWORDS = _REFUSED | _LEAVES | _BLOCKS | _STOPS | {"persistent"}
+_KEYWORDS = _REFUSED | _LEAVES | _BLOCKS | _STOPS | {"persistent", "global"}
 # What they print, draw or set changes no value.
 _SHOWING = "disp display fprintf printf plot plot3 figure close hold grid axis legend title view drawnow fflush"
 _SETTING = "clc clear clearvars format more warning tic toc pause beep rng addpath rmpath pkg mlock"
@@ -240,12 +239,12 @@ class _Reader:
         if start.kind == "name" and start.text in _LEAVES:
             self.next()
             return Leave(start.start, start.end, word=start.text)
-        if start.text == "persistent":
+        if start.text in ("persistent", "global"):
             self.next()
             names = []
             while not self.is_at_end_of_statement():
                 names.append(self.name())
-            return Persistent(start.start, self.tokens[self.at - 1].end, names=names)
+            return Kept(start.start, self.tokens[self.at - 1].end, names=names, is_global=start.text == "global")
         return self.assignment()
 
     def assignment(self) -> Statement:

@@ -76,10 +76,11 @@ class Leave(Statement):
 
 
 @dataclass(eq=False)
-class Persistent(Statement):
-    """Names whose values stay from call to call."""
+class Kept(Statement):
+    """Names whose values stay from call to call: `persistent` ones of a function, `global` ones of all."""
 
     names: list[str] = field(default_factory=list)
+    is_global: bool = False
 
 
 @dataclass
