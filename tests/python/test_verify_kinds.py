@@ -211,3 +211,31 @@ def test_functions_of_time_are_the_joints_of_sympy() -> None:
     assert verify.gravity(weight).ok and verify.gravity(weight.subs(q3, 2 * q3)).findings
     wrong = verify.coriolis(sympy.Matrix([0, q1.diff(time), q2.diff(time, 1) * 0]))
     assert not wrong.ok and "qd1" in str(wrong)
+
+
+DIFFERENCES = """import numpy as np
+
+
+def mass(q):
+    I, X, m = 0.785 * (1 + 1e-4) / 12, 0.785 * 2e-4 / 12, 0.785
+    c2, c23, s2, s23 = np.cos(q[1]), np.cos(q[1] + q[2]), np.sin(q[1]), np.sin(q[1] + q[2])
+    m11 = m*(c2**2/4 + (c2 + c23/2)**2) + I*(c2**2 + c23**2) + X*(s2**2 + s23**2)
+    m23 = m/4 + I + m*np.cos(q[2])/2
+    return np.array([[m11, 0, 0], [0, 2*m23 - m/4 - I + m*1.25 - 0*I + I - m/4, m23], [0, m23, m/4 + I]])
+
+
+def coriolis(q, qd):
+    e = STEP
+    d = np.stack([(mass(q + e*np.eye(3)[k]) - mass(q))/e for k in range(3)], 2)
+    return np.einsum('ijk,j,k->i', d, qd, qd) - FACTOR*np.einsum('jki,j,k->i', d, qd, qd)
+"""
+
+
+@pytest.mark.parametrize("step", ["5e-6", "1e-4", "3e-4"])
+def test_the_step_of_differences_is_no_mistake(step: str, tmp_path: Any) -> None:
+    path = tmp_path / "coriolis.py"
+    path.write_text(DIFFERENCES.replace("STEP", step).replace("FACTOR", "0.5"))
+    verdict = verify.coriolis(path)
+    assert verdict.ok and f"of differences with the step {step} in line 13" in str(verdict), str(verdict)
+    path.write_text(DIFFERENCES.replace("STEP", step).replace("FACTOR", "0.5004"))
+    assert not verify.coriolis(path).ok

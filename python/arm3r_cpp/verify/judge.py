@@ -36,6 +36,7 @@ _MOST_PARTS = 3000
 MENDING_EDITS = 3000  # of a formula that fails
 _MOST_ALTERNATIVES = 3
 REPAIR_EDITS = 10_000  # of all that a formula may mean
+_LARGEST_OF_A_STEP, _LARGEST_STEP, _FINER = 1e-3, 0.1, 1000.0  # of the scale; rad; steps of differences are tried
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
 
@@ -212,7 +213,7 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     wrong = case.wrong(values, case.second, due)
     own_due, own_values = _own(case)
     verdict.residual = _largest(own_values - own_due)
-    wrong = _only_structured(verdict, values, due, wrong)
+    wrong = _only_structured(verdict, case, values, due, wrong)
     if case.convention != case.truth.convention:
         verdict.warnings.append(f"the convention {case.convention} is not that of the arm, {case.truth.convention}")
     if case.kind.name == "coriolis" and not wrong:
@@ -306,15 +307,42 @@ def _found(case: Comparison) -> list[str]:
     return found + case.truth.assumed(case.kind, case.rows, case.known)
 
 
-def _only_structured(verdict: Verdict, values: Floats, due: Floats, wrong: frozenset[int]) -> frozenset[int]:
-    """Without the entries whose differences are rounding: these are right, with a warning."""
+def _only_structured(
+    verdict: Verdict, case: Comparison, values: Floats, due: Floats, wrong: frozenset[int]
+) -> frozenset[int]:
+    """Without the entries that are right but for rounding, or for the step of differences: these get a warning."""
     flat, right = values.reshape(len(values), -1), due.reshape(len(due), -1)
     relative = np.abs(flat - right).max(axis=0) / scales(right)
     numerical = {place for place in wrong if relative[place] < _NUMERICAL}
+    step = ""
+    if wrong and numerical != wrong and relative.max() < _LARGEST_OF_A_STEP:
+        step = _step_of_differences(case, flat, right)
+        numerical = set(wrong) if step else numerical
     if wrong and numerical == wrong:
-        verdict.warnings.append(f"differences of up to {relative.max():.1e} of the entries' scale: these are numerical")
+        verdict.warnings.append(
+            f"differences of up to {relative.max():.1e} of the entries' scale: these are numerical{step}"
+        )
         return frozenset()
     return wrong
+
+
+def _step_of_differences(case: Comparison, values: Floats, due: Floats) -> str:
+    """The small number of the text that the errors shrink with, as the step of finite differences; "" where none is."""
+    text = case.formula.text or ""
+    for node in (inner for top in case.formula.nodes for inner in top.walk() if inner.kind == "number"):
+        number = float(node.word.lower().replace("d", "e"))
+        if not 0 < number < _LARGEST_STEP:
+            continue
+        try:
+            finer = case.values(case.second, Edit(node.start, node.end, f"{number / _FINER!r}"))
+        except (ProgramError, ValueError):
+            continue
+        finer = finer.reshape(len(finer), -1)
+        scale, error, left = scales(due), np.abs(values - due).max(axis=0), np.abs(finer - due).max(axis=0)
+        if (left <= error / (0.7 * _FINER) + _NUMERICAL * scale).all() and (left < _NUMERICAL * scale).any():
+            line, _ = line_and_column(text, node.start)
+            return f", of differences with the step {node.word} in line {line}"
+    return ""
 
 
 # ---- why ------------------------------------------------------------------------------------------------------------
