@@ -17,6 +17,7 @@ from .._files import regular
 from .._native import Floats
 from ..errors import UnjudgedError, UsageError
 from ..user_functions.c_symbol import text_of
+from ..user_functions.documents import MATLAB, code_of
 from ..user_functions.matlab.program import MatlabProgram
 from ..user_functions.nodes import Call, Constant, Edit, Given, Node, ProgramError, numbers_of
 from ..user_functions.python_in_memory import PythonInMemory
@@ -227,7 +228,7 @@ def _without_time(expression: Any) -> Any:
 
 
 def from_file(path: str | os.PathLike[str], *, sandbox: Any = None, is_alone: bool = False) -> Formula:
-    """A function of a file: `file.py:function`, `file.m`, `file.m:function`.
+    """A function of a file: `file.py:function`, `file.m`, `file.m:function`, in notebooks and live scripts, too.
 
     Args:
         is_alone: whether a MATLAB function may not call those in files beside it.
@@ -245,20 +246,13 @@ def from_file(path: str | os.PathLike[str], *, sandbox: Any = None, is_alone: bo
             f"and name the function, {library}:{function or 'FUNCTION'}"
         )
     try:
-        text = decoded(regular(Path(file)).read_bytes())
+        text = code_of(file, regular(Path(file)).read_bytes())
+    except UsageError:
+        raise
     except (OSError, ValueError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
     folder = None if is_alone else os.path.dirname(os.path.abspath(file))
     return from_text(text, file, function, sandbox=sandbox, folder=folder)
-
-
-def decoded(content: bytes) -> str:
-    """The text of a file in UTF-8 or, as older editors write it, in Latin-1; its lines end with a line feed."""
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("latin-1")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _from_library(file: str, function: str | None) -> Formula:
@@ -280,7 +274,7 @@ def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None
     Raises:
         UsageError: the text cannot be read, or has no such function.
     """
-    if file.endswith(".m"):
+    if file.endswith(MATLAB):
         program = MatlabProgram(text, file, function, folder)
         outputs = program.outputs if len(program.outputs) > 1 else []
         return Formula(
