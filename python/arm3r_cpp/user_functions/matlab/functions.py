@@ -152,8 +152,8 @@ def _along(name: str, parts: list[Floats]) -> Floats:
     axis = integer(given[0]) if given else 2 if array.shape[1] == 1 else 1
     if axis not in (1, 2):
         raise Unread(f"{name} of a matrix goes along dimension 1 or 2")
-    if name == "cumsum":
-        return array.cumsum(axis=axis)
+    if name in ("cumsum", "cumprod"):
+        return np.asarray((np.cumsum if name == "cumsum" else np.cumprod)(array, axis=axis))
     return np.asarray(_ALONG[name](array, axis=axis, keepdims=True))
 
 
@@ -328,6 +328,24 @@ def _is_kind(name: str, parts: list[Any]) -> Floats:
     return number(isinstance(value, kinds[name]) and not (name == "iscell" and isinstance(value, Structures)))
 
 
+def _in_letters(name: str, parts: list[Any]) -> str:
+    text = text_in(*counted(name, parts, 1))
+    return text.lower() if name == "lower" else text.upper()
+
+
+def _is_of_class(name: str, parts: list[Any]) -> Floats:
+    value, kind = counted(name, parts, 2)
+    return number(isinstance(value, np.ndarray) and isinstance(kind, str) and kind in ("double", "float", "numeric"))
+
+
+def _elements(name: str, parts: list[Floats]) -> list[Floats]:
+    """num2cell of a vector."""
+    (array,) = counted(name, parts, 1)
+    if 1 not in array.shape[1:]:
+        raise Unread(f"{name} of a matrix is not read; a cell array has one row")
+    return [one[:, None, None] for one in array.reshape(len(array), -1).T]
+
+
 def _failed(name: str, parts: list[Any]) -> Any:
     """error(...), and assert(...) of what does not hold."""
     if name == "assert" and np.all(parts[0] != 0):
@@ -370,6 +388,8 @@ _BESIDE_NUMBERS: dict[str, Callable[[str, list[Any]], Any]] = {
     "cell2mat": _matrix_of_cells,
     "norm": _norm,
     **dict.fromkeys((*_VALUES, "eye"), _filled),
+    **dict.fromkeys(("lower", "upper"), _in_letters),
+    "isa": _is_of_class,
     "sum": _along,
 }
 """They take texts, cell arrays or structures, too."""
@@ -397,6 +417,9 @@ _OTHERS: dict[str, Callable[[str, list[Any]], Any]] = {
     "horzcat": lambda name, parts: stacked(parts, 2),
     "vertcat": lambda name, parts: stacked(parts, 1),
     "cell": _cell,
+    "num2cell": _elements,
+    "cumprod": _along,
+    "diff": lambda name, parts: np.diff(counted(name, parts, 1)[0], axis=2 if parts[0].shape[1] == 1 else 1),
     "pi": lambda name, parts: number(np.pi),
     "eps": lambda name, parts: number(np.finfo(float).eps),
     "true": lambda name, parts: _filled("ones", parts) != 0,

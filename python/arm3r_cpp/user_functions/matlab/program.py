@@ -157,7 +157,7 @@ class MatlabProgram:
             for slot in call.slots
         ]
         with np.errstate(all="ignore"):
-            outputs = self._run(self.functions[self.function], inputs)
+            outputs = self._run(self.functions[self.function], inputs, asked=len(self.outputs))
         if not all(isinstance(one, np.ndarray) for one in outputs):
             raise ProgramError("returns a cell array, a text or a function instead of numbers")
         outputs = [np.broadcast_to(as_numbers(one), (len(table), *one.shape[1:])) for one in outputs]
@@ -180,7 +180,7 @@ class MatlabProgram:
         with np.errstate(all="ignore"):
             return [
                 as_numbers(one)[0] if isinstance(one, np.ndarray) else one
-                for one in self._run(self.functions[self.function], inputs)
+                for one in self._run(self.functions[self.function], inputs, asked=len(self.outputs))
             ]
 
     def _begin(self) -> None:
@@ -202,19 +202,25 @@ class MatlabProgram:
 
     # ---- functions ---------------------------------------------------------------------------------------------------
 
-    def _run(self, function: Function, inputs: list[Any], outer: dict[str, Any] | None = None) -> list[Any]:
+    def _run(
+        self, function: Function, inputs: list[Any], outer: dict[str, Any] | None = None, asked: int = 1
+    ) -> list[Any]:
+        """
+        Args:
+            outer: the variables of the place of the call, which a nested function uses.
+            asked: how many outputs are needed.
+        """
         with self._called(function.line):
             if function.is_nested and isinstance(outer, Workspace):
-                return self._run_nested(function, inputs, outer)
-            workspace = Workspace(function)
-            return self._outputs(function, inputs, workspace)
+                return self._run_nested(function, inputs, outer, asked)
+            return self._outputs(function, inputs, Workspace(function), asked)
 
-    def _run_nested(self, function: Function, inputs: list[Any], outer: Workspace) -> list[Any]:
+    def _run_nested(self, function: Function, inputs: list[Any], outer: Workspace, asked: int) -> list[Any]:
         """In the variables of the function around it, but for its own arguments and outputs."""
-        own = {*function.inputs, *function.outputs, "nargin"}
+        own = {*function.inputs, *function.outputs, "nargin", "nargout"}
         before = {name: outer.pop(name) for name in own if name in outer}
         try:
-            return self._outputs(function, inputs, outer)
+            return self._outputs(function, inputs, outer, asked)
         finally:
             for name in own:
                 outer.pop(name, None)
@@ -234,13 +240,13 @@ class MatlabProgram:
         finally:
             self._depth -= 1
 
-    def _outputs(self, function: Function, inputs: list[Any], variables: Workspace) -> list[Any]:
+    def _outputs(self, function: Function, inputs: list[Any], variables: Workspace, asked: int) -> list[Any]:
         names = function.inputs
         if names and names[-1] == "varargin":
             inputs, names = [*inputs[: len(names) - 1], list(inputs[len(names) - 1 :])], names[: len(inputs) + 1]
         if len(inputs) > len(names):
             raise ProgramError(f"{function.name} takes {len(names)} arguments, got {len(inputs)}", function.line)
-        variables["nargin"] = number(len(inputs))
+        variables["nargin"], variables["nargout"] = number(len(inputs)), number(asked)
         for name, given in zip(names, inputs, strict=False):
             _put_variable(variables, name, given)
         for name, default in function.defaults.items():
@@ -253,10 +259,11 @@ class MatlabProgram:
                 raise ProgramError(f"`{left.word}` stands outside of a loop", function.line) from None
         finally:
             self._kept.update({(of, name): variables[name] for name, of in variables.kept.items() if name in variables})
-        for name in function.outputs:
+        outputs = function.outputs[:asked]
+        for name in outputs:
             if name not in variables and not _fields(variables, name):
                 raise ProgramError(f"the output {name} is not assigned", function.line)
-        return [variables[name] if name in variables else _fields(variables, name) for name in function.outputs]
+        return [variables[name] if name in variables else _fields(variables, name) for name in outputs]
 
     def _function_beside(self, name: str) -> MatlabProgram | None:
         """The function of this name in a file of its own."""
@@ -272,12 +279,12 @@ class MatlabProgram:
                     raise Unread(f"needs a file that is not read: {error}") from None
         return self._beside[name]
 
-    def _call_beside(self, other: MatlabProgram, inputs: list[Any]) -> list[Any]:
+    def _call_beside(self, other: MatlabProgram, inputs: list[Any], asked: int = 1) -> list[Any]:
         with self._called(), np.errstate(all="ignore"):
             if other._depth:
                 raise Unread(f"{Path(other.file).name} calls itself through other files, which is not read")
             try:
-                return other._run(other.functions[other.function], inputs)
+                return other._run(other.functions[other.function], inputs, asked=asked)
             except ProgramError as error:
                 place = f"{Path(other.file).name}{f':{error.line}' if error.line else ''}"
                 raise type(error)(f"{error} (in {place})") from None
@@ -502,10 +509,11 @@ class MatlabProgram:
             return self._values([node], variables)
         if node.word not in variables:
             if node.word in self.functions:
-                return self._run(self.functions[node.word], self._values(node.parts, variables), variables)
+                inputs = self._values(node.parts, variables)
+                return self._run(self.functions[node.word], inputs, variables, len(targets))
             other = None if node.word in FUNCTIONS else self._function_beside(node.word)
             if other:
-                return self._call_beside(other, self._values(node.parts, variables))
+                return self._call_beside(other, self._values(node.parts, variables), len(targets))
             if node.word == "deal":
                 values = self._values(node.parts, variables)
                 return values * len(targets) if len(values) == 1 else values

@@ -206,7 +206,16 @@ class _Reader:
         return found
 
     def is_command(self) -> bool:
-        return self.peek().text in _COMMANDS and self.peek(1).text != "="
+        """Whether a statement prints, draws or sets; a variable may have the same name."""
+        if self.peek().text not in _COMMANDS:
+            return False
+        ahead, depth = 1, 0
+        while self.peek(ahead).text == "(" or depth:
+            depth += (self.peek(ahead).text == "(") - (self.peek(ahead).text == ")")
+            ahead += 1
+            if self.peek(ahead).kind == "end":
+                break
+        return self.peek(ahead).text != "="
 
     def skip_command(self) -> None:
         """`hold on`, `disp(x)`: up to the end of the statement outside of brackets."""

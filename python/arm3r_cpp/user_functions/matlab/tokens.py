@@ -20,6 +20,7 @@ _OF_OCTAVE = {"!=": "~=", "!": "~"} | dict.fromkeys(
     ("endfunction", "endif", "endfor", "endwhile", "endswitch", "end_try_catch"), "end"
 )
 _BLOCK_COMMENT = re.compile(r"^[ \t]*[%#]\{[ \t]*$.*?^[ \t]*[%#]\}[ \t]*$", re.M | re.S)
+_BEFORE_TEXT = ("case", "if", "elseif", "while", "switch")
 _CLOSING = (")", "]", "}", "'", ".'")
 KNOWN = (
     "known are assignments, arithmetic, matrices, text, cell arrays, structures, handles, `for`, `while`, `if`, "
@@ -64,6 +65,6 @@ def tokens_of(text: str, file: str) -> list[Token]:
 
 def _is_transpose(before: list[Token], spaced: bool) -> bool:
     """Whether an apostrophe belongs to the value that stands right before it."""
-    return (
-        bool(before) and not spaced and (before[-1].kind in ("name", "number", "field") or before[-1].text in _CLOSING)
-    )
+    if not before or spaced or before[-1].text in _BEFORE_TEXT:
+        return False
+    return before[-1].kind in ("name", "number", "field") or before[-1].text in _CLOSING
