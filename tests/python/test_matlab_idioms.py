@@ -18,6 +18,7 @@ IDIOMS = {path.stem: path.read_text() for path in sorted((Path(__file__).parent 
 PLAIN = IDIOMS["no_ends"].partition("function y")[0]
 
 
+@pytest.mark.sample(15)
 @pytest.mark.parametrize("name", IDIOMS)
 def test_a_right_program_is_right(name: str, tmp_path: Path) -> None:
     text = IDIOMS[name]
@@ -139,6 +140,7 @@ def test_what_is_not_read_is_said(expression: str) -> None:
         values(expression, before=A)
 
 
+@pytest.mark.sample(30)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_wrong_argument_is_one_line(name: str) -> None:
     """No argument makes the reader itself fail."""

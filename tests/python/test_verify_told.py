@@ -42,6 +42,7 @@ RIGHT = {
 }
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", RIGHT)
 def test_values_that_are_said_are_used(name: str, tmp_path: Path, command: Any) -> None:
     file, text, values = RIGHT[name]
