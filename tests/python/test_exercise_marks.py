@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import time
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -246,7 +247,7 @@ def test_a_judge_that_does_not_end_is_ended(tmp_path: Path, monkeypatch: Any) ->
     monkeypatch.setattr("arm3r_cpp.system.patience.WAITING_TIME", 2.0)
     file, before = tmp_path / "observer.py", descendants(os.getpid())
     file.write_text("import time\ntime.sleep(1e6)\ndef momentum_rate(a, b, c, d):\n    return a\n")
-    with worker.Worker() as judge:
+    with closing(worker.Worker()) as judge:
         mark = judge.mark(TASKS["observer"], file)
     assert mark.word in WORDS and mark.reason == "takes too long"
     left = [pid for pid in descendants(os.getpid()) if pid not in before]

@@ -91,6 +91,8 @@ NUMBERS = {
     "isequal([1 2], [1 3])": 0,
     "isfield(struct('a', 1), 'a')": 1,
     "nargin": 1,
+    "vecnorm([3 4; 6 8], 2, 2)": [[5], [10]],
+    "vecnorm([3 4; 4 3])": [[5, 5]],
     "A(end, end)": 10,
     "A(8)": 6,
     "1:3 == [1 5 3]": [[1, 0, 1]],
@@ -124,6 +126,30 @@ def test_a_function_has_the_value_of_its_formula(expression: str) -> None:
     assert np.allclose(values(expression, before=A), NUMBERS[expression], rtol=1e-14, atol=1e-15)
 
 
+STRANGE = {  # what is said of a line; each once hung the reader, failed in it, or gave another number
+    "while true\nend": "takes more than 20000 steps",
+    "for i = 1:20000, for k = 1:20000, end, end": "takes more than 20000 steps",
+    "y = exist(x);": "a text is needed here",
+    "y = exist({1});": "a text is needed here",
+    "y = cellfun(@sin, 'abc');": "is read of matrices and cell arrays",
+    "y = cellfun(@(c) {c}, {1, 2});": "gives other than single numbers",
+    "y = cellfun(@sin, {1}, 'ErrorHandler', 'z');": "is read of matrices and cell arrays",
+    "s.a = 1; y = arrayfun(@(k) k, s);": "is read of matrices and cell arrays",
+    "y = feval();": "feval takes a function",
+    "y = eps(100);": "eps is read with 0 arguments, got 1",
+    "y = round(2.345, 2);": "round is read with 1 argument, got 2",
+    "y = vecnorm([3 4], 1);": "vecnorm is read with the order 2",
+    "y = norm([1 2], 'x');": "norm with 'x' is not read",
+    "c = {5}; c{1}.m = 3;": "is set of what is no single structure",
+}
+
+
+@pytest.mark.parametrize("line", STRANGE)
+def test_a_strange_line_is_one_sentence(line: str) -> None:
+    with pytest.raises(ProgramError, match=re.escape(STRANGE[line])):
+        values("0", before=line)
+
+
 UNREAD = {
     "erf(x)": "'erf' is not known",
     "sum(A, 3)": "goes along dimension 1 or 2",
@@ -151,6 +177,21 @@ def test_a_wrong_argument_is_one_line(name: str) -> None:
             assert "\n" not in str(error)
 
 
+def test_over_a_hundred_functions_are_known() -> None:
+    assert len(set(FUNCTIONS)) > 100
+
+
+@pytest.mark.parametrize("is_right", [True, pytest.param(False, marks=pytest.mark.gate)])
+def test_five_thousand_terms_in_a_line_are_read(is_right: bool, tmp_path: Path) -> None:
+    terms = "+".join(["q(1)*0*sin(q(2))*cos(q(3))"] * 5000)
+    path = tmp_path / "gravity.m"
+    path.write_text(
+        PLAIN.replace("G = [0; ", f"G = [0; {terms}").replace("cos(q(2))", "cos(q(2))" if is_right else "sin(q(2))")
+    )
+    verdict = arm3r.verify.gravity(path)
+    assert verdict.ok == is_right and [one.entry for one in verdict.findings] == ([] if is_right else [[2]])
+
+
 def test_persistent_values_stay_from_call_to_call() -> None:
     text = "function y = f(x)\npersistent n\nif isempty(n), n = 0; end\nn = n + x;\ny = n;\nend\n"
     program = MatlabProgram(text, "f.m")
@@ -174,6 +215,15 @@ def test_functions_in_files_beside_it_are_called(tmp_path: Path) -> None:
     path.write_text(re.sub("a2 = .*", "[a2, a3, m2, m3, g] = numbers();", PLAIN, count=1))
     verdict = arm3r.verify.gravity(path)
     assert verdict.ok, str(verdict)
+    (tmp_path / "other.m").write_text(
+        "function n = other()\npersistent k\nif isempty(k), k = 0; end\nk = k + 1;\nn = k;\nend\n"
+    )
+    path.write_text(PLAIN.replace("cos(q(2))", "cos(q(2))*other()"))
+    assert arm3r.verify.gravity(path).ok  # what is persistent begins anew with each evaluation, beside it, too
+    (tmp_path / "other.m").write_text("function n = other()\nn = gravity([0; 0; 0]);\nend\n")
+    with pytest.raises(arm3r.UnjudgedError, match=r"gravity\.m calls itself through other files"):
+        arm3r.verify.gravity(path)
+    path.write_text(re.sub("a2 = .*", "[a2, a3, m2, m3, g] = numbers();", PLAIN, count=1))
     (tmp_path / "numbers.m").write_text("function [a2, a3] = numbers()\nx = [1 2];\na2 = x(3);\na3 = 1;\nend\n")
     (finding,) = arm3r.verify.gravity(path).findings
     assert "index 3 is out of range" in finding.cause and "(in numbers.m:3)" in finding.cause and finding.line == 2

@@ -239,3 +239,12 @@ def test_the_step_of_differences_is_no_mistake(step: str, tmp_path: Any) -> None
     assert verdict.ok and f"of differences with the step {step} in line 13" in str(verdict), str(verdict)
     path.write_text(DIFFERENCES.replace("STEP", step).replace("FACTOR", "0.5004"))
     assert not verify.coriolis(path).ok
+
+
+@pytest.mark.parametrize("small", ["+ 0.0005*cos(q[0])", "+ 1e-5*q[1]", "*(1 + 0.0003)", "+ 0.002*tanh(q[0]/0.01)"])
+def test_a_small_mistake_is_no_step_of_differences(small: str, tmp_path: Any) -> None:
+    """Its term shrinks with its number, too; where the number is tiny it is gone, and no rounding is left."""
+    path = tmp_path / "gravity.py"
+    text = "from math import cos, tanh\n\n\ndef gravity(q):\n    t3 = -0.785*9.80665/2*cos(q[1] + q[2])\n"
+    path.write_text(f"{text}    return [0, -1.5*0.785*9.80665*cos(q[1]) + t3, t3{small}]\n")
+    assert not verify.gravity(path).ok

@@ -82,6 +82,7 @@ def test_what_is_not_understood_is_asked_for(arguments: str, tmp_path: Path, com
 
 
 REFUSED = {
+    ("--set", "gg=1"): "--set gg: no argument and no name of the text is called so",
     ("--set", "g"): "NAME=NUMBER or NAME=[NUMBER, ...] is needed, got 'g'",
     ("--set", "g=much"): "is needed, got 'g=much'",
     ("--set", "g=true"): "a number or a list of numbers is needed",
@@ -94,6 +95,15 @@ REFUSED = {
     ("--args", "q,qd"): "--args names 2 arguments; gravity takes 1: q",
     ("--args", "q d"): "names with commas between them are needed",
 }
+
+
+def test_what_is_said_of_a_log_or_of_no_text_is_refused(tmp_path: Path, command: Any) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text("q1,q2,q3,g1,g2,g3\n" + "1,2,3,4,5,6\n" * 9)
+    done = command(log, "--set", "g=9.81")
+    assert done.returncode == 2 and "--columns is for a log" in done.stderr
+    with pytest.raises(arm3r.UsageError, match="no argument and no name of the text"):
+        arm3r.verify.gravity(max, args=["q"], given={"g": 9.81})
 
 
 @pytest.mark.parametrize("options", REFUSED, ids=" ".join)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +84,7 @@ def check(options: argparse.Namespace, marks: list[str]) -> None:
         raise UsageError(f"{options.file}: is no file that can be read", code="usage")
     if options.file.suffix == ".py":
         say_what_is_not_barred()
-    with Worker() as worker:
+    with closing(Worker()) as worker:
         mark = worker.mark(task, options.file, with_reading=options.hint == 3)
     print_line(answer(task, str(options.file), mark, options.hint))
     marks.append(mark.word)

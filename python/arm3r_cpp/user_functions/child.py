@@ -28,10 +28,15 @@ def main() -> None:
 def own_streams() -> tuple[IO[bytes], IO[bytes]]:
     """Standard input and output for requests and answers alone: what else reads or writes there finds nothing."""
     streams = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    leave_standard_streams()
+    return streams
+
+
+def leave_standard_streams() -> None:
+    """What is read there ends at once, and what is written there is gone."""
     null = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2):
         os.dup2(null, descriptor)
-    return streams
 
 
 def serve(requests: IO[bytes], answers: IO[bytes]) -> NoReturn:

@@ -17,7 +17,7 @@ _BROKEN_ARCHIVE = (
     *(KeyError, ValueError, NotImplementedError, RuntimeError, ElementTree.ParseError),
 )
 _MOST_BYTES = 20 << 20  # of a live script's text
-MATLAB, PYTHON = (".m", ".mlx"), (".py", ".ipynb")
+MATLAB = (".m", ".mlx")
 
 
 def code_of(file: str, content: bytes) -> str:

@@ -13,7 +13,7 @@ import struct
 import sys
 from typing import NoReturn
 
-from .child import serve
+from .child import leave_standard_streams, serve
 
 PID = struct.Struct("<i")
 """The first bytes that a copy answers: its number."""
@@ -25,9 +25,7 @@ def main() -> None:
     if sys.platform == "win32":
         return
     asked = socket.socket(fileno=os.dup(0))
-    null = os.open(os.devnull, os.O_RDWR)
-    for descriptor in (0, 1, 2):
-        os.dup2(null, descriptor)
+    leave_standard_streams()
     gc.freeze()  # what is loaded here is not for a copy to end
     while True:
         message, pipes, _, _ = socket.recv_fds(asked, _LONGEST, 2)

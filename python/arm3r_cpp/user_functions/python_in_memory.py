@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..system.confinement import end_with_parent
 from ..system.limits import limit_copy
 from ..system.timed_pipe import SelectedPipe
-from .child import answer
+from .child import answer, leave_standard_streams
 from .nodes import Call, Edit, ProgramError
 from .python_process import PythonProcess
 from .python_program import PythonProgram
@@ -89,9 +89,7 @@ def _serve(program: PythonProgram, requests: int, answers: int) -> NoReturn:
             os.setsid()
         gc.freeze()  # what the parent made is not for the copy to end
         faulthandler.disable()
-        null = os.open(os.devnull, os.O_RDWR)
-        for descriptor in (0, 1, 2):
-            os.dup2(null, descriptor)
+        leave_standard_streams()
         end_with_parent()
         limit_copy()
         streams = os.fdopen(requests, "rb"), os.fdopen(answers, "wb")

@@ -2,9 +2,9 @@
 
 In comes a formula of an arm (a function, a file, a log), and the arm it is meant for. Out comes a `Verdict`. `judge`
 goes the way from one to the other: `formula` evaluates what the user wrote, by the room `user_functions`, and what is
-`told` of its names; `truth` knows what is right,
-`comparison` holds both beside each other, `explain` finds causes, `coverage` says what other tests would have seen, and
-`words` says it all in sentences. Nothing here steps physics, and files of the user run in a process of their own.
+`told` of its names; `truth` knows what is right, `comparison` holds both beside each other, `explain` finds causes,
+`coverage` says what other tests would have seen, and `words` says it all in sentences. Nothing here steps physics, and
+files of the user run in a process of their own.
 
 >>> verdict = arm3r.verify.jacobian(my_jacobian)
 >>> verdict.ok, verdict.findings

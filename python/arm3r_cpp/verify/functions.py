@@ -92,6 +92,8 @@ def _verdict_of(
     given: Mapping[str, Any],
 ) -> Verdict:
     if isinstance(f, (str, os.PathLike)) and os.fspath(f).endswith(ENDINGS):
+        if args or given:
+            raise UsageError(f"{f}: --args and --set say what a function needs; --columns is for a log")
         log = read_log(f, columns)
         return judge_log(log, KINDS[kind] if kind else log.kind(), truth, noise=noise)
     formula = (

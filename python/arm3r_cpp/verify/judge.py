@@ -36,7 +36,8 @@ _MOST_PARTS = 3000
 MENDING_EDITS = 3000  # of a formula that fails
 _MOST_ALTERNATIVES = 3
 REPAIR_EDITS = 10_000  # of all that a formula may mean
-_LARGEST_OF_A_STEP, _LARGEST_STEP, _FINER = 1e-3, 0.1, 1000.0  # of the scale; rad; steps of differences are tried
+_LARGEST_OF_A_STEP, _LARGEST_STEP = 1e-3, 0.1  # of the scale; rad: what is taken for the step of differences
+_FINER, _FINEST, _ROUNDING = 1000.0, 1e-13, 1e-5  # a step that is smaller, and one that leaves rounding of the scale
 _NUMERICAL = 1e-6  # of the scale: a difference below it that has no structure comes from rounding
 
 
@@ -327,19 +328,27 @@ def _only_structured(
 
 
 def _step_of_differences(case: Comparison, values: Floats, due: Floats) -> str:
-    """The small number of the text that the errors shrink with, as the step of finite differences; "" where none is."""
-    text = case.formula.text or ""
+    """The small number of the text that is the step of finite differences, in words; "" where none is.
+
+    The errors shrink with it, and where it is tiny rounding is all that is left: a small term would just be gone.
+    """
+    text, scale = case.formula.text or "", scales(due)
+
+    def off(node: Node, step: float) -> Floats:
+        other = case.values(case.second, Edit(node.start, node.end, repr(step)))
+        return np.asarray(np.abs(other.reshape(len(other), -1) - due).max(axis=0))
+
     for node in (inner for top in case.formula.nodes for inner in top.walk() if inner.kind == "number"):
         number = float(node.word.lower().replace("d", "e"))
         if not 0 < number < _LARGEST_STEP:
             continue
         try:
-            finer = case.values(case.second, Edit(node.start, node.end, f"{number / _FINER!r}"))
+            left, rounded = off(node, number / _FINER), off(node, _FINEST)
         except (ProgramError, ValueError):
             continue
-        finer = finer.reshape(len(finer), -1)
-        scale, error, left = scales(due), np.abs(values - due).max(axis=0), np.abs(finer - due).max(axis=0)
-        if (left <= error / (0.7 * _FINER) + _NUMERICAL * scale).all() and (left < _NUMERICAL * scale).any():
+        error = np.abs(values - due).max(axis=0)
+        shrinks = (left <= error / (0.7 * _FINER) + _NUMERICAL * scale).all() and (left < _NUMERICAL * scale).any()
+        if shrinks and (rounded > _ROUNDING * scale).any():
             line, _ = line_and_column(text, node.start)
             return f", of differences with the step {node.word} in line {line}"
     return ""

@@ -32,6 +32,8 @@ def told(formula: Formula, arguments: Sequence[str], values: Mapping[str, Any]) 
     for name, value in values.items():
         _put(given, name, _number(name, value))
     for name in given:
+        if name not in formula.arguments and not re.search(rf"\b{name}\b", formula.text or ""):
+            raise UsageError(f"{formula.file}: --set {name}: no argument and no name of the text is called so")
         if name in formula.constants:
             line = (formula.text or "").count("\n", 0, formula.constants[name].start) + 1
             raise UsageError(

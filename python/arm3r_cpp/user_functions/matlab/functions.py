@@ -73,7 +73,7 @@ ELEMENTWISE: dict[str, Callable[..., Any]] = {
     "times": np.multiply,
     "rdivide": np.divide,
     "uminus": np.negative,
-    **dict.fromkeys(("real", "conj", "double", "single", "full", "simplify", "vpa", "expand"), np.positive),
+    **dict.fromkeys(("real", "conj", "double", "full"), np.positive),
     "imag": np.zeros_like,
     "not": np.logical_not,
     "and": np.logical_and,
@@ -105,9 +105,16 @@ COMPARISONS: dict[str, Callable[..., Any]] = {
 
 
 def counted(name: str, parts: list[Any], count: int) -> list[Any]:
-    """The arguments of a function that takes so many."""
-    if len(parts) != count:
-        raise ProgramError(f"{name} takes {count} argument{'s' if count > 1 else ''}, got {len(parts)}")
+    """The arguments of a function of which so many are read; MATLAB may take more.
+
+    Raises:
+        ProgramError: there are fewer.
+        Unread: there are more.
+    """
+    if len(parts) > count:
+        raise Unread(f"{name} is read with {count} argument{'' if count == 1 else 's'}, got {len(parts)}")
+    if len(parts) < count:
+        raise ProgramError(f"{name} takes {count} argument{'' if count == 1 else 's'}, got {len(parts)}")
     return parts
 
 
@@ -165,7 +172,6 @@ _ALONG: dict[str, Callable[..., Any]] = {
     "min": np.min,
     "any": np.any,
     "all": np.all,
-    "vecnorm": np.linalg.norm,
 }
 
 
@@ -247,15 +253,26 @@ def _largest(name: str, parts: list[Floats]) -> Floats:
     return _along(name, parts)
 
 
+_ORDERS = {"fro": 2.0, "inf": np.inf, "Inf": np.inf}
+
+
+def _lengths(name: str, parts: list[Floats]) -> Floats:
+    """vecnorm(A), vecnorm(A, 2, dimension)."""
+    array, *given = parts
+    if len(given) > 2 or (given and integer(given[0]) != 2):
+        raise Unread(f"{name} is read with the order 2")
+    return np.sqrt(_along("sum", [array**2, *given[1:]]))
+
+
 def _norm(name: str, parts: list[Any]) -> Floats:
     """norm(v), norm(v, p), norm(A, 'fro'): a matrix without an order has its largest singular value."""
     array, *order = parts
-    kind = 2.0
-    if order and isinstance(order[0], np.ndarray):
-        kind = float(order[0].ravel()[0])
-    elif order and order[0] in ("inf", "Inf"):
-        kind = np.inf
-    if 1 in array.shape[1:] or (order and isinstance(order[0], str) and order[0] == "fro"):
+    given = order[0] if order else number(2)
+    is_of_elements = isinstance(given, str) and given == "fro"
+    if isinstance(given, str) and given not in _ORDERS:
+        raise Unread(f"norm with {given!r} is not read")
+    kind = _ORDERS[given] if isinstance(given, str) else float(given.ravel()[0])
+    if 1 in array.shape[1:] or is_of_elements:
         return np.linalg.norm(array.reshape(len(array), -1), kind, axis=1)[:, None, None]
     return np.asarray(np.linalg.norm(array, kind, axis=(1, 2)))[:, None, None]
 
@@ -378,6 +395,14 @@ def _of_one(function: Callable[[Floats], Any]) -> Callable[[str, list[Floats]], 
     return lambda name, parts: np.asarray(function(*counted(name, parts, 1)), np.float64)
 
 
+def _constant(value: float) -> Callable[[str, list[Floats]], Floats]:
+    def found(name: str, parts: list[Floats]) -> Floats:
+        counted(name, parts, 0)
+        return number(value)
+
+    return found
+
+
 _BESIDE_NUMBERS: dict[str, Callable[[str, list[Any]], Any]] = {
     **dict.fromkeys(_SIZES, _size),
     "struct": _structure,
@@ -402,7 +427,8 @@ _OTHERS: dict[str, Callable[[str, list[Any]], Any]] = {
     "det": _of_one(lambda array: np.linalg.det(array)[:, None, None]),
     "trace": _of_one(lambda array: np.trace(array, axis1=1, axis2=2)[:, None, None]),
     **dict.fromkeys(("cross", "dot"), _product_of_vectors),
-    **dict.fromkeys(("prod", "cumsum", "mean", "any", "all", "vecnorm"), _along),
+    **dict.fromkeys(("prod", "cumsum", "mean", "any", "all"), _along),
+    "vecnorm": _lengths,
     **dict.fromkeys(("max", "min"), _largest),
     "repmat": _repeated,
     "kron": _kron,
@@ -420,8 +446,8 @@ _OTHERS: dict[str, Callable[[str, list[Any]], Any]] = {
     "num2cell": _elements,
     "cumprod": _along,
     "diff": lambda name, parts: np.diff(counted(name, parts, 1)[0], axis=2 if parts[0].shape[1] == 1 else 1),
-    "pi": lambda name, parts: number(np.pi),
-    "eps": lambda name, parts: number(np.finfo(float).eps),
+    "pi": _constant(np.pi),
+    "eps": _constant(float(np.finfo(float).eps)),
     "true": lambda name, parts: _filled("ones", parts) != 0,
     "false": lambda name, parts: _filled("zeros", parts) != 0,
 }

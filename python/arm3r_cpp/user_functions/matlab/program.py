@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import Arm3rError, UsageError
+from ..documents import decoded
 from ..nodes import Call, Constant, Edit, Given, Node, ProgramError, Unjudged, Unread, line_and_column
 from .functions import COMPARISONS, FUNCTIONS, OPERATORS, result_of
-from .indexing import Places, part_of, with_element, with_part, without
+from .indexing import Places, flat, part_of, with_element, with_part, without
 from .reader import read, read_expression
 from .syntax import Assignment, For, Function, If, Kept, Leave, Statement, Switch, Target, Try, While
 from .values import Floats, Pages, Structures, as_numbers, check_size, integer, number, stacked, text_in
@@ -59,10 +60,18 @@ class MatlabProgram:
     a structure, `Structures`, `Pages` or a `Handle`.
     """
 
-    def __init__(self, text: str, file: str, function: str | None = None, folder: str | None = None) -> None:
+    def __init__(
+        self,
+        text: str,
+        file: str,
+        function: str | None = None,
+        folder: str | None = None,
+        beside: dict[str, MatlabProgram | None] | None = None,
+    ) -> None:
         """
         Args:
             folder: where functions in files of their own are looked for; None: nowhere.
+            beside: those that are found there by their names, the same for all files of a folder.
         """
         self.text, self.file, self.folder = text, file, folder
         self.functions = read(text, file)
@@ -75,7 +84,7 @@ class MatlabProgram:
         self._known: dict[str, Floats] = {}
         self._kept: dict[tuple[str, str], Any] = {}
         self._outside: dict[str, Any] = {}
-        self._beside: dict[str, MatlabProgram | None] = {}
+        self._beside: dict[str, MatlabProgram | None] = {Path(file).stem: self} if beside is None else beside
         self._replaced: tuple[Statement, Node] | None = None
 
     @property
@@ -145,10 +154,11 @@ class MatlabProgram:
             _Divided: a condition holds at some of the states.
         """
         self._begin()
-        self._kept = {}
         self._outside = {}
         for name, value in call.outside.items():
             _put_variable(self._outside, name, _value_given(value))
+        for one in self._programs:
+            one._kept, one._outside = {}, self._outside
         self._known = {name: table[:, column].reshape(-1, 1, 1) for name, column in call.lifted.items()}
         inputs = [
             _value_given(slot.value)
@@ -183,11 +193,14 @@ class MatlabProgram:
                 for one in self._run(self.functions[self.function], inputs, asked=len(self.outputs))
             ]
 
+    @property
+    def _programs(self) -> list[MatlabProgram]:
+        """This one, and those in files beside it."""
+        return [self, *(one for one in self._beside.values() if one and one is not self)]
+
     def _begin(self) -> None:
-        self._calls = self._steps = 0
-        for other in self._beside.values():
-            if other:
-                other._begin()
+        for one in self._programs:
+            one._calls = one._steps = 0
 
     def _edited(self, edit: Edit) -> tuple[Statement, Node]:
         for statement in self.statements():
@@ -270,14 +283,18 @@ class MatlabProgram:
         if self.folder is None or "." in name:
             return None
         if name not in self._beside:
-            path = Path(self.folder) / f"{name}.m"
-            self._beside[name] = None
-            if path.is_file() and not path.is_symlink() and path.stat().st_size <= _MOST_BYTES:
-                try:
-                    self._beside[name] = MatlabProgram(path.read_text(errors="replace"), str(path), None, self.folder)
-                except Arm3rError as error:
-                    raise Unread(f"needs a file that is not read: {error}") from None
+            self._beside[name] = self._read_beside(Path(self.folder) / f"{name}.m")
         return self._beside[name]
+
+    def _read_beside(self, path: Path) -> MatlabProgram | None:
+        if not path.is_file() or path.is_symlink() or path.stat().st_size > _MOST_BYTES:
+            return None
+        try:
+            found = MatlabProgram(decoded(path.read_bytes()), str(path), None, self.folder, self._beside)
+        except Arm3rError as error:
+            raise Unread(f"needs a file that is not read: {error}") from None
+        found._outside = self._outside
+        return found
 
     def _call_beside(self, other: MatlabProgram, inputs: list[Any], asked: int = 1) -> list[Any]:
         with self._called(), np.errstate(all="ignore"):
@@ -293,10 +310,7 @@ class MatlabProgram:
 
     def _execute(self, statements: list[Statement], variables: dict[str, Any]) -> None:
         for statement in statements:
-            self._steps += 1
-            if self._steps > _MAX_STEPS:
-                line, _ = line_and_column(self.text, statement.start)
-                raise Unread(f"takes more than {_MAX_STEPS} steps", line)
+            self._count_step(statement)
             match statement:
                 case Assignment():
                     self._assign(statement, variables)
@@ -304,7 +318,7 @@ class MatlabProgram:
                     self._loop(statement, variables)
                 case While():
                     while self._holds(statement, variables) and self._turn(statement, variables):
-                        self._steps += 1
+                        self._count_step(statement)
                 case If(bodies=(body, otherwise)):
                     self._execute(body if self._holds(statement, variables) else otherwise, variables)
                 case Switch():
@@ -315,6 +329,12 @@ class MatlabProgram:
                     raise _Left(word)
                 case Kept():
                     self._keep(statement, variables)
+
+    def _count_step(self, statement: Statement) -> None:
+        self._steps += 1
+        if self._steps > _MAX_STEPS:
+            line, _ = line_and_column(self.text, statement.start)
+            raise Unread(f"takes more than {_MAX_STEPS} steps", line)
 
     def _turn(self, statement: Statement, variables: dict[str, Any]) -> bool:
         """Whether the loop goes on after its body."""
@@ -328,7 +348,7 @@ class MatlabProgram:
 
     def _loop(self, statement: For, variables: dict[str, Any]) -> None:
         for value in self._turns(statement, variables):
-            self._steps += 1
+            self._count_step(statement)
             variables[statement.name] = value
             if not self._turn(statement, variables):
                 break
@@ -430,8 +450,10 @@ class MatlabProgram:
         """What is held, with the part at the end of the way replaced, or left out where `[]` is given."""
         step, *rest = way
         if step.kind == "field":
-            inner = held.get(step.word) if isinstance(held, dict) else None
-            fields = {**held} if isinstance(held, dict) else {}
+            if not isinstance(held, (dict, type(None))):
+                raise Unread(f"a field {step.word} is set of what is no single structure, which is not read")
+            fields = {**held} if held else {}
+            inner = fields.get(step.word)
             return fields | {step.word: self._with(inner, rest, given, is_empty, variables) if rest else given}
         if step.word == "{" or (isinstance(held, (list, dict)) and not isinstance(held, Pages)) or rest:
             return self._with_element(held, step, rest, given, is_empty, variables)
@@ -608,7 +630,9 @@ class MatlabProgram:
     def _matrix(self, node: Node, variables: dict[str, Any]) -> Any:
         rows = [self._values(row.parts, variables) for row in node.parts]
         if any(isinstance(one, str) for row in rows for one in row):
-            return "".join(text_in(one) for row in rows for one in row)
+            if not all(isinstance(one, str) for row in rows for one in row):
+                raise Unread("a number beside a text in one matrix is not read")
+            return "".join(one for row in rows for one in row)
         if any(not isinstance(one, np.ndarray) or isinstance(one, Pages) for row in rows for one in row):
             raise Unread(f"{self.text[node.start : node.end]!r} holds what is no matrix of numbers")
         return stacked([stacked(row, 2) for row in rows] or [_NOTHING], 1)
@@ -764,31 +788,36 @@ class MatlabProgram:
     # ---- functions that look at variables or call functions ----------------------------------------------------------
 
     def _exist(self, node: Node, variables: dict[str, Any]) -> Floats:
-        name = self._values(node.parts, variables)[0]
+        name = text_in(self._values(node.parts, variables)[0])
         return number(name in variables or bool(_fields(variables, name)) or name in self.functions)
 
     def _feval(self, node: Node, variables: dict[str, Any]) -> Any:
-        function, *inputs = self._values(node.parts, variables)
+        handle, inputs = self._applied(node, variables)
+        return self._apply(handle, inputs, variables)
+
+    def _applied(self, node: Node, variables: dict[str, Any]) -> tuple[Handle, list[Any]]:
+        """The first argument, a function, and the others."""
+        function, *inputs = self._values(node.parts, variables) or [None]
         handle = Handle((), None, {}, function) if isinstance(function, str) else function
         if not isinstance(handle, Handle):
-            raise ProgramError("feval takes a function")
-        return self._apply(handle, inputs, variables)
+            raise ProgramError(f"{node.word} takes a function, and what it is applied to")
+        return handle, inputs
 
     def _cellfun(self, node: Node, variables: dict[str, Any]) -> Any:
         """cellfun and arrayfun: a row of results, or with 'UniformOutput', false a cell array."""
-        function, *given = self._values(node.parts, variables)
+        handle, given = self._applied(node, variables)
         is_uniform = True
-        if len(given) > 2 and isinstance(given[-2], str):
+        if len(given) > 2 and given[-2] == "UniformOutput" and isinstance(given[-1], np.ndarray):
             is_uniform = _is_true(given[-1])
             given = given[:-2]
-        handle = Handle((), None, {}, function) if isinstance(function, str) else function
-        if not isinstance(handle, Handle) or not given:
-            raise ProgramError(f"{node.word} takes a function and what it is applied to")
-        lists = [one if isinstance(one, list) else [one[:, [i], [j]][:, :, None] for j in range(one.shape[2])
-                 for i in range(one.shape[1])] for one in given]  # fmt: skip
+        if not given or not all(isinstance(one, (list, np.ndarray)) for one in given):
+            raise Unread(f"{node.word} is read of matrices and cell arrays, with 'UniformOutput' alone as an option")
+        lists = [one if isinstance(one, list) else list(flat(one).T[:, :, None, None]) for one in given]
         found = [self._apply(handle, list(inputs), variables) for inputs in zip(*lists, strict=True)]
         if not is_uniform:
             return found
+        if not all(isinstance(one, np.ndarray) and one.shape[1:] == (1, 1) for one in found):
+            raise ProgramError(f"{node.word} gives other than single numbers, without 'UniformOutput', false")
         is_column = isinstance(given[0], np.ndarray) and given[0].shape[2] == 1
         return stacked(found, 1 if is_column else 2) if found else _NOTHING
 

@@ -67,5 +67,5 @@ def text_in(value: Any) -> str:
         Unread: it is no text.
     """
     if not isinstance(value, str):
-        raise Unread("a number beside a text in one matrix is not read")
+        raise Unread("a text is needed here; what stands here is none, or is not read")
     return value
