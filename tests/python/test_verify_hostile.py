@@ -18,6 +18,7 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
+from arm3r_cpp.user_functions import start
 from arm3r_cpp.user_functions.nodes import Call, Edit, ProgramError
 from arm3r_cpp.user_functions.python_in_memory import PythonInMemory
 from arm3r_cpp.user_functions.python_process import PythonProcess
@@ -58,6 +59,7 @@ def state() -> dict[str, Any]:
 def judged(tmp_path: Path, monkeypatch: Any) -> Iterator[Any]:
     monkeypatch.setattr("arm3r_cpp.user_functions.python_process.ANSWER_TIME", 3.0)
     monkeypatch.setattr("arm3r_cpp.system.patience.WAITING_TIME", 10.0)
+    start.prepare()  # it stays for the next files, and runs none
     victim, new = tmp_path / "victim", tmp_path / "new"
     victim.write_text("here")
     path, other = tmp_path / "jacobian.py", tmp_path / "other" / "jacobian.py"

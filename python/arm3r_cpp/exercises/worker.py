@@ -130,8 +130,7 @@ def main() -> None:
     requests, answers = own_streams()
     end_with_parent()
     limit_judge()
-    if start.COPIES:
-        start.prepare()
+    start.prepare()
     while True:
         request, _ = receive(requests)
         if not start.COPIES:

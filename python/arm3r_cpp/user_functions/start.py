@@ -65,8 +65,9 @@ def start() -> Started:
 
 
 def prepare() -> None:
-    """Start what `start` copies: a process that copies itself before shares it with its copies."""
-    _server()
+    """Start what `start` copies, where it does: a process that copies itself afterwards shares it with its copies."""
+    if COPIES:
+        _server()
 
 
 def _start_alone() -> Started:
