@@ -134,6 +134,16 @@ def test_every_file_gets_a_copy_of_its_own_that_nothing_was_done_to() -> None:
     assert [evaluated(text)[0] for _ in range(3)] == [0.0, 0.0, 0.0]
 
 
+def test_a_copy_that_is_closed_has_ended() -> None:
+    for _ in range(30):
+        process = PythonProcess("def gravity(q): return 1.0", "gravity", "gravity.py")
+        process.evaluate(Call((0,), {}), np.zeros((1, 1)))
+        assert process._process
+        pid = process._process.pid
+        process.close()
+        assert not Path(f"/proc/{pid}").exists()
+
+
 def test_a_server_of_copies_that_has_ended_is_started_anew() -> None:
     text = "def gravity(q):\n    return 1.0\n"
     assert evaluated(text)[0] == 1.0

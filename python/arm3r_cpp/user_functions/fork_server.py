@@ -1,7 +1,8 @@
 """A process that has loaded what a user's file needs, and copies itself for each file: none waits for numpy.
 
-It runs no file itself. Its input is a socket: a message with two pipes asks for a copy that reads its requests from the
-first and answers through the second; a message with a number asks to wait for the copy with that number.
+It runs no file itself. Its input is a socket: a message "copy" with two pipes asks for a copy that reads its requests
+from the first and answers through the second; a message with a number and a pipe asks to close the pipe when the copy
+with that number has ended.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import NoReturn
 
 from .child import leave_standard_streams, serve
 
+COPY = b"copy"
 PID = struct.Struct("<i")
 """The first bytes that a copy answers: its number."""
 _LONGEST = 32  # bytes of a message
@@ -29,16 +31,15 @@ def main() -> None:
     gc.freeze()  # what is loaded here is not for a copy to end
     while True:
         message, pipes, _, _ = socket.recv_fds(asked, _LONGEST, 2)
-        if pipes:
-            if os.fork() == 0:
-                asked.close()
-                _serve_apart(*pipes)
-            for pipe in pipes:
-                os.close(pipe)
-        elif message:
-            os.waitpid(int(message), 0)
-        else:
+        if not message:
             return
+        if message != COPY:
+            os.waitpid(int(message), 0)
+        elif os.fork() == 0:
+            asked.close()
+            _serve_apart(*pipes)
+        for pipe in pipes:
+            os.close(pipe)
 
 
 def _serve_apart(requests: int, answers: int) -> NoReturn:

@@ -14,7 +14,7 @@ from typing import IO, Any, NamedTuple, Protocol
 from ..system.patience import Patience
 from ..system.processes import bare_environment
 from ..system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
-from .fork_server import PID
+from .fork_server import COPY, PID
 from .nodes import Unjudged
 
 STARTING_TIME = 20.0  # s of processor time
@@ -122,7 +122,7 @@ class ForkServer:
         (requests, writing), (reading, answers) = os.pipe(), os.pipe()
         pipe = SelectedPipe(reading)
         try:
-            socket.send_fds(self._socket, [b"copy"], [requests, answers])
+            socket.send_fds(self._socket, [COPY], [requests, answers])
             os.close(answers)
             answers = -1
             (pid,) = PID.unpack(pipe.read(PID.size, Patience(self._process.pid, STARTING_TIME)))
@@ -142,9 +142,15 @@ class ForkServer:
         return self._end.alive
 
     def wait(self, pid: int) -> None:
-        """Let it wait for a copy that is ended, whose number is not given to another process before."""
-        with contextlib.suppress(OSError):
-            self._socket.send(str(pid).encode())
+        """Wait for the end of a copy, whose number is not given to another process before."""
+        if sys.platform == "win32":
+            raise OSError
+        reading, writing = os.pipe()
+        with contextlib.suppress(OSError):  # where the server has ended, its copies have
+            socket.send_fds(self._socket, [str(pid).encode()], [writing])
+        os.close(writing)
+        with os.fdopen(reading, "rb") as ended:
+            ended.read()
 
 
 def _end_server(asking: socket.socket, process: subprocess.Popen[bytes], owner: int) -> None:
