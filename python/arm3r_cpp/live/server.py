@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import webbrowser
 from collections.abc import Callable
 from http import HTTPStatus
@@ -22,6 +24,19 @@ TYPES = {
 }
 
 
+class _Server(ThreadingHTTPServer):
+    """Ends at the next turn of its loop: raised anywhere, Ctrl-C may fall where Python drops exceptions."""
+
+    is_to_end = False
+
+    def service_actions(self) -> None:
+        if self.is_to_end:
+            raise KeyboardInterrupt
+
+    def end(self, *_: object) -> None:
+        self.is_to_end = True
+
+
 def serve(index: str, *, port: int, browser: bool, say: Callable[[str], None]) -> None:
     """Serve the page until Ctrl-C.
 
@@ -35,11 +50,13 @@ def serve(index: str, *, port: int, browser: bool, say: Callable[[str], None]) -
         UsageError: the port cannot be used.
     """
     try:
-        server = ThreadingHTTPServer((HOST, port), _handler(index.encode()))
+        server = _Server((HOST, port), _handler(index.encode()))
     except OSError as error:
         raise UsageError(
             f"--port {port}: cannot be used: {error.strerror}; 0 takes a free one", code="usage"
         ) from error
+    if threading.current_thread() is threading.main_thread():  # the only one that a signal reaches
+        signal.signal(signal.SIGINT, server.end)
     with server:
         address = f"http://{HOST}:{server.server_port}/"
         say(f"{address} shows the page; Ctrl-C ends it")

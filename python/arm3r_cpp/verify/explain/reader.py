@@ -25,7 +25,8 @@ _VARIED: dict[str, tuple[str, ...]] = {
 }
 _DYNAMIC = ("length2", "com2", "com3", "mass2", "mass3", "inertia2", "inertia3", "gravity")
 _READ = (*_VARIED, "mass", "coriolis", "inverse")
-
+_ROUNDING = 1e9
+"""Times what is due: what a division by rounding leaves, by cos(pi/2), has terms that mean nothing."""
 
 _UNITS = {"length": (1, 0, 0), "com": (1, 0, 0), "height": (1, 0, 0), "mass": (0, 1, 0), "inertia": (2, 1, 0)}
 """Powers of a length, a mass and g."""
@@ -181,7 +182,7 @@ class _Reader:
         if units and not self.case.truth.named_numbers:  # whose units are not known
             parameters.may_stand = lambda names: self._units((name, 1) for name in names) in units
         spectrum = self._spectrum(index, False)
-        if spectrum is None:
+        if spectrum is None or self._scale(index, False) > _ROUNDING * self._scale(index, True):
             return None
         result = terms_of(
             spectrum, parameters, _hints(monomials_due, parameters, fixed), self._scale(index, False), part.words
