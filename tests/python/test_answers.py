@@ -376,6 +376,7 @@ def test_no_help_points_to_a_file_that_is_not_installed(scripts: Path, tmp_path:
         assert ".md" not in (thing.__doc__ or "")
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("use", "is_said"),
     [

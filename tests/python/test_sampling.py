@@ -33,10 +33,22 @@ def pytest_with(request: pytest.FixtureRequest, tmp_path: Path):
 
     def call(seed: str | None, *arguments: str) -> str:
         environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+        environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
         environment.pop("ARM3R_SAMPLE", None)
         if seed:
             environment["ARM3R_SAMPLE"] = seed
-        command = [sys.executable, "-m", "pytest", "-rP", "-p", "no:cacheprovider", *request.param, *arguments]
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-rP",
+            "-p",
+            "no:cacheprovider",
+            "-p",
+            "xdist.plugin",
+            *request.param,
+            *arguments,
+        ]
         done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
@@ -53,7 +65,7 @@ def test_a_sample_is_drawn_and_named_so_that_it_can_be_drawn_again(pytest_with) 
     assert "8 passed" in output and len(cases_of(output)) == 4
     (seed,) = re.findall(r"ARM3R_SAMPLE=(\d+)", output)
     assert cases_of(pytest_with(seed, "test_all.py")) == cases_of(output)
-    assert len({tuple(cases_of(pytest_with(seed, "test_all.py"))) for seed in "123"}) > 1
+    assert len({tuple(cases_of(pytest_with(seed, "test_all.py"))) for seed in "12"}) > 1
 
 
 def test_all_cases_are_taken_where_that_is_asked(pytest_with) -> None:

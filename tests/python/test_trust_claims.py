@@ -136,6 +136,7 @@ solver: {method: dopri5}
 """  # noqa: E501
 
 
+@pytest.mark.gate
 def test_an_error_that_is_not_that_of_the_end_says_of_when_it_is() -> None:
     run = arm3r.Scenario(REACHES_TOO_FAR)._quiet().run(trust=True)
     assert run.trust is not None

@@ -231,6 +231,7 @@ def coriolis(q, qd):
 """
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("step", ["5e-6", "1e-4", "3e-4"])
 def test_the_step_of_differences_is_no_mistake(step: str, tmp_path: Any) -> None:
     path = tmp_path / "coriolis.py"
