@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import ControllerError, UsageError
 from ..user_functions.matlab.program import MatlabProgram
 from ..user_functions.python_nodes import PythonText
+from ..user_functions.python_program import callable_of
 from ..verify.formula import Formula, from_file, from_text, split_name
 from ..verify.truth.three_r import ThreeR
 from .inputs import Input, check_numbers, input_of, is_angle, numbers_of_arm
@@ -48,9 +49,8 @@ class Block:
             self._with_default: set[str] = set()
             check_numbers([name for name in self.arguments if name == "state"], f"{file}:{self.line}")
         else:
-            given = PythonText(text, file).functions[function]
-            self.line = given.lineno
-            self._with_default = set(self.arguments[len(self.arguments) - len(given.args.defaults) :])
+            self.line = PythonText(text, file).line(formula.name)
+            self._with_default = set(formula.optional)
         check_numbers(self._of_arm, f"{file}:{self.line}")
 
     @classmethod
@@ -120,7 +120,7 @@ class Block:
                 exec(compile(self.text, self.file, "exec", dont_inherit=True), namespace)
         except (Exception, SystemExit) as error:
             raise ControllerError(failure(self._place, error), code="run.controller") from error
-        return namespace[self.function]
+        return callable_of(namespace, self.function)
 
 
 def _folder_of(file: str) -> str:

@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .nodes import ProgramError, Unjudged, Unread
+
 Floats = NDArray[np.float64]
 BROKEN = "breaks the connection to its judge"
 NO_MEMORY = "needs too much memory"
@@ -27,10 +29,12 @@ class Answer(NamedTuple):
     """How long the process has computed, as it says."""
     error: str = ""
     line: int | None = None
+    is_unread: bool = False
 
-    @property
-    def is_exhausted(self) -> bool:
-        return self.error == NO_MEMORY
+    def failure(self) -> ProgramError:
+        """The error that it stands for."""
+        kind = Unjudged if self.error == NO_MEMORY else Unread if self.is_unread else ProgramError
+        return kind(self.error, self.line)
 
 
 def head_of(text: bytes) -> dict[str, Any]:
@@ -56,12 +60,28 @@ def answer_of(head: dict[str, Any], body: bytes, rows: int) -> Answer:
         error, line = head["error"], head.get("line")
         _checked(error, type(error) is str and not body)
         _checked(line, line is None or (type(line) is int and 0 < line < _MOST_LINES))
-        return Answer(None, seconds, error[:_LONGEST], line)
+        return Answer(None, seconds, error[:_LONGEST], line, head.get("unread") is True)
     shape: Any = head.get("shape")
     _checked(shape, type(shape) is list and 0 < len(shape) <= _MOST_AXES)
     _checked(shape, all(type(size) is int and 0 <= size <= max(rows, len(body)) for size in shape))
     _checked(shape, shape[0] == rows and math.prod(shape) * 8 == len(body))
     return Answer(np.frombuffer(body).reshape(shape), seconds)
+
+
+def arguments_of(head: dict[str, Any]) -> tuple[list[str], list[str]]:
+    """The names of arguments, and of those of them that have a default.
+
+    Raises:
+        BrokenAnswer: the head has none.
+        ProgramError: it is that of a failure.
+    """
+    if "error" in head:
+        raise answer_of(head, b"", 0).failure()
+    names: Any = head.get("arguments")
+    _checked(names, type(names) is list and [type(one) for one in names] == [list, list])
+    for one in (*names[0], *names[1]):
+        _checked(one, type(one) is str and one.isidentifier() and len(one) < _LONGEST)
+    return names[0], names[1]
 
 
 def unbarred_of(head: dict[str, Any]) -> list[str]:

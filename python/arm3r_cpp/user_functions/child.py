@@ -7,13 +7,14 @@ import os
 import struct
 import sys
 import time
+from collections.abc import Callable
 from typing import IO, Any, NoReturn
 
 import numpy as np
 
 from ..system.confinement import confine, end_with_parent
 from ..system.limits import limit_resources
-from .nodes import Call, Edit, Given, ProgramError
+from .nodes import Call, Edit, Given, ProgramError, Unread
 from .python_program import PythonProgram
 
 HEAD = struct.Struct("<II")  # lengths of the JSON and of the numbers that follow
@@ -66,17 +67,31 @@ def say_what_is_barred(event: str, _: object) -> None:
 
 def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> None:
     head, body = receive(requests)
+    if head["rows"] is None:
+        _send_result(answers, lambda: ({"arguments": program.arguments()}, b""))
+        return
     table = np.frombuffer(body).reshape(head["rows"], -1) if head["rows"] else np.zeros((0, 1))
     slots = tuple(
         Given(one["given"]) if isinstance(one, dict) else one if isinstance(one, int) else tuple(one)
         for one in head["slots"]
     )
-    call = Call(slots, head["lifted"], head["output"], head["outside"])
-    try:
+    call = Call(slots, head["lifted"], head["output"], head["outside"], head["as_columns"])
+
+    def result() -> tuple[dict[str, Any], bytes]:
         values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
-        send(answers, {"shape": values.shape, "seconds": time.process_time()}, np.ascontiguousarray(values).tobytes())
+        return {"shape": values.shape}, np.ascontiguousarray(values).tobytes()
+
+    _send_result(answers, result)
+
+
+def _send_result(answers: IO[bytes], result: Callable[[], tuple[dict[str, Any], bytes]]) -> None:
+    try:
+        head, body = result()
+        send(answers, {**head, "seconds": time.process_time()}, body)
     except ProgramError as error:
-        send(answers, {"error": str(error), "line": error.line, "seconds": time.process_time()}, b"")
+        is_unread = isinstance(error, Unread)
+        head = {"error": str(error), "line": error.line, "unread": is_unread, "seconds": time.process_time()}
+        send(answers, head, b"")
     except MemoryError:
         send(answers, {"error": "needs too much memory", "line": None}, b"")
 

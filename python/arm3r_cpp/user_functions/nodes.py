@@ -78,6 +78,8 @@ class Call(NamedTuple):
     """Which of the results that it returns, from 0; None: all that it returns is one."""
     outside: Mapping[str, Any] = MappingProxyType({})
     """Values of names that the program uses and does not define, as those of `Given`."""
+    as_columns: bool = False
+    """Whether vectors have two axes, (n, 1)."""
 
 
 class ProgramError(Exception):

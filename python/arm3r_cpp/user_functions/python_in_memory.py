@@ -46,6 +46,10 @@ class PythonInMemory:
         """
         return (self._copy if edit else self._program).evaluate(call, table, edit)
 
+    def arguments(self) -> tuple[list[str], list[str]]:
+        """As those of `PythonProcess`."""
+        return self._program.arguments()
+
 
 class _Copy(PythonProcess):
     """A copy of this process, which starts with the first edit; after one that ends it, the next edit gets another."""

@@ -7,6 +7,7 @@ from collections import Counter
 
 from ..errors import UsageError
 from .nodes import Constant, Node
+from .python_functions import Function, assigned, functions_of
 from .python_program import PythonProgram, number_in, pairs
 
 _OPERATORS = {
@@ -40,33 +41,34 @@ class PythonText:
             line = getattr(error, "lineno", None) or 1
             raise UsageError(f"{file}:{line}: this is not Python: {getattr(error, 'msg', error)}") from None
         self._place = PythonProgram(text, "").offset
-        self.functions: dict[str, ast.FunctionDef | ast.Lambda] = {}
-        for node in self.tree.body:
-            if isinstance(node, ast.FunctionDef):
-                self.functions[node.name] = node
-            self.functions |= {name.id: value for name, value in pairs(node) if isinstance(value, ast.Lambda)}
-        self.has_classes = any(isinstance(node, ast.ClassDef) for node in self.tree.body)
+        self.functions: dict[str, Function] = functions_of(self.tree)
+        self.assigned = {name: made for name, made in assigned(self.tree).items() if name not in self.functions}
+        """Names that may be functions or formulas once the text is run; whether a maker of functions made them."""
 
     def arguments(self, function: str) -> tuple[list[str], dict[str, float]]:
         """The names of a function's arguments, and the numbers that some of them have by default."""
-        given = self.functions[function].args
-        names = [one.arg for one in (*given.posonlyargs, *given.args)]
-        if given.vararg and not names:
+        given = self.functions[function]
+        if given.node.args.vararg and not given.names:
             return ["*"], {}
-        defaults = dict(zip(names[len(names) - len(given.defaults) :], given.defaults, strict=True))
-        numbers = {name: number_in(value) for name, value in defaults.items()}
-        return names, {name: value for name, value in numbers.items() if value is not None}
+        numbers = {name: number_in(value) for name, value in given.defaults.items()}
+        return given.names, {name: value for name, value in numbers.items() if value is not None}
 
     def optional(self, function: str) -> list[str]:
         """The names of the arguments that have a default."""
-        given = self.functions[function].args
-        names = [one.arg for one in (*given.posonlyargs, *given.args)]
-        return names[len(names) - len(given.defaults) :]
+        return list(self.functions[function].defaults)
+
+    def line(self, function: str) -> int:
+        """Where a function begins, or a name is assigned first."""
+        if function in self.functions:
+            return self.functions[function].node.lineno
+        return next(
+            (one.lineno for statement in self.tree.body for one, _ in pairs(statement) if one.id == function), 1
+        )
 
     def comments(self, function: str) -> str:
         """The docstring of a function and the text's comments."""
         words = [line.split("#", 1)[1] for line in self.text.splitlines() if "#" in line]
-        node = self.functions[function]
+        node = self.functions[function].node if function in self.functions else None
         return " ".join([(ast.get_docstring(node) if isinstance(node, ast.FunctionDef) else None) or "", *words])
 
     def constants(self) -> list[Constant]:
@@ -92,7 +94,9 @@ class PythonText:
 
     def returned_names(self, function: str) -> list[str]:
         """The names in `return t3, t2, t1`."""
-        returns = [node for node in ast.walk(self.functions[function]) if isinstance(node, ast.Return)]
+        if function not in self.functions:
+            return []
+        returns = [node for node in ast.walk(self.functions[function].node) if isinstance(node, ast.Return)]
         if len(returns) == 1 and isinstance(returns[0].value, ast.Tuple):
             names = returns[0].value.elts
             if all(isinstance(name, ast.Name) for name in names):

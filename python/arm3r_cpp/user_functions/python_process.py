@@ -15,7 +15,7 @@ from ..system.limits import PROCESSOR_TIME
 from ..system.patience import Patience, TooSlow, Waits
 from ..system.processes import end_with_descendants, processor_time
 from ..system.timed_pipe import PumpedPipe, SelectedPipe
-from .answers import BROKEN, BrokenAnswer, answer_of, head_of, unbarred_of
+from .answers import BROKEN, BrokenAnswer, answer_of, arguments_of, head_of, unbarred_of
 from .child import HEAD, send
 from .nodes import Call, Edit, Given, ProcessEnded, ProgramError, Unjudged
 from .start import STARTING_TIME, Process, start
@@ -66,6 +66,7 @@ class PythonProcess:
             "outside": dict(call.outside),
             "lifted": call.lifted,
             "output": call.output,
+            "as_columns": call.as_columns,
             "edit": edit and list(edit),
         }
         self._send(head, np.ascontiguousarray(table).tobytes())
@@ -73,8 +74,20 @@ class PythonProcess:
         answer = self._understood(lambda: answer_of(head, body, len(table)))
         self._ends, self._seconds[-1] = self._stops, answer.seconds
         if answer.values is None:
-            raise (Unjudged if answer.is_exhausted else ProgramError)(answer.error, answer.line)
+            raise answer.failure()
         return answer.values
+
+    def arguments(self) -> tuple[list[str], list[str]]:
+        """The names of the arguments of what the text makes a function of, and those that have a default.
+
+        Raises:
+            ProgramError, Unjudged: the text failed, or the name stands for no function.
+        """
+        if self._process is None:
+            self._start()
+        self._send({"rows": None}, b"")
+        head, _ = self._receive(ANSWER_TIME)
+        return self._understood(lambda: arguments_of(head))
 
     def _start(self) -> None:
         self._attach(*start())

@@ -5,16 +5,18 @@ from __future__ import annotations
 import ast
 import builtins
 import contextlib
+import inspect
 import io
 import traceback
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .nodes import Call, Edit, Given, ProgramError
+from .nodes import Call, Edit, Given, ProgramError, Unread
+from .sympy_expressions import function_of, is_expression
 
 Floats = NDArray[np.float64]
 LIFTED = "__arm3r_lifted__"
@@ -70,6 +72,25 @@ def value_of(given: Any, make_array: bool = True) -> Any:
     return np.array(given, np.float64) if isinstance(given, list) and make_array else given
 
 
+def callable_of(namespace: Mapping[str, Any], name: str) -> Any:
+    """What `f`, `robot.jacobian`, `Robot.jacobian`, an expression of sympy or a class to be called stand for; or None.
+
+    A method of a class is that of an object which its name makes, and the call of a class is that of such an object.
+    """
+    first, *attributes = name.split(".")
+    found = namespace.get(first)
+    for attribute in attributes:
+        is_of_class = isinstance(found, type) and isinstance(
+            inspect.getattr_static(found, attribute, None), (staticmethod, classmethod)
+        )
+        found = getattr(found() if isinstance(found, type) and not is_of_class else found, attribute, None)
+    if isinstance(found, type):
+        found = found()
+    if is_expression(found):
+        found, _ = function_of(found)
+    return found if callable(found) else None
+
+
 class PythonProgram:
     """A function of a Python text, which this process executes."""
 
@@ -86,6 +107,7 @@ class PythonProgram:
         self.make_array = make_array
         self.names: set[str] = set()
         self.namespace: dict[str, Any] = {}
+        self._function: Any = None
         self._body: list[tuple[int, int, Any]] = []
         self._spans: list[tuple[int, int, str]] = []
         self._lifted_text = text
@@ -158,6 +180,25 @@ class PythonProgram:
         self.namespace[LIFTED] = values
         for number, (_, _, code) in enumerate(self._body):
             exec(replaced[1] if replaced and replaced[0] == number else code, self.namespace)
+        self._function = callable_of(self.namespace, self.function)
+        if self._function is None:
+            raise ProgramError(f"there is no function {self.function}")
+
+    def arguments(self) -> tuple[list[str], list[str]]:
+        """The names of the arguments of what the text makes a function of, and those that have a default.
+
+        Raises:
+            ProgramError: the text failed, or the name stands for no function.
+        """
+        self.load({})
+        with self._described(), contextlib.redirect_stdout(io.StringIO()):
+            self._run_body({}, {})
+            first = self.namespace.get(self.function)
+            if is_expression(first):
+                return function_of(first)[1], []
+            given = inspect.signature(self._function).parameters.values()
+            names = [one.name for one in given if one.kind in (one.POSITIONAL_ONLY, one.POSITIONAL_OR_KEYWORD)]
+            return names, [one.name for one in given if one.name in names and one.default is not one.empty]
 
     def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats:
         """A row of numbers for each row of the table, in the shape that the function returns.
@@ -169,37 +210,42 @@ class PythonProgram:
             self.load(call.lifted)
         replaced = self._edited(edit) if edit else None
         results, before = [], None
-        try:
-            with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"), warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                for row in table:
-                    values = {name: float(row[column]) for name, column in call.lifted.items()}
-                    if values != before:
-                        self._run_body(values, call.outside, replaced)
-                        before = values
-                    function = self.namespace.get(self.function)
-                    if not callable(function):
-                        raise ProgramError(f"there is no function {self.function}")
-                    result = function(*(self._argument(slot, row) for slot in call.slots))
-                    results.append(_numbers(result, call.output))
-        except ProgramError:
-            raise
-        except BaseException as error:  # whatever a user's program raises, SystemExit too
-            if isinstance(error, KeyboardInterrupt):
-                raise
-            if isinstance(error, MemoryError) and not str(error):  # of the interpreter's own
-                raise ProgramError("needs too much memory") from None
-            raise ProgramError(*self._describe(error)) from None
+        with self._described(), contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"):
+            for row in table:
+                values = {name: float(row[column]) for name, column in call.lifted.items()}
+                if values != before:
+                    self._run_body(values, call.outside, replaced)
+                    before = values
+                given = (self._argument(slot, row, call.as_columns) for slot in call.slots)
+                results.append(_numbers(self._function(*given), call.output))
         if len({result.shape for result in results}) > 1:
             raise ProgramError("returns arrays of different shapes at different states")
         return np.array(results)
 
-    def _argument(self, slot: Any, row: Floats) -> Any:
+    @contextlib.contextmanager
+    def _described(self) -> Iterator[None]:
+        """Whatever a user's program raises becomes an error that says it, SystemExit, too."""
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                yield
+        except (ProgramError, KeyboardInterrupt):
+            raise
+        except ModuleNotFoundError as error:
+            if error.name == __name__.partition(".")[0]:  # that is hidden from work of one's own
+                raise ProgramError(*self._describe(error)) from None
+            raise Unread(f"imports {error.name}, which is not installed here", self._line(error)) from None
+        except BaseException as error:
+            if isinstance(error, MemoryError) and not str(error):  # of the interpreter's own
+                raise ProgramError("needs too much memory") from None
+            raise ProgramError(*self._describe(error)) from None
+
+    def _argument(self, slot: Any, row: Floats, as_column: bool) -> Any:
         if isinstance(slot, Given):
             return value_of(slot.value, self.make_array)
         if isinstance(slot, int):
             return float(row[slot])
-        values = row[list(slot)]
+        values = row[list(slot)][:, None] if as_column else row[list(slot)]
         return values if self.make_array else values.tolist()
 
     def _edited(self, edit: Edit) -> tuple[int, Any]:
@@ -217,17 +263,18 @@ class PythonProgram:
         raise ProgramError("the edit gives no Python")
 
     def _describe(self, error: BaseException) -> tuple[str, int | None]:
-        frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == self.file]
         message = str(error).split("\n")[0][:200]
-        return f"raises {type(error).__name__}{f': {message}' if message else ''}", frames[
-            -1
-        ].lineno if frames else None
+        return f"raises {type(error).__name__}{f': {message}' if message else ''}", self._line(error)
+
+    def _line(self, error: BaseException) -> int | None:
+        frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == self.file]
+        return frames[-1].lineno if frames else None
 
 
 def _has_results(result: Any) -> bool:
-    """Whether a function returns several results: a tuple, or a list that is no matrix row by row."""
+    """Whether a function returns several results: a tuple, a dict, or a list that is no matrix row by row."""
     if not isinstance(result, list):
-        return isinstance(result, tuple)
+        return isinstance(result, (tuple, dict))
     try:
         return np.ndim(result) > 2
     except ValueError:
@@ -243,7 +290,7 @@ def _numbers(result: Any, output: int | None) -> Floats:
     if output is not None:
         if not _has_results(result) or output >= len(result):
             raise ProgramError(f"returns no output {output + 1}")
-        result = result[output]
+        result = (list(result.values()) if isinstance(result, dict) else result)[output]
     kind = type(result).__name__
     if result is None:
         raise ProgramError("returns None instead of numbers")

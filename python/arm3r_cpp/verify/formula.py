@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import os
-import re
 import textwrap
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
@@ -20,12 +19,14 @@ from ..user_functions.c_symbol import text_of
 from ..user_functions.documents import MATLAB, code_of
 from ..user_functions.matlab.program import MatlabProgram
 from ..user_functions.nodes import Call, Constant, Edit, Given, Node, ProgramError, numbers_of
+from ..user_functions.python_functions import needed_by, objects_of
 from ..user_functions.python_in_memory import PythonInMemory
 from ..user_functions.python_nodes import PythonText
 from ..user_functions.python_process import PythonProcess
 from ..user_functions.python_program import _numbers, value_of
+from ..user_functions.sympy_expressions import function_of, is_expression
 from .kinds import KINDS, Kind
-from .names import quantities_of, slot_of, slots_of
+from .names import TIME, quantities_of, slot_of, slots_of
 from .samples import Samples, columns
 
 
@@ -49,6 +50,8 @@ class CallableProgram:
                 if isinstance(slot, Given)
                 else float(row[slot])
                 if isinstance(slot, int)
+                else row[list(slot)][:, None]
+                if call.as_columns
                 else row[list(slot)]
                 for slot in call.slots
             ]
@@ -83,6 +86,8 @@ class Formula:
     """Numbers outside of the text that a function in memory uses."""
     output: int | None = None
     """Which of several results is meant, from 0; None: there is one."""
+    as_columns: bool = False
+    """Whether vectors are given with two axes, (n, 1)."""
     given: dict[str, Any] = field(default_factory=dict)
     """Values of arguments and of names outside of the text, as the user says them; a structure holds others."""
 
@@ -102,7 +107,14 @@ class Formula:
         edited = from_text(
             edit.apply(self.text), self.file, self.name, sandbox=sandbox, folder=getattr(program, "folder", None)
         )
-        return replace(edited, output=self.output, given=self.given, arguments=self.arguments, optional=self.optional)
+        return replace(
+            edited,
+            output=self.output,
+            as_columns=self.as_columns,
+            given=self.given,
+            arguments=self.arguments,
+            optional=self.optional,
+        )
 
     @property
     def order(self) -> list[int] | None:
@@ -144,7 +156,9 @@ class Formula:
         slots: list[Any] = []
         arguments = self._given(kind, parameters)
         for vector, joint in slots_of(arguments, kind, joints, [*parameters, *self.given]):
-            if vector in self.given:
+            if vector == TIME:
+                slots.append(Given(0.0))
+            elif vector in self.given:
                 slots.append(Given(self.given[vector]))
             elif joint == -1:
                 slots.append(first + known.index(parameters[vector]))
@@ -152,7 +166,7 @@ class Formula:
                 place = columns(vector, joints)
                 slots.append(place if joint is None else place[joint])
         lifted = {name: first + known.index(quantity) for name, quantity in parameters.items() if name not in arguments}
-        return Call(tuple(slots), lifted, self.output, self.outside)
+        return Call(tuple(slots), lifted, self.output, self.outside, self.as_columns)
 
     def values(self, call: Call, samples: Samples, known: list[str], edit: Edit | None = None) -> Floats:
         """What the formula returns, a row for each arm and state, outputs in their order."""
@@ -167,8 +181,8 @@ def _is_state(name: str, kind: Kind) -> bool:
 
 def from_callable(function: Any) -> Formula:
     """A function in memory, or sympy expressions."""
-    if type(function).__module__.split(".")[0] == "sympy":
-        return _from_sympy(function)
+    if is_expression(function):
+        return Formula("expression", "expression", *_of_symbols(function))
     if not callable(function):
         raise UsageError(f"a function, a file or sympy expressions are needed, got {type(function).__name__}")
     name = getattr(function, "__name__", type(function).__name__)
@@ -184,7 +198,7 @@ def from_callable(function: Any) -> Formula:
     try:
         text = textwrap.dedent(inspect.getsource(function))
         source = PythonText(text, name)
-        if name in source.functions and not getattr(source.functions[name], "decorator_list", None):
+        if name in source.functions and not getattr(source.functions[name].node, "decorator_list", None):
             _with_text(formula, function, source)
     except (OSError, TypeError, UsageError):
         pass  # without a text there is no repair
@@ -203,34 +217,18 @@ def _with_text(formula: Formula, function: Any, source: PythonText) -> None:
     formula.program = PythonInMemory(source.text, formula.name, "<formula>", namespace)
 
 
-def _from_sympy(expression: Any) -> Formula:
-    """Expressions become a function of their symbols; the order of the arguments follows their names."""
-    import sympy
-
-    expression = _without_time(expression)
-    symbols = sorted(expression.free_symbols, key=lambda symbol: symbol.name)
-    function = sympy.lambdify(symbols, expression, "numpy")
-    return Formula("expression", "expression", CallableProgram(function), [symbol.name for symbol in symbols])
+def _of_symbols(expression: Any) -> tuple[CallableProgram, list[str]]:
+    function, names = function_of(expression)
+    return CallableProgram(function), names
 
 
-def _without_time(expression: Any) -> Any:
-    """Functions of time, as `dynamicsymbols` makes them, become symbols: q1(t) is q1, its derivatives qd1 and qdd1."""
-    import sympy
-
-    of_time = sympy.core.function.AppliedUndef
-    rates = {
-        rate: sympy.Symbol(re.sub(r"(?=\d*$)", "d" * rate.derivative_count, rate.expr.func.__name__, count=1))
-        for rate in expression.atoms(sympy.Derivative)
-        if isinstance(rate.expr, of_time)
-    }
-    expression = expression.xreplace(rates)
-    return expression.xreplace({one: sympy.Symbol(one.func.__name__) for one in expression.atoms(of_time)})
-
-
-def from_file(path: str | os.PathLike[str], *, sandbox: Any = None, is_alone: bool = False) -> Formula:
+def from_file(
+    path: str | os.PathLike[str], *, kind: str | None = None, sandbox: Any = None, is_alone: bool = False
+) -> Formula:
     """A function of a file: `file.py:function`, `file.m`, `file.m:function`, in notebooks and live scripts, too.
 
     Args:
+        kind: that of the function which is looked for where none is named.
         is_alone: whether a MATLAB function may not call those in files beside it.
 
     Raises:
@@ -252,7 +250,7 @@ def from_file(path: str | os.PathLike[str], *, sandbox: Any = None, is_alone: bo
     except (OSError, ValueError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
     folder = None if is_alone else os.path.dirname(os.path.abspath(file))
-    return from_text(text, file, function, sandbox=sandbox, folder=folder)
+    return from_text(text, file, function, kind=kind, sandbox=sandbox, folder=folder)
 
 
 def _from_library(file: str, function: str | None) -> Formula:
@@ -265,42 +263,38 @@ def _from_library(file: str, function: str | None) -> Formula:
     return Formula(file, function, program, [], language="c")
 
 
-def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None, folder: str | None = None) -> Formula:
+def from_text(
+    text: str,
+    file: str,
+    function: str | None,
+    *,
+    kind: str | None = None,
+    sandbox: Any = None,
+    folder: str | None = None,
+) -> Formula:
     """A function of a text.
 
     Args:
+        kind: that of the function which is looked for where none is named.
         folder: where a MATLAB function finds those in files of their own; None: nowhere.
 
     Raises:
         UsageError: the text cannot be read, or has no such function.
     """
     if file.endswith(MATLAB):
-        program = MatlabProgram(text, file, function, folder)
-        outputs = program.outputs if len(program.outputs) > 1 else []
-        return Formula(
-            file,
-            program.function,
-            program,
-            program.arguments,
-            {one.name: one for one in program.constants()},
-            {},
-            program.nodes(),
-            text,
-            "matlab",
-            program.comments(),
-            outputs,
-            program.optional,
-        )
+        return _of_matlab(MatlabProgram(text, file, function, folder))
     source = PythonText(text, file)
-    name = function or likely_function(source, file)
-    if name not in source.functions:
-        raise UsageError(f"{file}: there is no function {name}; it has {', '.join(source.functions) or 'none'}")
-    arguments, defaults = source.arguments(name)
-    program_of = sandbox or PythonInMemory
+    name = _with_object(source, file, function or likely_function(source, file, kind))
+    program = (sandbox or PythonInMemory)(text, name, file)
+    if name in source.functions:
+        arguments, defaults = source.arguments(name)
+        optional = source.optional(name)
+    else:
+        arguments, optional, defaults = *_arguments_of(program, file, name, source), {}
     return Formula(
         file,
         name,
-        program_of(text, name, file),
+        program,
         arguments,
         {one.name: one for one in source.constants()},
         defaults,
@@ -309,28 +303,102 @@ def from_text(text: str, file: str, function: str | None, *, sandbox: Any = None
         "python",
         source.comments(name),
         source.returned_names(name),
-        source.optional(name),
+        optional,
+    )
+
+
+def _of_matlab(program: MatlabProgram) -> Formula:
+    return Formula(
+        program.file,
+        program.function,
+        program,
+        program.arguments,
+        {one.name: one for one in program.constants()},
+        {},
+        program.nodes(),
+        program.text,
+        "matlab",
+        program.comments(),
+        program.outputs if len(program.outputs) > 1 else [],
+        program.optional,
+    )
+
+
+def _arguments_of(program: Any, file: str, name: str, source: PythonText) -> tuple[list[str], list[str]]:
+    """The arguments of what a text makes a function of, and those that may be left out; none where the text fails.
+
+    Raises:
+        UsageError: it makes no function of this name.
+    """
+    if name not in source.assigned:
+        raise UsageError(f"{file}: there is no function {name}; it has {', '.join(source.functions) or 'none'}")
+    try:
+        return program.arguments()
+    except ProgramError as error:
+        if str(error).startswith("there is no function"):
+            raise UsageError(
+                f"{file}:{source.line(name)}: {name} is neither a function nor an expression of sympy: write one, "
+                f"def {kind_of_name(name) or name}(q): ..."
+            ) from None
+        return ["*"], []
+
+
+def _with_object(source: PythonText, file: str, name: str) -> str:
+    """A method by the name of an object that the text makes, where its class needs numbers.
+
+    Raises:
+        UsageError: the class needs them, and the text makes no object.
+    """
+    of_class, _, method = name.partition(".")
+    if name not in source.functions or not (needed := needed_by(source.tree, of_class)):
+        return name
+    if objects := objects_of(source.tree, of_class):
+        return f"{objects[0]}.{method}" if method else objects[0]
+    lower = of_class.lower()
+    raise UsageError(
+        f"{file}: {of_class} takes {', '.join(needed)}: make one in the file, {lower} = {of_class}(...), and name "
+        f"{lower}{method and '.'}{method}"
     )
 
 
 def split_name(path: str) -> tuple[str, str | None]:
-    """The file and the function in FILE:FUNCTION."""
+    """The file and the function in FILE:FUNCTION, or FILE:OBJECT.METHOD."""
     file, colon, function = path.rpartition(":")
-    return (file, function) if colon and function.isidentifier() and not os.path.exists(path) else (path, None)
+    is_name = function.isidentifier() or (
+        file.endswith((".py", ".ipynb")) and all(one.isidentifier() for one in function.split("."))
+    )
+    return (file, function) if colon and is_name and not os.path.exists(path) else (path, None)
 
 
-def likely_function(source: PythonText, file: str) -> str:
-    """The only function, the one named like a kind or like the file, or the last one."""
-    names = list(source.functions)
-    if not names:
-        hint = "; a method is judged by a function that calls it: def jacobian(q): return Robot().jacobian(q)"
-        raise UsageError(f"{file}: there is no function in this file{hint if source.has_classes else ''}")
-    stem = Path(file).stem
-    for wanted in (lambda name: name == stem, lambda name: kind_of_name(name) is not None):
-        chosen = [name for name in names if wanted(name)]
-        if len(chosen) == 1:
-            return chosen[0]
-    return names[-1]
+def likely_function(source: PythonText, file: str, kind: str | None = None) -> str:
+    """The function named like its kind, or like the file, or the last one.
+
+    Methods are looked at where no function has such a name; then names that are no functions until the text is run.
+    """
+    plain = [name for name, one in source.functions.items() if not one.is_method]
+    methods = [name for name, one in source.functions.items() if one.is_method and one.names]
+    made = [name for name, is_made in source.assigned.items() if is_made]
+    formulas = [name for name in source.assigned if kind_of_name(name)]
+    for names in (plain, methods, made, formulas):
+        of_kinds = {name: kind_of_name(name) for name in names}
+        for chosen in (
+            [name for name in names if kind and of_kinds[name] == kind],
+            [name for name in names if name == Path(file).stem],
+            [name for name in names if of_kinds[name]],
+        ):
+            if len({source.functions[name].node if name in source.functions else name for name in chosen}) == 1:
+                return chosen[-1]  # a method by the name of an object, where there is one
+    several = [name for name in (*plain, *methods) if kind_of_name(name)]
+    if names := several or plain or made:
+        return names[-1]
+    if resting := [name for name in source.functions if kind_of_name(name)]:
+        word = kind_of_name(resting[-1])
+        raise UsageError(
+            f"{file}: {resting[-1]} takes no joint angles: write a function that sets them and calls it, "
+            f"def {word}(q): ..."
+        )
+    hint = f"; name one of its methods: {file}:{methods[0]}" if methods else ""
+    raise UsageError(f"{file}: there is no function in this file{hint}")
 
 
 _WORDS = {
@@ -346,8 +414,8 @@ _WORDS = {
 
 
 def kind_of_name(name: str) -> str | None:
-    """The kind of formula that a name tells: of a function, a file or an output."""
-    lower = name.lower()
+    """The kind of formula that a name tells: of a function, a method, a file or an output."""
+    lower = name.rpartition(".")[2].lower()
     if "forward_kin" in lower or "fkin" in lower:
         return "kinematics"
     for kind in ("controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics"):

@@ -99,7 +99,7 @@ def _verdict_of(
     formula = (
         f
         if isinstance(f, Formula)
-        else from_file(f, sandbox=PythonProcess)
+        else from_file(f, kind=kind, sandbox=PythonProcess)
         if isinstance(f, (str, os.PathLike))
         else from_callable(f)
     )

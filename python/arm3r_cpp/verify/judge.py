@@ -25,7 +25,7 @@ from .explain.repair import Repair, cover, influential, tried, wrong_entries
 from .explain.terms import difference_words
 from .formula import Formula
 from .kinds import SPATIAL, Kind, entry_name
-from .meaning import assumed, doubted, is_right_as_it_stands, meant, ways, with_output, wrong_count
+from .meaning import as_called, assumed, doubted, is_right_as_it_stands, meant, ways, wrong_count
 from .names import slot_of
 from .truth.three_r import FOLLOWING_WORDS
 from .verdict import Finding, Verdict
@@ -58,7 +58,7 @@ def judge(
     """
     kind = truth.allowing(kind)
     try:
-        formula = with_output(formula, kind, truth)
+        formula = as_called(formula, kind, truth)
         truth = assumed(formula, kind, truth)
         cases = meant(formula, kind, truth)
         values = cases[0].values(cases[0].second)
@@ -299,6 +299,8 @@ def _found(case: Comparison) -> list[str]:
         found.append(f"outputs in the order {', '.join(formula.outputs)}")
     if formula.output is not None:
         found.append(f"its output {formula.output + 1}")
+    if formula.as_columns:
+        found.append("with vectors as columns")
     if formula.given:
         found.append(f"with {', '.join(sorted(formula.given))} as it is given")
     if case.degrees:

@@ -38,7 +38,7 @@ KINDS = {
         Kind("mass", "mass matrix", ("q",), "kg m^2", ("nxn",), "M"),
         Kind("coriolis", "Coriolis and centrifugal torque", ("q", "qd"), "N m", ("n", "nxn"), "h"),
         Kind("inverse", "inverse dynamics", ("q", "qd", "qdd"), "N m", ("n",), "t"),
-        Kind("forward", "forward dynamics", ("q", "qd", "tau"), "rad/s^2", ("n",), "qdd"),
+        Kind("forward", "forward dynamics", ("q", "qd", "tau"), "rad/s^2", ("n", "2n"), "qdd"),
         Kind("controller", "controller", ("q", "qd"), "N m", ("n",), "t"),
     )
 }
@@ -51,7 +51,7 @@ def entry_name(kind: Kind, entry: Sequence[int]) -> str:
 
 def shape_of(word: str, joints: int) -> tuple[int, ...]:
     """The shape that "3xn" means for an arm with so many joints."""
-    return tuple(joints if part == "n" else int(part) for part in word.split("x"))
+    return tuple(joints * int(part[:-1] or 1) if part.endswith("n") else int(part) for part in word.split("x"))
 
 
 def standard_form(kind: Kind, values: Floats, joints: int, qd: Floats | None) -> Floats:
@@ -72,8 +72,24 @@ def standard_form(kind: Kind, values: Floats, joints: int, qd: Floats | None) ->
             got = "x".join(map(str, shape)) or "1"
             raise UsageError(f"returns {got} numbers, where a {kind.words} has {names}")
         return values.reshape(len(values), *flat)
+    if kind.name == "forward" and qd is not None and shape == (2 * joints,):
+        return _without_rates(values, qd)
     if kind.name == "kinematics" and shape == (4, 4):
         return values[:, :3, 3]
     if kind.name == "coriolis" and len(shape) == 2 and qd is not None:
         return np.einsum("nij,nj->ni", values, qd)
     return values
+
+
+def _without_rates(values: Floats, qd: Floats) -> Floats:
+    """The accelerations of the derivative of a state.
+
+    Raises:
+        UsageError: its first half is not qd.
+    """
+    joints = qd.shape[1]
+    if not np.allclose(values[:, :joints], qd, rtol=1e-9, atol=1e-9):
+        raise UsageError(
+            f"returns {2 * joints} numbers, the derivative of the state (q, qd), and the first half is not qd"
+        )
+    return values[:, joints:]

@@ -24,11 +24,15 @@ _DYNAMIC = ("mass", "coriolis", "inverse", "forward")
 _MOST_OUTPUTS = 4
 
 
-def with_output(formula: Formula, kind: Kind, truth: Any) -> Formula:
-    """A function that returns several results, with the one that fits by its shape, and by fewest wrong entries."""
+def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
+    """A function that fails with plain vectors with columns, where it takes these.
+
+    One that returns several results, with the one that fits by its shape, and by fewest wrong entries.
+    """
     if formula.language != "python" or formula.output is not None or _has_fitting_shape(formula, kind, truth):
         return formula
-    others = [replace(formula, output=output) for output in range(_MOST_OUTPUTS)]
+    outputs = (None, *range(_MOST_OUTPUTS))
+    others = [replace(formula, output=one, as_columns=columns) for columns in (False, True) for one in outputs]
     fitting = [one for one in others if _has_fitting_shape(one, kind, truth)]
     return min(fitting, key=lambda one: wrong_count(one, kind, truth), default=formula)
 

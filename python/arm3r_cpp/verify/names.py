@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from ..errors import UsageError
 from .kinds import Kind
+from .samples import STATE
 
 _ANGLE = r"(?:q|Q|qs|th|theta|thetas|phi|alpha|ang|angle|angles|joint|joints|theta_?vec|q_?vec|config|conf)"
 _RATE = r"(?:qd|dq|qdot|q_dot|qp|thd|dth|thetad|dtheta|theta_?dot|thdot|w|omega|v|vel|rates?|qvel|q_?dots?)"
@@ -50,6 +51,13 @@ _LETTERS = {
 }
 _PARAMETER = re.compile(rf"({'|'.join(sorted(_LETTERS, key=len, reverse=True))})_?(\d)(?:_?(c|com|cm))?")
 _GRAVITY = re.compile(r"g0?|grav|gravity|G|g_?acc")
+
+_STATE = re.compile(r"x|X|z|s|y|state|states|xs|x_?vec")
+_TIME = re.compile(r"t|time")
+TIME = "time"
+_UNUSED = re.compile(r"(d{0,2}q|q_?d{0,2}(dot|p)?|q|d{0,2}th|theta|th|tau|torque).*")
+"""States that a function of several kinds takes: M, C and g from one function of q and qd."""
+_WITHOUT = ("gravity", "mass", "coriolis", "inverse")
 
 SHORT = {
     "length2": "a2",
@@ -113,12 +121,19 @@ def slots_of(
         UsageError: the names do not say it.
     """
     found: list[tuple[str, int | None] | None] = []
-    for name in arguments:
+    has_state = "qd" in kind.inputs and any(_STATE.fullmatch(name) for name in arguments)
+    has_angles = "tau" not in kind.inputs and any((slot_of(name) or "-")[0] == "q" for name in arguments)
+    for place, name in enumerate(arguments):
         slot = slot_of(name)
-        if slot and slot[0] in kind.inputs and (slot[1] is None or slot[1] < joints):
+        if has_state and _STATE.fullmatch(name) and name not in parameters:
+            found.append((STATE, None))
+        elif _TIME.fullmatch(name) and place in (0, len(arguments) - 1) and (has_state or has_angles):
+            found.append((TIME, None))
+        elif slot and slot[0] in kind.inputs and (slot[1] is None or slot[1] < joints):
             found.append(slot)
         else:
-            found.append((name, -1) if name in parameters else None)
+            is_unused = slot and slot[1] is None and kind.name in _WITHOUT and _UNUSED.fullmatch(name)
+            found.append((name, -1) if name in parameters else slot if is_unused else None)
     in_order: list[list[tuple[str, int | None]]] = [
         [(vector, None) for vector in kind.inputs],  # q, qd, ... in the order of the field
         [(vector, joint) for vector in kind.inputs for joint in range(joints)],
@@ -134,4 +149,6 @@ def slots_of(
             f"{', '.join(f'{kind.inputs[0]}{n + 1}' for n in range(joints))}, and parameters such as a2, m3, g; "
             f"--args {','.join(kind.inputs)},... says what the arguments are, --set {unknown[0]}=VALUE gives it a value"
         )
+    if has_state and "tau" in kind.inputs and not any(slot and slot[0] == "tau" for slot in found):
+        raise UsageError(f"{', '.join(arguments)}: a {kind.words} takes the torque, too, such as f(t, x, u)")
     return [slot for slot in found if slot is not None]

@@ -9,6 +9,8 @@ import numpy as np
 from .._native import Floats
 
 VECTORS = ("q", "qd", "qdd", "tau")
+STATE = "state"
+"""q and qd in one vector, as a solver of differential equations has them."""
 
 
 @dataclass
@@ -34,6 +36,8 @@ class Samples:
 
 def columns(vector: str, joints: int) -> tuple[int, ...]:
     """Where a joint vector stands in the table."""
+    if vector == STATE:
+        return (*columns("q", joints), *columns("qd", joints))
     first = VECTORS.index(vector) * joints
     return tuple(range(first, first + joints))
 
