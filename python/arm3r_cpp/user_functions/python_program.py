@@ -232,7 +232,7 @@ class PythonProgram:
         except (ProgramError, KeyboardInterrupt):
             raise
         except ModuleNotFoundError as error:
-            if error.name == __name__.partition(".")[0]:  # that is hidden from work of one's own
+            if error.name == __name__.partition(".")[0]:  # hidden from what may not import it
                 raise ProgramError(*self._describe(error)) from None
             raise Unread(f"imports {error.name}, which is not installed here", self._line(error)) from None
         except BaseException as error:
