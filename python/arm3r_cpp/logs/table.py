@@ -1,4 +1,4 @@
-"""Reads a text file of named columns: parted by commas, semicolons, tabs or spaces, with points or decimal commas."""
+"""Reads a file of named columns: arrays, or a text parted by commas, semicolons, tabs or spaces."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import codecs
 import csv
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from .._files import regular
 from .._messages import place
 from .._native import Floats
 from ..errors import UsageError
+from .arrays import ENDINGS, Cells, read_arrays
 
 MOST_ROWS = 1_000_000
 MOST_SHOWN = 80  # characters of a cell, in a message
@@ -34,8 +35,10 @@ class Table:
     """As they stand in the file; 1, 2, ... where it has none."""
     lines: list[int]
     """Of the rows."""
-    rows: list[list[str]]
+    rows: Sequence[list[str]]
     decimal_comma: bool
+    numbers: Floats | None = None
+    """Of a file that holds no text."""
 
     def column(self, index: int) -> Floats:
         """The numbers of a column; NaN where a cell is empty.
@@ -43,6 +46,8 @@ class Table:
         Raises:
             UsageError: a cell holds no number.
         """
+        if self.numbers is not None:
+            return self.numbers[:, index]
         found = np.empty(len(self.rows))
         for row, cells in enumerate(self.rows):
             cell = cells[index].strip()
@@ -56,12 +61,15 @@ class Table:
 
 
 def read_table(path: str | os.PathLike[str]) -> Table:
-    """The cells of a file. Blank lines and comments, after # or %, are passed over.
+    """The cells of a file. Blank lines and comments of a text, after # or %, are passed over.
 
     Raises:
         UsageError: the file cannot be read, or a row has more or fewer cells than the first line.
     """
     file = os.fspath(path)
+    if file.endswith(ENDINGS):
+        names, numbers = read_arrays(file)
+        return Table(file, names, [*range(1, len(numbers) + 1)], Cells(numbers), False, numbers)
     comments, lines = _parted(file, _text(file).splitlines())
     if not lines:
         raise UsageError(f"{file}: the file has no rows", code="file.log")

@@ -13,12 +13,13 @@ import numpy as np
 from ..._messages import place
 from ..._native import Floats
 from ...errors import UsageError
+from ...logs.arrays import ENDINGS as ARRAYS
 from ...logs.names import Column, columns_of
 from ...logs.table import MOST_SHOWN, Table, read_table
 from ..kinds import KINDS, Kind
 from ..names import quantities_of
 
-ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".log")
+ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".log", *ARRAYS)
 LARGEST = 1e12  # of a number
 _STATES = re.compile(r"(q|qd|qdd|tau)\d")
 _ENTRIES = {
@@ -117,7 +118,7 @@ def is_known(name: str) -> bool:
 
 
 def read_log(path: str | os.PathLike[str], called: Mapping[str, str] | None = None) -> Log:
-    """The numbers of a text file with named columns. Rows with NaN or infinity are left out.
+    """The numbers of a file with named columns. Rows with NaN or infinity are left out.
 
     Args:
         called: what a column is, q1 or J12, perhaps with a unit in brackets, by its name in the file.
