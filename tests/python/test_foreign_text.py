@@ -46,9 +46,9 @@ def test_what_does_harm_is_escaped_and_what_does_not_stays() -> None:
 RAISES = "def gravity(q):\n    raise ValueError(%r)\n"
 ANSWERS = '''import json, os, sys
 def gravity(q):
-    frame = sys._getframe()
-    while "answers" not in frame.f_locals: frame = frame.f_back
-    stream, head = frame.f_locals["answers"], {HEAD}
+    frame, found = sys._getframe(), {}
+    while frame: found, frame = {**frame.f_locals, **found}, frame.f_back
+    stream, head = found["answers"], {HEAD}
     text = head if isinstance(head, bytes) else json.dumps(head).encode()
     stream.write(__import__("struct").pack("<II", *(LENGTHS or (len(text), len({BODY})))) + text + {BODY})
     stream.flush()
@@ -59,7 +59,7 @@ def gravity(q):
 def answering(head: str, body: str = "b''", lengths: str = "None") -> str:
     """A formula that answers its judge itself."""
     text = ANSWERS.replace("{HEAD}", head).replace("{BODY}", body).replace("LENGTHS", lengths)
-    return text.replace("ROWS", "len(frame.f_locals['table'])")
+    return text.replace("ROWS", "len(found['table'])")
 
 
 def test_a_message_of_a_formula_forges_no_line(tmp_path: Path, capsys: Any) -> None:

@@ -241,13 +241,6 @@ def test_a_mistake_is_said_in_these_words(file: str, right: str, wrong: str, wor
     assert result == "named" and words in verdict, verdict
 
 
-def test_a_method_is_judged_through_a_function(tmp_path: Path) -> None:
-    path = tmp_path / "robot.py"
-    path.write_text("class Robot:\n    def jacobian(self, q):\n        return q\n")
-    with pytest.raises(arm3r.UsageError, match="a method is judged by a function that calls it: def"):
-        verify.jacobian(path)
-
-
 @pytest.mark.parametrize(
     ("wrong", "new"),
     [

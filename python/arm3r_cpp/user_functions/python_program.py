@@ -7,6 +7,7 @@ import builtins
 import contextlib
 import inspect
 import io
+import sys
 import traceback
 import warnings
 from collections.abc import Iterator, Mapping
@@ -232,7 +233,7 @@ class PythonProgram:
         except (ProgramError, KeyboardInterrupt):
             raise
         except ModuleNotFoundError as error:
-            if error.name == __name__.partition(".")[0]:  # hidden from what may not import it
+            if sys.modules.get((error.name or "").partition(".")[0], error) is None:  # it is hidden from this file
                 raise ProgramError(*self._describe(error)) from None
             raise Unread(f"imports {error.name}, which is not installed here", self._line(error)) from None
         except BaseException as error:
