@@ -285,6 +285,12 @@ def test_ctrl_c_ends_the_server_cleanly(folder: Path, scripts: Path, tmp_path: P
     assert process.stderr.read() == ""
 
 
+def test_ctrl_c_is_what_it_was_when_the_server_has_ended() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    server.serve("", port=0, browser=False, say=lambda line: signal.raise_signal(signal.SIGINT))
+    assert signal.getsignal(signal.SIGINT) is before
+
+
 # ---- the guided stops -----------------------------------------------------------------------------------------------
 
 

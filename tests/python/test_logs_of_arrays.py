@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
-from arm3r_cpp.errors import UsageError
+from arm3r_cpp.errors import UnjudgedError, UsageError
+from arm3r_cpp.logs.mat_file import MatFile
 from random_scenarios import sample_seed
+from test_foreign_files import mutated
 
 ROWS = 40
 
@@ -88,6 +91,54 @@ def test_arrays_of_objects_are_not_opened(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", np.array([{"q": 1}], object), allow_pickle=True)
     with pytest.raises(UsageError, match="cannot be read"):
         verify.gravity(tmp_path / "a.npy")
+
+
+def test_two_arrays_of_a_name_are_no_guess(tmp_path: Path, arrays) -> None:
+    io = pytest.importorskip("scipy.io")
+    io.savemat(tmp_path / "two.mat", {"first": arrays, "second": arrays})
+    with pytest.raises(UsageError, match="two arrays are named 'time'"):
+        verify.gravity(tmp_path / "two.mat")
+
+
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_numbers_of_matlab_files_are_those_that_scipy_reads(tmp_path: Path, is_packed: bool) -> None:
+    io, rng = pytest.importorskip("scipy.io"), np.random.default_rng(sample_seed())
+    kinds = ["f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"]
+    arrays = {f"of_{kind}": rng.integers(0, 99, rng.integers(2, 5, 3)).astype(kind) for kind in kinds}
+    held = {"a": arrays["of_f8"], "inner": {"b": arrays["of_f4"][0]}, "text": "abc", "z": 1j * np.ones(3)}
+    io.savemat(tmp_path / "a.mat", {**arrays, "s": held, "cells": np.array([1, "x"], object)}, do_compression=is_packed)
+    found = MatFile((tmp_path / "a.mat").read_bytes()).variables
+    other = io.loadmat(tmp_path / "a.mat", simplify_cells=True)
+    for name in arrays:
+        assert np.array_equal(found[name], other[name].squeeze()) and found[name].ndim > 0
+    assert np.array_equal(found["s"]["a"], arrays["of_f8"].squeeze()) and np.array_equal(
+        found["s"]["inner"]["b"], held["inner"]["b"].squeeze()
+    )
+    assert found["s"]["text"] is None and found["s"]["z"] is None and found["cells"] is None
+
+
+def flipped(content: bytes, chance: random.Random) -> bytes:
+    changed = bytearray(content)
+    for _ in range(chance.randint(1, 5)):
+        changed[chance.randrange(min(len(changed), chance.choice([300, 10**6])))] = chance.randrange(256)
+    return bytes(changed)
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(1000, marks=[pytest.mark.gate, pytest.mark.random])])
+def test_random_changes_of_files_are_one_line_each(tmp_path: Path, arrays, count: int) -> None:
+    """Some end a process that reads them by scipy."""
+    chance = random.Random(sample_seed())
+    files = [written(tmp_path, ending, arrays) for ending in ("npz", "npy", "mat", "struct.mat")]
+    whole = [(path.suffix, path.read_bytes()) for path in files]
+    whole.append((".npy", whole[0][1]))
+    for _ in range(count):
+        ending, content = chance.choice(whole)
+        path = tmp_path / f"changed{ending}"
+        path.write_bytes(chance.choice([mutated, flipped])(content, chance))
+        try:
+            verify.gravity(path)
+        except (UsageError, UnjudgedError) as error:
+            assert "\n" not in str(error)
 
 
 @pytest.mark.parametrize("arrays", [{"q": np.zeros(3)}, {"text": np.array(["a"])}, {}, {"q": np.zeros((300, 300))}])

@@ -12,6 +12,10 @@ from arm3r_cpp.blocks.block import Block
 from arm3r_cpp.errors import UnjudgedError, UsageError
 
 FILES = {path.stem: path.read_text() for path in (Path(__file__).parent / "formulas/python_idioms").glob("*.py")}
+ROBOT = FILES["jacobian_method"].replace("l2=1.0, l3=1.0", "l2, l3")
+FILES["jacobian_object"] = f"{ROBOT}robot = Robot(l2=1.0, l3=1.0)\n"
+LINEAR = "np.cross(T[:3, 2], p - T[:3, 3])"
+FILES["jacobian_six_rows"] = FILES["jacobian_reduce"].replace(LINEAR, f"np.r_[{LINEAR}, T[:3, 2]]")
 OF_EXTRAS = {"scipy": "scipy", "sympy": "sympy", "lambdify": "sympy", "dynamicsymbols": "sympy"}
 
 
@@ -50,9 +54,6 @@ def test_a_mistake_in_it_is_found(name: str, judged) -> None:
     text = before + wrong + behind
     verdict = judged(text, name.partition("_")[0])
     assert not verdict.ok and all(one.entry for one in verdict.findings), str(verdict)
-
-
-ROBOT = FILES["jacobian_object"].partition("\nrobot =")[0]
 
 
 def test_the_function_of_a_kind_is_found_among_others(judged) -> None:
@@ -172,3 +173,24 @@ def test_an_object_that_is_called_is_a_law_and_starts_anew_in_each_run(tmp_path:
     scenario["time"] = {"stop": 0.1, "log_every": 0.01}
     runs = [scenario.run(controller=path) for _ in range(2)]
     assert np.array_equal(runs[0]["tau"], runs[1]["tau"]) and runs[0]["tau"][0, 0] == 1 and runs[0]["tau"][-1, 0] > 5
+
+
+@pytest.mark.parametrize("head", ["raise ValueError('no')", "self.calls = undefined"])
+def test_a_law_whose_object_cannot_be_made_is_one_line(tmp_path: Path, head: str) -> None:
+    (tmp_path / "law.py").write_text(LAW.replace("self.calls = 0", head))
+    with pytest.raises(arm3r.ControllerError, match=r"law.py:\d+: .*(ValueError|NameError)"):
+        arm3r.Scenario().run(controller=tmp_path / "law.py")
+
+
+def test_what_partial_makes_is_a_law(tmp_path: Path) -> None:
+    text = "from functools import partial\ndef f(q, qd, k):\n    return [k, 0.0, 0.0]\nlaw = partial(f, k=2.0)\n"
+    (tmp_path / "law.py").write_text(text)
+    scenario = arm3r.Scenario()
+    scenario["time"] = {"stop": 0.05, "log_every": 0.01}
+    assert scenario.run(controller=f"{tmp_path}/law.py:law")["tau"][0, 0] == 2
+
+
+def test_a_text_that_fails_before_it_makes_a_law_says_why(tmp_path: Path) -> None:
+    (tmp_path / "law.py").write_text("from functools import partial\nlaw = partial(undefined, k=2.0)\n")
+    with pytest.raises(arm3r.ControllerError, match=r"law.py:2: .*NameError: name 'undefined' is not defined"):
+        Block.read(tmp_path / "law.py")

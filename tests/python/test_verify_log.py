@@ -144,3 +144,14 @@ def is_true(sentence: str, change: Any, place: tuple[int, int]) -> bool:
         if abs(said - values[place]) > allowed + 1e-9:
             return False
     return True
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [("gravity", "no column is that of a gravity torque; name them g1.."), ("controller", "is judged as a function")],
+)
+def test_a_kind_that_the_log_has_not_is_said(tmp_path: Any, kind: str, words: str) -> None:
+    rows = "\n".join(",".join(map(str, row)) for row in np.random.default_rng(3).uniform(-1, 1, (12, 4)))
+    (tmp_path / "log.csv").write_text(f"q1,q2,q3,J11\n{rows}\n")
+    with pytest.raises(arm3r.UsageError, match=words):
+        verify.formula_verdict(tmp_path / "log.csv", kind)

@@ -51,6 +51,8 @@ class Block:
         else:
             self.line = PythonText(text, file).line(formula.name)
             self._with_default = set(formula.optional)
+            if self.arguments == ["*"]:  # the file may fail before it makes a function: this says why
+                self._executed()
         check_numbers(self._of_arm, f"{file}:{self.line}")
 
     @classmethod
@@ -118,9 +120,9 @@ class Block:
         try:
             with _importing_from(_folder_of(self.file)):
                 exec(compile(self.text, self.file, "exec", dont_inherit=True), namespace)
+                return callable_of(namespace, self.function)
         except (Exception, SystemExit) as error:
             raise ControllerError(failure(self._place, error), code="run.controller") from error
-        return callable_of(namespace, self.function)
 
 
 def _folder_of(file: str) -> str:

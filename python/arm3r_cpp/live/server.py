@@ -5,7 +5,8 @@ from __future__ import annotations
 import signal
 import threading
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
@@ -37,6 +38,19 @@ class _Server(ThreadingHTTPServer):
         self.is_to_end = True
 
 
+@contextmanager
+def _ended_by_ctrl_c(server: _Server) -> Iterator[None]:
+    """In the main thread, the only one that a signal reaches."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, server.end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def serve(index: str, *, port: int, browser: bool, say: Callable[[str], None]) -> None:
     """Serve the page until Ctrl-C.
 
@@ -55,9 +69,7 @@ def serve(index: str, *, port: int, browser: bool, say: Callable[[str], None]) -
         raise UsageError(
             f"--port {port}: cannot be used: {error.strerror}; 0 takes a free one", code="usage"
         ) from error
-    if threading.current_thread() is threading.main_thread():  # the only one that a signal reaches
-        signal.signal(signal.SIGINT, server.end)
-    with server:
+    with server, _ended_by_ctrl_c(server):
         address = f"http://{HOST}:{server.server_port}/"
         say(f"{address} shows the page; Ctrl-C ends it")
         if browser:

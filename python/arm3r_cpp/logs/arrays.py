@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
 from .._files import regular
 from .._native import Floats
 from ..errors import UsageError
+from .mat_file import MatFile
 
 ENDINGS = (".npy", ".npz", ".mat")
+_BROKEN = (
+    *(zipfile.BadZipFile, zlib.error, EOFError, KeyError, ValueError, RuntimeError, MemoryError),
+    *(SyntaxError, tokenize.TokenError),  # of the head of a .npy, which is a literal of Python
+)
 _MOST_BYTES = 1 << 30
 _MOST_COLUMNS = 200
 
@@ -40,68 +47,70 @@ def read_arrays(file: str) -> tuple[list[str], Floats]:
     Raises:
         UsageError: the file cannot be read, or its arrays have no rows in common.
     """
-    arrays = dict(_numeric(_loaded(file)))
+    try:
+        return _read(file)
+    except OSError as error:
+        why = str(error.strerror or error)
+    except _BROKEN as error:
+        why = str(error).split("\n")[0][:200] or type(error).__name__
+    raise UsageError(f"{file}: this file cannot be read: {why}", code="file.log")
+
+
+def _read(file: str) -> tuple[list[str], Floats]:
+    """
+    Raises:
+        ValueError: the arrays make no log.
+    """
+    arrays: dict[str, np.ndarray] = {}
+    for name, array in _numeric(_loaded(file)):
+        if name in arrays:
+            raise ValueError(f"two arrays are named {name!r}")
+        arrays[name] = array
     if not arrays:
-        raise _refused(file, "it holds no arrays of numbers")
+        raise ValueError("it holds no arrays of numbers")
     shared = [size for array in arrays.values() for size in set(array.shape)]
     rows = max(shared, key=lambda size: (shared.count(size), size))  # what most arrays have, the longest of these
     if len(arrays) == 1:
         rows = next(iter(arrays.values())).shape[0]
     columns = dict(_columns(arrays, rows))
     if not columns or rows == 1:
-        raise _refused(file, "its arrays have no rows in common")
+        raise ValueError("its arrays have no rows in common")
     if len(columns) > _MOST_COLUMNS:
-        raise _refused(file, f"it has {len(columns)} columns, more than {_MOST_COLUMNS}")
+        raise ValueError(f"it has {len(columns)} columns, more than {_MOST_COLUMNS}")
     return list(columns), np.stack(list(columns.values()), axis=1)
 
 
-def _refused(file: str, why: str) -> UsageError:
-    return UsageError(f"{file}: this file cannot be read: {why}", code="file.log")
-
-
 def _loaded(file: str) -> Any:
-    path = Path(file)
-    try:
-        regular(path)
-        if path.stat().st_size > _MOST_BYTES:
-            raise _refused(file, "it is larger than a gigabyte")
-        if file.endswith(".mat"):
-            return _loaded_by_scipy(file)
-        if file.endswith(".npz"):
-            with zipfile.ZipFile(path) as archive:
-                if sum(one.file_size for one in archive.infolist()) > _MOST_BYTES:
-                    raise _refused(file, "its arrays are larger than a gigabyte")
-            with np.load(path, allow_pickle=False) as arrays:
-                return {name: arrays[name] for name in arrays.files}
-        array = np.load(path, allow_pickle=False, mmap_mode="r")
-        return array if array.dtype.names else {"": array}
-    except OSError as error:
-        raise _refused(file, str(error.strerror or error)) from error
-    except (ValueError, EOFError, KeyError, zipfile.BadZipFile, MemoryError) as error:
-        raise _refused(file, str(error).split("\n")[0][:200] or type(error).__name__) from error
+    """An array, or arrays and structures by their names.
+
+    Raises:
+        OSError: it cannot be opened.
+        Others of `_BROKEN`: it is broken.
+    """
+    path = regular(Path(file))
+    if path.stat().st_size > _MOST_BYTES:
+        raise ValueError("it is larger than a gigabyte")
+    if file.endswith(".mat"):
+        return MatFile(path.read_bytes()).variables
+    if file.endswith(".npz"):
+        with zipfile.ZipFile(path) as archive:
+            if sum(one.file_size for one in archive.infolist()) > _MOST_BYTES:
+                raise ValueError("its arrays are larger than a gigabyte")
+            return {name.removesuffix(".npy"): _array(archive.open(name)) for name in archive.namelist()}
+    array = _array(path.open("rb"))
+    return array if array.dtype.names else {"": array}
 
 
-def _loaded_by_scipy(file: str) -> Any:
-    try:
-        from scipy.io import loadmat
-    except ImportError:
-        raise _refused(file, "scipy reads it: pip install 'arm3r_cpp[mat]'; or write a CSV") from None
-    try:
-        return loadmat(file, simplify_cells=True)
-    except NotImplementedError:
-        raise _refused(file, "it is of version 7.3; in MATLAB: save('log.mat', 'q', 'tau', '-v7')") from None
-    except OSError:
-        raise
-    except Exception as error:  # whatever scipy meets in a broken file
-        raise _refused(file, f"{type(error).__name__}: {str(error)[:200]}") from error
+def _array(stream: IO[bytes]) -> np.ndarray:
+    with stream:
+        return np.lib.format.read_array(stream, allow_pickle=False)
 
 
 def _numeric(found: Any, name: str = "") -> Iterator[tuple[str, np.ndarray]]:
     """The arrays of numbers of a file, and of its structures, by their own names."""
     if isinstance(found, Mapping):
         for key, value in found.items():
-            if not str(key).startswith("__"):
-                yield from _numeric(value, str(key))
+            yield from _numeric(value, key)
     elif isinstance(found, np.ndarray) and found.dtype.names:
         for key in found.dtype.names:
             yield from _numeric(found[key], key)

@@ -7,7 +7,6 @@ import os
 import struct
 import sys
 import time
-from collections.abc import Callable
 from typing import IO, Any, NoReturn
 
 import numpy as np
@@ -67,33 +66,29 @@ def say_what_is_barred(event: str, _: object) -> None:
 
 def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> None:
     head, body = receive(requests)
-    if head["rows"] is None:
-        _send_result(answers, lambda: ({"arguments": program.arguments()}, b""))
-        return
-    table = np.frombuffer(body).reshape(head["rows"], -1) if head["rows"] else np.zeros((0, 1))
-    slots = tuple(
-        Given(one["given"]) if isinstance(one, dict) else one if isinstance(one, int) else tuple(one)
-        for one in head["slots"]
-    )
-    call = Call(slots, head["lifted"], head["output"], head["outside"], head["as_columns"])
-
-    def result() -> tuple[dict[str, Any], bytes]:
-        values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
-        return {"shape": values.shape}, np.ascontiguousarray(values).tobytes()
-
-    _send_result(answers, result)
-
-
-def _send_result(answers: IO[bytes], result: Callable[[], tuple[dict[str, Any], bytes]]) -> None:
     try:
-        head, body = result()
-        send(answers, {**head, "seconds": time.process_time()}, body)
+        found, numbers = _result(program, head, body)
+        send(answers, {**found, "seconds": time.process_time()}, numbers)
     except ProgramError as error:
         is_unread = isinstance(error, Unread)
         head = {"error": str(error), "line": error.line, "unread": is_unread, "seconds": time.process_time()}
         send(answers, head, b"")
     except MemoryError:
         send(answers, {"error": "needs too much memory", "line": None}, b"")
+
+
+def _result(program: PythonProgram, head: dict[str, Any], body: bytes) -> tuple[dict[str, Any], bytes]:
+    """The names of arguments, for a request without rows; or the values at the states of the body."""
+    if head["rows"] is None:
+        return {"arguments": program.arguments()}, b""
+    table = np.frombuffer(body).reshape(head["rows"], -1) if head["rows"] else np.zeros((0, 1))
+    slots = tuple(
+        Given(one["given"]) if isinstance(one, dict) else one if isinstance(one, int) else tuple(one)
+        for one in head["slots"]
+    )
+    call = Call(slots, head["lifted"], head["output"], head["outside"], head["as_columns"])
+    values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
+    return {"shape": values.shape}, np.ascontiguousarray(values).tobytes()
 
 
 def send(stream: IO[bytes], head: dict[str, Any], body: bytes) -> None:

@@ -38,8 +38,8 @@ def functions_of(tree: ast.Module) -> dict[str, Function]:
         for name, value in pairs(statement):
             if isinstance(value, ast.Lambda):
                 found[name.id] = _plain(value)
-            elif isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id in classes:
-                found |= _called(name.id, _methods(classes[value.func.id], classes))
+            elif (of_class := _class_of(value)) in classes:
+                found |= _called(name.id, _methods(classes[of_class], classes))
     return found
 
 
@@ -66,12 +66,12 @@ def needed_by(tree: ast.Module, name: str) -> list[str]:
 
 def objects_of(tree: ast.Module, name: str) -> list[str]:
     """The names of the objects of a class that a text makes."""
-    made = ((target.id, value) for statement in tree.body for target, value in pairs(statement))
-    return [
-        target
-        for target, value in made
-        if isinstance(value, ast.Call) and isinstance(value.func, ast.Name) and value.func.id == name
-    ]
+    return [target.id for one in tree.body for target, value in pairs(one) if _class_of(value) == name]
+
+
+def _class_of(value: ast.expr) -> str:
+    """The name of a class, or a function, that a value is made by: Robot(...); "" for another value."""
+    return value.func.id if isinstance(value, ast.Call) and isinstance(value.func, ast.Name) else ""
 
 
 def _plain(node: ast.FunctionDef | ast.Lambda) -> Function:

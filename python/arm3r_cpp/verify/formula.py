@@ -182,7 +182,8 @@ def _is_state(name: str, kind: Kind) -> bool:
 def from_callable(function: Any) -> Formula:
     """A function in memory, or sympy expressions."""
     if is_expression(function):
-        return Formula("expression", "expression", *_of_symbols(function))
+        of_symbols, names = function_of(function)
+        return Formula("expression", "expression", CallableProgram(of_symbols), names)
     if not callable(function):
         raise UsageError(f"a function, a file or sympy expressions are needed, got {type(function).__name__}")
     name = getattr(function, "__name__", type(function).__name__)
@@ -215,11 +216,6 @@ def _with_text(formula: Formula, function: Any, source: PythonText) -> None:
     formula.global_numbers = {name: float(value) for name, value in outside.items() if type(value) in (int, float)}
     namespace = {**getattr(function, "__globals__", {}), **outside}
     formula.program = PythonInMemory(source.text, formula.name, "<formula>", namespace)
-
-
-def _of_symbols(expression: Any) -> tuple[CallableProgram, list[str]]:
-    function, names = function_of(expression)
-    return CallableProgram(function), names
 
 
 def from_file(

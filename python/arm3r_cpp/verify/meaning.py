@@ -25,9 +25,9 @@ _MOST_OUTPUTS = 4
 
 
 def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
-    """A function that fails with plain vectors with columns, where it takes these.
+    """The formula in the way in which it returns what its kind does: given plain vectors or else columns (n, 1).
 
-    One that returns several results, with the one that fits by its shape, and by fewest wrong entries.
+    Of several results the one is taken that fits by its shape, and by fewest wrong entries.
     """
     if formula.language != "python" or formula.output is not None or _has_fitting_shape(formula, kind, truth):
         return formula

@@ -55,9 +55,9 @@ _GRAVITY = re.compile(r"g0?|grav|gravity|G|g_?acc")
 _STATE = re.compile(r"x|X|z|s|y|state|states|xs|x_?vec")
 _TIME = re.compile(r"t|time")
 TIME = "time"
-_UNUSED = re.compile(r"(d{0,2}q|q_?d{0,2}(dot|p)?|q|d{0,2}th|theta|th|tau|torque).*")
-"""States that a function of several kinds takes: M, C and g from one function of q and qd."""
-_WITHOUT = ("gravity", "mass", "coriolis", "inverse")
+_TOGETHER = ("gravity", "mass", "coriolis", "inverse")
+_RATE_OR_TORQUE = re.compile(r"(d{0,2}(q|th)|tau|torque).*")
+"""What a function of several of these kinds takes for the others of them: `M, C, g = dynamics(q, qd)`."""
 
 SHORT = {
     "length2": "a2",
@@ -122,7 +122,7 @@ def slots_of(
     """
     found: list[tuple[str, int | None] | None] = []
     has_state = "qd" in kind.inputs and any(_STATE.fullmatch(name) for name in arguments)
-    has_angles = "tau" not in kind.inputs and any((slot_of(name) or "-")[0] == "q" for name in arguments)
+    has_angles = "tau" not in kind.inputs and any(slot and slot[0] == "q" for slot in map(slot_of, arguments))
     for place, name in enumerate(arguments):
         slot = slot_of(name)
         if has_state and _STATE.fullmatch(name) and name not in parameters:
@@ -132,8 +132,8 @@ def slots_of(
         elif slot and slot[0] in kind.inputs and (slot[1] is None or slot[1] < joints):
             found.append(slot)
         else:
-            is_unused = slot and slot[1] is None and kind.name in _WITHOUT and _UNUSED.fullmatch(name)
-            found.append((name, -1) if name in parameters else slot if is_unused else None)
+            is_of_others = slot and slot[1] is None and kind.name in _TOGETHER and _RATE_OR_TORQUE.fullmatch(name)
+            found.append((name, -1) if name in parameters else slot if is_of_others else None)
     in_order: list[list[tuple[str, int | None]]] = [
         [(vector, None) for vector in kind.inputs],  # q, qd, ... in the order of the field
         [(vector, joint) for vector in kind.inputs for joint in range(joints)],

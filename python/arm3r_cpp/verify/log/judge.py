@@ -83,7 +83,7 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
 
 def _judged(log: Log, kind: Kind, truth: Any, noise: float | None) -> _Candidate:
     """The verdict in the convention in which fewer entries are wrong; a draw goes to that of the arm."""
-    states, entries = log.states(truth.joints), log.entries(kind)
+    states, entries = log.states(truth.joints), log.judged(kind)
     given = {
         quantity: log.columns[name]
         for name, quantity in quantities_of(log.columns).items()

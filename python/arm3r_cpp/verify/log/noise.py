@@ -59,8 +59,10 @@ def quantum(values: Floats) -> float:
     if len(steps) == 0:
         return 0.0
     step = float(steps.min())
-    count = values / step
-    return step if np.abs(count - np.round(count)).max() < 0.01 and step > 1e-6 * np.abs(values).max() else 0.0
+    with np.errstate(all="ignore"):  # a step may be tiny
+        count = values / step
+        off = np.abs(count - np.round(count)).max()
+    return step if off < 0.01 and step > 1e-6 * np.abs(values).max() else 0.0
 
 
 def follows(left: Floats, features: Floats, step: float = 0.0) -> bool:

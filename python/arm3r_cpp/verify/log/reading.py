@@ -27,6 +27,10 @@ _ENTRIES = {
     "mass": r"M_?[(\[]?(\d)[_,]?(\d)[)\]]?", "coriolis": r"h_?(\d)", "kinematics": r"(?:p_?|tip_)([123xyz])",
     "inverse": r"tau(\d)", "forward": r"qdd(\d)",
 }  # fmt: skip
+_CALLED = {
+    "jacobian": "J11..", "gravity": "g1..", "mass": "M11..", "coriolis": "h1..", "kinematics": "p1..",
+    "inverse": "tau1..", "forward": "qdd1..",
+}  # fmt: skip
 
 
 class Log(NamedTuple):
@@ -82,7 +86,8 @@ class Log(NamedTuple):
         if self.left_out:
             lines = ", ".join(map(str, self.left_out[:5])) + (", ..." if len(self.left_out) > 5 else "")
             rows = f"{len(self.left_out)} row{'s' if len(self.left_out) > 1 else ''}"
-            found.append(f"{rows} with NaN or infinity left out: line {lines}")
+            word = "row" if self.file.endswith(ARRAYS) else "line"
+            found.append(f"{rows} with NaN or infinity left out: {word} {lines}")
         return found
 
     def entries(self, kind: Kind) -> dict[tuple[int, ...], Floats]:
@@ -103,8 +108,23 @@ class Log(NamedTuple):
         for name in _ENTRIES:
             if self.entries(KINDS[name]) and not (name == "forward" and self.entries(KINDS["inverse"])):
                 return KINDS[name]
-        needed = "J11.., g1.., M11.., h1.., p1.., tau1.. or qdd1.."
-        raise UsageError(f"{self.file}: no column is judged; name them {needed}{self._hint()}")
+        *others, last = _CALLED.values()
+        raise UsageError(f"{self.file}: no column is judged; name them {', '.join(others)} or {last}{self._hint()}")
+
+    def judged(self, kind: Kind) -> dict[tuple[int, ...], Floats]:
+        """The entries of a kind of formula.
+
+        Raises:
+            UsageError: the log has none.
+        """
+        if kind.name not in _CALLED:
+            raise UsageError(f"{self.file}: a {kind.words} is judged as a function, and not by a log")
+        found = self.entries(kind)
+        if not found:
+            raise UsageError(
+                f"{self.file}: no column is that of a {kind.words}; name them {_CALLED[kind.name]}{self._hint()}"
+            )
+        return found
 
     def _hint(self) -> str:
         """What to say of the columns that are not known."""
