@@ -18,7 +18,7 @@ from arm3r_cpp.exercises.judge import judge_file
 from arm3r_cpp.exercises.mark import RIGHT, UNCLEAR, WRONG, two_digits, word_of
 from arm3r_cpp.exercises.task import FunctionTask, ScenarioTask
 from arm3r_cpp.exercises.tasks import TASKS
-from arm3r_cpp.verify.kinds import KINDS, entry_name
+from arm3r_cpp.verify.kinds import KINDS
 from arm3r_cpp.verify.truth.three_r import ThreeR
 
 SUBMISSIONS = Path(__file__).parent / "submissions"
@@ -166,11 +166,11 @@ def test_a_law_that_is_right_at_the_compared_states_alone_is_wrong_in_the_loop(t
 def test_what_is_right_is_what_verify_takes_for_right(task: FunctionTask) -> None:
     states = task.samples()
     truth = ThreeR(Scenario(task.scenario))
-    due = truth.values(task.kind, "simscape", {"qd": np.zeros_like(states["q"])} | states, {})
+    due = truth.values(KINDS[task.kind], "simscape", {"qd": np.zeros_like(states["q"])} | states, {})
     assert np.abs(task.right(**states) - due).max() < 1e-12 * np.abs(due).max()
     places = list(np.ndindex(due.shape[1:]))
     if len(places[0]) == 2:
-        assert list(task.entries) == [entry_name(KINDS[task.kind], [row + 1, column + 1]) for row, column in places]
+        assert list(task.entries) == [KINDS[task.kind].entry_name([row + 1, column + 1]) for row, column in places]
 
 
 @pytest.mark.parametrize("task", SCENARIOS, ids=lambda task: task.name)

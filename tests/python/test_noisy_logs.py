@@ -80,7 +80,7 @@ def drawn(number: int, rng: np.random.Generator) -> tuple[str, dict[str, Floats]
     """A kind of formula, states, and what is due there."""
     kind = list(NAMES)[number % len(NAMES)]
     at = states(int(rng.integers(200, 2001)), moves=bool(rng.integers(2)), rng=rng)
-    return kind, at, TRUTH.values(kind, TRUTH.convention, at, {}).reshape(len(at["q"]), -1)
+    return kind, at, TRUTH.values(KINDS[kind], TRUTH.convention, at, {}).reshape(len(at["q"]), -1)
 
 
 def right_logs(count: int, seed: int, path: Path) -> None:
@@ -140,7 +140,7 @@ def test_the_friction_of_joints_is_no_mistake_and_is_said(tmp_path: Path) -> Non
     for number in range(6):
         rng = np.random.default_rng([seed, number, 2])
         at = states(int(rng.integers(200, 2001)), moves=bool(rng.integers(2)), rng=rng)
-        due = TRUTH.values("inverse", TRUTH.convention, at, {})
+        due = TRUTH.values(KINDS["inverse"], TRUTH.convention, at, {})
         measured = white(due + friction(at["qd"], rng), 1e-3 * np.abs(due).max(), rng)
         verdict = formula_verdict(written(tmp_path / "log.csv", "inverse", at, measured), "inverse")
         assert verdict.ok, (seed, number, str(verdict))

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from arm3r_cpp.commands import exercise
 from arm3r_cpp.user_functions import start
-from arm3r_cpp.user_functions.nodes import Call, ProgramError
+from arm3r_cpp.user_functions.programs import Call, ProgramError
 from arm3r_cpp.user_functions.python_process import PythonProcess
 from formulas import ways_out
 
@@ -158,7 +158,7 @@ def test_copies_of_a_process_use_the_server_that_it_has_prepared() -> None:
 import os, sys
 import numpy as np
 from arm3r_cpp.user_functions import start
-from arm3r_cpp.user_functions.nodes import Call
+from arm3r_cpp.user_functions.programs import Call
 from arm3r_cpp.user_functions.python_process import PythonProcess
 start.prepare()
 for _ in range(3):
@@ -254,7 +254,7 @@ def test_nothing_outlives_the_judge(tmp_path: Path) -> None:
     """A file that runs for ever ends with the process that has started it, whatever ends that."""
     text = """
 import numpy as np, sys, threading, time
-from arm3r_cpp.user_functions.nodes import Call
+from arm3r_cpp.user_functions.programs import Call
 from arm3r_cpp.user_functions.python_process import PythonProcess
 process = PythonProcess("def gravity(q):\\n    while True: pass\\n", "gravity", "gravity.py")
 threading.Thread(target=lambda: process.evaluate(Call((0,), {}), np.zeros((1, 1))), daemon=True).start()

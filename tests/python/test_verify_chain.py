@@ -14,6 +14,7 @@ import pytest
 from arm3r_cpp import UsageError, verify
 from arm3r_cpp.verify import Chain
 from arm3r_cpp.verify.formula import from_file
+from arm3r_cpp.verify.kinds import KINDS
 from formulas.draws import draws
 from formulas.mutants import mutants
 from numpy.typing import NDArray
@@ -48,8 +49,8 @@ def pinocchio_of(chain: Chain) -> tuple[Any, Any]:
 def compare(chain: Chain, model: Any, data: Any, tip: int) -> None:
     q, qd, qdd, tau = states(chain.joints)
     given = {"q": q, "qd": qd, "qdd": qdd, "tau": tau}
-    ours = {kind: chain.values(kind, "", given, {}, rows=tuple(range(6 if kind == "jacobian" else 3))) for kind in
-            ("jacobian", "kinematics", "gravity", "mass", "coriolis", "inverse", "forward")}  # fmt: skip
+    rows = {kind: tuple(range(6 if kind == "jacobian" else 3)) for kind in KINDS if kind != "controller"}
+    ours = {kind: chain.values(KINDS[kind], "", given, {}, rows=rows[kind]) for kind in rows}
     for row in range(len(q)):
         pin.crba(model, data, q[row])
         mass = np.triu(data.M) + np.triu(data.M, 1).T
@@ -89,10 +90,10 @@ def test_a_urdf_is_read_as_pinocchio_reads_it() -> None:
         data = model.createData()
         tau = pin.rnea(model, data, there, qd[row], qdd[row])
         given = {"q": q[[row]], "qd": qd[[row]], "qdd": qdd[[row]]}
-        assert np.allclose(chain.values("inverse", "", given, {}), tau, rtol=0, atol=1e-10)
+        assert np.allclose(chain.values(KINDS["inverse"], "", given, {}), tau, rtol=0, atol=1e-10)
         pin.framesForwardKinematics(model, data, there)
         tip = data.oMf[model.getFrameId("hand")].translation
-        assert np.allclose(chain.values("kinematics", "", given, {}), tip, rtol=0, atol=1e-12)
+        assert np.allclose(chain.values(KINDS["kinematics"], "", given, {}), tip, rtol=0, atol=1e-12)
 
 
 def transform(word: str, row: list[float], value: float, is_revolute: bool) -> Floats:
@@ -117,7 +118,7 @@ def test_a_table_is_read_as_the_textbooks_write_it(name: str) -> None:
         whole = np.eye(4)
         for line, row, value in zip(cells, rows, [*state, 0.0], strict=False):
             whole = whole @ transform(lines[0], row, value, line[0] != "P")
-        tip = chain.values("kinematics", "", {"q": state[None], "qd": state[None]}, {})[0]
+        tip = chain.values(KINDS["kinematics"], "", {"q": state[None], "qd": state[None]}, {})[0]
         assert np.allclose(tip, whole[:3, 3], rtol=0, atol=1e-12)
         assert np.allclose(chain.pose("", state[None])[0][0], whole[:3, :3], rtol=0, atol=1e-12)
 
@@ -216,7 +217,7 @@ def wrong_entries(text: str, kind: str, chain: Chain) -> set[tuple[int, ...]] | 
     try:
         exec(text, names)
         for q in states(chain.joints)[0]:
-            due = chain.values(kind, "", {"q": q[None], "qd": q[None]}, {})[0]
+            due = chain.values(KINDS[kind], "", {"q": q[None], "qd": q[None]}, {})[0]
             got = np.asarray(names[kind](q), float)
             if got.shape != due.shape or not np.isfinite(got).any() or np.abs(got).max() > 1e9 * np.abs(due).max():
                 return None
@@ -262,7 +263,7 @@ def test_terms_of_a_black_box_carry_the_tables_names() -> None:
 
     def wrong(q: Any) -> Any:
         q = np.asarray(q)
-        values = chain.jacobian(q[None])[0, :3].copy()
+        values = chain.geometric_jacobian(q[None])[0, :3].copy()
         values[2, 1] -= -0.425 * np.cos(q[1])
         return values
 
@@ -343,14 +344,14 @@ def test_what_hangs_beside_the_chain_is_counted(branched: Path) -> None:
     model.inertias[frame.parentJoint] = model.inertias[frame.parentJoint] + point
     data, (q, qd, qdd, _) = model.createData(), states(2)
     given = {"q": q, "qd": qd, "qdd": qdd}
-    torque, mass = (chain.values(kind, "", given, {}) for kind in ("inverse", "mass"))
+    torque, mass = (chain.values(KINDS[kind], "", given, {}) for kind in ("inverse", "mass"))
     for row in range(len(q)):
         assert torque[row] == pytest.approx(pin.rnea(model, data, q[row], qd[row], qdd[row]), rel=1e-12, abs=1e-12)
         inertia = pin.crba(model, data, q[row])
         assert mass[row] == pytest.approx(np.triu(inertia) + np.triu(inertia, 1).T, rel=1e-12, abs=1e-12)
         pin.framesForwardKinematics(model, data, q[row])
         place = turn @ data.oMf[model.getFrameId("tool")].translation
-        assert chain.values("kinematics", "", given, {})[row] == pytest.approx(place, abs=1e-14)
+        assert chain.values(KINDS["kinematics"], "", given, {})[row] == pytest.approx(place, abs=1e-14)
 
 
 def test_a_tree_asks_for_the_tip(branched: Path, command: Any) -> None:

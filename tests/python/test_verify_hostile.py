@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.user_functions import start
-from arm3r_cpp.user_functions.nodes import Call, Edit, ProgramError
+from arm3r_cpp.user_functions.programs import Call, Edit, ProgramError
 from arm3r_cpp.user_functions.python_in_memory import PythonInMemory
 from arm3r_cpp.user_functions.python_process import PythonProcess
 from formulas.hostile import files

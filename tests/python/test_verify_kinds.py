@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
+from arm3r_cpp.verify.kinds import KINDS
 
 ARM = arm3r.Scenario().arm
 DYNAMICS = """
@@ -249,3 +253,17 @@ def test_a_small_mistake_is_no_step_of_differences(small: str, tmp_path: Any) ->
     text = "from math import cos, tanh\n\n\ndef gravity(q):\n    t3 = -0.785*9.80665/2*cos(q[1] + q[2])\n"
     path.write_text(f"{text}    return [0, -1.5*0.785*9.80665*cos(q[1]) + t3, t3{small}]\n")
     assert not verify.gravity(path).ok
+
+
+def test_what_depends_on_a_kind_is_told_in_its_class() -> None:
+    """No other module asks which kind a formula has."""
+    package = Path(verify.__file__).parent
+    found = []
+    for path in package.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            sides = [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
+            asked = any(re.fullmatch(r"(.*\.)?kind(\.name)?", ast.unparse(side)) for side in sides)
+            words = {one.value for side in sides for one in ast.walk(side) if isinstance(one, ast.Constant)}
+            if asked and words & set(KINDS):
+                found.append(f"{path.relative_to(package)}:{node.lineno}")
+    assert not found

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arm3r_cpp.user_functions.matlab.program import MatlabProgram
-from arm3r_cpp.user_functions.nodes import Call, ProgramError
+from arm3r_cpp.user_functions.programs import Call, ProgramError
 from formulas.mutants import matlab_mutants
 from formulas.programs import PROGRAMS
 

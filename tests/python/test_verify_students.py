@@ -14,9 +14,9 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
-from arm3r_cpp.user_functions.nodes import ProgramError
+from arm3r_cpp.user_functions.programs import ProgramError
 from arm3r_cpp.verify.formula import from_text
-from arm3r_cpp.verify.kinds import KINDS, standard_form
+from arm3r_cpp.verify.kinds import KINDS
 from arm3r_cpp.verify.samples import Samples
 from formulas import reading
 from formulas.draws import draws
@@ -94,7 +94,7 @@ def values(text: str, path: Path, kind: str) -> Floats | None:
             table[:, :3] = np.rad2deg(table[:, :3])
         raw = formula.program.evaluate(call, table)
         raw = raw[:, formula.order] if formula.order and raw.ndim == 2 else raw
-        return standard_form(KINDS[kind], raw, 3, STATES["qd"])
+        return KINDS[kind].standard_form(raw, 3, STATES["qd"])
     except (ProgramError, arm3r.UsageError):
         return None
 

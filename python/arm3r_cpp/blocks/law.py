@@ -10,7 +10,7 @@ import numpy as np
 
 from ..control.law import TORQUE
 from ..control.law_state import LawState
-from ..user_functions.nodes import ProgramError
+from ..user_functions.programs import ProgramError
 
 OTHER_SHAPES = ((3, 1), (1, 3))
 EXIT = "it called exit()"

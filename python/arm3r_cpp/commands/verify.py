@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 from .._messages import as_json
 from .._progress_bar import Bar
 from ..errors import Arm3rError, UsageError
+from ..verify.kinds import KINDS
 from .exit_codes import UNJUDGED, WRONG_FORMULA, attempt, exit_code, print_line, say
 
 if TYPE_CHECKING:
     from ..verify.verdict import Verdict
 
 PROGRAM = "arm3r-verify"
-KINDS = ("jacobian", "gravity", "kinematics", "mass", "coriolis", "inverse", "forward", "controller")
+
 
 EXAMPLES = """\
 A file holds a function of the joint angles that returns numbers: in Python `def jacobian(q)` or

@@ -14,13 +14,13 @@ import numpy as np
 from .._native import Floats
 from ..errors import BudgetError, ControllerError, UsageError
 from ..scenario import Scenario
-from ..user_functions.nodes import Call, ProgramError, Unjudged, Unread
+from ..user_functions.programs import Call, ProgramError, Unjudged, Unread
 from ..user_functions.python_process import PythonProcess
 from ..verify.comparison import scales
 from ..verify.finding import Finding
 from ..verify.formula import Formula, from_file
 from ..verify.judge import judge
-from ..verify.kinds import KINDS, standard_form
+from ..verify.kinds import KINDS
 from ..verify.names import quantities_of, slot_of
 from ..verify.samples import VECTORS, Samples
 from ..verify.truth.three_r import ThreeR
@@ -197,10 +197,10 @@ def _by_name(task: FunctionTask, formula: Formula, states: dict[str, Floats]) ->
     samples = Samples({name: states.get(name, np.zeros((count, 3))) for name in VECTORS}, [own])
     raw = formula.values(formula.bind(kind, truth.joints, parameters, known), samples, known)
     try:
-        values = standard_form(kind, raw, truth.joints, samples.tiled("qd"))
+        values = kind.standard_form(raw, truth.joints, samples.tiled("qd"))
     except UsageError as error:
         raise ProgramError(str(error)) from None
-    return values[:, :3] if task.kind == "jacobian" else values
+    return values[:, :3] if values.ndim > 2 else values
 
 
 def _by_position(task: FunctionTask, formula: Formula, states: dict[str, Floats]) -> Floats:

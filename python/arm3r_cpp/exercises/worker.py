@@ -21,7 +21,7 @@ from ..system.processes import bare_environment, end_with_descendants
 from ..system.timed_pipe import TimedPipe
 from ..user_functions import start
 from ..user_functions.child import HEAD, own_streams, receive, send
-from ..user_functions.nodes import Call, ProgramError
+from ..user_functions.programs import Call, ProgramError
 from ..user_functions.python_process import PythonProcess
 from .function_judge import reading
 from .judge import judge_file

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .nodes import ProgramError, Unjudged, Unread
+from .programs import ProgramError, Unjudged, Unread
 
 Floats = NDArray[np.float64]
 BROKEN = "breaks the connection to its judge"

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..system.confinement import confine, end_with_parent
 from ..system.limits import limit_resources
-from .nodes import Call, Edit, Given, ProgramError, Unread
+from .programs import Call, Edit, Given, ProgramError, Unread
 from .python_program import PythonProgram
 
 HEAD = struct.Struct("<II")  # lengths of the JSON and of the numbers that follow

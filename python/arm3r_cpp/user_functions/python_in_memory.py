@@ -17,7 +17,7 @@ from ..system.confinement import end_with_parent
 from ..system.limits import limit_copy
 from ..system.timed_pipe import SelectedPipe
 from .child import answer, leave_standard_streams
-from .nodes import Call, Edit, ProgramError
+from .programs import Call, Edit, ProgramError
 from .python_process import PythonProcess
 from .python_program import PythonProgram
 

@@ -6,7 +6,21 @@ import ast
 from collections import Counter
 
 from ..errors import UsageError
-from .nodes import Constant, Node
+from .expressions import (
+    Binary,
+    Compare,
+    FunctionCall,
+    Index,
+    Matrix,
+    Name,
+    Node,
+    Number,
+    Other,
+    Root,
+    Transpose,
+    Unary,
+)
+from .programs import Constant
 from .python_functions import Function, assigned, functions_of
 from .python_program import PythonProgram, number_in, pairs
 
@@ -15,6 +29,8 @@ _OPERATORS = {
     ast.FloorDiv: "//",
 }  # fmt: skip
 
+_METHODS = ("transpose", "copy", "reshape", "dot")
+"""Of arrays: what stands before them is a part that is edited."""
 _COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 
@@ -105,15 +121,15 @@ class PythonText:
 
     def nodes(self) -> list[Node]:
         """The expressions of all statements, the outermost ones."""
-        found = []
+        found: list[Node] = []
         for statement in ast.walk(self.tree):
             if isinstance(statement, (ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Return, ast.Expr)):
                 value = statement.value
                 if value is not None and not (isinstance(value, ast.Constant) and isinstance(value.value, str)):
                     start, end = self._span(statement)
-                    found.append(Node("assign", start, end, (self._node(value),)))
+                    found.append(Root(start, end, (self._node(value),)))
             for inner in _inner_expressions(statement):
-                found.append(Node("assign", *self._span(inner), (self._node(inner),)))
+                found.append(Root(*self._span(inner), (self._node(inner),)))
         return found
 
     def _span(self, node: ast.AST) -> tuple[int, int]:
@@ -122,36 +138,37 @@ class PythonText:
 
     def _node(self, node: ast.expr) -> Node:
         start, end = self._span(node)
-        make = self._node
-        if isinstance(node, ast.Name):
-            return Node("name", start, end, (), node.id)
-        if isinstance(node, ast.Constant):
-            kind = "number" if type(node.value) in (int, float) else "other"
-            return Node(kind, start, end, (), self.text[start:end])
-        if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
-            return Node("unary", start, end, (make(node.operand),), self.text[start], start)
-        if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
-            word, sides = _OPERATORS[type(node.op)], (make(node.left), make(node.right))
-            between = self.text[sides[0].end : sides[1].start]
-            return Node("binary", start, end, sides, word, sides[0].end + max(between.find(word), 0))
-        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _COMPARISONS:
-            word, sides = _COMPARISONS[type(node.ops[0])], (make(node.left), make(node.comparators[0]))
-            between = self.text[sides[0].end : sides[1].start]
-            return Node("compare", start, end, sides, word, sides[0].end + max(between.find(word), 0))
-        if isinstance(node, ast.Call):
-            name = self._span(node.func)
-            word = self.text[slice(*name)]
-            if word.endswith((".transpose", ".copy", ".reshape", ".dot")) and isinstance(node.func, ast.Attribute):
-                parts = (make(node.func.value), *(make(one) for one in node.args))
-                return Node("other", start, end, parts, word)
-            return Node("call", start, end, tuple(make(one) for one in node.args), word, name[0])
-        if isinstance(node, ast.Subscript):
-            return Node("index", start, end, (make(node.value), make(node.slice)), self.text[start:end])
-        if isinstance(node, ast.Attribute) and node.attr == "T":
-            return Node("transpose", start, end, (make(node.value),), ".T")
-        if isinstance(node, (ast.List, ast.Tuple)):
-            return Node("matrix", start, end, tuple(make(one) for one in node.elts))
-        if isinstance(node, ast.Attribute):
-            return Node("other", start, end, (), self.text[start:end])
+        text, make = self.text[start:end], self._node
+        match node:
+            case ast.Name(id=word):
+                return Name(start, end, (), word)
+            case ast.Constant(value=value) if type(value) in (int, float):
+                return Number(start, end, (), text)
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=operand):
+                return Unary(start, end, (make(operand),), text[0], start)
+            case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _OPERATORS:
+                return Binary(start, end, *self._sides(left, _OPERATORS[type(sign)], right))
+            case ast.Compare(left=left, ops=[sign], comparators=[right]) if type(sign) in _COMPARISONS:
+                return Compare(start, end, *self._sides(left, _COMPARISONS[type(sign)], right))
+            case ast.Call(func=ast.Attribute(value=value) as function, args=given) if function.attr in _METHODS:
+                parts = (make(value), *(make(one) for one in given))
+                return Other(start, end, parts, self.text[slice(*self._span(function))])
+            case ast.Call(func=called, args=given):
+                name = self._span(called)
+                return FunctionCall(start, end, tuple(make(one) for one in given), self.text[slice(*name)], name[0])
+            case ast.Subscript(value=value, slice=index):
+                return Index(start, end, (make(value), make(index)), text)
+            case ast.Attribute(value=value, attr="T"):
+                return Transpose(start, end, (make(value),), ".T")
+            case ast.Attribute():
+                return Other(start, end, (), text)
+            case ast.List(elts=elements) | ast.Tuple(elts=elements):
+                return Matrix(start, end, tuple(make(one) for one in elements))
         inner = [make(child) for child in ast.iter_child_nodes(node) if isinstance(child, ast.expr)]
-        return Node("other", start, end, tuple(inner), self.text[start:end])
+        return Other(start, end, tuple(inner), text)
+
+    def _sides(self, left: ast.expr, word: str, right: ast.expr) -> tuple[tuple[Node, Node], str, int]:
+        """Both sides of an operator, the operator, and where it begins."""
+        sides = (self._node(left), self._node(right))
+        between = self.text[sides[0].end : sides[1].start]
+        return sides, word, sides[0].end + max(between.find(word), 0)

@@ -17,7 +17,7 @@ from ..system.processes import end_with_descendants, processor_time
 from ..system.timed_pipe import PumpedPipe, SelectedPipe
 from .answers import BROKEN, BrokenAnswer, answer_of, arguments_of, head_of, unbarred_of
 from .child import HEAD, send
-from .nodes import Call, Edit, Given, ProcessEnded, ProgramError, Unjudged
+from .programs import Call, Edit, Given, ProcessEnded, ProgramError, Unjudged
 from .start import STARTING_TIME, Process, start
 
 Floats = NDArray[np.float64]

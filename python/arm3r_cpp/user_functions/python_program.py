@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .nodes import Call, Edit, Given, ProgramError, Unread
+from .programs import Call, Edit, Given, ProgramError, Unread
 from .sympy_expressions import function_of, is_expression
 
 Floats = NDArray[np.float64]

@@ -15,7 +15,7 @@ from ..system.patience import Patience
 from ..system.processes import bare_environment
 from ..system.timed_pipe import PumpedPipe, SelectedPipe, TimedPipe
 from .fork_server import COPY, PID
-from .nodes import Unjudged
+from .programs import Unjudged
 
 STARTING_TIME = 20.0  # s of processor time
 COPIES = sys.platform == "linux"

@@ -10,10 +10,10 @@ import numpy as np
 
 from .._native import Floats
 from ..errors import UsageError
-from ..user_functions.nodes import Edit, ProgramError
+from ..user_functions.programs import Edit, ProgramError
 from .explain.repair import wrong_entries
 from .formula import Formula
-from .kinds import KINDS, SPATIAL, Kind, Rows, standard_form
+from .kinds import KINDS, SPATIAL, Kind, Rows
 from .samples import Samples, random_states
 from .truth.three_r import FOLLOWING
 
@@ -73,7 +73,7 @@ class Comparison:
             samples = Samples({**samples.states, "q": np.rad2deg(samples.states["q"])}, samples.arms)
         raw = self.formula.values(self.call, samples, self.known, edit)
         try:
-            return standard_form(self.kind, raw, self.truth.joints, samples.tiled("qd"))
+            return self.kind.standard_form(raw, self.truth.joints, samples.tiled("qd"))
         except UsageError as error:
             raise ProgramError(str(error)) from None
 
@@ -103,11 +103,11 @@ class Comparison:
             changes: quantities with other values, in each row.
             states: other joint vectors, in each row.
         """
-        return self.due_of(self.kind.name, samples, states, changes)
+        return self.due_of(self.kind, samples, states, changes)
 
     def due_of(
         self,
-        kind: str,
+        kind: Kind,
         samples: Samples,
         states: Mapping[str, Floats] | None = None,
         changes: Mapping[str, Floats] | None = None,
@@ -171,7 +171,7 @@ class Solved(Comparison):
     def _accelerations(self, samples: Samples, torque: Floats) -> Floats:
         states = {**samples.states, "tau": np.tile(torque, (len(samples.states["q"]), 1))}
         here = Samples(states, samples.arms)
-        return standard_form(self.forward, self.formula.values(self.call, here, self.known), len(torque), None)
+        return self.forward.standard_form(self.formula.values(self.call, here, self.known), len(torque), None)
 
 
 def scales(due: Floats) -> Floats:

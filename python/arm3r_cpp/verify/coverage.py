@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._native import Floats
+from ..run import Run
 from ..scenario import Scenario
-from ..user_functions.nodes import ProgramError
+from ..user_functions.programs import ProgramError
 from .comparison import Comparison
 from .finding import Finding, Judgement
 from .log.reading import read_log
@@ -36,15 +37,8 @@ class Trial(NamedTuple):
 
 
 @cache
-def lecture_tests(kind: str) -> tuple[Trial, ...]:
-    """The lecture's own: J qd against the sensed velocity in free fall; the torque by two holds."""
-    if kind == "jacobian":
-        run = Scenario("{format: 1, time: {stop: 10, log_every: 0.01}}").run()
-        return (Trial("the lecture's free fall", run["q"][::20], run["qd"][::20]),)
-    if kind == "gravity":
-        poses = np.radians([[0.0, -30.0, 60.0], [0.0, -45.0, 90.0]])
-        return (Trial("the lecture's two holds", poses, np.zeros_like(poses)),)
-    return ()
+def _free_fall() -> Run:
+    return Scenario("{format: 1, time: {stop: 10, log_every: 0.01}}").run()
 
 
 def tests_of(given: Iterable[Any], joints: int) -> list[Trial]:
@@ -68,7 +62,8 @@ def seen_by_tests(verdict: Judgement, case: Comparison, given: Iterable[Any]) ->
     """Fill in for each finding whether each test sees it, and for each test what it excites."""
     tests = tests_of(given, case.truth.joints)
     if isinstance(case.truth, ThreeR):
-        tests = [*lecture_tests(case.kind.name), *tests]
+        own = case.kind.lecture_test(_free_fall)
+        tests = [*([Trial(*own)] if own else []), *tests]
     for test in tests:
         if case.convention != test.convention and isinstance(case.truth, ThreeR):
             test = test._replace(q=test.q * D, qd=test.qd * D, convention=case.convention)
@@ -87,11 +82,6 @@ def _samples(case: Comparison, test: Trial) -> Samples:
     return Samples({"q": test.q, "qd": test.qd, "qdd": zero, "tau": zero}, [{name: own[name] for name in case.known}])
 
 
-def _weights(case: Comparison, test: Trial, column: int) -> Floats:
-    """What an entry is multiplied with before it is seen: J is seen as J qd."""
-    return test.qd[:, column] if case.kind.name == "jacobian" else np.ones(len(test.q))
-
-
 def _error(case: Comparison, test: Trial, finding: Finding) -> Floats:
     """What the test sees of a wrong entry, in each state; a number that is not the arm's stands as it is written."""
     samples = _samples(case, test)
@@ -107,7 +97,7 @@ def _error(case: Comparison, test: Trial, finding: Finding) -> Floats:
     place = tuple(one - 1 for one in finding.entry or [])
     difference = case.values(here) - case.due(samples)
     column = int(np.ravel_multi_index(place, case.shape))
-    return difference.reshape(len(difference), -1)[:, column] * _weights(case, test, place[-1])
+    return difference.reshape(len(difference), -1)[:, column] * case.kind.weights(test.qd, place[-1])
 
 
 def _sees(case: Comparison, test: Trial, finding: Finding) -> bool:
@@ -121,7 +111,7 @@ def _reason(case: Comparison, test: Trial, finding: Finding) -> str:
     """Why a test does not see a finding: the first of its special values without which it would."""
     column = (finding.entry or [1])[-1] - 1
     tries: list[tuple[str, Trial]] = []
-    if np.abs(test.qd[:, column]).max() <= _VISIBLE and case.kind.name == "jacobian":
+    if np.abs(test.qd[:, column]).max() <= _VISIBLE and case.kind.is_derivative:
         tries.append((f"there qd{column + 1} = 0", test._replace(qd=np.ones_like(test.qd))))
     for joint in range(test.q.shape[1]):
         if np.abs(test.q[:, joint]).max() <= _VISIBLE:
@@ -143,14 +133,14 @@ def _excited(case: Comparison, test: Trial) -> dict[str, Any]:
     due = case.due(_samples(case, test))
     entries = []
     for place in np.ndindex(due.shape[1:]):
-        if np.abs(due[(slice(None), *place)] * _weights(case, test, place[-1])).max() > _VISIBLE:
+        if np.abs(due[(slice(None), *place)] * case.kind.weights(test.qd, place[-1])).max() > _VISIBLE:
             entries.append([one + 1 for one in place])
-    moved = test.qd if case.kind.name == "jacobian" else test.q
+    moved = test.qd if case.kind.is_derivative else test.q
     joints = [int(joint) + 1 for joint in np.flatnonzero(np.abs(moved).max(axis=0) > _VISIBLE)]
     found: dict[str, Any] = {"joints": joints, "entries": entries}
     if isinstance(case.truth, ThreeR):
         sign = D if test.convention == CONVENTIONS[1] else np.ones(3)
         numbers = {**case.truth.values_of_quantities, **(test.quantities or {})}
-        planted, seen = planted_and_seen(case.kind.name, test.q * sign, test.qd * sign, numbers)
+        planted, seen = planted_and_seen(case.kind, test.q * sign, test.qd * sign, numbers)
         found |= {"planted": planted, "seen": seen} if planted else {}
     return found

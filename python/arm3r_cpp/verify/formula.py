@@ -17,15 +17,16 @@ from .._native import Floats
 from ..errors import UnjudgedError, UsageError
 from ..user_functions.c_symbol import text_of
 from ..user_functions.documents import MATLAB, code_of
+from ..user_functions.expressions import Node
 from ..user_functions.matlab.program import MatlabProgram
-from ..user_functions.nodes import Call, Constant, Edit, Given, Node, ProgramError, numbers_of
+from ..user_functions.programs import Call, Constant, Edit, Given, ProgramError, numbers_of
 from ..user_functions.python_functions import needed_by, objects_of
 from ..user_functions.python_in_memory import PythonInMemory
 from ..user_functions.python_nodes import PythonText
 from ..user_functions.python_process import PythonProcess
 from ..user_functions.python_program import _numbers, value_of
 from ..user_functions.sympy_expressions import function_of, is_expression
-from .kinds import KINDS, Kind
+from .kinds import KINDS, Kind, kind_of_name
 from .names import TIME, quantities_of, slot_of, slots_of
 from .samples import Samples, columns
 
@@ -395,30 +396,6 @@ def likely_function(source: PythonText, file: str, kind: str | None = None) -> s
         )
     hint = f"; name one of its methods: {file}:{methods[0]}" if methods else ""
     raise UsageError(f"{file}: there is no function in this file{hint}")
-
-
-_WORDS = {
-    "jacobian": ("jac",),
-    "gravity": ("grav", "tau_g", "taug", "g_torque"),
-    "kinematics": ("kin", "fk", "tip", "position"),
-    "mass": ("mass", "inertia", "mmat"),
-    "coriolis": ("coriolis", "centrifugal", "cmat", "velocity_product"),
-    "inverse": ("inverse_dyn", "invdyn", "id", "rnea", "inverse"),
-    "forward": ("forward_dyn", "fwddyn", "fd", "aba", "accel"),
-    "controller": ("control", "law", "ctrl"),
-}
-
-
-def kind_of_name(name: str) -> str | None:
-    """The kind of formula that a name tells: of a function, a method, a file or an output."""
-    lower = name.rpartition(".")[2].lower()
-    if "forward_kin" in lower or "fkin" in lower:
-        return "kinematics"
-    for kind in ("controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics"):
-        for word in _WORDS[kind]:
-            if (len(word) > 2 and word in lower) or lower == word or lower.startswith(f"{word}_"):
-                return kind
-    return {"j": "jacobian", "g": "gravity", "m": "mass", "c": "coriolis", "h": "coriolis"}.get(lower)
 
 
 def kind_of(formula: Formula, joints: int) -> Kind:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .._native import Floats
 from ..errors import UsageError
-from ..user_functions.nodes import ProcessEnded, ProgramError
+from ..user_functions.programs import ProcessEnded, ProgramError
 from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
 from .kinds import Kind
@@ -20,7 +20,6 @@ from .truth.three_r import FOLLOWING
 
 _CHANGE = 1e-6  # of the largest: what changes less does not change
 _MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
-_DYNAMIC = ("mass", "coriolis", "inverse", "forward")
 _MOST_OUTPUTS = 4
 
 
@@ -125,7 +124,7 @@ def _parameters(formula: Formula, kind: Kind, truth: Any) -> dict[str, str]:
     return {
         name: quantity
         for name, quantity in formula.parameters(kind, truth.joints).items()
-        if quantity in truth.values_of_quantities and kind.name != "controller"
+        if quantity in truth.values_of_quantities and kind.is_of_arm
     }
 
 
@@ -153,7 +152,7 @@ def _counted(formula: Formula, kind: Kind, truth: Any, parameters: dict[str, str
     values = base.values(base.second)
     units = _units_of_angles(formula)
     varied = {quantity.rstrip("23") for quantity in parameters.values()} & {"length", "mass"}
-    following = FOLLOWING if varied and (kind.name == "gravity" or kind.name in _DYNAMIC) else FOLLOWING[:1]
+    following = FOLLOWING if varied and kind.needs_masses else FOLLOWING[:1]
     first = truth.convention
     conventions = (first, *(one for one in truth.conventions if one != first))
     refuted: dict[bool, set[tuple[str, ...]]] = {}

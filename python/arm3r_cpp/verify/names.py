@@ -55,9 +55,8 @@ _GRAVITY = re.compile(r"g0?|grav|gravity|G|g_?acc")
 _STATE = re.compile(r"x|X|z|s|y|state|states|xs|x_?vec")
 _TIME = re.compile(r"t|time")
 TIME = "time"
-_TOGETHER = ("gravity", "mass", "coriolis", "inverse")
 _RATE_OR_TORQUE = re.compile(r"(d{0,2}(q|th)|tau|torque).*")
-"""What a function of several of these kinds takes for the others of them: `M, C, g = dynamics(q, qd)`."""
+"""What a function that returns several kinds takes for the others of them: `M, C, g = dynamics(q, qd)`."""
 
 SHORT = {
     "length2": "a2",
@@ -98,17 +97,17 @@ def quantities_of(names: Iterable[str]) -> dict[str, str]:
         from_1 |= {letter for letter, found in digits.items() if found <= {1, 2}}  # m1, m2 and l1: l1 is link 2's
     meaning = {name: "gravity" for name in names if _GRAVITY.fullmatch(name.rpartition(".")[2])}
     for name, found in parts.items():
-        kind = "com" if found[3] or (found[1] == "l" and has_lengths) else _LETTERS[found[1]]
+        quantity = "com" if found[3] or (found[1] == "l" and has_lengths) else _LETTERS[found[1]]
         number = int(found[2])
-        if kind in ("length", "com", "mass", "inertia") and found[1] in from_1:
+        if quantity in ("length", "com", "mass", "inertia") and found[1] in from_1:
             number += 1  # links 2 and 3 counted from 1
-        if kind == "length" and number == 1:
-            kind = "height"
-        if kind == "height":
+        if quantity == "length" and number == 1:
+            quantity = "height"
+        if quantity == "height":
             if number == 1:
                 meaning[name] = "height"
-        elif number in (2, 3) or (kind == "mass" and number == 1):
-            meaning[name] = f"{kind}{number}"
+        elif number in (2, 3) or (quantity == "mass" and number == 1):
+            meaning[name] = f"{quantity}{number}"
     return meaning
 
 
@@ -132,7 +131,7 @@ def slots_of(
         elif slot and slot[0] in kind.inputs and (slot[1] is None or slot[1] < joints):
             found.append(slot)
         else:
-            is_of_others = slot and slot[1] is None and kind.name in _TOGETHER and _RATE_OR_TORQUE.fullmatch(name)
+            is_of_others = slot and slot[1] is None and kind.comes_with_others and _RATE_OR_TORQUE.fullmatch(name)
             found.append((name, -1) if name in parameters else slot if is_of_others else None)
     in_order: list[list[tuple[str, int | None]]] = [
         [(vector, None) for vector in kind.inputs],  # q, qd, ... in the order of the field

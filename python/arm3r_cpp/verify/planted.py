@@ -10,15 +10,8 @@ from typing import Any
 import numpy as np
 
 from .._native import Floats
+from .kinds import Kind
 
-_FORMULAS = {
-    "jacobian": (
-        "-s(q1)*(a3*c(q2+q3)+a2*c(q2))", "-c(q1)*(a3*s(q2+q3)+a2*s(q2))", "-a3*s(q2+q3)*c(q1)",
-        "c(q1)*(a3*c(q2+q3)+a2*c(q2))", "-s(q1)*(a3*s(q2+q3)+a2*s(q2))", "-a3*s(q2+q3)*s(q1)",
-        "0", "-(a3*c(q2+q3)+a2*c(q2))", "-a3*c(q2+q3)",
-    ),
-    "gravity": ("0", "-m2*g*(a2/2)*c(q2)-m3*g*(a2*c(q2)+(a3/2)*c(q2+q3))", "-m3*g*(a3/2)*c(q2+q3)"),
-}  # fmt: skip
 _SLIPS = (
     ("a2", "a3"), ("a3", "a2"), ("m2", "m3"), ("m3", "m2"), ("q2+q3", "q2"), ("q2+q3", "q2-q3"), ("s(", "c("),
     ("c(", "s("), ("q1", "0"), ("q1", "-q1"), ("/2", ""),
@@ -27,9 +20,9 @@ _UNEQUAL = {"a2": 0.8, "a3": 0.55, "m2": 2.592, "m3": 3.052, "g": 9.80665}
 _NAMES = {"length2": "a2", "length3": "a3", "mass2": "m2", "mass3": "m3", "gravity": "g"}
 
 
-def _mistakes(kind: str) -> Iterator[tuple[int, str]]:
+def _mistakes(kind: Kind) -> Iterator[tuple[int, str]]:
     """The place of a formula, and the formula with one wrong sign, zero, letter, function or angle."""
-    for place, right in enumerate(_FORMULAS[kind]):
+    for place, right in enumerate(kind.planted):
         if right != "0":
             yield from ((place, f"-({right})"), (place, "0"))
         for letters, slip in _SLIPS:
@@ -47,28 +40,28 @@ def _value(formula: str, q: Floats, numbers: Mapping[str, float]) -> Floats:
     return np.broadcast_to(np.asarray(eval(_compiled(formula), names), float), (len(q),))
 
 
-def _is_seen(kind: str, mistake: tuple[int, str], q: Floats, qd: Floats, numbers: Mapping[str, float]) -> bool:
+def _is_seen(kind: Kind, mistake: tuple[int, str], q: Floats, qd: Floats, numbers: Mapping[str, float]) -> bool:
     place, wrong = mistake
-    error = _value(wrong, q, numbers) - _value(_FORMULAS[kind][place], q, numbers)
-    return bool(np.abs(error * (qd[:, place % 3] if kind == "jacobian" else 1.0)).max() > 1e-9)
+    error = _value(wrong, q, numbers) - _value(kind.planted[place], q, numbers)
+    return bool(np.abs(error * kind.weights(qd, place % 3)).max() > 1e-9)
 
 
 @cache
-def _planted(kind: str) -> tuple[tuple[int, str], ...]:
+def _planted(kind: Kind) -> tuple[tuple[int, str], ...]:
     """The mistakes that change something somewhere."""
     random = np.random.default_rng(1)
     q, qd = random.uniform(-3, 3, (20, 3)), random.uniform(-3, 3, (20, 3))
     return tuple(one for one in _mistakes(kind) if _is_seen(kind, one, q, qd, _UNEQUAL))
 
 
-def planted_and_seen(kind: str, q: Floats, qd: Floats, quantities: Mapping[str, float]) -> tuple[int, int]:
+def planted_and_seen(kind: Kind, q: Floats, qd: Floats, quantities: Mapping[str, float]) -> tuple[int, int]:
     """How many mistakes are planted in the lecture's formulas of a kind, and how many a test sees.
 
     Args:
         q, qd: the states of the test, (S, 3), in the convention simscape.
         quantities: those of the test's arm.
     """
-    if kind not in _FORMULAS:
+    if not kind.planted:
         return 0, 0
     numbers = {_NAMES[name]: value for name, value in quantities.items() if name in _NAMES}
     planted = _planted(kind)

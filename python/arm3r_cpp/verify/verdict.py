@@ -19,6 +19,14 @@ class Verdict(Judgement):
     def __bool__(self) -> bool:
         return self.ok
 
+    @property
+    def complexity(self) -> tuple[int, int, int]:
+        """Of verdicts on a formula that may be meant in several ways, the simplest explanation is the likeliest."""
+        words = (" reads ", " has ", " explain it")
+        without_cause = sum(one.old is None and any(word in one.cause for word in words) for one in self.findings)
+        edits = {(one.line, one.column, one.new) for one in self.findings}
+        return len(self.unexplained), without_cause, len(edits)
+
     def to_dict(self) -> dict[str, Any]:
         """What `arm3r verify --json` prints."""
         whole = asdict(self)

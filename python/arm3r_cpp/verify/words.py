@@ -10,7 +10,7 @@ import numpy as np
 from .._messages import shown
 from .explain.terms import difference_words
 from .finding import Finding, Judgement
-from .kinds import KINDS, entry_name
+from .kinds import KINDS
 
 
 def report(verdict: Judgement) -> str:
@@ -64,14 +64,14 @@ def _block(verdict: Judgement, findings: list[Finding]) -> list[str]:
     for one in findings:
         if one.entry and one.reads is not None:
             said = difference_words(one.reads, one.due) if one.due is not None else f"reads {one.reads}"
-            lines.append(f"{entry_name(kind, one.entry)} {said}")
-    names = ", ".join(entry_name(kind, one.entry) for one in findings if one.entry)
+            lines.append(f"{kind.entry_name(one.entry)} {said}")
+    names = ", ".join(kind.entry_name(one.entry) for one in findings if one.entry)
     if (
         not lines
         or first.reads is None
-        or (first.old is None and not first.cause.startswith(f"{entry_name(kind, first.entry or [])} "))
+        or (first.old is None and not first.cause.startswith(f"{kind.entry_name(first.entry or [])} "))
     ):
-        own = f"{entry_name(kind, first.entry)}: " if first.entry else ""
+        own = f"{kind.entry_name(first.entry)}: " if first.entry else ""
         said = first.cause.removeprefix(own)
         cause = first.cause if not names or first.cause.startswith(f"{names} ") else f"{names}: {_lower(said)}"
         if first.old is None or not lines:

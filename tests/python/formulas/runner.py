@@ -10,7 +10,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 from arm3r_cpp.user_functions.matlab.program import MatlabProgram
-from arm3r_cpp.user_functions.nodes import Call, ProgramError
+from arm3r_cpp.user_functions.programs import Call, ProgramError
 from numpy.typing import NDArray
 
 from .programs import Program

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..nodes import ProgramError, Unread
+from ..programs import ProgramError, Unread
 from .values import MAX_SIZE, Floats, Pages, Structures, as_numbers, check_size, integer, number, stacked, text_in
 
 

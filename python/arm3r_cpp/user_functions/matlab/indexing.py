@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..nodes import ProgramError, Unread
+from ..programs import ProgramError, Unread
 from .values import MAX_SIZE, Floats, check_size
 
 Places = list[int]

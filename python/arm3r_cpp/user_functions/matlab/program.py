@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,7 +14,33 @@ from numpy.typing import ArrayLike
 
 from ...errors import Arm3rError, UsageError
 from ..documents import decoded
-from ..nodes import Call, Constant, Edit, Given, Node, ProgramError, Unjudged, Unread, line_and_column
+from ..expressions import (
+    All,
+    AnonymousFunction,
+    Binary,
+    Cell,
+    Compare,
+    Element,
+    Field,
+    FunctionCall,
+    FunctionHandle,
+    Group,
+    Index,
+    Last,
+    Logic,
+    Matrix,
+    Name,
+    Node,
+    Not,
+    Number,
+    Part,
+    Range,
+    Root,
+    Text,
+    Transpose,
+    Unary,
+)
+from ..programs import Call, Constant, Edit, Given, ProgramError, Unjudged, Unread, line_and_column
 from .functions import COMPARISONS, FUNCTIONS, OPERATORS, result_of
 from .indexing import Places, flat, part_of, with_element, with_part, without
 from .reader import read, read_expression
@@ -108,7 +135,7 @@ class MatlabProgram:
         return [inner for statement in every for inner in statement.walk()]
 
     def nodes(self) -> list[Node]:
-        return [Node("assign", one.start, one.end, (one.value,)) for one in self.statements() if one.value]
+        return [Root(one.start, one.end, (one.value,)) for one in self.statements() if one.value]
 
     @np.errstate(all="ignore")
     def constants(self) -> list[Constant]:
@@ -125,8 +152,8 @@ class MatlabProgram:
         ]
 
     def _is_number(self, node: Node) -> bool:
-        kinds = ("number", "unary", "binary", "group")
-        return all(one.kind in kinds and one.word not in ("^", ".^") for one in node.walk())
+        known = (Number, Unary, Binary, Group)
+        return all(isinstance(one, known) and one.word not in ("^", ".^") for one in node.walk())
 
     # ---- calls from outside ------------------------------------------------------------------------------------------
 
@@ -394,10 +421,10 @@ class MatlabProgram:
     def _turns(self, statement: Statement, variables: dict[str, Any]) -> Iterator[Floats]:
         """The values of a loop's variable: numbers of a range, or the columns of a matrix."""
         node = self._value_of(statement)
-        while node.kind == "group":
+        while isinstance(node, Group):
             (node,) = node.parts
         with self._at(statement):
-            if node.kind == "range":
+            if isinstance(node, Range):
                 return (number(one) for one in self._range(node, variables))
             matrix = self._array(node, variables)
             return (matrix[:, :, [column]] for column in range(matrix.shape[2]))
@@ -419,7 +446,7 @@ class MatlabProgram:
         value, targets = self._value_of(statement), statement.targets
         with self._at(statement):
             if not targets:
-                self._several(value, variables) if value.kind == "call" else self._value(value, variables)
+                self._several(value, variables) if isinstance(value, FunctionCall) else self._value(value, variables)
                 return
             if self._is_lifted(statement):
                 variables[targets[0].name] = self._known[targets[0].name]
@@ -441,7 +468,7 @@ class MatlabProgram:
             if target.name:
                 _put_variable(variables, target.name, given)
             return
-        is_empty = value.kind == "matrix" and not value.parts
+        is_empty = isinstance(value, Matrix) and not value.parts
         held = variables.get(target.name)
         held = _fields(variables, target.name) or None if held is None else held
         _put_variable(variables, target.name, self._with(held, target.way, given, is_empty, variables))
@@ -449,7 +476,7 @@ class MatlabProgram:
     def _with(self, held: Any, way: Sequence[Node], given: Any, is_empty: bool, variables: dict[str, Any]) -> Any:
         """What is held, with the part at the end of the way replaced, or left out where `[]` is given."""
         step, *rest = way
-        if step.kind == "field":
+        if isinstance(step, Field):
             if not isinstance(held, (dict, type(None))):
                 raise Unread(f"a field {step.word} is set of what is no single structure, which is not read")
             fields = {**held} if held else {}
@@ -471,7 +498,7 @@ class MatlabProgram:
             raise ProgramError("an index is set of what is no matrix")
         if len(step.parts) > 2:
             raise Unread("an index of more than three dimensions is not read")
-        is_all = [part.kind == "all" for part in step.parts]
+        is_all = [isinstance(part, All) for part in step.parts]
         if len(step.parts) == 2:
             places = []
             for axis, part in enumerate(step.parts):
@@ -507,10 +534,10 @@ class MatlabProgram:
             raise Unread("an array of three dimensions is set by three indices")
         pages = Pages([held]) if isinstance(held, np.ndarray) else Pages(held or ())
         place, page = self._page(pages, step.parts, variables)
-        if all(one.kind == "all" for one in step.parts[:2]):
+        if all(isinstance(one, All) for one in step.parts[:2]):
             page = given
         else:
-            index = Node("index", step.start, step.end, step.parts[:2], "(")
+            index = Index(step.start, step.end, step.parts[:2], "(")
             page = self._with(page, [index], given, False, variables)
         check_size(1, place + 1)
         empty = np.zeros((1, *page.shape[1:]))
@@ -518,16 +545,16 @@ class MatlabProgram:
 
     def _mask(self, parts: Sequence[Node], variables: dict[str, Any]) -> Any:
         """An index that says for each element whether it is meant; None where it holds places."""
-        if len(parts) != 1 or parts[0].kind in ("all", "range", "number", "last", "binary"):
+        if len(parts) != 1 or isinstance(parts[0], (All, Range, Number, Last, Binary)):
             return None
         value = self._value(parts[0], variables)
         return value if isinstance(value, np.ndarray) and value.dtype == bool else None
 
     def _several(self, node: Node, variables: dict[str, Any], targets: Sequence[Target] = ()) -> list[Any]:
         """All the outputs of a call, or all elements of a cell array."""
-        if node.kind != "call":
+        if not isinstance(node, FunctionCall):
             raise Unread("several outputs come from a call")
-        if node.info == "element":
+        if isinstance(node, Element):
             return self._values([node], variables)
         if node.word not in variables:
             if node.word in self.functions:
@@ -564,7 +591,7 @@ class MatlabProgram:
         """The values of arguments or elements; T{:} gives all that are in T."""
         found = []
         for part in parts:
-            is_list = part.kind == "call" and part.info == "element" and part.parts[0].kind in ("all", "range")
+            is_list = isinstance(part, Element) and isinstance(part.parts[0], (All, Range))
             if is_list and isinstance(variables.get(part.word), list):
                 cell = variables[part.word]
                 found += [cell[place] for place in self._places(part.parts[0], len(cell), variables)]
@@ -573,54 +600,53 @@ class MatlabProgram:
         return found
 
     def _value(self, node: Node, variables: dict[str, Any]) -> Any:
-        match node.kind:
-            case "number":
+        match node:
+            case Number():
                 return number(float(node.word.lower().replace("d", "e")))
-            case "name" | "last":
+            case Name() | Last():
                 return variables[node.word] if node.word in variables else self._call(node, variables)
-            case "group":
+            case Group():
                 return self._value(node.parts[0], variables)
-            case "unary":
+            case Unary():
                 inner = self._array(node.parts[0], variables)
                 return -inner if node.word == "-" else inner
-            case "binary":
+            case Binary():
                 return self._chain(node, variables)
-            case "compare" | "logic":
+            case Compare() | Logic():
                 left = self._array(node.parts[0], variables)
                 if (node.word == "&&" and not left.any()) or (node.word == "||" and left.all() and left.size):
                     return left != 0  # the other side is not looked at
                 return np.asarray(COMPARISONS[node.word](left, self._array(node.parts[1], variables)))
-            case "transpose":
+            case Transpose():
                 return np.swapaxes(self._array(node.parts[0], variables), 1, 2)
-            case "matrix":
+            case Matrix():
                 return self._matrix(node, variables)
-            case "range":
+            case Range():
                 numbers = self._range(node, variables)
                 check_size(1, len(numbers))
                 return np.array(numbers, float).reshape(1, 1, -1)
-            case "call":
+            case FunctionCall():
                 return self._call(node, variables)
-            case "not":
+            case Not():
                 return self._array(node.parts[0], variables) == 0
-            case "text":
+            case Text():
                 return node.word
-            case "cell":
+            case Cell():
                 cells = [one for row in node.parts for one in self._values(row.parts, variables)]
                 check_size(1, len(cells))
                 return cells
-            case "part":
+            case Part():
                 return self._step(self._value(node.parts[0], variables), node, variables)
-            case "handle":
-                names = node.info if isinstance(node.info, tuple) else ()
-                if not node.parts:
-                    return Handle((), None, {}, node.word)
-                return Handle(names, node.parts[0], dict(variables))
+            case FunctionHandle():
+                return Handle((), None, {}, node.word)
+            case AnonymousFunction():
+                return Handle(node.names, node.parts[0], dict(variables))
         raise Unread(f"{self.text[node.start : node.end]!r} is not read here")
 
     def _chain(self, node: Node, variables: dict[str, Any]) -> Floats:
         """a + b - c + ...: from the left, however long it is."""
         chain = [node]
-        while (first := chain[-1].parts[0]).kind == "binary":
+        while isinstance(first := chain[-1].parts[0], Binary):
             chain.append(first)
         value = self._array(chain[-1].parts[0], variables)
         for one in reversed(chain):
@@ -665,16 +691,16 @@ class MatlabProgram:
         name = node.word
         if name in variables:
             return self._step(variables[name], node, variables)
-        if node.info is None and name in _OF_PROGRAM:
+        if not isinstance(node, Element) and name in _OF_PROGRAM:
             return getattr(self, f"_{name}")(node, variables)
-        if node.info is None and (name in self.functions or name in FUNCTIONS):
+        if not isinstance(node, Element) and (name in self.functions or name in FUNCTIONS):
             return self._result(name, self._values(node.parts, variables), variables)
         if name in self._outside:
             return self._step(self._outside[name], node, variables)
         fields = _fields(variables, name) or _fields(self._outside, name)
         if fields:
-            return self._step(fields, node, variables) if node.kind == "call" else fields
-        if node.kind == "name" and self._function_beside(name) is None:
+            return self._step(fields, node, variables) if isinstance(node, FunctionCall) else fields
+        if isinstance(node, Name) and self._function_beside(name) is None:
             remedy = f"write {name} = NUMBER; above, make it an argument, or say it by --set {name}=NUMBER"
             raise Unread(f"{name!r} has no value in this file: {remedy}", name=name)
         return self._result(name, self._values(node.parts, variables), variables)
@@ -688,9 +714,10 @@ class MatlabProgram:
         elif other := self._function_beside(name):
             outputs = self._call_beside(other, inputs)
         else:
+            near = get_close_matches(name, [*self.functions, *FUNCTIONS, *variables], 1, 0.75)
             raise Unread(
                 f"{name!r} is not known: no variable, no function of this file or of a file beside it, and none of "
-                f"{', '.join(FUNCTIONS)}"
+                f"MATLAB that is read; {f'is {near[0]} meant?' if near else 'write it as a function of this file'}"
             )
         if not outputs:
             raise ProgramError(f"{name} has no output")
@@ -698,10 +725,10 @@ class MatlabProgram:
 
     def _step(self, held: Any, node: Node, variables: dict[str, Any]) -> Any:
         """What an index or a field takes from a value, or a function returns."""
-        parts = node.parts if node.kind == "call" else node.parts[1:]
-        word = node.word if node.kind == "part" else "{" if node.info == "element" else "("
+        parts = node.parts if isinstance(node, FunctionCall) else node.parts[1:]
+        word = node.word if isinstance(node, Part) else "{" if isinstance(node, Element) else "("
         shown = self.text[node.start : node.end]
-        if isinstance(node.info, Node) and node.info.kind == "field":
+        if isinstance(node, Part) and isinstance(node.step, Field):
             if isinstance(held, Structures) and len(held) == 1:
                 held = held[0]
             if not isinstance(held, dict):
@@ -761,10 +788,10 @@ class MatlabProgram:
         return places[0], pages[places[0]] if places[0] < len(pages) else _NOTHING
 
     def _places(self, part: Node, size: int, variables: dict[str, Any]) -> Places:
-        if part.kind == "all":
+        if isinstance(part, All):
             return list(range(size))
         inside = {**variables, "end": number(size)}
-        if part.kind == "range":
+        if isinstance(part, Range):
             return [int(one) - 1 for one in self._range(part, inside)]
         places = self._value(part, inside)
         if not isinstance(places, np.ndarray):
@@ -783,7 +810,7 @@ class MatlabProgram:
             raise Unread("an index of three dimensions is read of what zeros(rows, columns, pages) has made")
         sizes = (rows * columns,) if len(parts) == 1 else (rows, columns)
         places = [self._places(part, size, variables) for part, size in zip(parts, sizes, strict=True)]
-        return part_of(array, places, parts[0].kind == "all")
+        return part_of(array, places, isinstance(parts[0], All))
 
     # ---- functions that look at variables or call functions ----------------------------------------------------------
 

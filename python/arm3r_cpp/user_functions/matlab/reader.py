@@ -14,7 +14,33 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from ...errors import UnjudgedError
-from ..nodes import Node, line_and_column
+from ..expressions import (
+    All,
+    AnonymousFunction,
+    Binary,
+    Cell,
+    Compare,
+    Element,
+    Field,
+    FunctionCall,
+    FunctionHandle,
+    Group,
+    Index,
+    Last,
+    Logic,
+    Matrix,
+    Name,
+    Node,
+    Not,
+    Number,
+    Part,
+    Range,
+    Row,
+    Text,
+    Transpose,
+    Unary,
+)
+from ..programs import line_and_column
 from .syntax import Assignment, For, Function, If, Kept, Leave, Statement, Switch, Target, Try, While
 from .tokens import KNOWN, Token, tokens_of
 
@@ -34,7 +60,7 @@ _KEYWORDS = _REFUSED | _LEAVES | _BLOCKS | _STOPS | {"persistent", "global"}
 _SHOWING = "disp display fprintf printf plot plot3 figure close hold grid axis legend title view drawnow fflush"
 _SETTING = "clc clear clearvars format more warning tic toc pause beep rng addpath rmpath pkg mlock"
 _CHECKING = "narginchk nargoutchk validateattributes"
-_COMMANDS = frozenset(f"{_SHOWING} {_SETTING} {_CHECKING} xlabel ylabel zlabel".split())
+COMMANDS = frozenset(f"{_SHOWING} {_SETTING} {_CHECKING} xlabel ylabel zlabel".split())
 MAX_CHARACTERS = 2_000_000
 MAX_DEPTH = 150
 
@@ -207,7 +233,7 @@ class _Reader:
 
     def is_command(self) -> bool:
         """Whether a statement prints, draws or sets; a variable may have the same name."""
-        if self.peek().text not in _COMMANDS:
+        if self.peek().text not in COMMANDS:
             return False
         ahead, depth = 1, 0
         while self.peek(ahead).text == "(" or depth:
@@ -265,7 +291,7 @@ class _Reader:
         if not self.is_at_end_of_statement():
             what = "the expression goes on with" if targets else "an assignment or a call is needed here, got"
             raise self.refusal(f"{what} {self.peek().text!r}, which is not read")
-        if not targets and value.kind not in ("call", "name"):
+        if not targets and not isinstance(value, (FunctionCall, Name)):
             raise self.refusal("only assignments are read: a name, `=` and a value are needed here", start)
         return Assignment(start.start, value.end, value, targets=targets)
 
@@ -299,9 +325,9 @@ class _Reader:
         """An index in brackets, or a field."""
         opening = self.next()
         if opening.kind == "field":
-            return Node("field", opening.start, opening.end, (), opening.text[1:])
+            return Field(opening.start, opening.end, (), opening.text[1:])
         parts = self.arguments(_CLOSING[opening.text])
-        return Node("index", opening.start, self.tokens[self.at - 1].end, parts, opening.text)
+        return Index(opening.start, self.tokens[self.at - 1].end, parts, opening.text)
 
     def end_of(self, start: Token) -> int:
         """The end of a block, behind its `end`."""
@@ -367,8 +393,8 @@ class _Reader:
 
     def logic(self, level: int) -> Node:
         if level == len(_LOGIC):
-            return self.chain(_COMPARISONS, self.range, "compare")
-        return self.chain(_LOGIC[level], lambda: self.logic(level + 1), "logic")
+            return self.chain(_COMPARISONS, self.range, Compare)
+        return self.chain(_LOGIC[level], lambda: self.logic(level + 1), Logic)
 
     def range(self) -> Node:
         """Sums; colons between sums make a range, first:last or first:step:last."""
@@ -378,7 +404,7 @@ class _Reader:
             parts.append(self.sum())
         if len(parts) == 1:
             return parts[0]
-        return Node("range", parts[0].start, parts[-1].end, tuple(parts), ":", colon.start)
+        return Range(parts[0].start, parts[-1].end, tuple(parts), ":", colon.start)
 
     def ends_element(self) -> bool:
         """Whether a blank before the next token separates two elements of a matrix: [a -b] but not [a - b]."""
@@ -387,12 +413,12 @@ class _Reader:
             return False
         return not (token.text in ("+", "-") and self.peek(1).spaced) and token.text not in _ARITHMETIC
 
-    def chain(self, operators: tuple[str, ...], part: Callable[[], Node], kind: str = "binary") -> Node:
+    def chain(self, operators: tuple[str, ...], part: Callable[[], Node], make: type[Node] = Binary) -> Node:
         left = part()
         while self.peek().text in operators and self.peek().kind == "operator" and not self.ends_element():
             token = self.next()
             right = part()
-            left = Node(kind, left.start, right.end, (left, right), token.text, token.start)
+            left = make(left.start, right.end, (left, right), token.text, token.start)
         return left
 
     def sum(self) -> Node:
@@ -406,63 +432,64 @@ class _Reader:
             token = self.next()
             with self.deeper("the expression is"):
                 inner = self.signed()
-            kind = "not" if token.text == "~" else "unary"
-            return Node(kind, token.start, inner.end, (inner,), token.text, token.start)
+            make = Not if token.text == "~" else Unary
+            return make(token.start, inner.end, (inner,), token.text, token.start)
         return self.power()
 
     def power(self) -> Node:
         left = self.postfix()
         while self.peek().text in ("^", ".^") and not self.ends_element():
             token = self.next()
+            right: Node
             if self.peek().text in ("+", "-"):
                 sign = self.next()
                 inner = self.postfix()
-                right = Node("unary", sign.start, inner.end, (inner,), sign.text, sign.start)
+                right = Unary(sign.start, inner.end, (inner,), sign.text, sign.start)
             else:
                 right = self.postfix()
-            left = Node("binary", left.start, right.end, (left, right), token.text, token.start)
+            left = Binary(left.start, right.end, (left, right), token.text, token.start)
         return left
 
     def postfix(self) -> Node:
         node = self.atom()
         while self.peek().text in ("'", ".'") and self.peek().kind == "operator" and not self.peek().spaced:
             token = self.next()
-            node = Node("transpose", node.start, token.end, (node,), "'", token.start)
+            node = Transpose(node.start, token.end, (node,), "'", token.start)
         return node
 
     def atom(self) -> Node:
         token = self.next()
         if token.kind == "text":
             quote = token.text[0]
-            return Node("text", token.start, token.end, (), token.text[1:-1].replace(2 * quote, quote))
+            return Text(token.start, token.end, (), token.text[1:-1].replace(2 * quote, quote))
         if token.kind == "number":
-            return Node("number", token.start, token.end, (), token.text)
+            return Number(token.start, token.end, (), token.text)
         if token.text == "(":
             self.inside.append("(")
             inner = self.expression()
             self.inside.pop()
             closing = self.expect(")")
-            return Node("group", token.start, closing.end, (inner,))
+            return Group(token.start, closing.end, (inner,))
         if token.text in ("[", "{"):
             return self.matrix(token)
         if token.text == "@":
             return self.handle(token)
         if token.text == "end" and self.inside:
-            return Node("last", token.start, token.end, (), "end")
+            return Last(token.start, token.end, (), "end")
         if token.kind == "name" and token.text not in _KEYWORDS:
             return self.indexed(token)
         raise self.refusal(f"a value is needed here, got {token.text!r}", token)
 
     def indexed(self, name: Token) -> Node:
         """f(x), A(i, j), the element T{i} of a cell array, and parts and fields of these."""
-        node = Node("name", name.start, name.end, (), name.text)
+        node: Node = Name(name.start, name.end, (), name.text)
         while (self.peek().text in _CLOSING or self.peek().kind == "field") and not self.ends_element():
             step = self.step()
-            if node.kind == "name" and step.kind == "index":
-                info = "element" if step.word == "{" else None
-                node = Node("call", node.start, step.end, step.parts, name.text, name.start, info)
+            if isinstance(node, Name) and isinstance(step, Index):
+                make = Element if step.word == "{" else FunctionCall
+                node = make(node.start, step.end, step.parts, name.text, name.start)
             else:
-                node = Node("part", node.start, step.end, (node, *step.parts), step.word, step.start, step)
+                node = Part(node.start, step.end, (node, *step.parts), step.word, step.start, step)
         return node
 
     def handle(self, sign: Token) -> Node:
@@ -471,12 +498,12 @@ class _Reader:
             name = self.next()
             if name.kind != "name" or name.text in _KEYWORDS:
                 raise self.refusal("`@` is followed by a name or by the arguments in brackets, as in @(t)", name)
-            return Node("handle", sign.start, name.end, (), name.text, sign.start)
+            return FunctionHandle(sign.start, name.end, (), name.text, sign.start)
         names = self.names(")")
         self.inside.append("(")
         body = self.expression()
         self.inside.pop()
-        return Node("handle", sign.start, body.end, (body,), "@", sign.start, tuple(names))
+        return AnonymousFunction(sign.start, body.end, (body,), "@", sign.start, tuple(names))
 
     def arguments(self, closing: str) -> tuple[Node, ...]:
         parts: list[Node] = []
@@ -484,7 +511,7 @@ class _Reader:
         while not self.takes(closing):
             if self.peek().text == ":" and self.peek(1).text in (",", closing):
                 token = self.next()
-                parts.append(Node("all", token.start, token.end))
+                parts.append(All(token.start, token.end))
             else:
                 parts.append(self.expression())
             if not self.takes(",") and self.peek().text != closing:
@@ -504,15 +531,16 @@ class _Reader:
             if token.kind == "newline" or self.takes(";"):
                 self.at += token.kind == "newline"
                 if row:
-                    rows.append(Node("row", row[0].start, row[-1].end, tuple(row)))
+                    rows.append(Row(row[0].start, row[-1].end, tuple(row)))
                 row = []
             elif not self.takes(","):
                 row.append(self.expression())
         if row:
-            rows.append(Node("row", row[0].start, row[-1].end, tuple(row)))
+            rows.append(Row(row[0].start, row[-1].end, tuple(row)))
         self.inside.pop()
         closing = self.tokens[self.at - 1]
-        return Node("matrix" if opening.text == "[" else "cell", opening.start, closing.end, tuple(rows))
+        make = Matrix if opening.text == "[" else Cell
+        return make(opening.start, closing.end, tuple(rows))
 
 
 def _functions_have_ends(tokens: list[Token]) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from ..nodes import Node
+from ..expressions import Node
 
 
 class Target(NamedTuple):

@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from ...errors import UnjudgedError
-from ..nodes import line_and_column
+from ..programs import line_and_column
 
 _TOKEN = re.compile(
     r"(?P<blank>[ \t\f]+|\.\.\.[^\n]*\n)|(?P<comment>[%#][^\n]*)|(?P<newline>\n)"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..nodes import ProgramError, Unread
+from ..programs import ProgramError, Unread
 
 Floats = NDArray[np.float64]
 MAX_SIZE = 100

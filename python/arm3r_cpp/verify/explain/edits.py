@@ -6,7 +6,32 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
-from ...user_functions.nodes import Edit, Node
+from ...user_functions.expressions import (
+    All,
+    AnonymousFunction,
+    Binary,
+    Cell,
+    Compare,
+    FunctionCall,
+    FunctionHandle,
+    Group,
+    Index,
+    Last,
+    Logic,
+    Matrix,
+    Name,
+    Node,
+    Not,
+    Number,
+    Other,
+    Part,
+    Range,
+    Root,
+    Row,
+    Transpose,
+    Unary,
+)
+from ...user_functions.programs import Edit
 
 _TRIGONOMETRIC = {"sin": "cos", "cos": "sin", "sind": "cosd", "cosd": "sind", "tan": "sin"}
 _ADDITIVE, _MULTIPLICATIVE = ("+", "-"), ("*", "/", ".*", "./")
@@ -38,23 +63,20 @@ class Editor:
         self.text, self.nodes, self.language = text, list(nodes), language
         self.factors = list(dict.fromkeys(factors))[:8]
         every = [inner for node in self.nodes for inner in node.walk()]
-        named = ("name", "call") if language == "matlab" else ("name",)  # x(2) may be an element
-        words = (one.word for one in every if one.kind in named and one.word not in _TRIGONOMETRIC)
+        named = (Name, FunctionCall) if language == "matlab" else (Name,)  # x(2) may be an element
+        words = (one.word for one in every if isinstance(one, named) and one.word not in _TRIGONOMETRIC)
         used = list(dict.fromkeys(words))
         self.unused = [name for name in _assigned(text) if name not in used][:4]
         self.names = [*self.unused, *used][:40]
-        self.trig = [
-            one for one in every if one.kind == "call" and _last(one.word) in _TRIGONOMETRIC and len(one.parts) == 1
-        ]
+        self.trig = [one for one in every if _is_wave(one) and len(one.parts) == 1]
         self.angles = list(dict.fromkeys([*self._angle_texts(angles), *(self._of(one.parts[0]) for one in self.trig)]))[
             :14
         ]
-        self.products = list(dict.fromkeys(self._of(one) for one in self._terms() if one.kind != "number"))[:24]
+        self.products = list(dict.fromkeys(self._of(one) for one in self._terms() if not isinstance(one, Number)))[:24]
         self.waves = [name for name in self.names if re.fullmatch(r"[csCS](_?\d{1,3}|[a-z]{0,2})", name)][:8]
         """Names such as c2, s23, ca, which stand for a cosine or a sine."""
-        self.called = {
-            one.word: len(one.parts) for one in every if one.kind == "call" and re.fullmatch(r"\w+", one.word)
-        }
+        calls = [one for one in every if isinstance(one, FunctionCall)]
+        self.called = {one.word: len(one.parts) for one in calls if re.fullmatch(r"\w+", one.word)}
         """Functions, with the number of their arguments."""
         self.power = "**" if language == "python" else "^"
 
@@ -73,9 +95,9 @@ class Editor:
         """The summands of all sums."""
         for statement in self.nodes:
             for node in statement.walk():
-                if node.kind == "binary" and node.word in _ADDITIVE:
-                    yield from (part for part in node.parts if not (part.kind == "binary" and part.word in _ADDITIVE))
-                elif node.kind == "assign" and not (node.parts[0].kind == "binary" and node.parts[0].word in _ADDITIVE):
+                if _is_sum(node):
+                    yield from (part for part in node.parts if not _is_sum(part))
+                elif isinstance(node, Root) and not _is_sum(node.parts[0]):
                     yield node.parts[0]
 
     def all(self, statements: Sequence[Node]) -> list[Edit]:
@@ -109,30 +131,48 @@ class Editor:
             is_whole
             and not is_result
             and all(
-                node.kind in ("assign", "number", "matrix", "row", "unary", "group")
-                or (node.kind == "other" and node.word[:1] in ("{", "'", '"'))
+                isinstance(node, (Root, Number, Matrix, Row, Unary, Group))
+                or (isinstance(node, Other) and node.word[:1] in ("{", "'", '"'))
                 for node in statement.walk()
             )
         )
 
     def _of_node(self, node: Node, parent: Node) -> Iterator[Edit]:
-        if node.kind in ("other", "row", "all", "last", "range", "cell", "handle", "assign", "logic", "not"):
-            if node.kind == "other" and parent.kind != "index" and not node.word.startswith(("np", "math")):
-                yield from self._wrapped(node, parent)
-            return
-        yield from getattr(self, f"_{node.kind}", self._nothing)(node, parent)
-        if node.kind == "compare":
-            return
-        is_value = parent.kind not in ("index", "part", "other") or parent.parts[:1] != (node,)
-        if is_value and not (parent.kind == "index" and node.kind == "number"):
+        match node:
+            case Row() | All() | Last() | Range() | Cell() | FunctionHandle() | AnonymousFunction() | Root():
+                return
+            case Logic() | Not():
+                return
+            case Compare():
+                yield from self._compare(node)
+                return
+            case Other():
+                if not isinstance(parent, Index) and not node.word.startswith(("np", "math")):
+                    yield from self._wrapped(node, parent)
+                return
+            case Name():
+                yield from self._name(node, parent)
+            case Number():
+                yield from self._number(node, parent)
+            case Unary():
+                yield from self._unary(node)
+            case Binary():
+                yield from self._binary(node, parent)
+            case FunctionCall():
+                yield from self._call(node, parent)
+            case Index():
+                yield from self._index(node, parent)
+            case Transpose():
+                yield from self._transpose(node, parent)
+            case Matrix():
+                yield from self._matrix(node)
+        is_value = not isinstance(parent, (Index, Part, Other)) or parent.parts[:1] != (node,)
+        if is_value and not (isinstance(parent, Index) and isinstance(node, Number)):
             yield from self._wrapped(node, parent)
-
-    def _nothing(self, node: Node, parent: Node) -> Iterator[Edit]:
-        yield from ()
 
     def _at(self, node: Node, new: str, rank: int, parent: Node | None = None) -> Edit:
         """The node's text replaced; a sum in a product gets brackets."""
-        tight = parent is not None and parent.kind in ("binary", "unary", "transpose", "index")
+        tight = parent is not None and isinstance(parent, (Binary, Unary, Transpose, Index))
         if tight and re.search(r"[-+*/]", re.sub(r"\([^()]*\)|\[[^]]*\]", "", new)):
             new = f"({new})"
         return Edit(node.start, node.end, new, rank)
@@ -164,19 +204,19 @@ class Editor:
         if not math.isfinite(value):
             return
         values = [0, 1, 2, 3, 4, 12, 0.5, -1, value + 1, value - 1, value / 2, 2 * value, -value, 9.80665]
-        if parent.kind == "index" or (value == int(value) and parent.kind in ("call", "matrix")):
+        if isinstance(parent, Index) or (value == int(value) and isinstance(parent, (FunctionCall, Matrix))):
             values = [0, 1, 2, 3, value + 1, value - 1, -value]
         for new in dict.fromkeys(values):
             yield self._at(node, f"{new:.10g}", 2 if new >= 0 else 4, parent if new < 0 else None)
         yield from (self._at(node, name, 6) for name in self.factors)
-        if value == 1 and parent.kind != "index":
+        if value == 1 and not isinstance(parent, Index):
             yield from (
                 self._at(node, name, 4 if name in self.waves else 5) for name in [*self.waves, *self.names[:16]]
             )
-        if value == 0 and parent.kind != "index":
+        if value == 0 and not isinstance(parent, Index):
             yield from (self._at(node, term, 4) for term in self.products)
 
-    def _unary(self, node: Node, parent: Node) -> Iterator[Edit]:
+    def _unary(self, node: Node) -> Iterator[Edit]:
         yield Edit(node.at, node.parts[0].start, "", 1)
         if node.word == "+":
             yield Edit(node.at, node.at + 1, "-", 1)
@@ -195,20 +235,20 @@ class Editor:
             yield self._at(node, f"np.linalg.solve({self._of(left)}, {self._of(right)})", 5)
         if node.word in ("-", "/", "@", "*"):
             yield self._at(node, f"{self._of(right)} {node.word} {self._of(left)}", 4, parent)
-        if node.word in (*_ADDITIVE, *_MULTIPLICATIVE) and left.kind == "binary" and left.word in _ADDITIVE:
+        if node.word in (*_ADDITIVE, *_MULTIPLICATIVE) and _is_sum(left):
             yield from self._regrouped(node, left, right)
-        if node.word in _ADDITIVE and left.kind == "binary" and left.word in _MULTIPLICATIVE:
+        if node.word in _ADDITIVE and _is_product(left):
             inner = f"{self._of(left.parts[0])}{left.word}({self._of(left.parts[1])} {node.word} {self._of(right)})"
-            yield self._at(node, inner, 5, None if parent.kind != "binary" else parent)
+            yield self._at(node, inner, 5, parent if isinstance(parent, Binary) else None)
 
     def _exchanged(self, node: Node, parent: Node) -> Iterator[Edit]:
         """a + b + c as (a + b)*c, and a*b*c as (a + b)*c: another operator between the same parts."""
         for word in (*_ADDITIVE, "*", "/") if node.word in (*_ADDITIVE, *_MULTIPLICATIVE) else ():
             is_sum = word in _ADDITIVE
-            tight = [not is_sum and one.kind == "binary" and one.word in _ADDITIVE for one in node.parts]
+            tight = [not is_sum and _is_sum(one) for one in node.parts]
             left, right = (f"({self._of(one)})" if is_tight else self._of(one)
                            for one, is_tight in zip(node.parts, tight, strict=True))  # fmt: skip
-            if any(tight) or (is_sum and node.word not in _ADDITIVE and parent.kind in ("binary", "unary")):
+            if any(tight) or (is_sum and node.word not in _ADDITIVE and isinstance(parent, (Binary, Unary))):
                 whole = f"{left} {word} {right}"
                 yield Edit(node.start, node.end, f"({whole})" if is_sum else whole, 2)
 
@@ -217,18 +257,18 @@ class Editor:
         first, second = left.parts
         yield self._at(node, f"{self._of(first)} {left.word} ({self._of(second)} {node.word} {self._of(right)})", 5)
 
-    def _compare(self, node: Node, parent: Node) -> Iterator[Edit]:
+    def _compare(self, node: Node) -> Iterator[Edit]:
         known = "~=" if self.language == "python" else "!="
         yield from (Edit(node.at, node.at + len(node.word), word, 3) for word in _COMPARISONS
                     if word not in (node.word, known))  # fmt: skip
 
     def _index(self, node: Node, parent: Node) -> Iterator[Edit]:
         """Another angle, and v[1] + v[2] for v[2]."""
-        text, base = self._of(node), self._of(node.parts[0]) if node.kind == "index" else node.word
+        text, base = self._of(node), self._of(node.parts[0]) if isinstance(node, Index) else node.word
         if text in self.angles and not any(node in one.parts for one in self.trig):
             yield from (self._at(node, angle, 3, parent) for angle in self.angles)
         place = node.parts[-1]
-        if place.kind == "number" and place.word.isdigit():
+        if isinstance(place, Number) and place.word.isdigit():
             for other in (int(place.word) - 1, int(place.word) + 1):
                 neighbour = f"{base}{text[place.start - node.start - 1]}{other}{text[place.end - node.start :]}"
                 yield self._at(node, f"{text}+{neighbour}", 5, parent)
@@ -259,11 +299,11 @@ class Editor:
 
     def _transpose(self, node: Node, parent: Node) -> Iterator[Edit]:
         yield self._at(node, self._of(node.parts[0]), 1, parent)
-        yield from (self._at(node, name, 5) for name in self.names if node.parts[0].kind == "name")
+        yield from (self._at(node, name, 5) for name in self.names if isinstance(node.parts[0], Name))
 
-    def _matrix(self, node: Node, parent: Node) -> Iterator[Edit]:
+    def _matrix(self, node: Node) -> Iterator[Edit]:
         """Two elements of a list, or two rows of a matrix, in the other order; the whole transposed."""
-        parts = node.parts[0].parts if len(node.parts) == 1 and node.parts[0].kind == "row" else node.parts
+        parts = node.parts[0].parts if len(node.parts) == 1 and isinstance(node.parts[0], Row) else node.parts
         for first in range(len(parts)):
             for second in range(first + 1, len(parts)):
                 one, other = parts[first], parts[second]
@@ -272,51 +312,49 @@ class Editor:
 
     def _rank_of_sign(self, node: Node, parent: Node) -> int:
         """A sign is lost before a whole term with its wave rather than before a factor of one."""
-        is_factor = parent.kind == "binary" and parent.word in _MULTIPLICATIVE
-        if node.kind == "name" and is_factor:
+        is_factor = _is_product(parent)
+        if isinstance(node, Name) and is_factor:
             return 4
-        has_wave = any(
-            one.word in self.waves or (one.kind == "call" and _last(one.word) in _TRIGONOMETRIC) for one in node.walk()
-        )
-        is_term = node.kind == "binary" and node.word in _MULTIPLICATIVE and not is_factor
-        return 1 if has_wave and is_term and parent.kind != "unary" else 2
+        has_wave = any(one.word in self.waves or _is_wave(one) for one in node.walk())
+        is_term = _is_product(node) and not is_factor
+        return 1 if has_wave and is_term and not isinstance(parent, Unary) else 2
 
     # ---- for any expression ------------------------------------------------------------------------------------------
 
     def _wrapped(self, node: Node, parent: Node) -> Iterator[Edit]:
         text = self._of(node)
-        is_atom = node.kind in ("name", "number", "call", "index", "group", "matrix")
+        is_atom = isinstance(node, (Name, Number, FunctionCall, Index, Group, Matrix))
         whole = text if is_atom else f"({text})"
-        is_sum = node.kind == "binary" and node.word in _ADDITIVE
-        if node.kind != "number" and parent.kind != "transpose":
-            if parent.kind != "unary":
+        is_sum, is_binary = _is_sum(node), isinstance(node, Binary)
+        if not isinstance(node, Number) and not isinstance(parent, Transpose):
+            if not isinstance(parent, Unary):
                 rank = self._rank_of_sign(node, parent)
-                is_product = node.kind == "binary" and rank > 1  # whose first factor is no negative number
+                is_product = is_binary and rank > 1  # whose first factor is no negative number
                 yield self._at(node, f"-{whole if is_sum or is_product else text}", rank, parent)
             yield self._at(node, "0", 3)
             yield self._at(node, "1", 4)
-        if node.kind in ("name", "call", "other", "index") or (
-            node.kind == "binary" and parent.kind not in ("binary", "unary")
+        if isinstance(node, (Name, FunctionCall, Other, Index)) or (
+            is_binary and not isinstance(parent, (Binary, Unary))
         ):
             for factor in self.factors:
                 yield Edit(node.start, node.end, f"{factor}*{whole}", 4)
-                yield self._at(node, f"{whole}/{factor}", 6, parent if parent.kind == "binary" else None)
-            yield self._at(node, f"{whole}/2", 3, parent if parent.kind == "binary" else None)
+                yield self._at(node, f"{whole}/{factor}", 6, parent if isinstance(parent, Binary) else None)
+            yield self._at(node, f"{whole}/2", 3, parent if isinstance(parent, Binary) else None)
             yield Edit(node.start, node.end, f"2*{whole}", 3)
             yield self._at(node, f"{whole}{self.power}2", 4)
-            for call in {one.word + one_arg for one in self.trig for one_arg in (f"({self._of(one.parts[0])})",)}:
+            for call in dict.fromkeys(f"{one.word}({self._of(one.parts[0])})" for one in self.trig):
                 yield Edit(node.start, node.end, f"{whole}*{call}", 5)
             yield from (Edit(node.start, node.end, f"{whole}*{name}", 5) for name in self.waves)
-        is_end_of_sum = parent.kind in ("assign", "group", "matrix", "row") or (parent.kind == "binary" and not is_sum)
-        if is_end_of_sum and (is_sum or parent.kind in ("assign", "group", "matrix", "row", "binary")):
-            brackets = parent.kind == "binary" and not is_sum
+        brackets = isinstance(parent, Binary) and not is_sum
+        if brackets or isinstance(parent, (Root, Group, Matrix, Row)):
             for term in self.products:
                 for sign in _ADDITIVE if term != text else "+":
                     body = f"{text} {sign} {term}"
                     yield Edit(node.start, node.end, f"({body})" if brackets else body, 5)
-        if self.language == "python" and node.kind in ("name", "call", "index") and parent.kind in ("binary", "assign"):
+        is_named = isinstance(node, (Name, FunctionCall))
+        if self.language == "python" and (is_named or isinstance(node, Index)) and isinstance(parent, (Binary, Root)):
             yield Edit(node.end, node.end, ".T", 6)
-        elif self.language == "matlab" and node.kind in ("name", "group", "call"):
+        elif self.language == "matlab" and (is_named or isinstance(node, Group)):
             yield Edit(node.end, node.end, "'", 6)
 
 
@@ -335,14 +373,28 @@ def _are_neighbours(name: str, other: str) -> bool:
 
 def _is_counted(node: Node, parent: Node) -> bool:
     """Whether a name counts elements: in an index, a slice or a range."""
-    if parent.kind == "index":
+    if isinstance(parent, Index):
         return node is not parent.parts[0]
-    is_slice = parent.kind == "other" and re.fullmatch(r"[^\n{]*:[^\n{]*", parent.word) is not None
-    return is_slice or parent.kind == "range" or (parent.kind == "call" and _last(parent.word) == "range")
+    is_slice = isinstance(parent, Other) and re.fullmatch(r"[^\n{]*:[^\n{]*", parent.word) is not None
+    is_range = isinstance(parent, Range) or (isinstance(parent, FunctionCall) and _last(parent.word) == "range")
+    return is_slice or is_range
 
 
 def _last(word: str) -> str:
     return word.rsplit(".", 1)[-1]
+
+
+def _is_sum(node: Node) -> bool:
+    return isinstance(node, Binary) and node.word in _ADDITIVE
+
+
+def _is_product(node: Node) -> bool:
+    return isinstance(node, Binary) and node.word in _MULTIPLICATIVE
+
+
+def _is_wave(node: Node) -> bool:
+    """Whether it is a sine, a cosine or a tangent."""
+    return isinstance(node, FunctionCall) and _last(node.word) in _TRIGONOMETRIC
 
 
 def _with_parents(node: Node) -> Iterator[tuple[Node, Node | None]]:

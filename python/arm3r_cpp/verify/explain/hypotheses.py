@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..._native import Floats
+from ..kinds import Kind
 
 States = dict[str, Floats]
 Truth = Callable[[States, dict[str, float]], Floats]
@@ -30,7 +31,7 @@ class Hypothesis(NamedTuple):
 
 
 def hypotheses(
-    kind: str,
+    kind: Kind,
     truth: Truth,
     states: States,
     joints: int,
@@ -50,7 +51,7 @@ def hypotheses(
     yield from _quantities(truth, states, scales)
 
 
-def _inputs(truth: Truth, states: States, joints: int, kind: str, in_degrees: bool) -> Iterator[Hypothesis]:
+def _inputs(truth: Truth, states: States, joints: int, kind: Kind, in_degrees: bool) -> Iterator[Hypothesis]:
     q = states["q"]
 
     def with_q(new: Floats, **other: Floats) -> Callable[[], Floats]:
@@ -78,7 +79,7 @@ def _inputs(truth: Truth, states: States, joints: int, kind: str, in_degrees: bo
         absolute[:, joint] -= absolute[:, joint - 1]
         words = f"q{joint + 1} is taken as the absolute angle of its link; the angle relative to link {joint} is due"
         yield Hypothesis(words, with_q(absolute))
-        if kind == "jacobian":
+        if kind.is_derivative:
             yield Hypothesis(
                 words + " (and in the derivatives, too)",
                 partial(_absolute_columns, with_q(absolute), joint),
@@ -97,7 +98,7 @@ def _absolute_columns(due: Callable[[], Floats], joint: int) -> Floats:
 
 
 def _outputs(
-    kind: str, due: Callable[[], Floats], joints: int, pose: Callable[[], tuple[Floats, Floats]] | None
+    kind: Kind, due: Callable[[], Floats], joints: int, pose: Callable[[], tuple[Floats, Floats]] | None
 ) -> Iterator[Hypothesis]:
     values = due()
     rows = values.shape[1]
@@ -135,7 +136,7 @@ def _outputs(
                 f"the columns stand in the order {', '.join(str(one + 1) for one in order)}",
                 partial(np.take, values, order, axis=2),
             )
-    if kind == "jacobian" and pose is not None and rows in (3, 6):
+    if kind.is_derivative and pose is not None and rows in (3, 6):
         yield from _of_other_frames(values, *pose())
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..._native import Floats
+from ..kinds import Kind
 
 Vectors = dict[str, Floats]
 """Joint vectors "qd" and "qdd", (n,) each; one that is missing is zero."""
@@ -24,13 +25,13 @@ class Part(NamedTuple):
     """The value of `words` at joint vectors (S, n)."""
 
 
-def parts_of(kind: str, joints: int) -> list[Part]:
+def parts_of(kind: Kind, joints: int) -> list[Part]:
     """The parts of a kind of formula; a single one where it depends on nothing but the angles."""
     rest = Part("", ((1.0, {}),), lambda x: np.ones(len(x["q"])))
-    if kind not in ("coriolis", "inverse"):
+    if not kind.polynomial_in:
         return [rest]
     units = np.eye(joints)
-    found = [_linear("qdd", j, units[j]) for j in range(joints) if kind == "inverse"]
+    found = [_linear("qdd", j, units[j]) for j in range(joints) if "qdd" in kind.polynomial_in]
     found += [_square(j, units[j]) for j in range(joints)]
     found += [_mixed(j, k, units[j], units[k]) for j, k in combinations(range(joints), 2)]
     return [*found, *(_linear("qd", j, units[j]) for j in range(joints)), rest]

@@ -11,20 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..._native import Floats
-from ...user_functions.nodes import ProgramError
+from ...user_functions.programs import ProgramError
 from ..names import SHORT
 from ..samples import Samples
 from .parts import Part, parts_of
 from .spectrum import Spectrum, read
 from .terms import RATIOS, Parameters, Term, is_simple_number, sum_words, terms_of
 
-_VARIED: dict[str, tuple[str, ...]] = {
-    "jacobian": ("length2", "length3"),
-    "gravity": ("length2", "length3", "mass2", "mass3", "gravity"),
-    "kinematics": ("length2", "length3", "height"),
-}
 _DYNAMIC = ("length2", "com2", "com3", "mass2", "mass3", "inertia2", "inertia3", "gravity")
-_READ = (*_VARIED, "mass", "coriolis", "inverse")
 _ROUNDING = 1e9
 """Times what is due: what a division by rounding leaves, by cos(pi/2), has terms that mean nothing."""
 
@@ -42,7 +36,7 @@ class Reading(NamedTuple):
 
 def read_entries(case: Any, wrong: frozenset[int]) -> dict[int, Reading]:
     """The readings of the wrong entries that can be read."""
-    if case.kind.name not in _READ:
+    if not case.kind.is_read:
         return {}
     reader = _Reader(case)
     found = {}
@@ -58,7 +52,7 @@ class _Reader:
     """Reads entries of one formula, and the same entries of the truth."""
 
     def __init__(self, case: Any) -> None:
-        self.case, self.kind = case, case.kind.name
+        self.case, self.kind = case, case.kind
         self.parts = parts_of(self.kind, case.truth.joints)
         self.own = case.truth.values_of_quantities
         names = {quantity: name for name, quantity in case.parameters.items()}
@@ -71,13 +65,13 @@ class _Reader:
     def _quantities(self) -> tuple[list[str], list[str]]:
         """The quantities in which what is due is written, and those of them that the formula's text varies."""
         known = self.case.known
-        if self.kind in _VARIED:
-            varied = [name for name in _VARIED[self.kind] if self.own.get(name) or name in known]
-            if self.kind == "gravity" and "com" not in self.case.follows:  # a centre that keeps its number has a name
+        if self.kind.quantities:
+            varied = [name for name in self.kind.quantities if self.own.get(name) or name in known]
+            if self.kind.needs_masses and "com" not in self.case.follows:  # a centre that keeps its number has a name
                 varied += [name for name in ("com2", "com3") if self.own.get(name)]
             return varied, [name for name in known if name in varied or name in ("com2", "com3")]
         varied = list(known) or [name for name in _DYNAMIC if self.own.get(name)]
-        return [name for name in varied if name != "gravity" or self.kind == "inverse"], list(known)
+        return [name for name in varied if name != "gravity" or self.kind.depends_on_gravity], list(known)
 
     def _arms(self, names: list[str]) -> list[dict[str, float]]:
         random = np.random.default_rng(31)
@@ -85,9 +79,8 @@ class _Reader:
         return [self.case.truth.random_quantities(set(names), random) for _ in range(count)] if names else [{}]
 
     def _monomials(self, part: Part, names: list[str]) -> list[tuple[str, ...]]:
-        if self.kind == "gravity":
-            return monomials(names, is_torque=True)
-        return monomials(names, is_torque=not part.words and self.kind == "inverse") if self.kind in _DYNAMICS else []
+        is_torque = not part.words and self.kind.depends_on_gravity
+        return monomials(names, is_torque=is_torque) if is_torque or self.kind.has_products else []
 
     def _at(self, q: Floats, of_truth: bool) -> Floats:
         """The parts at joint angles: (arms, S, entries times parts)."""
@@ -223,9 +216,6 @@ class _Reader:
         return f"cannot tell {', '.join(equal)} here: they are equal" if equal else ""
 
 
-_DYNAMICS = ("mass", "coriolis", "inverse")
-
-
 def monomials(names: list[str], *, is_torque: bool) -> list[tuple[str, ...]]:
     """What stands before waves in a mass matrix (a mass times two lengths, an inertia), or in a gravity torque."""
     lengths = [name for name in names if name.startswith(("length", "com"))]
@@ -233,8 +223,8 @@ def monomials(names: list[str], *, is_torque: bool) -> list[tuple[str, ...]]:
     inertias = [(name,) for name in names if name.startswith("inertia")]
     singles = [(), *((name,) for name in lengths)]
     if is_torque:
-        g: list[tuple[str, ...]] = [("gravity",)] if "gravity" in names else [()]
-        return [(*mass, *one, *force) for mass in [(), *masses] for one in singles for force in {(), *g}]
+        forces: list[tuple[str, ...]] = [(), ("gravity",)] if "gravity" in names else [()]
+        return [(*mass, *one, *force) for mass in [(), *masses] for one in singles for force in forces]
     pairs = list(combinations_with_replacement(lengths, 2))
     return [*((*mass, *one) for mass in [(), *masses] for one in (*singles, *pairs)), *inertias]
 

@@ -15,11 +15,6 @@ from .terms import Term, sum_words
 SIGNIFICANT = 6.0  # standard deviations: with a thousand coefficients, chance exceeds it once in a million times
 _FLOOR = 1e-12  # of the scale: numbers of a log are not more exact
 _EXACT = 1e-6  # of a coefficient: without noise, a fraction as near as this is no chance
-_MONOMIALS = {
-    "jacobian": (("length2",), ("length3",)),
-    "kinematics": (("length2",), ("length3",), ("height",)),
-    "gravity": tuple((f"mass{i}", "gravity", f"length{j}") for i in (2, 3) for j in (2, 3)),
-}
 
 
 @dataclass
@@ -66,17 +61,21 @@ def _simple(number: float, allowed: float) -> float:
 
 
 def columns_of(
-    kind: str, groups: Sequence[Sequence[int]], revolute: Sequence[bool], varied: Sequence[str]
+    groups: Sequence[Sequence[int]],
+    revolute: Sequence[bool],
+    order: int,
+    among: Sequence[tuple[str, ...]] = (),
+    varied: Sequence[str] = (),
 ) -> list[tuple[tuple[str, ...], tuple[Wave, ...]]]:
-    """The monomials of the quantities that a log varies, times the waves of first order (second for a mass matrix)."""
-    order, n = (2 if kind == "mass" else 1), len(revolute)
+    """The monomials `among` some that quantities which a log varies make, times the waves up to an order."""
+    n = len(revolute)
     axes = []
     for group in groups:
         joints = tuple(group)
         what = "angle" if revolute[joints[0]] else "power"
         axes.append(axis(joints, what, (order,) * len(joints), n))
     waves = [tuple(one for one in waves if one.joints) for waves in product(*(one.waves for one in axes))]
-    monomials = [names for names in _MONOMIALS.get(kind, ()) if set(names) <= set(varied)] or [()]
+    monomials = [names for names in among if set(names) <= set(varied)] or [()]
     return list(product(monomials, waves))
 
 

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..._native import Floats
-from ...user_functions.nodes import Edit, Node, ProgramError
+from ...user_functions.expressions import Node
+from ...user_functions.programs import Edit, ProgramError
 from .budget import Budget
 
 Evaluate = Callable[[Edit, bool], Floats]

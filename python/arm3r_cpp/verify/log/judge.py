@@ -12,7 +12,7 @@ from ...errors import UnjudgedError, UsageError
 from ..comparison import TOLERANCE, scales
 from ..explain.regression import SIGNIFICANT, Fit, columns_of, design, fits
 from ..finding import Finding
-from ..kinds import Kind, entry_name
+from ..kinds import Kind
 from ..names import SHORT, quantities_of
 from ..verdict import Verdict
 from .noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, quantum
@@ -109,14 +109,14 @@ def _due(truth: Any, kind: Kind, convention: str, states: dict[str, Floats], giv
     """What is right in each row, with the quantities that stand in it."""
     rows = len(states["q"])
     if not given:
-        return truth.values(kind.name, convention, states, {})
+        return truth.values(kind, convention, states, {})
     names = list(given)
     arms, which = np.unique(np.stack([given[name] for name in names], axis=1), axis=0, return_inverse=True)
     found: Floats | None = None
     for number, arm in enumerate(arms):
         here = np.flatnonzero(which.ravel() == number)
         part = truth.values(
-            kind.name,
+            kind,
             convention,
             {name: one[here] for name, one in states.items()},
             dict(zip(names, map(float, arm), strict=True)),
@@ -149,7 +149,7 @@ def _candidate(case: _Case, convention: str) -> _Candidate:
         if noise is None and not is_exact and (words := _excuse(case, place, one)) is not None:
             verdict.warnings += [words] if words else []
             if not words and _rms(one) > _NO_NOISE * flat.max():
-                found.undecided.append(entry_name(kind, [index + 1 for index in place]))
+                found.undecided.append(kind.entry_name([index + 1 for index in place]))
             continue
         size = float(flat[place]) * (level if noise is None else noise)
         verdict.findings.append(_finding(kind, place, case.fitted.get(place), rights[place], size))
@@ -162,7 +162,7 @@ def _candidate(case: _Case, convention: str) -> _Candidate:
 
 def _excuse(case: _Case, place: tuple[int, ...], left: Floats) -> str | None:
     """Why what is left of an entry is no mistake: "" for noise, else what is to be said; None: it is one."""
-    rates = case.log.vector("qd", case.truth.joints) if case.kind.name == "inverse" else None
+    rates = case.log.vector("qd", case.truth.joints) if case.kind.has_friction else None
     columns = np.zeros((len(left), 0)) if rates is None else friction_of(rates[:, place[0]])
     if not follows(left, columns, case.step):
         return None if follows(left, case.features, case.step) else ""
@@ -186,12 +186,12 @@ def _fits(
     given: dict[str, Floats],
     entries: dict[tuple[int, ...], Floats],
 ) -> dict[tuple[int, ...], Fit]:
-    if kind.name in ("coriolis", "inverse", "forward"):
+    if "qd" in kind.inputs:
         return {}
     own = truth.values_of_quantities
     varied = [name for name in given if len(np.unique(given[name])) > 1]
     constant = {name: np.full(len(states["q"]), own[name]) for name in own} | given
-    columns = columns_of(kind.name, truth.groups, truth.revolute, list(constant) if varied else [])
+    columns = columns_of(truth.groups, truth.revolute, kind.order, kind.monomials, list(constant) if varied else [])
     if len(columns) > 1000:
         return {}
     matrix = design(columns, states["q"], constant)
@@ -201,7 +201,7 @@ def _fits(
 def _finding(kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floats, noise: float) -> Finding:
     """The finding on an entry that is wrong."""
     entry = [one + 1 for one in place]
-    name = entry_name(kind, entry)
+    name = kind.entry_name(entry)
     if fitted is None:
         return Finding(entry, f"{name} is wrong; its terms cannot be read from these rows.")
     due = fitted.inverse @ right

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations_with_replacement
 
 import numpy as np
 
@@ -24,25 +23,12 @@ def features_of(
     kind: Kind, groups: Sequence[Sequence[int]], revolute: Sequence[bool], states: dict[str, Floats]
 ) -> Floats:
     """(rows, features): what the terms of such a formula are made of."""
-    q, qd, qdd, tau = (states[name] for name in ("q", "qd", "qdd", "tau"))
-    n = len(revolute)
-    first = _waves("gravity", groups, revolute, q)
-    if kind.name in ("jacobian", "gravity", "kinematics"):
-        return first
-    second = _waves("mass", groups, revolute, q)
-    if kind.name == "mass":
-        return second
-    rates = [qd[:, i] * qd[:, j] for i, j in combinations_with_replacement(range(n), 2)]
-    found = [second * rate[:, None] for rate in rates]
-    if kind.name == "inverse":
-        found += [second * qdd[:, [j]] for j in range(n)] + [first]
-    if kind.name == "forward":
-        found += [second * tau[:, [j]] for j in range(n)] + [second]
-    return np.concatenate(found, axis=1)
+    first, second = (_waves(order, groups, revolute, states["q"]) for order in (1, 2))
+    return np.concatenate(kind.features(first, second, states), axis=1)
 
 
-def _waves(kind: str, groups: Sequence[Sequence[int]], revolute: Sequence[bool], q: Floats) -> Floats:
-    columns = columns_of(kind, groups, revolute, [])
+def _waves(order: int, groups: Sequence[Sequence[int]], revolute: Sequence[bool], q: Floats) -> Floats:
+    columns = columns_of(groups, revolute, order)
     if len(columns) > _MOST_FEATURES // 16:  # many joints: what no more than two of them make
         columns = [(names, waves) for names, waves in columns if sum(len(one.joints) for one in waves) <= 2]
     return design(columns, q, {})

@@ -22,15 +22,6 @@ from ..names import quantities_of
 ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".log", *ARRAYS)
 LARGEST = 1e12  # of a number
 _STATES = re.compile(r"(q|qd|qdd|tau)\d")
-_ENTRIES = {
-    "jacobian": r"J_?[(\[]?(\d)[_,]?(\d)[)\]]?", "gravity": r"(?:g|tau_g)_?(\d)",
-    "mass": r"M_?[(\[]?(\d)[_,]?(\d)[)\]]?", "coriolis": r"h_?(\d)", "kinematics": r"(?:p_?|tip_)([123xyz])",
-    "inverse": r"tau(\d)", "forward": r"qdd(\d)",
-}  # fmt: skip
-_CALLED = {
-    "jacobian": "J11..", "gravity": "g1..", "mass": "M11..", "coriolis": "h1..", "kinematics": "p1..",
-    "inverse": "tau1..", "forward": "qdd1..",
-}  # fmt: skip
 
 
 class Log(NamedTuple):
@@ -94,7 +85,7 @@ class Log(NamedTuple):
         """The columns of a kind of formula, by their places from 0."""
         found = {}
         for name, values in self.columns.items():
-            match = re.fullmatch(_ENTRIES.get(kind.name, "-"), name)
+            match = re.fullmatch(kind.columns, name)
             if match:
                 found[tuple("xyz".index(one) if one in "xyz" else int(one) - 1 for one in match.groups())] = values
         return found
@@ -105,10 +96,10 @@ class Log(NamedTuple):
         Raises:
             UsageError: it has none.
         """
-        for name in _ENTRIES:
-            if self.entries(KINDS[name]) and not (name == "forward" and self.entries(KINDS["inverse"])):
-                return KINDS[name]
-        *others, last = _CALLED.values()
+        for kind in KINDS.values():
+            if self.entries(kind):
+                return kind
+        *others, last = (kind.columns_words for kind in KINDS.values() if kind.columns)
         raise UsageError(f"{self.file}: no column is judged; name them {', '.join(others)} or {last}{self._hint()}")
 
     def judged(self, kind: Kind) -> dict[tuple[int, ...], Floats]:
@@ -117,12 +108,12 @@ class Log(NamedTuple):
         Raises:
             UsageError: the log has none.
         """
-        if kind.name not in _CALLED:
+        if not kind.columns:
             raise UsageError(f"{self.file}: a {kind.words} is judged as a function, and not by a log")
         found = self.entries(kind)
         if not found:
             raise UsageError(
-                f"{self.file}: no column is that of a {kind.words}; name them {_CALLED[kind.name]}{self._hint()}"
+                f"{self.file}: no column is that of a {kind.words}; name them {kind.columns_words}{self._hint()}"
             )
         return found
 
@@ -133,7 +124,7 @@ class Log(NamedTuple):
 
 def is_known(name: str) -> bool:
     """Whether a log's column of this name is judged, or says at which state or of which arm a row is."""
-    entries = any(re.fullmatch(pattern, name) for pattern in _ENTRIES.values())
+    entries = any(re.fullmatch(kind.columns, name) for kind in KINDS.values())
     return bool(_STATES.fullmatch(name)) or entries or bool(quantities_of([name]))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from ..kinds import SPATIAL, Rows
+from ..kinds import SPATIAL, Kind, Rows
 from .bodies import Joint, rotation_about
 
 MAX_JOINTS = 7
@@ -115,7 +116,7 @@ class SerialChain:
             origins.append(origin)
         return [*rotations, rotation @ self.tool_rotation], [*origins, origin + rotation @ self.tool]
 
-    def jacobian(self, q: Floats) -> Floats:
+    def geometric_jacobian(self, q: Floats) -> Floats:
         """(S, 6, n): linear rows of the tip first."""
         rotations, origins = self.frames(q)
         columns = []
@@ -132,10 +133,11 @@ class SerialChain:
         rotations, origins = self.frames(q)
         return rotations[-1], origins[-1]
 
-    def _position(self, q: Floats, rows: Rows) -> Floats:
+    def tip_position(self, q: Floats) -> Floats:
+        """(S, 6): the tip in the base, and behind it the sums of the joint angles about the base's axes."""
         position = self.frames(q)[1][-1]
         axes = np.stack([rotation @ joint.axis for rotation, joint in zip(self._at_rest(), self.parts, strict=True)])
-        return np.concatenate([position, q @ axes], axis=1)[:, list(rows)]
+        return np.concatenate([position, q @ axes], axis=1)
 
     def _at_rest(self) -> list[Floats]:
         """The rotations of the links in the base where all joints are at zero."""
@@ -188,27 +190,35 @@ class SerialChain:
         columns = [self.torque(q, zero, zero + unit, np.zeros(3)) for unit in np.eye(self.joints)]
         return np.stack(columns, axis=2)
 
-    def values(self, kind: str, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],
-               *, follows: tuple[str, ...] = (), rows: Rows = SPATIAL) -> Floats:  # fmt: skip
-        """What is right at the states, (S, ...)."""
-        q, qd = states["q"], states["qd"]
-        zero, gravity = np.zeros_like(q), self.gravity
-        if "gravity" in quantities:
-            gravity = gravity * (quantities["gravity"] / self.values_of_quantities["gravity"])
-        if kind == "jacobian":
-            return self.jacobian(q)[:, list(rows)]
-        if kind == "kinematics":
-            return self._position(q, rows)
-        if not self._has_masses():
-            raise UsageError(f"{self.name} has no masses, which a {kind} formula needs")
-        if kind == "gravity":
-            return self.torque(q, zero, zero, gravity)
-        if kind == "mass":
-            return self.mass_matrix(q)
-        if kind == "coriolis":
-            return self.torque(q, qd, zero, np.zeros(3))
-        if kind == "inverse":
-            return self.torque(q, qd, states["qdd"], gravity)
-        bias = self.torque(q, qd, zero, gravity)
-        acceleration = np.linalg.solve(self.mass_matrix(q), (states["tau"] - bias)[..., None])[..., 0]
+    def gravity_torque(self, q: Floats) -> Floats:
+        return self.torque(q, np.zeros_like(q), np.zeros_like(q), self.gravity)
+
+    def velocity_product(self, q: Floats, qd: Floats) -> Floats:
+        return self.torque(q, qd, np.zeros_like(q), np.zeros(3))
+
+    def inverse_dynamics(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
+        return self.torque(q, qd, qdd, self.gravity)
+
+    def forward_dynamics(self, q: Floats, qd: Floats, tau: Floats) -> Floats:
+        bias = self.torque(q, qd, np.zeros_like(q), self.gravity)
+        acceleration = np.linalg.solve(self.mass_matrix(q), (tau - bias)[..., None])[..., 0]
         return np.asarray(acceleration, np.float64)
+
+    def with_gravity(self: AnyChain, g: float) -> AnyChain:
+        """The chain where gravity is as large, m/s^2."""
+        other = copy.copy(self)
+        other.gravity = self.gravity * (g / np.linalg.norm(self.gravity))
+        other.values_of_quantities = {"gravity": g}
+        return other
+
+    def values(self, kind: Kind, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],
+               *, follows: tuple[str, ...] = (), rows: Rows = SPATIAL) -> Floats:  # fmt: skip
+        """What is right at the states, (S, ...).
+
+        Raises:
+            UsageError: the chain has no masses, which the kind needs.
+        """
+        if kind.needs_masses and not self._has_masses():
+            raise UsageError(f"{self.name} has no masses, which a {kind.name} formula needs")
+        chain = self.with_gravity(quantities["gravity"]) if "gravity" in quantities else self
+        return kind.due(chain, states, rows)

@@ -18,9 +18,6 @@ from .dh import read_dh
 from .urdf import read_urdf
 
 _OTHER_GRAVITIES = (9.81, 9.8, 10.0)
-_WEIGHED, _PLACED = ("gravity", "inverse", "forward"), ("jacobian", "kinematics")
-"""Kinds of formulas that depend on gravity, and on where the base stands."""
-_MOVED = ("mass", "coriolis", "inverse", "forward")
 
 
 class Chain(SerialChain):
@@ -82,13 +79,6 @@ class Chain(SerialChain):
             named_numbers=self.named_numbers,
         )
 
-    def with_gravity(self, g: float) -> Chain:
-        """The chain where gravity is as large, m/s^2."""
-        other = copy.copy(self)
-        other.gravity = self.gravity * (g / np.linalg.norm(self.gravity))
-        other.values_of_quantities = {"gravity": g}
-        return other
-
     def in_frame_of_first_joint(self) -> Chain:
         """The chain in the frame in which its first joint stands, instead of the base."""
         other, (first, *rest) = copy.copy(self), self.parts
@@ -99,15 +89,15 @@ class Chain(SerialChain):
 
     def open_to(self, kind: Kind) -> list[Chain]:
         """Other chains that its file may mean: it says nothing of g, and a base may stand anywhere."""
-        if kind.name in _WEIGHED and not self.states_gravity and np.linalg.norm(self.gravity) > 0:
+        if kind.depends_on_gravity and not self.states_gravity and np.linalg.norm(self.gravity) > 0:
             return [self.with_gravity(g) for g in _OTHER_GRAVITIES]
         first = self.parts[0]
         stands_apart = not (np.array_equal(first.rotation, np.eye(3)) and not first.origin.any())
-        return [self.in_frame_of_first_joint()] if kind.name in _PLACED and stands_apart else []
+        return [self.in_frame_of_first_joint()] if kind.depends_on_base and stands_apart else []
 
     def variants(self, kind: Kind) -> list[tuple[str, Chain]]:
         """Chains with a mistake in their masses, in words."""
-        if kind.name not in _MOVED or not self._has_masses():
+        if not kind.depends_on_inertia or not self._has_masses():
             return []
         twice, without = copy.copy(self), copy.copy(self)
         shifts = [joint.mass * (joint.centre @ joint.centre * np.eye(3) - np.outer(joint.centre, joint.centre))
@@ -124,25 +114,24 @@ class Chain(SerialChain):
         """
         plane = self.plane()
         whole = [tuple(range(6)) if count == 6 else SPATIAL]
-        if plane is None or count not in (2, 3) or kind.name not in _PLACED:
+        if plane is None or count not in (2, 3) or not kind.depends_on_base:
             return whole
         across = tuple(axis for axis in range(3) if axis != plane)
         return [across] if count == 2 else [*whole, (*across, 3 + plane)]
 
     def allowing(self, kind: Kind) -> Kind:
         """The kind with the shapes that a formula of this chain may return: of a planar one two rows."""
-        flat = {"jacobian": "2xn", "kinematics": "2"}.get(kind.name)
-        return kind._replace(shapes=(*kind.shapes, flat)) if flat and self.plane() is not None else kind
+        return kind.in_plane() if self.plane() is not None else kind
 
     def assumed(self, kind: Kind, rows: Rows, varied: Sequence[str]) -> list[str]:
         """What is taken for granted, as its file does not say it or a formula may mean another."""
-        found = [f"in {self.frame}"] if self.frame and kind.name in _PLACED else []
-        if kind.name in _PLACED:
+        found = [f"in {self.frame}"] if self.frame and kind.depends_on_base else []
+        if kind.depends_on_base:
             found += [f"tip {self.tip}"] if self.tip else []
             found += [f"third row about {'xyz'[rows[2] - 3]}"] if len(rows) == 3 and rows[2] > 2 else []
-        if self.held and kind.name not in _PLACED:
+        if self.held and not kind.depends_on_base:
             found.append(f"{', '.join(self.held)} at zero")
-        if kind.name in _WEIGHED and "gravity" not in varied:
+        if kind.depends_on_gravity and "gravity" not in varied:
             size = float(np.linalg.norm(self.gravity))
             down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)
             words = "" if down or not size else f" along {vector_words(self.gravity / size)}"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ...arm import Arm
 from ...errors import UsageError
 from ...params import param_index
 from ...scenario import Scenario
-from ..kinds import SPATIAL, Kind, Rows
+from ..kinds import KINDS, SPATIAL, Kind, Rows
 
 CONVENTIONS = ("simscape", "slide")
 FOLLOWING = (("com", "inertia"), ("com",), (), ("com", "inertia", "mass"))
@@ -38,6 +39,14 @@ def _states_convention(scenario: Scenario) -> bool:
     """Whether the scenario gives arm.convention itself: its annotated text says where each value comes from."""
     found = re.search(r"^ +convention: \w+ +# (.*)$", scenario.to_yaml(annotate=True), re.M)
     return found is not None and found[1] != "lecture"
+
+
+class _ControlledArm(Arm):
+    """An arm with the law that controls it."""
+
+    def __init__(self, params: Floats, law: Callable[[Floats, Floats], Floats]) -> None:
+        super().__init__(params)
+        self.law_torque = law
 
 
 class ThreeR:
@@ -146,7 +155,8 @@ class ThreeR:
         if key not in self._arms:
             if len(self._arms) > 500:
                 self._arms.clear()
-            self._arms[key] = Arm(self._changed(convention, quantities, follows))
+            law = partial(self._law_torque, convention)
+            self._arms[key] = _ControlledArm(self._changed(convention, quantities, follows), law)
         return self._arms[key]
 
     def _changed(self, convention: str, quantities: Mapping[str, float], follows: tuple[str, ...]) -> Floats:
@@ -213,7 +223,7 @@ class ThreeR:
 
     def values(
         self,
-        kind: str,
+        kind: Kind,
         convention: str,
         states: Mapping[str, Floats],
         quantities: Mapping[str, float],
@@ -222,23 +232,7 @@ class ThreeR:
         rows: Rows = SPATIAL,
     ) -> Floats:
         """What is right at the states, (N, ...)."""
-        if kind == "controller":
-            return self._law_torque(convention, states["q"], states["qd"])
-        arm = self.arm(convention, quantities, follows)
-        q, qd = states["q"], states["qd"]
-        if kind == "jacobian":
-            return arm.geometric_jacobian(q) if len(rows) == 6 else arm.jacobian(q)
-        if kind == "gravity":
-            return arm.gravity_torque(q)
-        if kind == "kinematics":
-            return arm.tip_position(q)
-        if kind == "mass":
-            return arm.mass_matrix(q)
-        if kind == "coriolis":
-            return arm.velocity_product(q, qd)
-        if kind == "inverse":
-            return arm.inverse_dynamics(q, qd, states["qdd"])
-        return arm.forward_dynamics(q, qd, states["tau"])
+        return kind.due(self.arm(convention, quantities, follows), states, rows)
 
     def _law_torque(self, convention: str, q: Floats, qd: Floats) -> Floats:
         """The torque of the scenario's law at the start, from each state.
@@ -264,7 +258,7 @@ class ThreeR:
 
     def pose(self, convention: str, q: Floats) -> tuple[Floats, Floats]:
         """The rotation from the tip's axes to the base, x along link 3, y across the arm's plane; and its position."""
-        return self._rotation(convention, q), self.values("kinematics", convention, {"q": q, "qd": q}, {})
+        return self._rotation(convention, q), self.values(KINDS["kinematics"], convention, {"q": q, "qd": q}, {})
 
     def _rotation(self, convention: str, q: Floats) -> Floats:
         sign = 1.0 if convention == "simscape" else -1.0

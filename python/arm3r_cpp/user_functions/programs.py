@@ -1,35 +1,11 @@
-"""Parts of a program's text, the same for Python and for MATLAB, and edits of it."""
+"""What every program of a user has: constants, edits of its text, how it is called, and how it fails."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, NamedTuple
-
-
-@dataclass
-class Node:
-    """A part of an expression or a statement; offsets count the characters of the text."""
-
-    kind: str
-    """name, number, unary, binary, compare, call, index, matrix, transpose, assign or other"""
-    start: int
-    end: int
-    parts: tuple[Node, ...] = ()
-    word: str = ""
-    """The name, the number's text, the operator, or the function that is called."""
-    at: int = -1
-    """Where the operator or the function's name begins, where it has a place of its own."""
-    info: object = field(default=None, compare=False)
-
-    def walk(self) -> Iterator[Node]:
-        """The part and all in it, each before what it consists of, however deep."""
-        left = [self]
-        while left:
-            node = left.pop()
-            yield node
-            left.extend(reversed(node.parts))
 
 
 class Edit(NamedTuple):

@@ -1,0 +1,47 @@
+"""The numbers that a text gives to the arm's quantities, against the arm's own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...user_functions.programs import line_and_column
+from ..comparison import Comparison
+from ..finding import Finding
+from ..verdict import Verdict
+
+
+def judge_constants(verdict: Verdict, case: Comparison) -> None:
+    """The numbers that the text gives to the arm's quantities, against the arm's own."""
+    for name, constant in case.formula.constants.items():
+        quantity = case.parameters.get(name)
+        own = case.truth.values_of_quantities.get(quantity) if quantity else None
+        if own is None or abs(constant.value - own) <= 1e-9 * max(abs(own), 1e-3):
+            continue
+        places = _depending(case, str(quantity), constant.value)
+        text = case.formula.text or ""
+        line, column = line_and_column(text, constant.start)
+        old = text[constant.start : constant.end]
+        words = "millimetres? " if own and abs(constant.value / own - 1000) < 1e-6 else ""
+        arm = "the lecture's arm" if case.truth.is_default else "the arm"
+        for place in places:
+            verdict.findings.append(
+                Finding(
+                    case.entry(place),
+                    f"{name} is {constant.value:.10g} in line {line}; {words}{arm} has {own:.10g}.",
+                    None,
+                    None,
+                    line,
+                    column,
+                    old,
+                    f"{own:.12g}",
+                )
+            )
+
+
+def _depending(case: Comparison, quantity: str, value: float) -> list[int]:
+    """The entries that another value of a quantity changes."""
+    samples = type(case.second)(case.second.states, [case.own])
+    right = case.due(samples)
+    changed = case.due(samples, {quantity: np.full(len(right), value)})
+    flat, other = (one.reshape(len(one), -1) for one in (right, changed))
+    return [int(place) for place in np.flatnonzero(np.abs(flat - other).max(axis=0) > 1e-12 * np.abs(flat).max())]

@@ -1,0 +1,69 @@
+"""A formula that returns nothing that could be compared: why, and which edit mends it."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ..errors import UnjudgedError
+from ..user_functions.programs import ProcessEnded, ProgramError, Unread, line_and_column
+from .explain.budget import Budget
+from .explain.causes import put_edit, repairs_of
+from .finding import Finding
+from .formula import Formula
+from .kinds import Kind
+from .meaning import ways
+from .verdict import Verdict
+
+Progress = Callable[[int, int], None]
+MENDING_EDITS = 3000
+
+
+def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progress: Progress | None) -> Verdict:
+    """The verdict on a formula that raises, or returns no numbers.
+
+    Raises:
+        UnjudgedError: it holds what is not read, which no edit mends.
+    """
+    finding = Finding(None, f"the formula fails: {error}", line=error.line)
+    verdict = Verdict(False, kind.name, truth.convention, float("inf"), [finding], file=formula.file, text=formula.text)
+    if not isinstance(error, ProcessEnded) and not (isinstance(error, Unread) and not error.name):
+        _mend_failure(verdict, formula, kind, truth, progress)
+    if isinstance(error, Unread) and not _is_renamed(finding, error.name):
+        place = f"{formula.file}:{error.line}" if error.line else formula.file
+        raise UnjudgedError(f"{place}: cannot be judged: {error}") from None
+    return verdict
+
+
+def _is_renamed(finding: Finding, name: str) -> bool:
+    """Whether the edit that mends a failure puts another name for this one."""
+    return finding.old == name and str(finding.new).isidentifier()
+
+
+def _mend_failure(verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None) -> None:
+    """The edit that makes a formula right which raises, or returns no numbers: in the line that fails, or another."""
+    budget = Budget(formula.program, MENDING_EDITS)
+    with contextlib.suppress(ProcessEnded):
+        _mend_in_time(verdict, formula, kind, truth, progress, budget)
+
+
+def _mend_in_time(
+    verdict: Verdict, formula: Formula, kind: Kind, truth: Any, progress: Progress | None, budget: Budget
+) -> None:
+    line, text = verdict.findings[0].line, formula.text or ""
+    failing = [one for one in formula.nodes if line_and_column(text, one.start)[0] == line]
+    for statements, case in product(
+        [failing, formula.nodes] if failing else [formula.nodes], ways(formula, kind, truth)
+    ):
+        wrong = frozenset(range(int(np.prod(case.due(case.first).shape[1:]))))
+        if budget.is_over():
+            return
+        for repair in repairs_of(case, wrong, progress, statements, budget):
+            if repair.mended == wrong:
+                verdict.convention = case.convention
+                put_edit(verdict.findings[0], case, repair.edit)
+                return

@@ -1,0 +1,41 @@
+"""The kinds of formula that are judged, a class each.
+
+A kind says what its formulas take and return, what is due (asked of an arm), on what of an arm that depends, and by
+which names of functions and columns of a log it is found. Everything else in `verify` is the same for all kinds: a new
+one is a class in a module here, and an entry in `KINDS`.
+"""
+
+from __future__ import annotations
+
+from .controller import Controller
+from .coriolis import Coriolis
+from .forward import Forward
+from .gravity import Gravity
+from .inverse import Inverse
+from .jacobian import Jacobian
+from .kind import SPATIAL, Kind, Rows
+from .kinematics import Kinematics
+from .mass import Mass
+
+KINDS: dict[str, Kind] = {
+    kind.name: kind
+    for kind in (Jacobian(), Gravity(), Kinematics(), Mass(), Coriolis(), Inverse(), Forward(), Controller())
+}
+"""By their names, in the order in which they are listed, and looked for in a log."""
+
+__all__ = ["KINDS", "SPATIAL", "Kind", "Rows", "kind_of_name"]
+
+_BY_NAME = ("controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics")
+"""The order in which names are held against kinds: the Jacobian of a tip is no tip."""
+
+
+def kind_of_name(name: str) -> str | None:
+    """The kind of formula that a name tells: of a function, a method, a file or an output."""
+    lower = name.rpartition(".")[2].lower()
+    if "forward_kin" in lower or "fkin" in lower:
+        return "kinematics"
+    for kind in (KINDS[one] for one in _BY_NAME):
+        for word in kind.called:
+            if (len(word) > 2 and word in lower) or lower == word or lower.startswith(f"{word}_"):
+                return kind.name
+    return next((kind.name for kind in KINDS.values() if lower in kind.letters), None)

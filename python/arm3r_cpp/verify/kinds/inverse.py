@@ -1,0 +1,23 @@
+"""The inverse dynamics (3.1)."""
+
+from __future__ import annotations
+
+from ..._native import Floats
+from .kind import Kind, Model, Rows, States, times_each, times_rates
+
+
+class Inverse(Kind):
+    """f(q, qd, qdd) -> (n,), N m."""
+
+    name, words, letter = "inverse", "inverse dynamics", "t"
+    inputs, unit, shapes = ("q", "qd", "qdd"), "N m", ("n",)
+    called = ("inverse_dyn", "invdyn", "id", "rnea", "inverse")
+    columns, columns_words = r"tau(\d)", "tau1.."
+    depends_on_gravity, depends_on_inertia, has_friction, comes_with_others = True, True, True, True
+    has_products, polynomial_in = True, ("qd", "qdd")
+
+    def due(self, arm: Model, states: States, rows: Rows) -> Floats:
+        return arm.inverse_dynamics(states["q"], states["qd"], states["qdd"])
+
+    def features(self, first: Floats, second: Floats, states: States) -> list[Floats]:
+        return [*times_rates(second, states["qd"]), *times_each(second, states["qdd"]), first]
