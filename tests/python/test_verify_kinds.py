@@ -12,7 +12,10 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
+from arm3r_cpp.verify import Chain
 from arm3r_cpp.verify.kinds import KINDS
+from arm3r_cpp.verify.truth.bodies import Joint, rotation_of
+from arm3r_cpp.verify.truth.three_r import ThreeR
 
 ARM = arm3r.Scenario().arm
 DYNAMICS = """
@@ -267,3 +270,53 @@ def test_what_depends_on_a_kind_is_told_in_its_class() -> None:
             if asked and words & set(KINDS):
                 found.append(f"{path.relative_to(package)}:{node.lineno}")
     assert not found
+
+
+RATE = """
+from math import cos, sin
+
+a2, a3 = 1.0, 1.0
+
+
+def jacobian_dot(q, qd):
+    s1, c1, s2, c2 = sin(q[0]), cos(q[0]), sin(q[1]), cos(q[1])
+    s23, c23 = sin(q[1] + q[2]), cos(q[1] + q[2])
+    w1, w2, w23 = qd[0], qd[1], qd[1] + qd[2]
+    r, h = a2*c2 + a3*c23, a2*s2 + a3*s23
+    rd, hd = -a2*s2*w2 - a3*s23*w23, a2*c2*w2 + a3*c23*w23
+    return [
+        [-c1*w1*r - s1*rd, s1*w1*h - c1*hd, a3*s23*s1*w1 - a3*c23*c1*w23],
+        [-s1*w1*r + c1*rd, -c1*w1*h - s1*hd, -a3*s23*c1*w1 - a3*c23*s1*w23],
+        [0, -rd, a3*s23*w23],
+    ]
+"""
+
+
+def test_the_rate_of_a_jacobian(written: Any) -> None:
+    right = written("rate.py", RATE)
+    verdict = verify.jacobian_dot(right)
+    assert verdict.ok and verdict.kind == "jacobian_dot" and "rate of the jacobian" in str(verdict)
+    for old, new, entry, reads, due in (
+        ("-a3*s23*c1*w1 -", "-a3*s23*c1*w2 -", [2, 3], "- a3 C1 S23 qd2", "-a3 C1 S23 qd1"),
+        ("[0, -rd, a3*s23*w23]", "[0, -rd, a3*s23*w2]", [3, 3], "a3 S23 qd2", "a3 S23 qd2 + a3 S23 qd3"),
+    ):
+        (finding,) = verify.jacobian_dot(written("rate.py", RATE.replace(old, new))).findings
+        assert finding.entry == entry and finding.line and finding.old and finding.new
+        assert reads in str(finding.reads) and due in str(finding.due), finding
+
+
+def test_the_rate_of_a_jacobian_is_the_change_of_the_jacobian() -> None:
+    """Of a chain with a sliding joint, of its six rows, and of the lecture's arm: by differences."""
+    random, step = np.random.default_rng(4), 1e-6
+    joints = [
+        Joint(kind, axis / np.linalg.norm(axis), rotation_of(random.uniform(-2, 2, 3)), random.uniform(-1, 1, 3))
+        for kind, axis in ((one, random.uniform(-1, 1, 3)) for one in (True, True, False, True))
+    ]
+    for truth in (Chain(joints, tool=(0.1, 0.2, 0.3)), ThreeR()):
+        q, qd = random.uniform(-2, 2, (2, 20, truth.joints))
+
+        def values(kind: str, q: Any, qd: Any, truth: Any = truth) -> Any:
+            return truth.values(KINDS[kind], truth.convention, {"q": q, "qd": qd}, {}, rows=tuple(range(6)))
+
+        by_differences = (values("jacobian", q + step * qd, qd) - values("jacobian", q - step * qd, qd)) / (2 * step)
+        assert np.allclose(values("jacobian_dot", q, qd), by_differences, rtol=0, atol=1e-8)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from ..arm import Arm
 from ..errors import UnjudgedError, UsageError
@@ -20,6 +20,9 @@ from .truth.chain_files import Chain
 from .truth.three_r import ThreeR
 from .verdict import Finding, Verdict
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 __all__ = [
     "Chain",
     "Finding",
@@ -31,9 +34,21 @@ __all__ = [
     "gravity",
     "inverse",
     "jacobian",
+    "jacobian_dot",
     "kinematics",
     "mass",
 ]
+
+
+class Told(TypedDict, total=False):
+    """What may be said of a formula beside its arm, see `formula_verdict`."""
+
+    seen_by: Sequence[Any]
+    progress: Progress | None
+    noise: float | None
+    columns: Mapping[str, str] | None
+    args: Sequence[str]
+    given: Mapping[str, Any] | None
 
 
 def truth_of(arm: Any) -> Any:
@@ -108,41 +123,46 @@ def _verdict_of(
     return judge(formula, chosen, truth, seen_by=seen_by, progress=progress)
 
 
-def jacobian(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def jacobian(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge the Jacobian of the tip: f(q) -> (3, n), or (6, n) with linear rows first."""
-    return formula_verdict(f, "jacobian", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "jacobian", arm, **told)
 
 
-def gravity(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def jacobian_dot(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
+    """Judge the rate of the tip's Jacobian: f(q, qd) -> (3, n), or (6, n) with linear rows first."""
+    return formula_verdict(f, "jacobian_dot", arm, **told)
+
+
+def gravity(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge the torque that holds the arm: f(q) -> (n,), N m."""
-    return formula_verdict(f, "gravity", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "gravity", arm, **told)
 
 
-def kinematics(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def kinematics(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge the tip's position: f(q) -> (3,), or (4, 4), m."""
-    return formula_verdict(f, "kinematics", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "kinematics", arm, **told)
 
 
-def mass(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def mass(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge the mass matrix: f(q) -> (n, n), kg m^2."""
-    return formula_verdict(f, "mass", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "mass", arm, **told)
 
 
-def coriolis(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def coriolis(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge the Coriolis and centrifugal torque: f(q, qd) -> (n,), or a matrix (n, n) by its product with qd, N m."""
-    return formula_verdict(f, "coriolis", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "coriolis", arm, **told)
 
 
-def inverse(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def inverse(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge the inverse dynamics: f(q, qd, qdd) -> (n,), N m."""
-    return formula_verdict(f, "inverse", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "inverse", arm, **told)
 
 
-def forward(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def forward(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge the forward dynamics: f(q, qd, tau) -> (n,), rad/s^2."""
-    return formula_verdict(f, "forward", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "forward", arm, **told)
 
 
-def controller(f: Any, arm: Any = None, *, seen_by: Sequence[Any] = (), **told: Any) -> Verdict:
+def controller(f: Any, arm: Any = None, **told: Unpack[Told]) -> Verdict:
     """Judge a control law: f(q, qd) -> (n,), N m, against that of the scenario `arm`."""
-    return formula_verdict(f, "controller", arm, seen_by=seen_by, **told)
+    return formula_verdict(f, "controller", arm, **told)

@@ -13,20 +13,33 @@ from .forward import Forward
 from .gravity import Gravity
 from .inverse import Inverse
 from .jacobian import Jacobian
+from .jacobian_dot import JacobianDot
 from .kind import SPATIAL, Kind, Rows
 from .kinematics import Kinematics
 from .mass import Mass
 
 KINDS: dict[str, Kind] = {
     kind.name: kind
-    for kind in (Jacobian(), Gravity(), Kinematics(), Mass(), Coriolis(), Inverse(), Forward(), Controller())
+    for kind in (
+        Jacobian(),
+        JacobianDot(),
+        Gravity(),
+        Kinematics(),
+        Mass(),
+        Coriolis(),
+        Inverse(),
+        Forward(),
+        Controller(),
+    )
 }
 """By their names, in the order in which they are listed, and looked for in a log."""
 
 __all__ = ["KINDS", "SPATIAL", "Kind", "Rows", "kind_of_name"]
 
-_BY_NAME = ("controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics")
-"""The order in which names are held against kinds: the Jacobian of a tip is no tip."""
+_BY_NAME = (
+    "jacobian_dot", "controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics",
+)  # fmt: skip
+"""The order in which names are compared with kinds: the Jacobian of a tip is no tip."""
 
 
 def kind_of_name(name: str) -> str | None:

@@ -30,6 +30,9 @@ class Model(Protocol):
     def geometric_jacobian(self, q: Floats, /) -> Floats:
         """(S, 6, n), linear rows first."""
 
+    def geometric_jacobian_dot(self, q: Floats, qd: Floats, /) -> Floats:
+        """Its rate, (S, 6, n)."""
+
     def gravity_torque(self, q: Floats, /) -> Floats: ...
     def mass_matrix(self, q: Floats, /) -> Floats: ...
     def velocity_product(self, q: Floats, qd: Floats, /) -> Floats: ...

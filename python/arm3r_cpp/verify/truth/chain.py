@@ -128,6 +128,33 @@ class SerialChain:
                 columns.append(np.concatenate([axis, np.zeros_like(axis)], axis=1))
         return np.stack(columns, axis=2)
 
+    def geometric_jacobian_dot(self, q: Floats, qd: Floats) -> Floats:
+        """The rate of the Jacobian, (S, 6, n): each column by the product rule, from the rates of axes and origins."""
+        rotations, origins = self.frames(q)
+        spin, velocity, before = np.zeros((len(q), 3)), np.zeros((len(q), 3)), np.zeros((len(q), 3))
+        axes, turning, velocities = [], [], []
+        for place, joint in enumerate(self.parts):
+            axis, rate = rotations[place] @ joint.axis, qd[:, place, None]
+            velocity = velocity + np.cross(spin, origins[place] - before)
+            turning.append(np.cross(spin, axis))
+            if joint.is_revolute:
+                spin = spin + axis * rate
+            else:
+                velocity = velocity + axis * rate
+            before = origins[place]
+            axes.append(axis)
+            velocities.append(velocity)
+        tip = velocity + np.cross(spin, origins[-1] - before)
+        columns = []
+        for place, joint in enumerate(self.parts):
+            axis, change = axes[place], turning[place]
+            if joint.is_revolute:
+                lever, sliding = origins[-1] - origins[place], tip - velocities[place]
+                columns.append(np.concatenate([np.cross(change, lever) + np.cross(axis, sliding), change], axis=1))
+            else:
+                columns.append(np.concatenate([change, np.zeros_like(change)], axis=1))
+        return np.stack(columns, axis=2)
+
     def pose(self, convention: str, q: Floats) -> tuple[Floats, Floats]:
         """The rotation of the tip's frame in the base frame, and its position."""
         rotations, origins = self.frames(q)

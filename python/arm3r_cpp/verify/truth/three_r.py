@@ -48,6 +48,13 @@ class _ControlledArm(Arm):
         super().__init__(params)
         self.law_torque = law
 
+    def geometric_jacobian_dot(self, q: Floats, qd: Floats) -> Floats:
+        """(S, 6, 3), linear rows first: axis 1 stands still, and axes 2 and 3 turn across it with joint 1."""
+        quarter = np.array([np.pi / 2, 0.0, 0.0])
+        angular = self.geometric_jacobian(q + quarter)[:, 3:] * qd[:, :1, None]
+        angular[:, :, 0] = 0.0
+        return np.concatenate([self.jacobian_dot(q, qd), angular], axis=1)
+
 
 class ThreeR:
     """An arm of a scenario.
