@@ -151,7 +151,7 @@ def test_links_fifos_and_two_files_of_a_name_are_refused(tmp_path: Path) -> None
     reasons = {row["task"]: row["reason"] for row in rows_of(tmp_path / "t.csv")}
     assert "is a link" in reasons["moon"] and "is no file" in reasons["plate_face"]
     assert "there are 2 files of this name (.m, .py)" in reasons["observer"]
-    assert "due is .py or .m" in reasons["first_joint"]
+    assert "it should be .py or .m" in reasons["first_joint"]
 
 
 def test_a_file_that_imports_the_package_can_be_refused(tmp_path: Path) -> None:

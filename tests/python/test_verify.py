@@ -55,9 +55,9 @@ def test_a_lost_angle_is_named_in_its_line(written: Any, command: Any) -> None:
     assert done.returncode == 11
     lines = done.stdout.splitlines()
     assert "jacobian, arguments in the order q3, q2, q1, convention simscape, 1 of 9 entries wrong" in lines[0]
-    assert lines[1] == "  J(2,3) reads -a3 S1 S2, due is -a3 S1 S23"
+    assert lines[1] == "  J(2,3) reads -a3 S1 S2, should be -a3 S1 S23"
     assert lines[2].strip() == "line 11:  j23 = -a3*sin(q2)*sin(q1);"
-    assert lines[3].index("^^") == lines[2].index("q2)") and lines[3].endswith("q2+q3 is due")
+    assert lines[3].index("^^") == lines[2].index("q2)") and lines[3].endswith("should be q2+q3")
     assert lines[-1] == "1 mistake in 1 file"
 
 
@@ -159,7 +159,7 @@ WHOLE = {
     "millimetres": lambda q: 1000 * lecture_jacobian(q),
     "the angular rows stand above the linear ones": lambda q: np.roll(ARM.arm.geometric_jacobian(q), 3, axis=0),
     "q3 is taken as the absolute angle": lambda q: lecture_jacobian([q[0], q[1], q[2] - q[1]]),
-    "twice what is due": lambda q: 2 * lecture_jacobian(q),
+    "twice what it should be": lambda q: 2 * lecture_jacobian(q),
 }
 
 
@@ -299,7 +299,7 @@ def test_what_is_due_is_left_open_where_the_text_does_not_tell_what_follows_a_le
     assert path.read_text() != program.text
     verdict = formula_verdict(from_file(path), program.kind)
     second = next(one for one in verdict.findings if one.entry == [2])
-    assert second.reads is not None and second.due is None and "due" not in second.cause
+    assert second.reads is not None and second.due is None and "should be" not in second.cause
     notes = [words for words in verdict.warnings if "does not tell what follows a length" in words]
     assert len(notes) == 2 and "m2 g l2 C2" in notes[0] and "1/2 m2 g a2 C2" in notes[1]
     assert judged(program, path.read_text(), tmp_path) == "named"

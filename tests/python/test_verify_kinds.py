@@ -107,7 +107,7 @@ def test_forward_dynamics_are_read_as_the_torque() -> None:
         return ARM.forward_dynamics(q, qd, tau - np.array([0, extra * np.sin(q[2]) * qd[1] ** 2, 0]))
 
     verdict = verify.forward(partial(formula, 0.3))
-    words = "is wrong: solved for the torque, t2 has 3/10 S3 qd2^2 where nothing is due"
+    words = "is wrong: solved for the torque, t2 has 3/10 S3 qd2^2 where nothing should be"
     assert len(verdict.findings) == 2 and not verdict.unexplained
     assert all(words in finding.cause for finding in verdict.findings), str(verdict)
 

@@ -42,10 +42,17 @@ Loop loop_on_wall(const Setup& setup) {
 
 // ---- stability of the force loops on the wall at t = 0
 
+// "s^3 + 70 s^2 + 500 s + 40000"
+std::string cubic_words(double m, double b, double c, double d) {
+    std::string text = m == 1 ? "s^3" : short_number(m) + " s^3";
+    if (b != 0) text += " + " + short_number(b) + " s^2";
+    if (c != 0) text += " + " + short_number(c) + " s";
+    return text + " + " + short_number(d);
+}
+
 void warn_of_cubic(double m, double b, double c, double d, double gain, const std::string& loop, Warnings& warnings) {
     if (is_stable(m, b, c, d)) return;
-    warnings.push_back("the force loop of " + loop + " is unstable: s^3, s^2, s and 1 have " + short_number(m) + ", " +
-                       short_number(b) + ", " + short_number(c) + " and " + short_number(d) +
+    warnings.push_back("the force loop of " + loop + " is unstable: its polynomial is " + cubic_words(m, b, c, d) +
                        (b > 0 && c > 0 ? ", and controller.force_integral_gain must stay below " +
                                              short_number(gain * b * c / (m * d)) + " 1/s"
                                        : ", and it has no damping"));

@@ -40,7 +40,7 @@ def submissions(folder: Path, tasks: Sequence[Task]) -> list[Submission]:
     """
     students = _students(folder)
     if not students:
-        raise UsageError(f"{folder}: holds no folders; due is one for each student, with files named by task")
+        raise UsageError(f"{folder}: holds no folders; make one for each student, with files named by task")
     found = [(student, _inside(student)) for student in students]
     return [
         Submission(student.name, task, [file for file in files if file.stem == task.name])
@@ -60,7 +60,7 @@ def notes(folder: Path, tasks: Sequence[Task]) -> Iterator[str]:
 
 def _students(folder: Path) -> list[Path]:
     if not folder.is_dir():
-        raise UsageError(f"{folder}: is no folder; due is one with a folder for each student")
+        raise UsageError(f"{folder}: is no folder; name one that holds a folder for each student")
     return [one for one in _inside(folder) if one.is_dir() and not one.name.startswith(".")]
 
 

@@ -177,7 +177,7 @@ def _values(task: FunctionTask, formula: Formula, states: dict[str, Floats]) -> 
     values = _by_name(task, formula, states) if task.kind else _by_position(task, formula, states)
     flat = values.reshape(len(values), -1)
     if flat.shape[1] != len(task.entries):
-        raise ProgramError(f"returns {flat.shape[1]} numbers; {len(task.entries)} are due")
+        raise ProgramError(f"returns {flat.shape[1]} numbers; it should return {len(task.entries)}")
     return flat
 
 
@@ -214,7 +214,7 @@ def _by_position(task: FunctionTask, formula: Formula, states: dict[str, Floats]
     slots = given.get(len(formula.arguments))
     if slots is None:
         count = len(formula.arguments)
-        raise ProgramError(f"takes {count} argument{'' if count == 1 else 's'}; due is {task.signature}")
+        raise ProgramError(f"takes {count} argument{'' if count == 1 else 's'}; it should be {task.signature}")
     table = np.concatenate([states[one.name].reshape(-1, one.size) for one in task.inputs], axis=1)
     return formula.program.evaluate(Call(slots, {}), table)
 

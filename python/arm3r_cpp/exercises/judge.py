@@ -32,7 +32,7 @@ def judge_file(task: Task, path: str | os.PathLike[str], *, forbid_own_package: 
 def refused(task: Task, file: Path) -> str:
     """Why a file is not even opened; "" where it is."""
     if file.suffix not in task.suffixes:
-        return f"ends with {file.suffix!r}; due is {' or '.join(task.suffixes)}"
+        return f"ends with {file.suffix!r}; it should be {' or '.join(task.suffixes)}"
     if not file.is_file() or not os.access(file, os.R_OK):
         return "is no file that can be read"
     if file.stat().st_size > MOST_BYTES:

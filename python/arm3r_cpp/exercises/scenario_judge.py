@@ -50,7 +50,7 @@ def _problem(error: ScenarioError) -> str:
 def _judge_run(task: ScenarioTask, scenario: Scenario) -> Mark:
     for key, allowed in task.keys.items():
         if scenario[key] not in allowed:
-            return Mark(WRONG, one_line(f"{key} is {scenario[key]}; due is {' or '.join(map(str, allowed))}"))
+            return Mark(WRONG, one_line(f"{key} is {scenario[key]}; it should be {' or '.join(map(str, allowed))}"))
     run = scenario.run()
     errors = [_error(condition, run) for condition in task.conditions]
     words = [_word(error, condition) for error, condition in zip(errors, task.conditions, strict=True)]

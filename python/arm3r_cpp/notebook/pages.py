@@ -24,8 +24,8 @@ def of_run(run: Run) -> str:
     numbers = [
         ("rows", len(run)),
         ("from t =", f"{run.t[0]:.6g} to {run.t[-1]:.6g} s"),
-        ("contact begins", f"{kinds.count('make')} times"),
-        ("contact ends", f"{kinds.count('break')} times"),
+        ("contact begins", _times(kinds.count("make"))),
+        ("contact ends", _times(kinds.count("break"))),
         ("peak force", f"{summary.get('peak_force', 0):.6g} N"),
         ("energy residual", f"{summary.get('energy_residual_max', 0):.2g} J"),
     ]
@@ -37,6 +37,10 @@ def of_run(run: Run) -> str:
         html.notes("Warnings:", run.warnings),
         html.image(small_figure.of_run(run), small_figure.WIDTH, "joint angles, and force or tip, over time"),
     )
+
+
+def _times(count: int) -> str:
+    return {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 def _checks(run: Run) -> str:

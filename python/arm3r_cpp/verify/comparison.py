@@ -129,7 +129,7 @@ class Comparison:
         """The flat places of the entries that differ."""
         due = self.due(samples) if due is None else due
         if values.shape != due.shape:
-            raise ProgramError(f"returns {_words(values.shape[1:])} numbers; {_words(due.shape[1:])} are due")
+            raise ProgramError(f"returns {_words(values.shape[1:])} numbers; it should return {_words(due.shape[1:])}")
         flat, right = (one.reshape(len(one), -1) for one in (values, due))
         return wrong_entries(flat, right, scales(right), TOLERANCE)
 
@@ -182,4 +182,4 @@ def scales(due: Floats) -> Floats:
 
 
 def _words(shape: tuple[int, ...]) -> str:
-    return "x".join(map(str, shape)) or "a single one of"
+    return "x".join(map(str, shape)) or "single"

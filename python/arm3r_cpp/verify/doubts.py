@@ -45,7 +45,7 @@ def leave_open(verdict: Verdict, case: Comparison, verdicts: Sequence[tuple[Verd
         )
         if words:
             verdict.warnings.append(
-                f"the formula does not tell what follows a length: if {FOLLOWING_WORDS[follows]}, due is {words}"
+                f"the formula does not tell what follows a length: if {FOLLOWING_WORDS[follows]}, it should be {words}"
             )
 
 

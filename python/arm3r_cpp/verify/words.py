@@ -43,12 +43,12 @@ def _head(verdict: Judgement) -> str:
 
 
 def _covered(verdict: Judgement, name: str) -> str:
-    """What a test excites, and how many planted mistakes it sees."""
+    """The joints and entries that a test uses and shows, and how many planted mistakes it would catch."""
     test = verdict.coverage[name]
     count = int(np.prod(verdict.shape)) if verdict.shape else 0
     joints = ", ".join(map(str, test["joints"])) or "none"
-    text = f"{name}: excites joints {joints} and {len(test['entries'])} of {count} entries"
-    return text + (f", sees {test['seen']} of {test['planted']} planted mistakes" if "planted" in test else "")
+    text = f"{name}: uses joints {joints}, shows {len(test['entries'])} of {count} entries"
+    return text + (f", would catch {test['seen']} of {test['planted']} typical mistakes" if "planted" in test else "")
 
 
 def _edit_of(finding: Finding) -> tuple[int, int, str, str]:
@@ -95,7 +95,7 @@ def _place(verdict: Judgement, finding: Finding) -> list[str]:
     before = source[: (finding.column or 1) - 1]
     blanks = " " * len(shown(before.lstrip()))
     width = max(len(shown(finding.old.split("\n")[0])), 1)
-    due = f"{finding.new} is due" if finding.new else "this is too much"
+    due = f"should be {finding.new}" if finding.new else "should not be here"
     return [f"{head}{source.strip()}", f"{' ' * len(head)}{blanks}{'^' * width}  {due}"]
 
 
@@ -119,7 +119,7 @@ def table(verdict: Judgement) -> str:
 
 def _cell(finding: Finding) -> str:
     if finding.reads is not None:
-        return f"<u>{html.escape(shown(finding.reads))}</u><br>due: {html.escape(shown(finding.due or ''))}"
+        return f"<u>{html.escape(shown(finding.reads))}</u><br>should be: {html.escape(shown(finding.due or ''))}"
     if finding.old is not None:
-        return f"<u>{html.escape(shown(finding.old))}</u><br>due: {html.escape(shown(finding.new or ''))}"
+        return f"<u>{html.escape(shown(finding.old))}</u><br>should be: {html.escape(shown(finding.new or ''))}"
     return "wrong"

@@ -267,7 +267,7 @@ def _cause(
         return words if words.endswith("?") else f"{words}."
     name = case.kind.entry_name(case.entry(place))
     if repair and finding.old is not None:
-        stands = f"stands where `{finding.new}` is due" if finding.new else "is too much"
+        stands = f"should be `{finding.new}`" if finding.new else "should not be here"
         others = f"; this line spoils {len(repair.mended)} entries" if len(repair.mended) > 1 else ""
         if first and first != repair.edit:
             line, _ = line_and_column(case.formula.text or "", first.start)

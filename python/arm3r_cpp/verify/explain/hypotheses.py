@@ -62,8 +62,8 @@ def _inputs(truth: Truth, states: States, joints: int, kind: Kind, in_degrees: b
         yield Hypothesis(words, with_q(np.rad2deg(q)))
         yield Hypothesis("the angles are turned from degrees into radians twice", with_q(np.deg2rad(q)))
     else:
-        yield Hypothesis("the angles are taken in degrees; radians are due", with_q(np.deg2rad(q)))
-        words = "the angles are turned into degrees before they are used; they are due in radians"
+        yield Hypothesis("the angles are taken in degrees; they should be in radians", with_q(np.deg2rad(q)))
+        words = "the angles are turned into degrees before they are used; they should stay in radians"
         yield Hypothesis(words, with_q(np.rad2deg(q)))
     yield Hypothesis("all joint angles have the wrong sign", with_q(-q))
     for joint in range(joints):
@@ -73,11 +73,13 @@ def _inputs(truth: Truth, states: States, joints: int, kind: Kind, in_degrees: b
         turned = q.copy()
         turned[:, joint] = (np.rad2deg if in_degrees else np.deg2rad)(turned[:, joint])
         units = ("radians", "degrees") if in_degrees else ("degrees", "radians")
-        yield Hypothesis(f"q{joint + 1} is taken in {units[0]}; {units[1]} are due", with_q(turned), 2)
+        yield Hypothesis(f"q{joint + 1} is taken in {units[0]}; it should be in {units[1]}", with_q(turned), 2)
     for joint in range(1, joints):
         absolute = q.copy()
         absolute[:, joint] -= absolute[:, joint - 1]
-        words = f"q{joint + 1} is taken as the absolute angle of its link; the angle relative to link {joint} is due"
+        words = (
+            f"q{joint + 1} is taken as the absolute angle of its link; it should be the angle relative to link {joint}"
+        )
         yield Hypothesis(words, with_q(absolute))
         if kind.is_derivative:
             yield Hypothesis(
@@ -103,13 +105,15 @@ def _outputs(
     values = due()
     rows = values.shape[1]
     yield Hypothesis("the result has the wrong sign", lambda: -values, is_of_result=True)
-    yield Hypothesis("the result is in degrees; radians are due", lambda: np.rad2deg(values), 2, is_of_result=True)
+    yield Hypothesis(
+        "the result is in degrees; it should be in radians", lambda: np.rad2deg(values), 2, is_of_result=True
+    )
     for factor, words in (
-        (2, "twice what is due"),
-        (0.5, "half of what is due"),
-        (1000, "1000 times what is due: millimetres?"),
-        (1e-3, "a thousandth of what is due"),
-        (1e6, "1e6 times what is due: millimetres?"),
+        (2, "twice what it should be"),
+        (0.5, "half of what it should be"),
+        (1000, "1000 times what it should be: millimetres?"),
+        (1e-3, "a thousandth of what it should be"),
+        (1e6, "1e6 times what it should be: millimetres?"),
     ):
         yield Hypothesis(f"the result is {words}", partial(np.multiply, factor, values), 2, is_of_result=True)
     for row in range(rows):
@@ -120,7 +124,7 @@ def _outputs(
         )
     for order in list(permutations(range(rows)))[1:] if rows <= 3 else [(3, 4, 5, 0, 1, 2)] * (rows == 6):
         if rows == 6:
-            words = "the angular rows stand above the linear ones; linear rows first are due"
+            words = "the angular rows stand above the linear ones; the linear rows should be first"
         else:
             what = "rows" if values.ndim == 3 else "entries"
             words = f"the {what} stand in the order {', '.join(str(row + 1) for row in order)}"
@@ -147,12 +151,12 @@ def _of_other_frames(values: Floats, rotation: Floats, position: Floats) -> Iter
         turned.append((", and the angular rows stand above the linear ones", np.roll(values, 3, axis=1)))
     for (number, axes), (also, rows) in product(enumerate(_AXES), turned):
         which = "the tip's frame" if number == 0 else "a frame that moves with the tip"
-        words = f"the rows are in {which}; the base frame is due{also}"
+        words = f"the rows are in {which}; they should be in the base frame{also}"
         yield Hypothesis(words, partial(_rotated, rotation @ axes, rows), 1 + (number > 0) + bool(also))
     if values.shape[1] == 6:
         across = np.cross(values[:, 3:], position[:, :, None], axis=1)
         whole = np.concatenate([values[:, :3] - across, values[:, 3:]], axis=1)
-        words = "the linear rows are of the last link's point at the base's origin; those of the tip are due"
+        words = "the linear rows are of the last link's point at the base's origin; they should be those of the tip"
         yield Hypothesis(words, lambda: whole)
 
 

@@ -71,13 +71,13 @@ def sum_words(terms: Sequence[Term]) -> str:
 
 
 def difference_words(reads: str, due: str) -> str:
-    """ "reads X, due is Y"; of long sums only the terms in which they differ."""
+    """ "reads X, should be Y"; of long sums only the terms in which they differ."""
     theirs, right = _summands(reads), _summands(due)
     common = [one for one in theirs if one in right]
     if len(common) <= _MANY:
-        return f"reads {reads}, due is {due}"
+        return f"reads {reads}, should be {due}"
     has, needs = ([one for one in ones if one not in common] for ones in (theirs, right))
-    return f"has {_joined(has)} where {_joined(needs)} is due, beside {len(common)} right terms"
+    return f"has {_joined(has)} where {_joined(needs)} should be, beside {len(common)} right terms"
 
 
 def _joined(summands: list[str]) -> str:

@@ -216,7 +216,7 @@ def _finding(kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floa
     if (read == due).all() or _is_off(fitted, read, right):
         return Finding(entry, f"{name} is wrong, with terms that are smaller than the noise.", None, right_words)
     reads = fitted.words(read, due, SHORT)
-    return Finding(entry, f"{name} reads {reads}; {right_words} is due.", reads, right_words)
+    return Finding(entry, f"{name} reads {reads}; it should be {right_words}.", reads, right_words)
 
 
 def _is_off(fitted: Fit, coefficients: Floats, right: Floats) -> bool:

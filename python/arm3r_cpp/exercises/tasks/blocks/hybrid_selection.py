@@ -111,14 +111,14 @@ def command(x, v, x_d, f, f_d):
     ),
     mistakes=(
         Mistake(
-            "the selections are swapped: due is force along the normal, position across it",
+            "the selections are swapped: it should be force along the normal, position across it",
             lambda **given: command(**given, position=FORCE, force=POSITION),
         ),
         Mistake(
             "position is controlled along the normal, too: S_p is missing",
             lambda **given: command(**given, position=ALL),
         ),
-        Mistake("the force error has the wrong sign: due is f_d - f", lambda **given: command(**given, sign=-1)),
+        Mistake("the force error has the wrong sign: it should be f_d - f", lambda **given: command(**given, sign=-1)),
         Mistake("the goal f_d itself is missing", lambda **given: command(**given, feedforward=0)),
     ),
 )

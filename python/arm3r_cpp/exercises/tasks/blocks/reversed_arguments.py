@@ -47,12 +47,14 @@ def gravity(q3, q2, q1):
     right=gravity,
     mistakes=(
         Mistake(
-            "arguments and results are in the order 3, 2, 1; due is 1, 2, 3",
+            "arguments and results are in the order 3, 2, 1; it should be 1, 2, 3",
             lambda q1, q2, q3: gravity(q3, q2, q1)[:, ::-1],
         ),
-        Mistake("the arguments are in the order q3, q2, q1; due is q1, q2, q3", lambda q1, q2, q3: gravity(q3, q2, q1)),
         Mistake(
-            "the results are in the order t3, t2, t1; due is t1, t2, t3",
+            "the arguments are in the order q3, q2, q1; it should be q1, q2, q3", lambda q1, q2, q3: gravity(q3, q2, q1)
+        ),
+        Mistake(
+            "the results are in the order t3, t2, t1; it should be t1, t2, t3",
             lambda q1, q2, q3: gravity(q1, q2, q3)[:, ::-1],
         ),
     ),

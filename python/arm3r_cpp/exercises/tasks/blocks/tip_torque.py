@@ -25,7 +25,7 @@ function tau = torque(q, f)
     entries=("tau1", "tau2", "tau3"),
     right=lambda q, f_on_tip: times(transposed(lab_arm().jacobian(q)), f_on_tip),
     mistakes=(
-        Mistake("J is not transposed: due is J^T f", lambda q, f_on_tip: times(lab_arm().jacobian(q), f_on_tip)),
+        Mistake("J is not transposed: it should be J^T f", lambda q, f_on_tip: times(lab_arm().jacobian(q), f_on_tip)),
         Mistake(
             "this is the torque that holds against the force; the force itself puts its opposite on the joints",
             lambda q, f_on_tip: -times(transposed(lab_arm().jacobian(q)), f_on_tip),

@@ -30,7 +30,9 @@ function tau = torque(q, f)
             "this takes f_on_wall for the force on the tip; the tip feels its opposite",
             lambda q, f_on_wall: times(transposed(lab_arm().jacobian(q)), f_on_wall),
         ),
-        Mistake("J is not transposed: due is -J^T f", lambda q, f_on_wall: -times(lab_arm().jacobian(q), f_on_wall)),
+        Mistake(
+            "J is not transposed: it should be -J^T f", lambda q, f_on_wall: -times(lab_arm().jacobian(q), f_on_wall)
+        ),
         Mistake(
             "J is not transposed, and the sign is that of a force on the tip",
             lambda q, f_on_wall: times(lab_arm().jacobian(q), f_on_wall),

@@ -45,9 +45,9 @@ t3 = -m3*g*(a2/2)*cos(q2+q3);
     entries=("t1", "t2", "t3"),
     right=lambda q: lab_arm().gravity_torque(q),
     mistakes=(
-        Mistake("t2, t3 have a2/2 where a3/2 is due, in the term of m3", lambda q: gravity(q, A2 / 2, A2 / 2)),
-        Mistake("t2 has a2/2 where a3/2 is due, in the term of m3", lambda q: gravity(q, A2 / 2, A3 / 2)),
-        Mistake("t3 has a2/2 where a3/2 is due", lambda q: gravity(q, A3 / 2, A2 / 2)),
-        Mistake("t2, t3 have a3 where a3/2 is due", lambda q: gravity(q, A3, A3)),
+        Mistake("t2, t3 have a2/2 where a3/2 should be, in the term of m3", lambda q: gravity(q, A2 / 2, A2 / 2)),
+        Mistake("t2 has a2/2 where a3/2 should be, in the term of m3", lambda q: gravity(q, A2 / 2, A3 / 2)),
+        Mistake("t3 has a2/2 where a3/2 should be", lambda q: gravity(q, A3 / 2, A2 / 2)),
+        Mistake("t2, t3 have a3 where a3/2 should be", lambda q: gravity(q, A3, A3)),
     ),
 )

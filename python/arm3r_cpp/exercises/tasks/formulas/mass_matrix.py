@@ -52,8 +52,11 @@ M = [m11 0 0; 0 m22 m23; 0 m23 C];
     entries=tuple(f"M({row},{column})" for row in (1, 2, 3) for column in (1, 2, 3)),
     right=lambda q: lab_arm().mass_matrix(q),
     mistakes=(
-        Mistake("M(2,2) has the coupling of the links once; due is twice", lambda q: mass_matrix(q, 1, 1)),
+        Mistake("M(2,2) has the coupling of the links once; it should be there twice", lambda q: mass_matrix(q, 1, 1)),
         Mistake("the coupling of the links is missing in M(2,2), M(2,3), M(3,2)", lambda q: mass_matrix(q, 0, 0)),
-        Mistake("M(2,3), M(3,2) have the coupling of the links twice; due is once", lambda q: mass_matrix(q, 2, 2)),
+        Mistake(
+            "M(2,3), M(3,2) have the coupling of the links twice; it should be there once",
+            lambda q: mass_matrix(q, 2, 2),
+        ),
     ),
 )
