@@ -291,6 +291,16 @@ def jacobian_dot(q, qd):
     ]
 """
 
+POSITIONS = """import numpy as np
+
+
+def jacobian(q):
+    s1, c1, s2, c2 = np.sin(q[0]), np.cos(q[0]), np.sin(q[1]), np.cos(q[1])
+    s23, c23 = np.sin(q[1] + q[2]), np.cos(q[1] + q[2])
+    r, h = c2 + c23, s2 + s23
+    return np.array([[-s1*r, -c1*h, -c1*s23], [c1*r, -s1*h, -s1*s23], [0, -r, -c23]])
+"""
+
 
 def test_the_rate_of_a_jacobian(written: Any) -> None:
     right = written("rate.py", RATE)
@@ -303,6 +313,13 @@ def test_the_rate_of_a_jacobian(written: Any) -> None:
         (finding,) = verify.jacobian_dot(written("rate.py", RATE.replace(old, new))).findings
         assert finding.entry == entry and finding.line and finding.old and finding.new
         assert reads in str(finding.reads) and due in str(finding.due), finding
+
+
+@pytest.mark.parametrize("default", ["eps=2e-6", "*, eps=2e-6"])
+def test_the_step_of_differences_may_be_a_default(default: str, written: Any) -> None:
+    rate = f"def jacobian_dot(q, qd, {default}):\n    return (jacobian(q + eps*qd) - jacobian(q))/eps\n"
+    verdict = verify.jacobian_dot(written("rate.py", f"{POSITIONS}\n\n{rate}"))
+    assert verdict.ok and "of differences with the step 2e-6 in line 11" in str(verdict), str(verdict)
 
 
 def test_the_rate_of_a_jacobian_is_the_change_of_the_jacobian() -> None:

@@ -73,6 +73,12 @@ class PythonText:
         """The names of the arguments that have a default."""
         return list(self.functions[function].defaults)
 
+    def numbers_of_arguments(self) -> list[Node]:
+        """The numbers that arguments of any function have by default."""
+        every = [node for node in ast.walk(self.tree) if isinstance(node, ast.arguments)]
+        values = [value for one in every for value in (*one.defaults, *one.kw_defaults) if value is not None]
+        return [node for node in map(self._node, values) if isinstance(node, Number)]
+
     def line(self, function: str) -> int:
         """Where a function begins, or a name is assigned first."""
         if function in self.functions:

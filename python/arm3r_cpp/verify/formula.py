@@ -76,6 +76,8 @@ class Formula:
     constants: dict[str, Constant] = field(default_factory=dict)
     defaults: dict[str, float] = field(default_factory=dict)
     nodes: list[Node] = field(default_factory=list)
+    default_nodes: list[Node] = field(default_factory=list)
+    """The numbers in `defaults`, and those of other functions of the text, where they stand."""
     text: str | None = None
     language: str = "python"
     comments: str = ""
@@ -210,7 +212,7 @@ def from_callable(function: Any) -> Formula:
 def _with_text(formula: Formula, function: Any, source: PythonText) -> None:
     formula.text, formula.nodes, formula.comments = source.text, source.nodes(), source.comments(formula.name)
     formula.constants = {one.name: one for one in source.constants()}
-    formula.defaults = source.arguments(formula.name)[1]
+    formula.defaults, formula.default_nodes = source.arguments(formula.name)[1], source.numbers_of_arguments()
     formula.outputs = source.returned_names(formula.name)
     closure = inspect.getclosurevars(function)
     outside = {**closure.globals, **closure.nonlocals}
@@ -296,6 +298,7 @@ def from_text(
         {one.name: one for one in source.constants()},
         defaults,
         source.nodes(),
+        source.numbers_of_arguments(),
         text,
         "python",
         source.comments(name),
@@ -313,6 +316,7 @@ def _of_matlab(program: MatlabProgram) -> Formula:
         {one.name: one for one in program.constants()},
         {},
         program.nodes(),
+        [],
         program.text,
         "matlab",
         program.comments(),

@@ -40,12 +40,13 @@ def _step_of_differences(case: Comparison, values: Floats, due: Floats) -> str:
     The errors shrink with it, and where it is tiny rounding is all that is left: a small term would just be gone.
     """
     text, scale = case.formula.text or "", scales(due)
+    every = [*case.formula.nodes, *case.formula.default_nodes]
 
     def off(node: Node, step: float) -> Floats:
         other = case.values(case.second, Edit(node.start, node.end, repr(step)))
         return np.asarray(np.abs(other.reshape(len(other), -1) - due).max(axis=0))
 
-    for node in (inner for top in case.formula.nodes for inner in top.walk() if isinstance(inner, Number)):
+    for node in (inner for top in every for inner in top.walk() if isinstance(inner, Number)):
         number = float(node.word.lower().replace("d", "e"))
         if not 0 < number < _LARGEST_STEP:
             continue
