@@ -289,7 +289,7 @@ def test_one_name_is_one_type_to_the_linker(root: Path, tmp_path: Path, scripts:
     environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
     flags = ["-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_FLAGS_RELEASE={CALLS}"]
     flags += ["-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON"]
-    flags += ["-DARM3R_LANES=2", "-DARM3R_PCH=OFF", "-DARM3R_UNITY=OFF", "-DARM3R_TESTS=ON", "-DARM3R_PYTHON=OFF"]
+    flags += ["-DARM3R_LANES=2", "-DARM3R_UNITY=OFF", "-DARM3R_TESTS=ON", "-DARM3R_PYTHON=OFF"]
     flags += [f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}"]
     make = ["cmake", "--build", str(tmp_path), "--target", "all", "arm3r_tests", "--parallel", "4"]
     for command in (["cmake", "-S", str(root), "-B", str(tmp_path), *flags], make):

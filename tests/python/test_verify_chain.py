@@ -451,3 +451,53 @@ end
     turned = text.replace(f"{second}; 0 0]", f"0 0; {second}]")
     done = command(written("jacobian.m", turned), "--urdf", written("arm.urdf", UPRIGHT))
     assert done.returncode == 0 and "frame of joint 1" not in done.stdout
+
+
+PAPER = """standard
+type,a,alpha,d,theta,mass,cx,cy,cz,Ixx,Iyy,Izz
+R,0.7,0,0,0,2.0,-0.35,0,0,0.01,0.1,0.1
+R,0.5,0,0,0,1.5,-0.3,0,0,0.008,0.05,0.05
+"""
+TOGETHER = """function [M, C, G] = dynamics(q, qd)
+  m1 = 2.0; m2 = 1.5; l1 = 0.7; lc1 = 0.35; lc2 = 0.2; I1 = 0.1; I2 = 0.05; g = 9.81;
+  c2 = cos(q(2)); s2 = sin(q(2));
+  h = m2*l1*lc2*s2;
+  M = [I1 + I2 + m1*lc1^2 + m2*(l1^2 + lc2^2 + 2*l1*lc2*c2), I2 + m2*(lc2^2 + l1*lc2*c2);
+       I2 + m2*(lc2^2 + l1*lc2*c2), I2 + m2*lc2^2];
+  C = [-h*qd(2), -h*(qd(1) + qd(2)); h*qd(1), 0];
+  G = [(m1*lc1 + m2*l1)*g*cos(q(1)) + m2*lc2*g*cos(q(1)+q(2)); m2*lc2*g*cos(q(1)+q(2))];
+end
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "right", "wrong", "output"),
+    [
+        ("mass", "2*l1*lc2*c2", "l1*lc2*c2", "M"),
+        ("coriolis", "-h*(qd(1) + qd(2))", "-h*qd(2)", "C"),
+        ("gravity", "m2*l1)*g", "m2*lc1)*g", "G"),
+    ],
+)
+def test_of_several_matrices_the_one_that_fits_is_judged(
+    kind: str, right: str, wrong: str, output: str, written: Any
+) -> None:
+    chain = Chain.from_dh(written("paper.csv", PAPER))
+    verdict = verify.formula_verdict(written("dynamics.m", TOGETHER), kind, chain)
+    assert verdict.ok and f"its output {output}" in str(verdict), str(verdict)
+    verdict = verify.formula_verdict(written("wrong.m", TOGETHER.replace(right, wrong)), kind, chain)
+    lines = {one.line for one in verdict.findings}
+    assert lines == {TOGETHER[: TOGETHER.index(right)].count("\n") + 1}, str(verdict)
+
+
+@pytest.mark.parametrize(("wave", "along"), [("cos", "[0, -1, 0]"), ("sin", "[1, 0, 0]")])
+def test_an_arm_that_lies_across_gravity_may_hang_or_stand_on_paper(wave: str, along: str, written: Any) -> None:
+    """Its file says nothing of gravity: what the formula means is said first, and so is g."""
+    chain = Chain.from_dh(written("paper.csv", PAPER))
+    text = TOGETHER.replace("g*cos(", f"g*{wave}(")
+    verdict = verify.formula_verdict(written("gravity.m", text), "gravity", chain)
+    assert verdict.ok and f"g = 9.81 m/s^2 along {along}" in str(verdict), str(verdict)
+    verdict = verify.formula_verdict(written("gravity.m", text.replace("g = 9.81", "g = 9.7")), "gravity", chain)
+    assert "g is 9.7 in line 2; standard gravity is 9.80665 m/s^2, --gravity X,Y,Z gives another" in str(verdict)
+    upright = Chain.from_dh(written("paper.csv", PAPER)).placed(gravity=(0, 0, -9.81))
+    verdict = verify.formula_verdict(written("gravity.m", text), "gravity", upright)
+    assert not verdict.ok and "across the arm's plane" in str(verdict), str(verdict)

@@ -28,10 +28,15 @@ def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
 
     Of several results the one is taken that fits by its shape, and by fewest wrong entries.
     """
-    if formula.language != "python" or formula.output is not None or _has_fitting_shape(formula, kind, truth):
+    if formula.output is not None or _has_fitting_shape(formula, kind, truth):
         return formula
-    outputs = (None, *range(_MOST_OUTPUTS))
-    others = [replace(formula, output=one, as_columns=columns) for columns in (False, True) for one in outputs]
+    if formula.language == "matlab":
+        others = [replace(formula, output=one, outputs=[name]) for one, name in enumerate(formula.outputs)]
+    elif formula.language == "python":
+        ways = product((False, True), (None, *range(_MOST_OUTPUTS)))
+        others = [replace(formula, output=one, as_columns=columns) for columns, one in ways]
+    else:
+        others = []
     fitting = [one for one in others if _has_fitting_shape(one, kind, truth)]
     return min(fitting, key=lambda one: wrong_count(one, kind, truth), default=formula)
 
@@ -53,9 +58,21 @@ def wrong_count(formula: Formula, kind: Kind, truth: Any) -> int:
 
 
 def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
-    """Of the arms that a file may mean, the one by which fewest entries are wrong, the likeliest of equals."""
+    """Of the arms that a file may mean, the one by which fewest entries are wrong, and fewest numbers of the text.
+
+    Of equals it is the likeliest.
+    """
     others = truth.open_to(kind)
-    return min([truth, *others], key=lambda one: wrong_count(formula, kind, one)) if others else truth
+    numbers = formula.numbers()
+
+    def wrong(one: Any) -> tuple[int, int]:
+        own = one.values_of_quantities
+        given = [
+            (numbers[name], own[what]) for name, what in _parameters(formula, kind, one).items() if name in numbers
+        ]
+        return wrong_count(formula, kind, one), sum(not np.isclose(*pair, rtol=1e-9) for pair in given)
+
+    return min([truth, *others], key=wrong) if others else truth
 
 
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:

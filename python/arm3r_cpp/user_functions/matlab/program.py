@@ -195,6 +195,8 @@ class MatlabProgram:
         ]
         with np.errstate(all="ignore"):
             outputs = self._run(self.functions[self.function], inputs, asked=len(self.outputs))
+        if call.output is not None:
+            outputs = [outputs[call.output]]
         if not all(isinstance(one, np.ndarray) for one in outputs):
             raise ProgramError("returns a cell array, a text or a function instead of numbers")
         outputs = [np.broadcast_to(as_numbers(one), (len(table), *one.shape[1:])) for one in outputs]

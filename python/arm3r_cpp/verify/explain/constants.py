@@ -23,11 +23,14 @@ def judge_constants(verdict: Verdict, case: Comparison) -> None:
         old = text[constant.start : constant.end]
         words = "millimetres? " if own and abs(constant.value / own - 1000) < 1e-6 else ""
         arm = "the lecture's arm" if case.truth.is_default else "the arm"
+        due = f"{arm} has {own:.10g}"
+        if quantity == "gravity" and not case.truth.states_gravity:
+            due = f"standard gravity is {own:.10g} m/s^2, --gravity X,Y,Z gives another"
         for place in places:
             verdict.findings.append(
                 Finding(
                     case.entry(place),
-                    f"{name} is {constant.value:.10g} in line {line}; {words}{arm} has {own:.10g}.",
+                    f"{name} is {constant.value:.10g} in line {line}; {words}{due}.",
                     None,
                     None,
                     line,

@@ -63,6 +63,8 @@ class SerialChain:
         g = float(np.linalg.norm(self.gravity))
         self.values_of_quantities: dict[str, float] = {"gravity": g} if g and self._has_masses() else {}
         self.states_gravity, self.tip, self.frame = states_gravity, tip, ""
+        self.takes_gravity = False
+        """Whether its size is what a formula says, as the chain's file does not."""
         self.held = tuple(held)
         self.named_numbers = dict(named_numbers or {})
 
@@ -235,7 +237,7 @@ class SerialChain:
         """The chain where gravity is as large, m/s^2."""
         other = copy.copy(self)
         other.gravity = self.gravity * (g / np.linalg.norm(self.gravity))
-        other.values_of_quantities = {"gravity": g}
+        other.values_of_quantities, other.takes_gravity = {"gravity": g}, True
         return other
 
     def values(self, kind: Kind, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..._native import Floats
 from ...errors import UsageError
 from ..explain.hypotheses import STEINER_MISSING, STEINER_TWICE
 from ..kinds import SPATIAL, Kind, Rows
@@ -79,6 +80,24 @@ class Chain(SerialChain):
             named_numbers=self.named_numbers,
         )
 
+    def _ways_down(self) -> list[Floats]:
+        """Of an arm that moves across gravity, as it lies on paper: down the page, or along its first axis, hanging."""
+        if not self.is_across_gravity():
+            return []
+        plane = self.plane() or 0
+        first, second = np.eye(3)[(plane + 1) % 3], np.eye(3)[(plane + 2) % 3]
+        return [-second, first]
+
+    def is_across_gravity(self) -> bool:
+        """Whether it moves in a plane across gravity, which then asks no torque."""
+        plane, size = self.plane(), float(np.linalg.norm(self.gravity))
+        return plane is not None and size > 0 and abs(self.gravity[plane]) > (1 - 1e-12) * size
+
+    def _falling_along(self, direction: Floats, size: float) -> Chain:
+        other = copy.copy(self)
+        other.gravity = size * direction
+        return other
+
     def in_frame_of_first_joint(self) -> Chain:
         """The chain in the frame in which its first joint stands, instead of the base."""
         other, (first, *rest) = copy.copy(self), self.parts
@@ -90,7 +109,9 @@ class Chain(SerialChain):
     def open_to(self, kind: Kind) -> list[Chain]:
         """Other chains that its file may mean: it says nothing of g, and a base may stand anywhere."""
         if kind.depends_on_gravity and not self.states_gravity and np.linalg.norm(self.gravity) > 0:
-            return [self.with_gravity(g) for g in _OTHER_GRAVITIES]
+            size = float(np.linalg.norm(self.gravity))
+            placed = [self, *(self._falling_along(direction, size) for direction in self._ways_down())]
+            return [*placed[1:], *(one.with_gravity(g) for one in placed for g in _OTHER_GRAVITIES)]
         first = self.parts[0]
         stands_apart = not (np.array_equal(first.rotation, np.eye(3)) and not first.origin.any())
         return [self.in_frame_of_first_joint()] if kind.depends_on_base and stands_apart else []
@@ -131,9 +152,11 @@ class Chain(SerialChain):
             found += [f"third row about {'xyz'[rows[2] - 3]}"] if len(rows) == 3 and rows[2] > 2 else []
         if self.held and not kind.depends_on_base:
             found.append(f"{', '.join(self.held)} at zero")
-        if kind.depends_on_gravity and "gravity" not in varied:
+        if kind.depends_on_gravity:
             size = float(np.linalg.norm(self.gravity))
             down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)
             words = "" if down or not size else f" along {vector_words(self.gravity / size)}"
-            found.append(f"g = {size:.7g} m/s^2{words}")
+            words += ", across the arm's plane" if self.is_across_gravity() else ""
+            is_known = "gravity" not in varied or self.takes_gravity
+            found += [f"g = {size:.7g} m/s^2{words}" if is_known else f"gravity{words}"] if is_known or words else []
         return found

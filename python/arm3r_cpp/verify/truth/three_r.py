@@ -68,6 +68,7 @@ class ThreeR:
     groups = ((0,), (1, 2))
     """Joints with parallel axes: their angles occur as sums."""
     named_numbers: Mapping[str, float] = {}
+    states_gravity = True
 
     def __init__(self, scenario: Scenario | Arm | None = None) -> None:
         """By default the lecture's arm."""
