@@ -148,7 +148,7 @@ def cores_of_this_worker() -> int:
 @pytest.mark.gate
 @pytest.mark.parametrize(
     ("flags", "lanes"),
-    [(CALLS, "1"), ("-O0", "all"), ("-O2", "all")],
+    [(CALLS, "all"), ("-O2", "all")],
 )
 def test_other_optimisation_gives_the_same(
     root: Path, package: Path, scripts: Path, files: list[Path], expected: dict[str, str], tmp_path: Path,

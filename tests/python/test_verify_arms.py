@@ -79,3 +79,26 @@ def test_a_controller_is_judged_without_warnings_of_states_that_nobody_chose(tmp
     with warnings.catch_warnings():
         warnings.simplefilter("error", arm3r.ScenarioWarning)
         assert not formula_verdict(law, "controller", scenario).ok
+
+
+HOLDS = "{format: 1, initial: {q: [0.1, -0.5, 1.0]}, controller: GAINS}"
+LAW = """import numpy as np
+
+
+def controller(q, qd):
+    error = np.array([0.1, -0.5, 1.0]) - q
+    t3 = -0.785*9.80665*0.5*np.cos(q[1] + q[2])
+    return np.array(STIFFNESS)*error - np.array(DAMPING)*qd + [0, t3 - 0.785*9.80665*1.5*np.cos(q[1]), t3]
+"""
+
+
+def test_a_reference_that_holds_stays_where_the_scenario_starts(tmp_path: Path) -> None:
+    gains = "{type: joint_pd, joint_stiffness: [60, 50, 30], joint_damping: [6, 5, 3]}"
+    (tmp_path / "pd.yaml").write_text(HOLDS.replace("GAINS", gains))
+    text = LAW.replace("STIFFNESS", "[60, 50, 30]")
+    (tmp_path / "pd.py").write_text(text.replace("DAMPING", "[6, 5, 3]"))
+    verdict = arm3r.verify.controller(tmp_path / "pd.py", tmp_path / "pd.yaml")
+    assert verdict.ok, str(verdict)
+    (tmp_path / "pd.py").write_text(text.replace("DAMPING", "[6, 5, 4]"))
+    verdict = arm3r.verify.controller(tmp_path / "pd.py", tmp_path / "pd.yaml")
+    assert [one.entry for one in verdict.findings] == [[3]], str(verdict)

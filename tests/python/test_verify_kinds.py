@@ -337,3 +337,17 @@ def test_the_rate_of_a_jacobian_is_the_change_of_the_jacobian() -> None:
 
         by_differences = (values("jacobian", q + step * qd, qd) - values("jacobian", q - step * qd, qd)) / (2 * step)
         assert np.allclose(values("jacobian_dot", q, qd), by_differences, rtol=0, atol=1e-8)
+
+
+STATES = """import numpy as np
+
+
+def plant(t, x, u):
+    return np.concatenate([x[3:], u - x[:3]])
+"""
+
+
+def test_a_right_hand_side_is_found_by_its_arguments_and_a_wrong_one_is_read(written: Any) -> None:
+    """Its derivative of the state is solved for the torque as plain accelerations are."""
+    verdict = verify.formula_verdict(written("plant.py", STATES))
+    assert not verdict.ok and verdict.kind == "forward"

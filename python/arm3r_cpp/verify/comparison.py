@@ -171,7 +171,9 @@ class Solved(Comparison):
     def _accelerations(self, samples: Samples, torque: Floats) -> Floats:
         states = {**samples.states, "tau": np.tile(torque, (len(samples.states["q"]), 1))}
         here = Samples(states, samples.arms)
-        return self.forward.standard_form(self.formula.values(self.call, here, self.known), len(torque), None)
+        return self.forward.standard_form(
+            self.formula.values(self.call, here, self.known), len(torque), here.tiled("qd")
+        )
 
 
 def scales(due: Floats) -> Floats:

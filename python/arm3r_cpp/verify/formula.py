@@ -27,7 +27,7 @@ from ..user_functions.python_process import PythonProcess
 from ..user_functions.python_program import _numbers, value_of
 from ..user_functions.sympy_expressions import function_of, is_expression
 from .kinds import KINDS, Kind, kind_of_name
-from .names import TIME, quantities_of, slot_of, slots_of
+from .names import TIME, quantities_of, slot_of, slots_of, takes_state_and_torque
 from .samples import Samples, columns
 
 
@@ -417,4 +417,6 @@ def kind_of(formula: Formula, joints: int) -> Kind:
             return KINDS[kind]
     if outputs and outputs[0].rstrip("123").lower() in ("t", "tau", "torque", "g"):
         return KINDS["gravity"]
+    if takes_state_and_torque(formula.arguments):
+        return KINDS["forward"]
     raise UsageError(f"{formula.file}: what {formula.name} computes is not clear; name it by --kind {'|'.join(KINDS)}")

@@ -60,17 +60,19 @@ def wrong_count(formula: Formula, kind: Kind, truth: Any) -> int:
 def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
     """Of the arms that a file may mean, the one by which fewest entries are wrong, and fewest numbers of the text.
 
-    Of equals it is the likeliest.
+    Of equals it is one on which the gravity of the formula acts, and the likeliest.
     """
     others = truth.open_to(kind)
     numbers = formula.numbers()
+    has_gravity = "gravity" in _parameters(formula, kind, truth).values()
 
-    def wrong(one: Any) -> tuple[int, int]:
+    def wrong(one: Any) -> tuple[int, bool, int]:
         own = one.values_of_quantities
         given = [
             (numbers[name], own[what]) for name, what in _parameters(formula, kind, one).items() if name in numbers
         ]
-        return wrong_count(formula, kind, one), sum(not np.isclose(*pair, rtol=1e-9) for pair in given)
+        is_pointless = has_gravity and one.is_across_gravity()
+        return wrong_count(formula, kind, one), is_pointless, sum(not np.isclose(*pair, rtol=1e-9) for pair in given)
 
     return min([truth, *others], key=wrong) if others else truth
 

@@ -111,6 +111,12 @@ def quantities_of(names: Iterable[str]) -> dict[str, str]:
     return meaning
 
 
+def takes_state_and_torque(arguments: Sequence[str]) -> bool:
+    """Whether they are those of a right-hand side: f(t, x, u), f(q, qd, tau)."""
+    vectors = {slot[0] for slot in map(slot_of, arguments) if slot}
+    return "tau" in vectors and ("qd" in vectors or any(_STATE.fullmatch(name) for name in arguments))
+
+
 def slots_of(
     arguments: Sequence[str], kind: Kind, joints: int, parameters: Iterable[str]
 ) -> list[tuple[str, int | None]]:

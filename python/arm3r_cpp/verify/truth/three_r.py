@@ -254,6 +254,8 @@ class ThreeR:
         here = self._scenario.copy()._quiet()
         start = here["time.start"]
         here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}
+        if here["reference.type"] == "hold":  # of where the scenario starts, and not of each state
+            here["reference.type"], here["reference.q"] = "point", list(here["initial.q"])
         torques = []
         for angles, rates in zip(q, qd, strict=True):
             here["initial.q"], here["initial.qd"] = signs * angles, signs * rates
