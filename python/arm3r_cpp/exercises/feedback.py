@@ -30,7 +30,7 @@ def described(task: Task) -> str:
         parts.append(f"Given, {task.name}{task.given_suffix}:\n\n" + textwrap.indent(task.given.strip("\n"), "    "))
     parts.append(hand_in(task))
     if task.numbers.student:
-        parts.append(f"With the {whose(task.numbers)}.")
+        parts.append(f"These are the {whose(task.numbers)}.")
     return "\n\n".join(parts)
 
 

@@ -20,12 +20,13 @@ class Numbers:
     student: str = ""
 
     def pick(self, what: str, lab: T, own: Sequence[T]) -> T:
-        """The lab sheet's value, or one of those that a student may get. Values of other names are drawn apart."""
+        """The lab sheet's value, or another one that a student may get. Values of other names are drawn apart."""
         if self.seed is None:
             return lab
         words = json.dumps([self.seed, same_name(self.student), what])
         drawn = int.from_bytes(hashlib.sha256(words.encode()).digest(), "big")
-        return own[drawn % len(own)]
+        others = [value for value in own if value != lab]
+        return others[drawn % len(others)]
 
 
 LAB = Numbers()
