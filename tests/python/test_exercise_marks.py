@@ -112,7 +112,7 @@ def test_a_folder_becomes_a_table(tmp_path: Path, capsys: Any) -> None:
     assert call("mark", "--trust-code", tmp_path / "class", "-o", other, "--jobs", 1) == 0
     assert one.read_bytes() == other.read_bytes()
     text = one.read_text()
-    assert text.startswith("student,task,mark,reason\n") and "\r" not in text and str(tmp_path) not in text
+    assert text.startswith("student,task,mark,reason,points\n") and "\r" not in text and str(tmp_path) not in text
 
 
 def test_hostile_submissions_change_nothing_and_no_other_mark(tmp_path: Path) -> None:
@@ -157,7 +157,7 @@ def test_links_fifos_and_two_files_of_a_name_are_refused(tmp_path: Path) -> None
 def test_a_file_that_imports_the_package_can_be_refused(tmp_path: Path) -> None:
     student = tmp_path / "class/copy"
     student.mkdir(parents=True)
-    text = "from arm3r_cpp.exercises.arms import lab_arm\n\ndef gravity(q):\n    return lab_arm().gravity_torque(q)\n"
+    text = "from arm3r_cpp.exercises.arms import LAB_ARM\n\ndef gravity(q):\n    return LAB_ARM.arm.gravity_torque(q)\n"
     (student / "first_joint.py").write_text(text)
     for option, words in (((), ""), (("--forbid-import",), "raises ModuleNotFoundError in line 1")):
         assert (

@@ -15,6 +15,7 @@ from arm3r_cpp import Scenario
 from arm3r_cpp.exercises import function_judge
 from arm3r_cpp.exercises.function_judge import THRESHOLD
 from arm3r_cpp.exercises.judge import judge_file
+from arm3r_cpp.exercises.loop import at_one_state
 from arm3r_cpp.exercises.mark import RIGHT, UNCLEAR, WRONG, two_digits, word_of
 from arm3r_cpp.exercises.task import FunctionTask, ScenarioTask
 from arm3r_cpp.exercises.tasks import TASKS
@@ -136,10 +137,6 @@ def test_mistakes_differ_clearly_from_what_is_right_and_from_each_other(task: Fu
     for number, one in enumerate(all_values):
         for other in all_values[:number]:
             assert np.abs(one - other).max() > 1e4 * THRESHOLD * scale
-
-
-def at_one_state(values: Any) -> Any:
-    return lambda **given: values(**{name: np.asarray(one, float)[None] for name, one in given.items()})[0]
 
 
 @pytest.mark.parametrize("task", [task for task in FUNCTIONS if task.loop], ids=lambda task: task.name)

@@ -16,6 +16,7 @@ from arm3r_cpp.commands import exercise, run, verify
 from arm3r_cpp.exercises.folder import Row
 from arm3r_cpp.exercises.mark import Mark
 from arm3r_cpp.exercises.table import csv_of
+from arm3r_cpp.exercises.tasks import TASKS
 from arm3r_cpp.user_functions.python_process import PythonProcess
 
 CONTROLS = [*map(chr, range(32)), *map(chr, range(0x7F, 0xA0))]
@@ -155,7 +156,7 @@ def test_what_a_controller_raises_forges_no_line(tmp_path: Path, capsys: Any) ->
 
 
 def table(names: list[str], reason: str = "") -> list[list[str]]:
-    rows = [Row(name, "tip_torque", Mark("wrong", reason)) for name in names]
+    rows = [Row(name, TASKS["tip_torque"], Mark("wrong", reason)) for name in names]
     text = csv_of(rows)
     assert is_harmless(text) and len(text.splitlines()) == 1 + len(names)
     return list(csv.reader(text.splitlines()))[1:]

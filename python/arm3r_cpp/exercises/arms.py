@@ -1,8 +1,9 @@
-"""The arm of the exercises: unequal links, so that no mistake hides behind equal numbers."""
+"""The arms of the exercises: unequal links, so that no mistake hides behind equal numbers."""
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import dataclass
+from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,23 +11,44 @@ import numpy as np
 from .._native import Floats
 from ..arm import Arm
 from ..scenario import Scenario
+from .numbers import LAB, Numbers, steps
 
-A2, A3, M2, M3, I1, G = 0.8, 0.6, 1.2, 0.7, 0.05, 9.80665
-SCENARIO = f"""\
+G = 9.80665
+
+
+@dataclass(frozen=True)
+class SlenderArm:
+    """An arm of slender links, its numbers as a task states them."""
+
+    a2: float
+    a3: float
+    m2: float
+    m3: float
+    i1: float
+
+    @property
+    def scenario(self) -> str:
+        return f"""\
 format: 1
 arm:
-  link1: {{inertia_axial: {I1}}}
-  link2: {{shape: slender, length: {A2}, mass: {M2}}}
-  link3: {{shape: slender, length: {A3}, mass: {M3}}}
+  link1: {{inertia_axial: {self.i1}}}
+  link2: {{shape: slender, length: {self.a2}, mass: {self.m2}}}
+  link3: {{shape: slender, length: {self.a3}, mass: {self.m3}}}
 """
-NUMBERS = f"""\
-The arm: a2 = {A2} m, a3 = {A3} m, m2 = {M2} kg, m3 = {M3} kg, g = {G} m/s^2. Links 2 and 3 are
+
+    @property
+    def text(self) -> str:
+        return f"""\
+The arm: a2 = {self.a2} m, a3 = {self.a3} m, m2 = {self.m2} kg, m3 = {self.m3} kg, g = {G} m/s^2. Links 2 and 3 are
 slender, with the centre of mass in the middle. Joint 1 turns about the vertical. Convention
 simscape, as in the lecture's code: positive q2 and q3 lower the arm. Angles are in radians."""
 
-JACOBIAN_LISTING = f"""\
-a2 = {A2};
-a3 = {A3};
+    @property
+    def jacobian_listing(self) -> str:
+        """What is given in MATLAB where the arm's Jacobian J of q is right."""
+        return f"""\
+a2 = {self.a2};
+a3 = {self.a3};
 r = a2*cos(q(2)) + a3*cos(q(2)+q(3));
 h = a2*sin(q(2)) + a3*sin(q(2)+q(3));
 s = a3*sin(q(2)+q(3));
@@ -34,12 +56,24 @@ J = [-sin(q(1))*r, -cos(q(1))*h, -cos(q(1))*s;
       cos(q(1))*r, -sin(q(1))*h, -sin(q(1))*s;
       0, -r, -a3*cos(q(2)+q(3))];
 """
-"""What is given in MATLAB where the arm's Jacobian J of q is right."""
+
+    @cached_property
+    def arm(self) -> Arm:
+        return Scenario(self.scenario).arm
 
 
-@cache
-def lab_arm() -> Arm:
-    return Scenario(SCENARIO).arm
+def arm_of(numbers: Numbers) -> SlenderArm:
+    """All tasks of a student are about one arm. No length or mass, and no half of one, is equal to another."""
+    return SlenderArm(
+        a2=numbers.pick("a2", 0.8, steps(0.7, 0.95, 0.01)),
+        a3=numbers.pick("a3", 0.6, steps(0.5, 0.65, 0.01)),
+        m2=numbers.pick("m2", 1.2, steps(1.1, 1.9, 0.1)),
+        m3=numbers.pick("m3", 0.7, steps(0.52, 0.87, 0.05)),
+        i1=numbers.pick("i1", 0.05, steps(0.03, 0.09, 0.01)),
+    )
+
+
+LAB_ARM = arm_of(LAB)
 
 
 def angles(q: Floats) -> SimpleNamespace:

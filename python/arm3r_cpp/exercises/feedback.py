@@ -3,22 +3,46 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 
 from .._messages import shown
-from .mark import RIGHT, Mark
+from .mark import MISSING, RIGHT, Mark
+from .numbers import Numbers
 from .task import Task
 
 GRADES = (1, 2, 3)
 
 
+def listed(tasks: Sequence[Task], marks: Sequence[Mark] = ()) -> str:
+    """A line for each task, in columns; with marks what is done."""
+    words = ["open" if mark.word == MISSING else mark.word for mark in marks] or [""] * len(tasks)
+    names, states = (max(map(len, texts)) + 2 for texts in ([task.name for task in tasks], words))
+    return "\n".join(
+        f"{task.name:{names}}{task.points} points  {f'{word:{states}}' if word else ''}{task.title}"
+        for task, word in zip(tasks, words, strict=True)
+    )
+
+
 def described(task: Task) -> str:
     """The task in words, with what is given."""
-    files = " or ".join(f"{task.name}{suffix}" for suffix in task.suffixes[:2])
     parts = [f"{task.name}: {task.title}", task.text.strip("\n")]
     if task.given:
         parts.append(f"Given, {task.name}{task.given_suffix}:\n\n" + textwrap.indent(task.given.strip("\n"), "    "))
-    parts.append(f"Hand in {files}.")
+    parts.append(hand_in(task))
+    if task.numbers.student:
+        parts.append(f"These are the {whose(task.numbers)}.")
     return "\n\n".join(parts)
+
+
+def hand_in(task: Task) -> str:
+    """What is due, and for how many points."""
+    files = " or ".join(f"{task.name}{suffix}" for suffix in task.suffixes)
+    return f"Hand in {files}: {task.points} points."
+
+
+def whose(numbers: Numbers) -> str:
+    """ "numbers of anna, seed 7"."""
+    return f"numbers of {shown(numbers.student)}, seed {numbers.seed}"
 
 
 def answer(task: Task, file: str, mark: Mark, grade: int) -> str:

@@ -9,8 +9,10 @@ from typing import NamedTuple
 
 from .._messages import did_you_mean
 from ..errors import UsageError
-from .mark import MISSING, WRONG, Mark
+from .mark import MISSING, RIGHT, WRONG, Mark
+from .numbers import Numbers
 from .task import Task
+from .tasks import TASKS, task_with
 from .worker import Worker
 
 Progress = Callable[[int, int], None]
@@ -20,8 +22,13 @@ class Row(NamedTuple):
     """What one student gets for one task."""
 
     student: str
-    task: str
+    task: Task
     mark: Mark
+
+    @property
+    def points(self) -> int:
+        """All of the task's for a right file, none for any other."""
+        return self.task.points if self.mark.word == RIGHT else 0
 
 
 class Submission(NamedTuple):
@@ -32,36 +39,39 @@ class Submission(NamedTuple):
     files: list[Path]
 
 
-def submissions(folder: Path, tasks: Sequence[Task]) -> list[Submission]:
-    """One for each student and task, students by name, tasks in their order.
+def students(folder: Path) -> list[Path]:
+    """The folders of the students, by name.
 
     Raises:
         UsageError: there is no such folder, or no folder of a student in it.
     """
-    students = _students(folder)
-    if not students:
+    if not folder.is_dir():
+        raise UsageError(f"{folder}: is no folder; name one that holds a folder for each student")
+    found = [one for one in _inside(folder) if one.is_dir() and not one.name.startswith(".")]
+    if not found:
         raise UsageError(f"{folder}: holds no folders; make one for each student, with files named by task")
-    found = [(student, _inside(student)) for student in students]
+    return found
+
+
+def submissions(folder: Path, names: Sequence[str], numbers: Numbers) -> list[Submission]:
+    """What a student's folder holds for the tasks of these names, in their order.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    files = _inside(folder)
     return [
-        Submission(student.name, task, [file for file in files if file.stem == task.name])
-        for student, files in found
-        for task in tasks
+        Submission(folder.name, task_with(name, numbers), [file for file in files if file.stem == name])
+        for name in names
     ]
 
 
-def notes(folder: Path, tasks: Sequence[Task]) -> Iterator[str]:
-    """What is in the folders but is no submission, where its name is nearly that of a task."""
-    names = [task.name for task in tasks]
-    for file in (file for student in _students(folder) for file in _inside(student)):
-        hint = did_you_mean(file.stem, names) if file.stem not in names else ""
+def notes(folder: Path) -> Iterator[str]:
+    """What is in a student's folder but is no submission, where its name is nearly that of a task."""
+    for file in _inside(folder):
+        hint = did_you_mean(file.stem, TASKS) if file.stem not in TASKS else ""
         if hint:
             yield f"{file}: is not marked; {hint}"
-
-
-def _students(folder: Path) -> list[Path]:
-    if not folder.is_dir():
-        raise UsageError(f"{folder}: is no folder; name one that holds a folder for each student")
-    return [one for one in _inside(folder) if one.is_dir() and not one.name.startswith(".")]
 
 
 def _inside(folder: Path) -> list[Path]:
@@ -93,7 +103,7 @@ def marks(
     def judge(one: Submission) -> Row:
         worker = idle.pop()
         try:
-            return Row(one.student, one.task.name, _mark(one, worker, forbid_own_package))
+            return Row(one.student, one.task, _mark(one, worker, forbid_own_package))
         finally:
             idle.append(worker)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from .._native import Floats
 from ..errors import NumericalError
 from .mark import RIGHT, WRONG, two_digits, word_of, worst
@@ -13,6 +15,11 @@ Function = Callable[..., Floats]
 """Takes the inputs of an exercise by name, at one state."""
 RATE = 500.0
 """Samples per second at which a function is called."""
+
+
+def at_one_state(values: Function) -> Function:
+    """A function of many states, (N, size), as one of a single state."""
+    return lambda **given: values(**{name: np.asarray(one, float)[None] for name, one in given.items()})[0]
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import numpy as np
 
 from .._native import Floats
 from ..run import Run
-from .arms import SCENARIO
 from .loop import Loop
+from .numbers import LAB, Numbers
 
 _SAMPLES = 40
 
@@ -24,9 +24,13 @@ class Task:
     title: str
     text: str
     hints: tuple[str, str, str]
+    points: int
+    """What it is worth when it is right."""
     given: str = ""
     """What the student begins with: a listing with a fault, or a scenario."""
     given_suffix: str = ".m"
+    numbers: Numbers = LAB
+    """Whose numbers it has."""
     suffixes: ClassVar[tuple[str, ...]]
 
 
@@ -65,8 +69,8 @@ class FunctionTask(Task):
     mistakes: tuple[Mistake, ...] = ()
     kind: str = ""
     """A kind of `verify`: arguments are then found by their names. Without it they are taken by position."""
-    scenario: str = SCENARIO
-    """The arm, and where the kind is controller the law."""
+    scenario: str = ""
+    """Where there is a kind: the arm, and for a controller the law."""
     loop: Loop | None = None
     """What the function does in a loop, where the task is about one."""
 

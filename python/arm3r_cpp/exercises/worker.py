@@ -26,8 +26,9 @@ from ..user_functions.python_process import PythonProcess
 from .function_judge import reading
 from .judge import judge_file
 from .mark import RIGHT, UNCLEAR, Mark
+from .numbers import Numbers
 from .task import FunctionTask, Task
-from .tasks import TASKS
+from .tasks import task_with
 
 _START = "from arm3r_cpp.exercises.worker import main; main()"
 MOST_SECONDS = 300.0  # of processor time; a right answer takes less than three
@@ -47,6 +48,8 @@ class Worker:
         """
         request = {
             "task": task.name,
+            "seed": task.numbers.seed,
+            "student": task.numbers.student,
             "path": os.fspath(path.absolute()),
             "forbid": forbid_own_package,
             "reading": with_reading,
@@ -154,7 +157,8 @@ def _copy_answers(request: dict[str, Any], answers: IO[bytes]) -> bool:
 
 
 def _marked(request: dict[str, Any]) -> Mark:
-    task, path = TASKS[request["task"]], Path(request["path"])
+    task = task_with(request["task"], Numbers(request["seed"], request["student"]))
+    path = Path(request["path"])
     mark = judge_file(task, path, forbid_own_package=request["forbid"])
     if request["reading"] and mark.word != RIGHT and isinstance(task, FunctionTask):
         with contextlib.suppress(Arm3rError, ProgramError):

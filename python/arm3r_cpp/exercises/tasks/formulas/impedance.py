@@ -1,59 +1,84 @@
 """A spring and a damper at the tip, with the error the wrong way round."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...._native import Floats
 from ....scenario import Scenario
-from ...arms import NUMBERS, SCENARIO, lab_arm, times, transposed
+from ...arms import G, SlenderArm, arm_of, times, transposed
 from ...loop import RATE, Function, Goal, Loop
+from ...numbers import Numbers, steps
 from ...task import FunctionTask, Input, Mistake
 
-K, D, X_D = 300.0, 40.0, (0.9, 0.2, 0.3)
-LAW = f"""\
-controller: {{type: stiffness, stiffness: {K}, damping: {D}}}
-reference: {{type: point, tip: {list(X_D)}}}
+
+@dataclass(frozen=True)
+class Law:
+    """A spring K and a damper D between the tip of an arm and x_d."""
+
+    lab: SlenderArm
+    k: float
+    d: float
+    x_d: tuple[float, float, float]
+
+    @property
+    def scenario(self) -> str:
+        return f"""\
+{self.lab.scenario}controller: {{type: stiffness, stiffness: {self.k}, damping: {self.d}}}
+reference: {{type: point, tip: {list(self.x_d)}}}
 """
 
+    def torque(self, q: Floats, qd: Floats, *, spring: float = 1, damper: float = 1, weight: float = 1) -> Floats:
+        """The law (7.9), with a factor before each of its parts."""
+        arm = self.lab.arm
+        jacobian = arm.jacobian(q)
+        force = spring * self.k * (self.x_d - arm.tip_position(q)) - damper * self.d * times(jacobian, qd)
+        return weight * arm.gravity_torque(q) + times(transposed(jacobian), force)
 
-def torque(q: Floats, qd: Floats, *, spring: float = 1, damper: float = 1, weight: float = 1) -> Floats:
-    """The law (7.9), with a factor before each of its parts."""
-    arm = lab_arm()
-    jacobian = arm.jacobian(q)
-    force = spring * K * (X_D - arm.tip_position(q)) - damper * D * times(jacobian, qd)
-    return weight * arm.gravity_torque(q) + times(transposed(jacobian), force)
-
-
-def in_the_loop(function: Function) -> list[float]:
-    """The largest distance from x_d in the last half second of three."""
-    scenario = Scenario(f"{SCENARIO}initial: {{q: [0.3, -0.6, 1.0]}}\ntime: {{stop: 3, log_every: 0.01}}\n")._quiet()
-    run = scenario.run(controller=lambda t, state: function(q=state.q, qd=state.qd), rate=RATE)
-    tip = np.stack([run[f"tip_{axis}"] for axis in "xyz"], axis=1)
-    return [float(np.linalg.norm(tip - X_D, axis=1)[run.t >= 2.5].max())]
+    def in_the_loop(self, function: Function) -> list[float]:
+        """The largest distance from x_d in the last half second of three."""
+        text = f"{self.lab.scenario}initial: {{q: [0.3, -0.6, 1.0]}}\ntime: {{stop: 3, log_every: 0.01}}\n"
+        run = Scenario(text)._quiet().run(controller=lambda t, state: function(q=state.q, qd=state.qd), rate=RATE)
+        tip = np.stack([run[f"tip_{axis}"] for axis in "xyz"], axis=1)
+        return [float(np.linalg.norm(tip - self.x_d, axis=1)[run.t >= 2.5].max())]
 
 
-TASK = FunctionTask(
-    name="impedance",
-    title="a spring that pushes the tip away",
-    text=f"""\
-This control law is meant to hold the tip at x_d as a spring of K = 300 N/m and a damper of
-D = 40 N s/m would, on an arm whose weight is compensated:
+def task(numbers: Numbers) -> FunctionTask:
+    lab = arm_of(numbers)
+    law = Law(
+        lab,
+        k=numbers.pick("impedance K", 300.0, steps(250.0, 400.0, 10.0)),
+        d=numbers.pick("impedance D", 40.0, steps(31.0, 49.0, 1.0)),
+        x_d=(
+            numbers.pick("impedance x", 0.9, steps(0.75, 0.95, 0.01)),
+            numbers.pick("impedance y", 0.2, steps(0.1, 0.25, 0.01)),
+            numbers.pick("impedance z", 0.3, steps(0.15, 0.35, 0.01)),
+        ),
+    )
+    return FunctionTask(
+        name="impedance",
+        title="a spring that pushes the tip away",
+        points=4,
+        text=f"""\
+This control law is meant to hold the tip at x_d as a spring of K = {law.k:g} N/m and a damper of
+D = {law.d:g} N s/m would, on an arm whose weight is compensated:
 
-    tau = tau_g + J^T (K (x_d - x) - D J qd),   x_d = ({", ".join(map(str, X_D))}) m
+    tau = tau_g + J^T (K (x_d - x) - D J qd),   x_d = ({", ".join(map(str, law.x_d))}) m
 
 In the simulation the tip runs away. Find out why, and hand in the right law, tau(q, qd).
 
-{NUMBERS}""",
-    hints=(
-        "Put the tip a little beside x_d, at rest: which way does the force of your law point?",
-        "A spring pulls towards x_d: the error is x_d - x, and the force K times the error.",
-        "force = K*(x_d - x) - D*(J @ qd); torque = tau_g + J.T @ force.",
-    ),
-    given=f"""\
+{lab.text}""",
+        hints=(
+            "Put the tip a little beside x_d, at rest: which way does the force of your law point?",
+            "A spring pulls towards x_d: the error is x_d - x, and the force K times the error.",
+            "force = K*(x_d - x) - D*(J @ qd); torque = tau_g + J.T @ force.",
+        ),
+        given=f"""\
 import numpy as np
 
-a2, a3, m2, m3, g = 0.8, 0.6, 1.2, 0.7, 9.80665
-K, D = {K}, {D}
-x_d = np.array({list(X_D)})
+a2, a3, m2, m3, g = {lab.a2}, {lab.a3}, {lab.m2}, {lab.m3}, {G}
+K, D = {law.k}, {law.d}
+x_d = np.array({list(law.x_d)})
 
 
 def controller(q, qd):
@@ -67,21 +92,22 @@ def controller(q, qd):
     force = K * (x - x_d) - D * (J @ qd)
     return tau_g + J.T @ force
 """,
-    given_suffix=".py",
-    kind="controller",
-    function="controller",
-    scenario=SCENARIO + LAW,
-    inputs=(Input("q", -3, 3), Input("qd", -2, 2)),
-    entries=("t1", "t2", "t3"),
-    right=torque,
-    loop=Loop(in_the_loop, (Goal("the distance of the tip from x_d after 2.5 s", "m", 0.0, 1e-3),)),
-    mistakes=(
-        Mistake(
-            "the error has the wrong sign: the spring pushes away from x_d", lambda q, qd: torque(q, qd, spring=-1)
+        given_suffix=".py",
+        kind="controller",
+        function="controller",
+        scenario=law.scenario,
+        inputs=(Input("q", -3, 3), Input("qd", -2, 2)),
+        entries=("t1", "t2", "t3"),
+        right=law.torque,
+        loop=Loop(law.in_the_loop, (Goal("the distance of the tip from x_d after 2.5 s", "m", 0.0, 1e-3),)),
+        mistakes=(
+            Mistake(
+                "the error has the wrong sign: the spring pushes away from x_d",
+                lambda q, qd: law.torque(q, qd, spring=-1),
+            ),
+            Mistake("the damper has the wrong sign: it feeds energy in", lambda q, qd: law.torque(q, qd, damper=-1)),
+            Mistake("the damper is missing", lambda q, qd: law.torque(q, qd, damper=0)),
+            Mistake("the gravity torque is missing", lambda q, qd: law.torque(q, qd, weight=0)),
+            Mistake("the gravity torque has the wrong sign", lambda q, qd: law.torque(q, qd, weight=-1)),
         ),
-        Mistake("the damper has the wrong sign: it feeds energy in", lambda q, qd: torque(q, qd, damper=-1)),
-        Mistake("the damper is missing", lambda q, qd: torque(q, qd, damper=0)),
-        Mistake("the gravity torque is missing", lambda q, qd: torque(q, qd, weight=0)),
-        Mistake("the gravity torque has the wrong sign", lambda q, qd: torque(q, qd, weight=-1)),
-    ),
-)
+    )
