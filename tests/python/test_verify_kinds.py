@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.verify import Chain
+from arm3r_cpp.verify.explain.frames import of_other_frames
 from arm3r_cpp.verify.kinds import KINDS
-from arm3r_cpp.verify.truth.bodies import Joint, rotation_of
+from arm3r_cpp.verify.truth.bodies import Joint, rotation_about, rotation_of
 from arm3r_cpp.verify.truth.three_r import ThreeR
 
 ARM = arm3r.Scenario().arm
@@ -351,3 +352,40 @@ def test_a_right_hand_side_is_found_by_its_arguments_and_a_wrong_one_is_read(wri
     """Its derivative of the state is solved for the torque as plain accelerations are."""
     verdict = verify.formula_verdict(written("plant.py", STATES))
     assert not verdict.ok and verdict.kind == "forward"
+
+
+EULER = """import numpy as np
+
+
+def jacobian(q):
+    s1, c1, s2, c2 = np.sin(q[0]), np.cos(q[0]), np.sin(q[1]), np.cos(q[1])
+    s23, c23 = np.sin(q[1] + q[2]), np.cos(q[1] + q[2])
+    r, h = c2 + c23, s2 + s23
+    linear = [[-s1*r, -c1*h, -c1*s23], [c1*r, -s1*h, -s1*s23], [0, -r, -c23]]
+    return np.array(linear + [RATES])
+"""
+
+
+@pytest.mark.parametrize("rates", ["[1, 0, 0], [0, 1, 1], [0, 0, 0]", "[0, 0, 0], [0, 1, 1], [1, 0, 0]"])
+def test_an_analytical_jacobian_is_called_so(rates: str, written: Any) -> None:
+    """The angular rows are the rates of yaw, q1, pitch, q2 + q3, and roll, which stays zero; in either order."""
+    verdict = verify.jacobian(written("jacobian.py", EULER.replace("[RATES]", f"[{rates}]")))
+    words = "he angular rows are the rates of roll, pitch and yaw, an analytical Jacobian"
+    assert words in str(verdict) and not verdict.unexplained, str(verdict)
+
+
+def test_the_rates_of_euler_angles_are_those_of_a_rotation() -> None:
+    """By differences of a rotation of given angles, for turns about x, y and z of the moving frame."""
+    random, step = np.random.default_rng(3), 1e-6
+
+    def turn(angles: Any) -> Any:
+        x, y, z = (rotation_about(axis, np.array([angle]))[0] for axis, angle in zip(np.eye(3), angles, strict=True))
+        return x @ y @ z
+
+    for _ in range(20):
+        angles, rates = random.uniform(-1.2, 1.2, (2, 3))
+        change = (turn(angles + step * rates) - turn(angles - step * rates)) / (2 * step) @ turn(angles).T
+        jacobian = np.array([0, 0, 0, change[2, 1], change[0, 2], change[1, 0]])[None, :, None]
+        whole = of_other_frames(jacobian, turn(angles)[None], np.zeros((1, 3)))
+        found = [values()[0, 3:, 0] for words, values, weight in whole if "(XYZ)" in words and weight == 1]
+        assert any(np.allclose(one, rates, rtol=0, atol=1e-7) for one in found)

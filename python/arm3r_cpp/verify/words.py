@@ -43,11 +43,13 @@ def _head(verdict: Judgement) -> str:
 
 
 def _covered(verdict: Judgement, name: str) -> str:
-    """The joints and entries that a test uses and shows, and how many planted mistakes it would catch."""
+    """The joints that a test moves, the entries that it tests, and how many planted mistakes it would catch."""
     test = verdict.coverage[name]
     count = int(np.prod(verdict.shape)) if verdict.shape else 0
-    joints = ", ".join(map(str, test["joints"])) or "none"
-    text = f"{name}: uses joints {joints}, shows {len(test['entries'])} of {count} entries"
+    *others, last = map(str, test["joints"] or ["none"])
+    joints = f"joints {', '.join(others)} and {last}" if others else f"joint {last}"
+    moves = "moves" if KINDS[verdict.kind].is_derivative else "turns"
+    text = f"{name}: {moves} {joints}, tests {len(test['entries'])} of {count} entries"
     return text + (f", would catch {test['seen']} of {test['planted']} typical mistakes" if "planted" in test else "")
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import permutations, product
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
 
 from ..._native import Floats
 from ..kinds import Kind
+from .frames import of_other_frames
 
 States = dict[str, Floats]
 Truth = Callable[[States, dict[str, float]], Floats]
@@ -141,40 +142,7 @@ def _outputs(
                 partial(np.take, values, order, axis=2),
             )
     if kind.is_derivative and pose is not None and rows in (3, 6):
-        yield from _of_other_frames(values, *pose())
-
-
-def _of_other_frames(values: Floats, rotation: Floats, position: Floats) -> Iterator[Hypothesis]:
-    """Jacobians that are right in another frame, or of another point."""
-    turned = [("", values)]
-    if values.shape[1] == 6:
-        turned.append((", and the angular rows stand above the linear ones", np.roll(values, 3, axis=1)))
-    for (number, axes), (also, rows) in product(enumerate(_AXES), turned):
-        which = "the tip's frame" if number == 0 else "a frame that moves with the tip"
-        words = f"the rows are in {which}; they should be in the base frame{also}"
-        yield Hypothesis(words, partial(_rotated, rotation @ axes, rows), 1 + (number > 0) + bool(also))
-    if values.shape[1] == 6:
-        across = np.cross(values[:, 3:], position[:, :, None], axis=1)
-        whole = np.concatenate([values[:, :3] - across, values[:, 3:]], axis=1)
-        words = "the linear rows are of the last link's point at the base's origin; they should be those of the tip"
-        yield Hypothesis(words, lambda: whole)
-
-
-def _right_handed_axes() -> Iterator[Floats]:
-    """The rotations that take axes to axes, the one that leaves them first."""
-    for order in permutations(range(3)):
-        for signs in product((1.0, -1.0), repeat=3):
-            axes = np.eye(3)[:, order] * signs
-            if np.linalg.det(axes) > 0:
-                yield axes
-
-
-_AXES = tuple(_right_handed_axes())
-
-
-def _rotated(rotation: Floats, values: Floats) -> Floats:
-    inverse = np.swapaxes(rotation, 1, 2)
-    return np.concatenate([inverse @ values[:, first : first + 3] for first in range(0, values.shape[1], 3)], axis=1)
+        yield from (Hypothesis(*one) for one in of_other_frames(values, *pose()))
 
 
 def _quantities(truth: Truth, states: States, given: dict[str, Floats]) -> Iterator[Hypothesis]:
