@@ -11,7 +11,7 @@ import numpy as np
 from .layout import Panel, Size, lay_out
 from .run_panels import draw_energies, draw_force_on_wall, explained, greyed_out, tip_panels
 from .strobe import strobe
-from .style import BLACK, BLUE, JOINTS, RED, SKY, TRIPLE, XYZ, contact_spans, finish
+from .style import BLACK, BLUE, JOINTS, RED, SKY, TIP, TRIPLE, XYZ, contact_spans, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -118,7 +118,7 @@ def draw_wall_position(run: Run, ax: Axes, room: float) -> None:
 
 
 def draw_depth(run: Run, ax: Axes, room: float) -> None:
-    ax.plot(run.t, run["depth"], color=BLACK)
+    ax.plot(run.t, run["depth"], color=TIP)
     finish(ax, run, "depth of tip, m", room)
 
 
