@@ -157,6 +157,14 @@ def test_angles_are_in_the_unit_of_the_scenario(pose: str, degrees: bool | None,
     assert ax.lines[2].get_ydata() == pytest.approx(np.degrees(run["q3"]) if unit == "deg" else run["q3"])
 
 
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (-2.5e-6, r"−2.5$\cdot$10$^{-6}$"), (3e7, r"3$\cdot$10$^{7}$"), (-0.0005, "−0.0005")],
+)
+def test_small_numbers_have_their_power_of_ten(value: float, text: str) -> None:
+    assert style.in_full(value) == text
+
+
 def test_an_option_chooses_degrees(stored: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for option, unit in (("--degrees", "deg"), ("--radians", "rad")):
         out = tmp_path / f"{unit}.svg"

@@ -103,7 +103,13 @@ def plain_ticks(ax: Axes) -> None:
 
     largest = max(map(abs, ax.get_ylim()))
     if not 1e-3 < largest < 1e5:
-        ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", "−")))
+        ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: in_full(value)))
+
+
+def in_full(value: float) -> str:
+    """A number for a tick; of a very small or very large one, with its power of ten."""
+    digits, _, power = f"{value:g}".replace("-", "−", 1 if value < 0 else 0).partition("e")
+    return rf"{digits}$\cdot$10$^{{{int(power)}}}$" if power else digits
 
 
 def contact_spans(run: Run) -> list[tuple[float, float]]:
@@ -141,8 +147,8 @@ def grey_out(ax: Axes, run: Run, *, room: float | None = None) -> None:
 def mark_events(ax: Axes, run: Run, *, labelled: bool = False) -> None:
     """A line where contact begins or ends, unless there are too many; `labelled`: the legend is to say when."""
     if len(run.events) <= MARKED_EVENTS:
-        for event in run.events:
-            what = "contact " if event.type == "make" or event is run.events[0] else ""
+        for k, event in enumerate(run.events):
+            what = "contact " if event.type == "make" or k == 0 else ""
             label = f"{what}{EVENT_WORDS[event.type]} at {event.t:.4f} s" if labelled else HIDDEN
             ax.axvline(event.t, color=BLACK, lw=0.8, ls=DASHES[event.type], zorder=1, label=label)
 
