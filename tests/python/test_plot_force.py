@@ -451,7 +451,9 @@ def test_nothing_is_cut_off_or_hidden_in_a_comparison(
 @pytest.mark.parametrize("which", ["hybrid", "bounce", "pushed"])
 def test_in_a_column_no_legend_takes_half_a_panel(which: str, request: pytest.FixtureRequest) -> None:
     run = request.getfixturevalue(which)
-    for figure in (arm3r.plot.force(run, width=3.4), arm3r.plot.overview(run, width=3.4)):
+    four = {f"a_rather_long_name_{i}": run for i in range(4)}
+    drawn = [arm3r.plot.force(run, width=3.4), arm3r.plot.overview(run, width=3.4), arm3r.plot.compare(four, width=3.4)]
+    for figure in drawn:
         figure.draw_without_rendering()
         for ax in (ax for ax in figure.axes if ax.get_legend()):
             assert ax.get_legend().get_window_extent().height < 0.5 * max(ax.bbox.height, figure.dpi), ax.get_ylabel()
@@ -535,6 +537,12 @@ def test_numbers_of_the_table_that_are_whole_or_missing(hybrid: arm3r.Run) -> No
     assert rows == ["peak force, N", "settling time, s", "saturated, %"]
     assert first == ["20.0", "never", "100"]
     assert second == ["20.0", "–", "100"]
+
+
+def test_rounding_is_no_error_in_the_table(hybrid: arm3r.Run) -> None:
+    exact = force_runs.changed(hybrid, {}, metrics={"tip_path_error_rms": 2e-16, "tip_path_error_max": 2e-3})
+    texts = [text.get_text() for text in arm3r.plot.compare({"one": exact, "two": exact}).axes[-1].texts]
+    assert texts[-2:] == ["0", "2.00"]
 
 
 def test_references_that_differ_are_each_drawn(hybrid: arm3r.Run) -> None:

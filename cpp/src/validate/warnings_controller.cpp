@@ -44,8 +44,9 @@ Loop loop_on_wall(const Setup& setup) {
 
 void warn_of_cubic(double m, double b, double c, double d, double gain, const std::string& loop, Warnings& warnings) {
     if (is_stable(m, b, c, d)) return;
-    warnings.push_back("the force loop of " + loop + " is unstable: s^3, s^2, s and 1 have " + short_number(m) + ", " +
-                       short_number(b) + ", " + short_number(c) + " and " + short_number(d) +
+    warnings.push_back("the force loop of " + loop + " is unstable: its polynomial is " +
+                       (m == 1 ? "" : short_number(m) + " ") + "s^3 + " + short_number(b) + " s^2 + " +
+                       short_number(c) + " s + " + short_number(d) +
                        (b > 0 && c > 0 ? ", and controller.force_integral_gain must stay below " +
                                              short_number(gain * b * c / (m * d)) + " 1/s"
                                        : ", and it has no damping"));

@@ -165,7 +165,7 @@ class Scene:
             view.wanted.set_data(*view.flat(frames.reference[k : k + 1]).T)
         if frames.plate is not None:
             view.plate.set_xy(view.flat(frames.plate[k]))
-            view.plate.set(fc=(colour, GLASS), ec=TOUCHING if frames.contact[k] else BLACK)
+            view.plate.set(fc=(colour, GLASS), ec=TOUCHING if frames.contact[k] else GREY)
             view.arrow.set_offsets(joints[2])
             view.arrow.set_UVC(*(view.flat(frames.force_on_wall[k]) / self.newtons))
 

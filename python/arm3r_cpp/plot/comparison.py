@@ -32,7 +32,8 @@ NARROW_WITHOUT = (
     ("torques", "contact"),
     ("torques", "contact", "first_contact", "face"),
 )  # to fit a page: few runs, many
-MAX_LETTERS = 30  # letters of a name in a legend
+MAX_LETTERS, NARROW_LETTERS = 30, 18  # of a name in a legend; in a narrow figure two stand in a row
+ROUNDING = 1e-9  # SI units: a smaller number is none
 SAME = ("wall.normal", "wall.size", "wall.rotation")  # what runs need to share for one face
 
 
@@ -133,12 +134,13 @@ def draw_forces(runs: Sequence[ForceRun], ax: Axes, zeros: Sequence[float] | Non
     zeros: where the time of each run is counted from, s; None: t = 0.
     """
     zeros = zeros or [0.0] * len(runs)
+    letters = NARROW_LETTERS if ax.figure.bbox.width < NARROW * ax.figure.dpi else MAX_LETTERS
     pairs = list(zip(runs, zeros, strict=True))
     wanted = [(run.run.t - zero, run.reference) for run, zero in pairs if run.reference is not None]
     shared = len(wanted) > 0 and all(alike(wanted[0], other) for other in wanted[1:])
     for (run, look), zero in zip(looks(runs), zeros, strict=True):
         t, force = run.force_line
-        ax.plot(t - zero, force, label=shortened(run.name, MAX_LETTERS), **look)
+        ax.plot(t - zero, force, label=shortened(run.name, letters), **look)
         if run.reference is not None and not shared:
             ax.plot(run.run.t - zero, run.reference, color=look["color"], ls=(0, (1, 2)), lw=1.0)
     if shared:
@@ -283,6 +285,6 @@ def cell(run: ForceRun, row: Row) -> str:
     value = run.metric(row.metric)
     if value is None:
         return "never" if run.settling and row.metric == "settling_time" else MISSING
-    value *= row.scale
+    value = row.scale * value if abs(value) > ROUNDING else 0
     is_count = row.metric == "contacts"
     return f"{value:#.3g}".rstrip(".") if 1e-3 <= abs(value) < 1e3 and not is_count else f"{value:.3g}"
