@@ -165,6 +165,16 @@ def test_small_numbers_have_their_power_of_ten(value: float, text: str) -> None:
     assert style.in_full(value) == text
 
 
+def test_a_measurement_is_drawn_in_the_unit_of_the_run(fall: arm3r.Run) -> None:
+    log = {"t": fall.t, "q1": fall["q1"], "qd2": fall["qd2"], "tau1": fall["tau1"]}
+    for degrees, unit, factor in ((None, "deg", np.degrees(1)), (False, "rad", 1.0)):
+        figure = arm3r.plot.measured(log, [fall], degrees=degrees)
+        names = [f"joint angle, {unit}", f"joint rate, {unit}/s", "torque, N m"]
+        assert [ax.get_ylabel() for ax in figure.axes] == names
+        for line in figure.axes[1].lines[:2]:
+            assert line.get_ydata() == pytest.approx(factor * fall["qd2"])
+
+
 def test_an_option_chooses_degrees(stored: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for option, unit in (("--degrees", "deg"), ("--radians", "rad")):
         out = tmp_path / f"{unit}.svg"
