@@ -107,6 +107,14 @@ def test_a_short_contact_fills_its_figure(bounce: arm3r.Run) -> None:
     assert high == pytest.approx(lost + (lost - make) / 2)
 
 
+def test_the_figure_of_a_contact_ends_with_the_run(bounce: arm3r.Run) -> None:
+    cut = bounce.events[0].t + 0.03  # while there is contact
+    scenario = arm3r.Scenario(BOUNCE)
+    scenario["time.stop"] = cut
+    figure = arm3r.plot.lecture(scenario.run(), panels=["contact"])["contact"]
+    assert figure.axes[0].get_xlim()[1] == pytest.approx(cut)
+
+
 def test_the_strobe_names_axes_and_forces(bounce: arm3r.Run) -> None:
     text = texts(arm3r.plot.lecture(bounce, panels=["strobe"])["strobe"])
     for part in ("$q_1$", "$q_2$", "$q_3$", "force on the wall", "force on the tip"):

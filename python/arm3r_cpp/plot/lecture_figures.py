@@ -55,7 +55,7 @@ def contact_window(run: Run) -> tuple[float, float]:
     start, end = spans[0][0], spans[-1][1]
     if end - start >= NEEDLE * (whole[1] - whole[0]):
         return whole
-    return start - (end - start) / 2, end + (end - start) / 2
+    return max(start - (end - start) / 2, whole[0]), min(end + (end - start) / 2, whole[1])
 
 
 # ---- velocities and torques -----------------------------------------------------------------------------------------
