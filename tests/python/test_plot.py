@@ -108,7 +108,7 @@ def test_a_short_contact_fills_its_figure(bounce: arm3r.Run) -> None:
 
 
 def test_the_figure_of_a_contact_ends_with_the_run(bounce: arm3r.Run) -> None:
-    cut = bounce.events[0].t + 0.03  # while there is contact
+    cut = bounce.events[0].t + 0.01  # while there is contact
     scenario = arm3r.Scenario(BOUNCE)
     scenario["time.stop"] = cut
     figure = arm3r.plot.lecture(scenario.run(), panels=["contact"])["contact"]
