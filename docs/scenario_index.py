@@ -19,7 +19,7 @@ import arm3r_cpp as arm3r
 import numpy as np
 from arm3r_cpp.examples import summary
 from arm3r_cpp.plot.strobe import flash_rows
-from arm3r_cpp.plot.style import BLACK, RED, TRIPLE, style
+from arm3r_cpp.plot.style import ARM, BLACK, MEASURED, ON_WALL, REFERENCE, TRIPLE, WALL, angle_unit, style
 
 DOCS = Path(__file__).parent
 SCENARIOS = DOCS.parent / "scenarios"
@@ -91,6 +91,7 @@ CURVES: dict[str, dict[str, str]] = {
     "14_unequal_fall": {"tip_vy": "tip speed, m/s", "tip_jvy": "tip speed, m/s"},
 }  # fmt: skip
 """What is drawn where it is not the force of a controller, the force on the wall, or the joint angles."""
+COLOURS = {"force": ON_WALL, "f_on_wall_x": ON_WALL, "force_measured": MEASURED}
 WINDOWS = {
     "05_free_fall": (0, 3), "06_jacobian_by_three_velocities": (0, 3), "07_partial_compensation": (0, 3),
     "08_moon": (0, 6), "12_wall_acts_on_arm": (5.3, 5.5), "hybrid_first_contact": (5.2, 6.4),
@@ -162,13 +163,17 @@ def values_of(run: arm3r.Run, curve: str) -> Any:
 def draw_curves(ax: Any, run: arm3r.Run, part: tuple[float, float], curves: dict[str, str]) -> None:
     rows = np.flatnonzero((run.t >= part[0]) & (run.t <= part[1]))
     rows = rows[:: max(1, len(rows) // 2000)]
+    label, unit = next(iter(curves.values())), angle_unit(arm3r.Scenario(run.summary["scenario"]))
+    quantity, _, its_unit = label.rpartition(", ")
+    factor, label = (unit.factor, f"{quantity}, {unit.name}") if its_unit == "rad" else (1.0, label)
     for curve, look in zip(curves, TRIPLE, strict=False):
-        ax.plot(run.t[rows], values_of(run, curve)[rows], **look, label=curve)
+        look = {**look, "color": COLOURS.get(curve, look["color"])}
+        ax.plot(run.t[rows], factor * values_of(run, curve)[rows], **look, label=curve)
     if "force" in curves and "force_ref" in run:
-        ax.plot(run.t[rows], run["force_ref"][rows], color=BLACK, ls="--", lw=0.8)
+        ax.plot(run.t[rows], run["force_ref"][rows], color=REFERENCE, ls="--", lw=0.8)
     if len(curves) > 1:
         ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
-    ax.set(xlabel="t, s", ylabel=next(iter(curves.values())), xlim=part)
+    ax.set(xlabel="t, s", ylabel=label, xlim=part)
     ax.locator_params(axis="x", nbins=5)
     ax.locator_params(axis="y", nbins=4)
 
@@ -184,14 +189,14 @@ def draw_arm(ax: Any, run: arm3r.Run) -> None:
     elbow = scenario.arm.elbow_position(run["q"][shown])
     for k, row in enumerate(shown):
         points = view @ np.stack([base, elbow[k], run["tip"][row]], axis=1)
-        ax.plot(*points, color=BLACK, lw=2, alpha=0.15 + 0.85 * (k + 1) / len(shown), solid_capstyle="round",
+        ax.plot(*points, color=ARM, lw=2, alpha=0.15 + 0.85 * (k + 1) / len(shown), solid_capstyle="round",
                 clip_on=False)  # fmt: skip
     if "wall_x" in run.columns and abs(scenario["wall.normal"][2]) < 0.5:
         size = scenario["wall.size"]
         half = 0.5 if isinstance(size, str) else size[1] / 2
         for row, alpha in ((shown[0], 0.3), (shown[-1], 1.0)):
             across, up = view @ run["wall"][row]
-            ax.plot([across, across], [up - half, up + half], color=RED, lw=1.2, alpha=alpha)
+            ax.plot([across, across], [up - half, up + half], color=WALL, lw=1.6, alpha=alpha)
     ax.plot(*(view @ base), "o", color=BLACK, ms=4, clip_on=False)
     ax.set_aspect("equal")
     ax.set_axis_off()
@@ -213,7 +218,7 @@ def draw(path: Path) -> bytes:
         draw_curves(right, run, part, curves_of(path.stem, run))
         drawn, small = io.BytesIO(), io.BytesIO()
         figure.savefig(drawn, dpi=120, format="png")
-    Image.open(drawn).convert("RGB").quantize(32).save(small, "PNG", optimize=True)
+    Image.open(drawn).convert("RGB").quantize(64).save(small, "PNG", optimize=True)
     return small.getvalue()
 
 

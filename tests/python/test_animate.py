@@ -19,11 +19,12 @@ from arm3r_cpp.animation.frames import Frames, frame_times, frames_of
 from arm3r_cpp.animation.scene import Scene, newtons_per_metre, palette, sight
 from arm3r_cpp.commands import animate as animate_cli
 from arm3r_cpp.plot.run_part import part_of
+from arm3r_cpp.plot.style import ARM, ON_WALL, TIP, WALL
 from matplotlib.colors import to_rgb
 from PIL import Image
 
 WIDTH, HEIGHT = 640, 480
-AMBER, RED, BLUE = (tuple(round(255 * part) for part in to_rgb(code)) for code in ("#E69F00", "#D55E00", "#0072B2"))
+LINK, FORCE, PATH, PLATE = (tuple(round(255 * part) for part in to_rgb(code)) for code in (ARM, ON_WALL, TIP, WALL))
 
 
 @pytest.fixture(scope="module")
@@ -127,10 +128,10 @@ def test_a_picture_shows_contact(hybrid: arm3r.Run) -> None:
     free, touching = scene.draw(0), scene.draw(len(frames.t) - 1)
     assert free.shape == (HEIGHT, WIDTH, 4)
     for picture in (free, touching):
-        assert pixels(picture, BLUE) > 500
-    assert pixels(free, AMBER) == 0
-    assert pixels(touching, AMBER) > 500
-    assert pixels(touching, RED) > pixels(free, RED) + 50  # its arrow
+        assert pixels(picture, LINK) > 500
+    assert pixels(free, PLATE) == 0
+    assert pixels(touching, PLATE) > 500
+    assert pixels(touching, FORCE) > pixels(free, FORCE) + 50  # its arrow
     assert scene.clock.get_text() == "t = 4.00 s   force  20.00 N"
     assert scene.flag.get_text() == "contact"
 
@@ -215,7 +216,7 @@ def test_a_gif_has_the_colours_of_its_pictures(hybrid: arm3r.Run, tmp_path: Path
         film.seek(film.n_frames - 1)
         shown = np.asarray(film.convert("RGB"))
     picture = scene.draw(len(frames.t) - 1)[..., :3]
-    for colour in (AMBER, RED, BLUE, (255, 255, 255)):
+    for colour in (PLATE, FORCE, LINK, PATH, (255, 255, 255)):
         assert pixels(shown, colour) >= pixels(picture, colour) > 20
     assert np.abs(shown.astype(int) - picture).mean() < 1
 
@@ -245,7 +246,7 @@ def test_a_folder_of_pictures(hybrid: arm3r.Run, tmp_path: Path) -> None:
     with Image.open(tmp_path / "new/folder/frame_0004.png") as last:
         shown = np.asarray(last)
     assert shown.shape == (HEIGHT, WIDTH, 3)
-    assert pixels(shown, AMBER) > 500
+    assert pixels(shown, PLATE) > 500
 
 
 def test_progress_counts_frames(hybrid: arm3r.Run, tmp_path: Path) -> None:

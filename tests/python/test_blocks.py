@@ -226,15 +226,16 @@ def test_the_figure_shows_both_and_the_difference(scenario: arm3r.Scenario, file
     if not has_wall:
         scenario["wall"] = None
     beside = scenario.run_beside(file("a.m", GRAVITY.replace("SIGN", "-0.7")))
-    figure = beside.figure(stamp=True, width=5)
+    figure = beside.figure(stamp=True, width=5, degrees=True)
     labels = [ax.get_ylabel().replace("\n", " ") for ax in figure.axes]
     assert [label.split(",")[0] for label in labels] == [
         "joint angle", "difference", "torque", "difference", *["contact force"] * has_wall, "tips apart"]  # fmt: skip
     drawn = {(line.get_label(), len(line.get_xdata())) for line in figure.axes[0].lines}
     assert len([1 for _, count in drawn if count]) >= 4
     difference = figure.axes[1].lines[1].get_ydata()
-    factor = 1e3 if "mrad" in labels[1] else 1
-    assert np.allclose(difference, factor * (beside.yours["q2"] - beside.true["q2"]))
+    assert labels[:2] == ["joint angle, deg", "difference, deg"]
+    assert np.allclose(difference, np.degrees(beside.yours["q2"] - beside.true["q2"]))
+    assert beside.figure().axes[0].get_ylabel() == "joint angle, rad"  # as the scenario's pose is given
     assert len(figure.origins) == 2
 
 

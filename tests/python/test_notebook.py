@@ -118,6 +118,7 @@ class Page(HTMLParser):
 def test_the_page_of_a_run(pushed: arm3r.Run) -> None:
     page = Page(pushed._repr_html_())
     assert "Run push <b> & hold ok" in page.text and "rows 201" in page.text
+    assert "contact begins once" in page.text and "contact ends once" in page.text
     assert re.search(r"peak <1 N> failed \d+\.\d+ below 1", page.text) and "one contact passed 1" in page.text
     assert len(page.images) == 1 and page.images[0].startswith(b"\x89PNG") and len(page.images[0]) < 100_000
 

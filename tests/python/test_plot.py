@@ -11,9 +11,11 @@ import matplotlib
 import numpy as np
 import pytest
 from arm3r_cpp.commands import plot as plot_cli
+from arm3r_cpp.plot import style
 from arm3r_cpp.plot.force_run import ForceRun
 from conftest import Cli, scenario_files
 from figure_faults import crowded
+from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 from PIL import Image
 from random_scenarios import sample_seed
@@ -63,7 +65,7 @@ def test_overview_is_a_figure_with_units(bounce: arm3r.Run) -> None:
     figure = arm3r.plot.overview(bounce)
     assert isinstance(figure, Figure)
     labels = [ax.get_ylabel() for ax in figure.axes]
-    assert [label.rsplit(", ")[-1] for label in labels] == ["rad", "mm", "mm", "mm", "N m", "N", "N"]
+    assert [label.rsplit(", ")[-1] for label in labels] == ["deg", "mm", "mm", "mm", "N m", "N", "N"]
     assert figure.axes[-2].get_xlabel() == "t, s"
     assert figure.axes[-1].get_xlabel().startswith("time since the first contact, ")
 
@@ -95,7 +97,7 @@ def test_events_are_marked_where_they_were_located(bounce: arm3r.Run) -> None:
     text = texts(arm3r.plot.lecture(bounce, panels=["contact"])["contact"])
     assert [event.type for event in bounce.events] == ["make", "break"]
     for event in bounce.events:
-        assert f"contact {'begins' if event.type == 'make' else 'ends'} at {event.t:.4f} s" in text
+        assert f"{'contact begins' if event.type == 'make' else 'ends'} at {event.t:.4f} s" in text
 
 
 def test_a_short_contact_fills_its_figure(bounce: arm3r.Run) -> None:
@@ -103,6 +105,14 @@ def test_a_short_contact_fills_its_figure(bounce: arm3r.Run) -> None:
     low, high = arm3r.plot.lecture(bounce, panels=["contact"])["contact"].axes[0].get_xlim()
     assert low == pytest.approx(make - (lost - make) / 2)
     assert high == pytest.approx(lost + (lost - make) / 2)
+
+
+def test_the_figure_of_a_contact_ends_with_the_run(bounce: arm3r.Run) -> None:
+    cut = bounce.events[0].t + 0.01  # while there is contact
+    scenario = arm3r.Scenario(BOUNCE)
+    scenario["time.stop"] = cut
+    figure = arm3r.plot.lecture(scenario.run(), panels=["contact"])["contact"]
+    assert figure.axes[0].get_xlim()[1] == pytest.approx(cut)
 
 
 def test_the_strobe_names_axes_and_forces(bounce: arm3r.Run) -> None:
@@ -120,6 +130,66 @@ def test_every_peak_has_the_instant_of_the_summary(bounce: arm3r.Run) -> None:
     for figure in drawn:
         found = re.findall(r"peak (\S+) N,? (?:at|t =) (\S+)", texts(figure))
         assert found == [(f"{force:.4g}", f"{t:.4f}")]
+
+
+def test_a_colour_means_the_same_in_figures_and_on_the_page(root: Path) -> None:
+    text = (root / "docs" / "live" / "src" / "app" / "colours.js").read_text()
+    page = dict(re.findall(r"^export const (\w+) = (\"#\w+\"|[A-Z]+);", text, re.M))
+    ours = {name: getattr(style, name) for name in page}
+    assert {"ARM", "TIP", "WALL", "ON_WALL", "ON_TIP", "REFERENCE", "MEASURED"} < set(page)
+    assert {name: page.get(value, value).strip('"') for name, value in page.items()} == ours
+    assert re.search(r"JOINTS = \[(.*)\]", text)[1].split(", ") == ["BLUE", "RED", "GREEN"]  # type: ignore[index]
+    assert [look["color"] for look in style.TRIPLE] == [style.BLUE, style.RED, style.GREEN]
+    others = [path for path in (root / "docs" / "live").glob("s*/**/*.*s*") if path.name != "colours.js"]
+    forces = re.compile(f"{style.WALL}|{style.ON_WALL}|{style.ON_TIP}", re.I)
+    assert [path.name for path in others if forces.search(path.read_text())] == []
+
+
+def test_the_strobe_has_the_colours_of_the_forces(bounce: arm3r.Run) -> None:
+    (legend,) = arm3r.plot.lecture(bounce, panels=["strobe"])["strobe"].legends
+    entries = zip(legend.legend_handles, legend.get_texts(), strict=True)
+    found = {text.get_text().partition(",")[0]: handle for handle, text in entries if handle is not None}
+    for word, colour in (("force on the wall", style.ON_WALL), ("force on the tip", style.ON_TIP)):
+        assert same_color(found[word].get_color(), colour)
+
+
+@pytest.mark.parametrize(
+    ("pose", "degrees", "unit"),
+    [("[0, -30 deg, 1]", None, "deg"), ("[0, -0.5, 1]", None, "rad"), ("[0, -0.5, 1]", True, "deg"),
+     ("[0, 45.3 deg, 1]", False, "rad"), ("[0, 0, 0]", None, "rad")],
+)  # fmt: skip
+def test_angles_are_in_the_unit_of_the_scenario(pose: str, degrees: bool | None, unit: str) -> None:
+    run = arm3r.Scenario(f"{{format: 1, initial: {{q: {pose}}}, time: {{stop: 0.1}}}}").run()
+    ax = arm3r.plot.overview(run, panels=["angles"], degrees=degrees).axes[0]
+    assert ax.get_ylabel() == f"joint angle, {unit}"
+    assert ax.lines[2].get_ydata() == pytest.approx(np.degrees(run["q3"]) if unit == "deg" else run["q3"])
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (-2.5e-6, r"−2.5$\cdot$10$^{-6}$"), (3e7, r"3$\cdot$10$^{7}$"), (-0.0005, "−0.0005")],
+)
+def test_small_numbers_have_their_power_of_ten(value: float, text: str) -> None:
+    assert style.in_full(value) == text
+
+
+def test_a_measurement_is_drawn_in_the_unit_of_the_run(fall: arm3r.Run) -> None:
+    log = {"t": fall.t, "q1": fall["q1"], "qd2": fall["qd2"], "tau1": fall["tau1"]}
+    for degrees, unit, factor in ((None, "deg", np.degrees(1)), (False, "rad", 1.0)):
+        figure = arm3r.plot.measured(log, [fall], degrees=degrees)
+        names = [f"joint angle, {unit}", f"joint rate, {unit}/s", "torque, N m"]
+        assert [ax.get_ylabel() for ax in figure.axes] == names
+        for line in figure.axes[1].lines[:2]:
+            assert line.get_ydata() == pytest.approx(factor * fall["qd2"])
+
+
+def test_an_option_chooses_degrees(stored: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for option, unit in (("--degrees", "deg"), ("--radians", "rad")):
+        out = tmp_path / f"{unit}.svg"
+        assert plot_cli.main([str(stored), "--panels", "angles", option, "-o", str(out)]) == 0
+        assert f"<!-- joint angle, {unit} -->" in out.read_text()
+    assert plot_cli.main([str(stored), "--lecture", "--degrees", "-o", str(tmp_path)]) == 2
+    assert "--degrees: the lecture's figures show no joint angles" in capsys.readouterr().err
 
 
 def test_the_strobe_draws_an_infinite_wall_in_the_other_convention() -> None:

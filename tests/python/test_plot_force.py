@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -258,6 +259,23 @@ def test_the_peak_is_marked_at_its_time_and_level(hybrid: arm3r.Run, bounce: arm
     assert marks[label].get_ydata().tolist() == [11.8]
 
 
+def test_the_peak_of_the_first_contact_is_told_beside_a_larger_one(hybrid: arm3r.Run) -> None:
+    make = hybrid.events[0].t
+    told = {**hybrid.summary["metrics"], "peak_force_time": 3.0}
+    told |= {"first_contact_peak": 12.5, "first_contact_peak_time": make + 0.01}
+    figure = arm3r.plot.force(force_runs.changed(hybrid, {}, metrics=told), panels=["force", "first_contact"])
+    for ax in figure.axes:
+        (mark,) = (line for line in ax.lines if "first contact's" in line.get_label())
+        assert mark.get_label() == f"first contact's peak 12.5 N, t = {make + 0.01:.4f} s"
+        assert mark.get_xydata().tolist() == [[make + 0.01, 12.5]]
+    assert len([label for label in legend(figure.axes[0]) if "peak" in label]) == 2
+    told["peak_force_time"] = make + 0.01
+    ax = arm3r.plot.force(force_runs.changed(hybrid, {}, metrics=told), panels=["force"]).axes[0]
+    assert next(label for label in legend(ax) if "peak" in label).endswith("s (first contact)")
+    late = arm3r.plot.force(force_runs.changed(hybrid, {}, metrics=told), panels=["force"], start=1.0).axes[0]
+    assert not any("first contact" in label for label in legend(late))
+
+
 def test_force_is_zero_where_contact_is_made_and_lost_between_rows(bounce: arm3r.Run) -> None:
     t, force = lines(figure_of(bounce).axes[0])["true"].get_data()
     for event in bounce.events:
@@ -391,7 +409,7 @@ def test_a_point_is_drawn_in_millimetres(bounce: arm3r.Run) -> None:
 def test_a_run_without_force_control(pushed: arm3r.Run) -> None:
     figure = figure_of(pushed)
     assert "reference" not in legend(figure.axes[0])
-    force = lines(figure.axes[0])["true"].get_ydata()
+    force = lines(figure.axes[0])["force"].get_ydata()  # and not "true": nothing is measured
     assert force.max() == pytest.approx(np.linalg.norm(pushed["f_on_wall"], axis=1).max())
 
 
@@ -430,6 +448,25 @@ def test_nothing_is_cut_off_or_hidden_in_a_comparison(
     assert crowded(arm3r.plot.compare(runs, width=width)) == []
 
 
+@pytest.mark.parametrize("which", ["hybrid", "bounce", "pushed"])
+def test_in_a_column_no_legend_takes_half_a_panel(which: str, request: pytest.FixtureRequest) -> None:
+    run = request.getfixturevalue(which)
+    four = {f"a_rather_long_name_{i}": run for i in range(4)}
+    drawn = [arm3r.plot.force(run, width=3.4), arm3r.plot.overview(run, width=3.4), arm3r.plot.compare(four, width=3.4)]
+    for figure in drawn:
+        figure.draw_without_rendering()
+        for ax in (ax for ax in figure.axes if ax.get_legend()):
+            assert ax.get_legend().get_window_extent().height < 0.5 * max(ax.bbox.height, figure.dpi), ax.get_ylabel()
+
+
+def test_an_entry_of_words_takes_no_place_for_a_line(hybrid: arm3r.Run) -> None:
+    figure = arm3r.plot.force(hybrid, panels=["path_error"])
+    figure.draw_without_rendering()
+    entries = [text.get_window_extent() for text in figure.axes[0].get_legend().get_texts()]
+    gaps = [other.x0 - one.x1 for one, other in pairwise(entries)]
+    assert gaps[-1] < 0.5 * gaps[0]
+
+
 def test_drawing_changes_no_settings(hybrid: arm3r.Run) -> None:
     before = dict(rcParams)
     arm3r.plot.compare([hybrid, hybrid])
@@ -452,6 +489,17 @@ def test_a_comparison_overlays_runs_by_name(hybrid: arm3r.Run, proportional: arm
     assert len(set(colours)) == 2
     face = next(ax for ax in figure.axes if "e_2" in ax.get_ylabel())
     assert {line.get_color() for line in face.lines} >= set(colours)
+
+
+def test_first_contacts_are_drawn_over_each_other(hybrid: arm3r.Run) -> None:
+    """One begins a second later: its curve is the same, counted from its own contact."""
+    event = hybrid.summary["events"][0]
+    later = force_runs.changed(hybrid, {"t": hybrid.t + 1}, events=[{**event, "t": event["t"] + 1}])
+    ax = arm3r.plot.compare({"one": hybrid, "later": later}, panels=["first_contact"]).axes[0]
+    one, other = (line.get_xydata() for line in ax.lines[:2])
+    assert one == pytest.approx(other)
+    assert one[np.flatnonzero(one[:, 1] > 0)[0] - 1, 0] == pytest.approx(0)
+    assert ax.get_xlim()[0] < 0 < ax.get_xlim()[1] < 1
 
 
 def test_errors_of_a_comparison(hybrid: arm3r.Run, proportional: arm3r.Run) -> None:
@@ -489,6 +537,12 @@ def test_numbers_of_the_table_that_are_whole_or_missing(hybrid: arm3r.Run) -> No
     assert rows == ["peak force, N", "settling time, s", "saturated, %"]
     assert first == ["20.0", "never", "100"]
     assert second == ["20.0", "–", "100"]
+
+
+def test_rounding_is_no_error_in_the_table(hybrid: arm3r.Run) -> None:
+    exact = force_runs.changed(hybrid, {}, metrics={"tip_path_error_rms": 2e-16, "tip_path_error_max": 2e-3})
+    texts = [text.get_text() for text in arm3r.plot.compare({"one": exact, "two": exact}).axes[-1].texts]
+    assert texts[-2:] == ["0", "2.00"]
 
 
 def test_references_that_differ_are_each_drawn(hybrid: arm3r.Run) -> None:

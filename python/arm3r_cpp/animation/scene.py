@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .._native import Floats
 from ..plot.force_run import pressing_force
-from ..plot.style import AMBER, BLACK, BLUE, RED, SKY, contact_spans, style
+from ..plot.style import ARM, BLACK, ON_WALL, REFERENCE, TIP, WALL, contact_spans, style
 from ..run import Run
 from ..scenario import Scenario
 from .frames import Frames
@@ -21,9 +21,9 @@ from .frames import Frames
 SIZE, DPI = (6.4, 4.8), 100  # inches, pixels an inch
 GREY, PALE, GRID = "#777777", "#d9d9d9", "#e5e5e5"
 LONGEST = 0.3  # of the arm's reach: about the longest arrow
-FREE, TOUCHING = "#bbbbbb", AMBER
-SHADE = 0.2  # of AMBER: contact over time
-INKS = (BLACK, BLUE, SKY, RED, AMBER, GREY, PALE, FREE)
+FREE, TOUCHING = "#bbbbbb", WALL
+SHADE = 0.2  # of the wall's colour: contact over time
+INKS = (BLACK, ARM, TIP, ON_WALL, WALL, GREY, PALE, FREE)
 GLASS = 3 / 8  # how much the plate hides
 STEPS = 8  # between an ink and what is under it, where edges are smoothed
 
@@ -117,17 +117,18 @@ class Scene:
     def _view(self, ax: Any, axes: Floats) -> View:
         still: Any = {"animated": True}
         arm = ax.plot(
-            [], [], color=BLUE, lw=4, marker="o", ms=5, mfc="white", mec=BLACK, solid_capstyle="round", **still
+            [], [], color=ARM, lw=4, marker="o", ms=5, mfc="white", mec=BLACK, solid_capstyle="round", **still
         )[0]
         tip = ax.plot([], [], marker="o", ms=6, mec=BLACK, ls="", **still)[0]
-        trail = ax.plot([], [], color=SKY, lw=1.0, **still)[0]
+        trail = ax.plot([], [], color=TIP, lw=1.0, **still)[0]
         wanted = plate = arrow = None
         if self.frames.reference is not None:
-            wanted = ax.plot([], [], color=BLACK, marker="+", ms=9, mew=1.3, ls="", **still)[0]
+            wanted = ax.plot([], [], color=REFERENCE, marker="+", ms=9, mew=1.3, ls="", **still)[0]
         if self.has_wall:
             plate = ax.fill([0], [0], lw=3.0, joinstyle="round", **still)[0]
             arrow = ax.quiver(
-                [0], [0], [0], [0], color=RED, angles="xy", scale_units="xy", scale=1, width=0.014, minlength=0, **still
+                [0], [0], [0], [0], color=ON_WALL, angles="xy", scale_units="xy", scale=1, width=0.014, minlength=0,
+                **still,
             )  # fmt: skip
         return View(ax, axes, arm, tip, trail, wanted, plate, arrow)
 
@@ -138,18 +139,18 @@ class Scene:
         ax.plot(run.t, force, color=PALE, lw=1.2)
         highest = float(force.max())
         if "force_ref" in run:
-            ax.plot(run.t, run["force_ref"], color=BLACK, ls="--", lw=0.9)
+            ax.plot(run.t, run["force_ref"], color=REFERENCE, ls="--", lw=0.9)
             highest = max(highest, float(run["force_ref"].max()))
         bars = [(start, end - start) for start, end in contact_spans(run)]
-        ax.broken_barh(bars, (0, 1), transform=ax.get_xaxis_transform(), color=AMBER, alpha=SHADE, lw=0, zorder=0)
+        ax.broken_barh(bars, (0, 1), transform=ax.get_xaxis_transform(), color=WALL, alpha=SHADE, lw=0, zorder=0)
         ax.set(xlim=(run.t[0], max(run.t[-1], run.t[0] + 1e-9)), xlabel="t, s", ylabel="force, N")
         room = 0.08 * max(highest - min(0.0, force.min()), 1e-6)
         ax.set_ylim(min(0.0, force.min()) - room, highest + room)
         ax.tick_params(labelsize=8)
         ax.set_title(f"force on the wall (arrow: {self.newtons:g} N a metre)", fontsize=8, loc="left", pad=2)
         self.force_line = run.t, force
-        self.past = ax.plot([], [], color=BLUE, lw=1.4, animated=True)[0]
-        self.now = ax.axvline(run.t[0], color=RED, lw=1.0, animated=True)
+        self.past = ax.plot([], [], color=ON_WALL, lw=1.4, animated=True)[0]
+        self.now = ax.axvline(run.t[0], color=BLACK, lw=1.0, animated=True)
 
     # ---- what moves -------------------------------------------------------------------------------------------------
 
@@ -158,13 +159,13 @@ class Scene:
         joints, colour = view.flat(frames.joints[k]), TOUCHING if frames.contact[k] else FREE
         view.arm.set_data(*joints.T)
         view.tip.set_data(*joints[2:].T)
-        view.tip.set_markerfacecolor(RED if frames.contact[k] else "white")
+        view.tip.set_markerfacecolor(TIP if frames.contact[k] else "white")
         view.trail.set_data(*view.flat(frames.joints[: k + 1, 2]).T)
         if view.wanted is not None and frames.reference is not None:
             view.wanted.set_data(*view.flat(frames.reference[k : k + 1]).T)
         if frames.plate is not None:
             view.plate.set_xy(view.flat(frames.plate[k]))
-            view.plate.set(fc=(colour, GLASS), ec=TOUCHING if frames.contact[k] else BLACK)
+            view.plate.set(fc=(colour, GLASS), ec=TOUCHING if frames.contact[k] else GREY)
             view.arrow.set_offsets(joints[2])
             view.arrow.set_UVC(*(view.flat(frames.force_on_wall[k]) / self.newtons))
 
@@ -217,8 +218,8 @@ def palette() -> NDArray[np.uint8]:
     """The colours of a scene, (colours, 3): all inks over all grounds, in steps."""
     from matplotlib.colors import to_rgb
 
-    white, amber = np.ones(3), np.array(to_rgb(AMBER))
-    grounds = [white, (1 - SHADE) * white + SHADE * amber, np.array(to_rgb(GRID))]
+    white, wall = np.ones(3), np.array(to_rgb(WALL))
+    grounds = [white, (1 - SHADE) * white + SHADE * wall, np.array(to_rgb(GRID))]
     share = np.linspace(0, 1, STEPS + 1)[:, None]
     ramps = [(1 - share) * ground + share * np.array(to_rgb(ink)) for ground in grounds for ink in INKS]
     return np.unique((255 * np.concatenate(ramps)).round().astype(np.uint8), axis=0)

@@ -11,7 +11,8 @@ import numpy as np
 from ..plot.layout import Panel, Size, lay_out
 from ..plot.run_figure import origin_of, stamp_height
 from ..plot.run_part import part_of
-from ..plot.style import BLACK, BLUE, JOINTS, RED, TRIPLE, WIDTH, finish, style
+from ..plot.style import BLACK, BLUE, JOINTS, RED, TRIPLE, WIDTH, Unit, angle_unit, finish, style
+from ..scenario import Scenario
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,12 +22,13 @@ if TYPE_CHECKING:
     from .comparison import Comparison
 
 SMALL = 1.0
-"""rad, m: differences below are drawn in thousandths."""
+"""rad, m: differences below are drawn in the unit of small values."""
+TORQUE, LENGTH = Unit("N m", 1.0, "N m", 1.0), Unit("m", 1.0, "mm", 1e3)
 
 
 def figure(
     beside: Comparison, *, width: float = WIDTH, height: float | None = None, start: float | None = None,
-    end: float | None = None, stamp: bool = False,
+    end: float | None = None, degrees: bool | None = None, stamp: bool = False,
 ) -> Figure:  # fmt: skip
     """Joint angles, torques and contact force of both, each with the difference below it, and how far the tips are
     apart.
@@ -38,7 +40,8 @@ def figure(
         origins = [origin_of(run) for run in (beside.yours, beside.true) if run]
         t = max((run.t for run in runs), key=len)
         size = Size(width, height, stamp_height(origins, width) if stamp else 0.0)
-        drawn = lay_out(panels(runs, labels(beside)), [], size=size, start=float(t[0]), end=float(t[-1]))
+        unit = angle_unit(Scenario(runs[0].summary["scenario"]), degrees)
+        drawn = lay_out(panels(runs, labels(beside), unit), [], size=size, start=float(t[0]), end=float(t[-1]))
         drawn.set_origin(origins, stamp=stamp)
         return drawn
 
@@ -50,13 +53,13 @@ def labels(beside: Comparison) -> list[str]:
     return [f"solid: {name}", f"dashed: {beside.true_name}, the scenario's"]
 
 
-def panels(runs: list[Run], words: list[str]) -> list[Panel]:
+def panels(runs: list[Run], words: list[str], angle: Unit) -> list[Panel]:
     """Each quantity of both, and the differences where there are two runs."""
     forces = all("depth" in run for run in runs) and any(np.any(run["f_on_wall"]) for run in runs)
-    found = [Panel(1.2, partial(draw_joints, runs, "q", "joint angle, rad", words[: len(runs)]))]
-    found += differences(runs, "q", "rad")
-    found.append(Panel(1.2, partial(draw_joints, runs, "tau", "torque, N m", [])))
-    found += differences(runs, "tau", "N m")
+    found = [Panel(1.2, partial(draw_joints, runs, "q", angle, words[: len(runs)]))]
+    found += differences(runs, "q", angle)
+    found.append(Panel(1.2, partial(draw_joints, runs, "tau", TORQUE, [])))
+    found += differences(runs, "tau", TORQUE)
     if forces:
         found.append(Panel(0.9, partial(draw_force, runs)))
     if len(runs) == 2:
@@ -64,30 +67,30 @@ def panels(runs: list[Run], words: list[str]) -> list[Panel]:
     return found
 
 
-def differences(runs: list[Run], name: str, unit: str) -> list[Panel]:
+def differences(runs: list[Run], name: str, unit: Unit) -> list[Panel]:
     return [Panel(0.8, partial(draw_differences, runs, name, unit))] if len(runs) == 2 else []
 
 
-def draw_joints(runs: list[Run], name: str, quantity: str, words: list[str], ax: Axes, room: float) -> None:
+def draw_joints(runs: list[Run], name: str, unit: Unit, words: list[str], ax: Axes, room: float) -> None:
     """A colour a joint; yours solid, the scenario's dashed."""
-    symbol = {"q": "q", "tau": r"\tau"}[name]
+    quantity, symbol = {"q": ("joint angle", "q"), "tau": ("torque", r"\tau")}[name]
     for run, dashes, lw in zip(runs, ("-", (0, (4, 3))), (1.6, 1.2), strict=False):
         for i, look in zip(JOINTS, TRIPLE, strict=True):
             label = rf"${symbol}_{i}$" if run is runs[0] else None
-            ax.plot(run.t, run[f"{name}{i}"], color=look["color"], ls=dashes, lw=lw, label=label)
+            ax.plot(run.t, unit.factor * run[f"{name}{i}"], color=look["color"], ls=dashes, lw=lw, label=label)
     for text in words:
         ax.plot([], [], ls="", label=text)
-    finish(ax, runs[0], quantity, room)
+    finish(ax, runs[0], f"{quantity}, {unit.name}", room)
 
 
-def draw_differences(runs: list[Run], name: str, unit: str, ax: Axes, room: float) -> None:
+def draw_differences(runs: list[Run], name: str, unit: Unit, ax: Axes, room: float) -> None:
     """Yours less the scenario's, a colour a joint."""
     rows = min(map(len, runs))
     apart = {i: runs[0][f"{name}{i}"][:rows] - runs[1][f"{name}{i}"][:rows] for i in JOINTS}
-    factor, unit = scaled(unit, max(float(np.abs(values).max()) for values in apart.values()))
+    factor, name_of_unit = scaled(unit, max(float(np.abs(values).max()) for values in apart.values()))
     for (_, values), look in zip(apart.items(), TRIPLE, strict=True):
         ax.plot(runs[0].t[:rows], factor * values, color=look["color"], lw=1.2)
-    finish(ax, runs[0], f"difference, {unit}", room, legend=False)
+    finish(ax, runs[0], f"difference, {name_of_unit}", room, legend=False)
 
 
 def draw_force(runs: list[Run], ax: Axes, room: float) -> None:
@@ -107,11 +110,11 @@ def draw_force(runs: list[Run], ax: Axes, room: float) -> None:
 def draw_distance(runs: list[Run], ax: Axes, room: float) -> None:
     rows = min(map(len, runs))
     apart = np.linalg.norm(runs[0]["tip"][:rows] - runs[1]["tip"][:rows], axis=1)
-    factor, unit = scaled("m", float(apart.max()))
+    factor, name = scaled(LENGTH, float(apart.max()))
     ax.plot(runs[0].t[:rows], factor * apart, color=BLACK, lw=1.2)
-    finish(ax, runs[0], f"tips apart, {unit}", room, legend=False)
+    finish(ax, runs[0], f"tips apart, {name}", room, legend=False)
 
 
-def scaled(unit: str, largest: float) -> tuple[float, str]:
-    """The factor and the unit in which small angles and lengths are drawn."""
-    return (1e3, f"m{unit}") if largest < SMALL and unit in ("rad", "m") else (1.0, unit)
+def scaled(unit: Unit, largest: float) -> tuple[float, str]:
+    """The factor and the name of the unit in which values up to a largest one, SI units, are drawn."""
+    return (unit.small_factor, unit.small_name) if largest < SMALL else (unit.factor, unit.name)

@@ -75,7 +75,7 @@ def draw_beside(options: argparse.Namespace) -> None:
     with contextlib.redirect_stdout(sys.stderr):  # what the user's function prints
         beside = scenario.run_beside(options.controller)
     path = Path(f"{stem}.{suffix}")
-    part = {"start": options.start, "end": options.end, "stamp": options.stamp}
+    part = {"start": options.start, "end": options.end, "degrees": options.degrees, "stamp": options.stamp}
     write({path: beside.figure(width=options.width or WIDTH, height=options.height, **part)})
     print_line(path)
     if beside.failure:
@@ -141,6 +141,10 @@ def add_layout(parser: argparse.ArgumentParser) -> None:
     add("--width", type=partial(inches, MIN_WIDTH, MAX_WIDTH), metavar="INCHES", help=width)
     height = "height (default: what the panels need, at most a page of 9; not with --lecture)"
     add("--height", type=partial(inches, MIN_HEIGHT, MAX_HEIGHT), metavar="INCHES", help=height)
+    unit = "angles in degrees, or in radians (default: as the scenario gives those of its start; not with --lecture)"
+    angles = parser.add_mutually_exclusive_group()
+    angles.add_argument("--degrees", action="store_true", default=None, help=unit)
+    angles.add_argument("--radians", dest="degrees", action="store_false", default=None, help="see --degrees")
     add("--stamp", action="store_true", help="write scenario, convention and hash at the figure's foot")
 
 
@@ -196,17 +200,20 @@ def figures(runs: dict[Path, Run], options: argparse.Namespace, logs: Sequence[P
     if options.lecture and (options.width or options.height):
         given = "--width" if options.width else "--height"
         raise UsageError(f"{given}: the lecture's figures have a size of their own; leave it away", code="usage")
+    if options.lecture and options.degrees is not None:
+        given = "--degrees" if options.degrees else "--radians"
+        raise UsageError(f"{given}: the lecture's figures show no joint angles; leave it away", code="usage")
     part = {"start": options.start, "end": options.end, "panels": options.panels, "stamp": options.stamp}
-    size = {"width": options.width or WIDTH, "height": options.height}
+    look = {"width": options.width or WIDTH, "height": options.height, "degrees": options.degrees}
     if logs:
-        return {"": measured(logs[0], named(runs), **size, **part)}
+        return {"": measured(logs[0], named(runs), **look, **part)}
     if options.compare:
-        return {"": compare(named(runs), **size, **part)}
+        return {"": compare(named(runs), **look, **part)}
     (run,) = runs.values()
     if options.lecture:
         return {f"_{name}": figure for name, figure in lecture(run, **part).items()}
     draws_force = options.force or ("force_ref" in run and not options.overview)
-    return {"": (force if draws_force else overview)(run, **size, **part)}
+    return {"": (force if draws_force else overview)(run, **look, **part)}
 
 
 def named(runs: dict[Path, Run]) -> dict[str, Run]:

@@ -14,7 +14,8 @@ from ..errors import UsageError
 from ..plot.layout import Panel, Size, chosen, lay_out
 from ..plot.run_figure import Origin, origin_of, stamp_height
 from ..plot.run_part import part_of
-from ..plot.style import TRIPLE, WIDTH, finish, legend_above, plain_ticks, style, widen_if_flat
+from ..plot.style import BLACK, TRIPLE, WIDTH, Unit, angle_unit, finish, legend_above, plain_ticks, style, widen_if_flat
+from ..scenario import Scenario
 from .reader import Measurement, measurement
 
 if TYPE_CHECKING:
@@ -27,9 +28,9 @@ MOST_RUNS = 4
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 2, 1, 2)))
 MEASURED: Any = {"ls": "-", "lw": 2.4, "alpha": 0.35, "solid_capstyle": "round"}
 QUANTITIES = {  # of columns that belong together, by the name that they share
-    "q": "joint angle, rad",
-    "qd": "joint rate, rad/s",
-    "qdd": "joint acceleration, rad/s²",
+    "q": "joint angle, {angle}",
+    "qd": "joint rate, {angle}/s",
+    "qdd": "joint acceleration, {angle}/s²",
     "tau": "torque, N m",
     "tau_g": "gravity torque, N m",
     "tip": "tip, m",
@@ -45,7 +46,7 @@ QUANTITIES = {  # of columns that belong together, by the name that they share
 def measured(
     log: str | os.PathLike[str] | Mapping[str, Any], runs: Sequence[Run] | Mapping[str, Run] = (), *,
     width: float = WIDTH, height: float | None = None, panels: Sequence[str] | None = None,
-    start: float | None = None, end: float | None = None, stamp: bool = False,
+    start: float | None = None, end: float | None = None, degrees: bool | None = None, stamp: bool = False,
 ) -> Figure:  # fmt: skip
     """A measurement, and up to four runs over it: a panel for each quantity that was measured.
 
@@ -68,8 +69,10 @@ def measured(
     found = Measurement(found.name, found.t[kept], {name: column[kept] for name, column in found.columns.items()})
     if not kept.any():
         raise UsageError(f"{found.name}: no row lies in the time that is asked for", code="usage")
+    texts = [run.summary["scenario"] for run in given.values() if run.summary.get("scenario")]
+    unit = angle_unit(Scenario(texts[0]) if texts else None, degrees)
     with style():
-        named = {name: [Panel(1.2, partial(draw, found, parts, name))] for name in groups(found.columns)}
+        named = {name: [Panel(1.2, partial(draw, found, parts, name, unit))] for name in groups(found.columns)}
         over_time, _, _ = chosen(named, panels or list(named), below=())
         first = over_time[0]
         over_time[0] = first._replace(draw=partial(explained, found, parts, first))
@@ -95,16 +98,18 @@ def groups(columns: Mapping[str, Any]) -> dict[str, list[str]]:
     return found
 
 
-def draw(log: Measurement, runs: Mapping[str, Run], group: str, ax: Axes, room: float) -> None:
+def draw(log: Measurement, runs: Mapping[str, Run], group: str, angle: Unit, ax: Axes, room: float) -> None:
     """A colour a column: the measurement broad and pale, the runs thin."""
     columns = groups(log.columns)[group]
+    label = QUANTITIES.get(group, group)
+    factor = angle.factor if "{angle}" in label else 1.0
+    label = label.format(angle=angle.name)
     for name in columns:
         colour = TRIPLE[max("123xyz".find(name[-1]), 0) % 3]["color"] if len(columns) > 1 else TRIPLE[0]["color"]
-        ax.plot(log.t, log.columns[name], color=colour, label=name, **MEASURED)
+        ax.plot(log.t, factor * log.columns[name], color=colour, label=name, **MEASURED)
         for run, dashes in zip(runs.values(), DASHES, strict=False):
             if name in run:
-                ax.plot(run.t, run[name], color=colour, ls=dashes, lw=1.2)
-    label = QUANTITIES.get(group, group)
+                ax.plot(run.t, factor * run[name], color=colour, ls=dashes, lw=1.2)
     if runs:
         finish(ax, next(iter(runs.values())), label, room)
         return
@@ -117,7 +122,7 @@ def draw(log: Measurement, runs: Mapping[str, Run], group: str, ax: Axes, room: 
 def explained(log: Measurement, runs: Mapping[str, Run], panel: Panel, ax: Axes, room: float) -> None:
     """A panel whose legend says what is measured and what is simulated."""
     panel.draw(ax, room)
-    ax.plot([], [], color="#222222", label=f"measured: {log.name}", **MEASURED)
+    ax.plot([], [], color=BLACK, label=f"measured: {log.name}", **MEASURED)
     for (name, _), dashes in zip(runs.items(), DASHES, strict=False):
-        ax.plot([], [], color="#222222", ls=dashes, lw=1.2, label=name)
+        ax.plot([], [], color=BLACK, ls=dashes, lw=1.2, label=name)
     legend_above(ax, room=room)

@@ -18,14 +18,18 @@ DRAWN = ("force_error_rms", "peak_force", "tip_path_error_rms", "first_contact",
 SHOWN = ("t_end", "contacts", "contact_time", "peak_force", "final_force", "force_error_rms", "tip_path_error_rms")
 
 
+def _often(count: int) -> str:
+    return {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
+
+
 def of_run(run: Run) -> str:
     """Outcome, numbers, checks, warnings and a small figure."""
     summary, kinds = run.summary, [event.type for event in run.events]
     numbers = [
         ("rows", len(run)),
         ("from t =", f"{run.t[0]:.6g} to {run.t[-1]:.6g} s"),
-        ("contact begins", _times(kinds.count("make"))),
-        ("contact ends", _times(kinds.count("break"))),
+        ("contact begins", _often(kinds.count("make"))),
+        ("contact ends", _often(kinds.count("break"))),
         ("peak force", f"{summary.get('peak_force', 0):.6g} N"),
         ("energy residual", f"{summary.get('energy_residual_max', 0):.2g} J"),
     ]
@@ -37,10 +41,6 @@ def of_run(run: Run) -> str:
         html.notes("Warnings:", run.warnings),
         html.image(small_figure.of_run(run), small_figure.WIDTH, "joint angles, and force or tip, over time"),
     )
-
-
-def _times(count: int) -> str:
-    return {0: "never", 1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 def _checks(run: Run) -> str:

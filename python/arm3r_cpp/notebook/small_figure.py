@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..plot.style import AMBER, BLACK, BLUE, TRIPLE, style
+from ..plot.style import ARM, ON_WALL, TIP, TRIPLE, WALL, angle_unit, style
 from ..plot.wall_frame import half_sides, wall_frame
+from ..scenario import Scenario
 
 if TYPE_CHECKING:
     from ..batch import Batch
     from ..run import Run
-    from ..scenario import Scenario
 
 WIDTH, HEIGHT = 6.3, 1.9  # inches on the page
 DOTS = 160  # per inch: sharp on screens with two dots a pixel
@@ -39,21 +39,23 @@ def _panels(count: int) -> Iterator[tuple[Any, Any, BytesIO]]:
 def of_run(run: Run) -> bytes:
     """The joint angles over time, and beside them the force on the wall or, where there is none, the tip."""
     with _panels(2) as (_, (left, right), png):
-        _lines(left, run, "q", "joint angles, rad", "123")
+        text = run.summary.get("scenario")
+        unit = angle_unit(Scenario(text) if text else None)
+        _lines(left, run, "q", f"joint angles, {unit.name}", "123", unit.factor)
         force = run["f_on_wall"] if "f_on_wall" in run else np.zeros(1)
         if force.any():
-            right.plot(run.t, np.linalg.norm(force, axis=1), color=AMBER)
+            right.plot(run.t, np.linalg.norm(force, axis=1), color=ON_WALL)
             right.set(xlabel="t, s", ylabel="force on the wall, N")
         else:
             _lines(right, run, "tip", "tip, m", "xyz")
     return png.getvalue()
 
 
-def _lines(ax: Any, run: Run, name: str, label: str, parts: str) -> None:
+def _lines(ax: Any, run: Run, name: str, label: str, parts: str, factor: float = 1.0) -> None:
     if name not in run:  # not logged
         return ax.set_axis_off()
     for values, part, look in zip(run[name].T, parts, TRIPLE, strict=True):
-        ax.plot(run.t, values, label=part, **look)
+        ax.plot(run.t, factor * values, label=part, **look)
     ax.set(xlabel="t, s", ylabel=label)
     ax.legend(ncols=3, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.1)
 
@@ -66,9 +68,9 @@ def of_scenario(scenario: Scenario) -> bytes:
     with _panels(2) as (_, axes, png):
         for ax, across, label in zip(axes, (2, 1), "zy", strict=True):
             if plate is not None:
-                ax.fill(plate[:, 0], plate[:, across], fc="#dddddd", ec=AMBER)
-            ax.plot(joints[:, 0], joints[:, across], color=BLUE, marker="o", ms=3)
-            ax.plot(*joints[-1, [0, across]], color=BLACK, marker="o", ms=4)
+                ax.fill(plate[:, 0], plate[:, across], fc="#dddddd", ec=WALL)
+            ax.plot(joints[:, 0], joints[:, across], color=ARM, marker="o", ms=3)
+            ax.plot(*joints[-1, [0, across]], color=TIP, marker="o", ms=4)
             ax.set(xlabel="x, m", ylabel=f"{label}, m", aspect="equal", adjustable="datalim")
     return png.getvalue()
 

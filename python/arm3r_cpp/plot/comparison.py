@@ -11,9 +11,9 @@ import numpy as np
 from ..errors import UsageError
 from .contact_plane import draw_contact_plane, locate, needs_locating
 from .force_figure import heights, since_contact, transient
-from .layout import PAD, TWO_PANELS, Named, Panel, Size, chosen, lay_out
+from .layout import PAD, Named, Panel, Size, chosen, lay_out
 from .run_panels import greyed_out
-from .style import BLACK, JOINTS, LOOKS, contact_spans, legend_above, plain_ticks, widen_if_flat
+from .style import BLACK, JOINTS, LOOKS, NARROW, REFERENCE, contact_spans, legend_above, plain_ticks, widen_if_flat
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,7 +32,8 @@ NARROW_WITHOUT = (
     ("torques", "contact"),
     ("torques", "contact", "first_contact", "face"),
 )  # to fit a page: few runs, many
-MAX_LETTERS = 30  # letters of a name in a legend
+MAX_LETTERS, NARROW_LETTERS = 30, 18  # of a name in a legend; in a narrow figure two stand in a row
+ROUNDING = 1e-9  # SI units: a smaller number is none
 SAME = ("wall.normal", "wall.size", "wall.rotation")  # what runs need to share for one face
 
 
@@ -46,6 +47,7 @@ class Row(NamedTuple):
 
 ROWS = (
     Row("peak_force", "peak force, N"),
+    Row("first_contact_peak", "first contact peak, N"),
     Row("overshoot", "overshoot, N"),
     Row("force_error_rms", "force error rms, N"),
     Row("settling_time", "settling time, s"),
@@ -64,7 +66,7 @@ def compare_figure(runs: Sequence[ForceRun], names: Sequence[str] | None, size: 
     """
     check(runs)
     panels = panels_of(runs, size.width)
-    left_out = NARROW_WITHOUT[len(runs) > FEW] if size.width < TWO_PANELS else ()
+    left_out = NARROW_WITHOUT[len(runs) > FEW] if size.width < NARROW else ()
     wanted = names or [name for name, found in panels.items() if found and name not in left_out]
     over_time, below, last = chosen(panels, wanted, below=("first_contact", "face"), last=("table",))
     start, end = min(run.run.t[0] for run in runs), max(run.run.t[-1] for run in runs)
@@ -126,25 +128,32 @@ def draw_force(runs: Sequence[ForceRun], ax: Axes, room: float) -> None:
     legend_above(ax, room=room, handlelength=2.6)
 
 
-def draw_forces(runs: Sequence[ForceRun], ax: Axes) -> None:
-    """Those of the runs, and the references: one that all share in black."""
-    wanted = [(run.run.t, run.reference) for run in runs if run.reference is not None]
+def draw_forces(runs: Sequence[ForceRun], ax: Axes, zeros: Sequence[float] | None = None) -> None:
+    """Those of the runs, and the references: one that all share in black.
+
+    zeros: where the time of each run is counted from, s; None: t = 0.
+    """
+    zeros = zeros or [0.0] * len(runs)
+    letters = NARROW_LETTERS if ax.figure.bbox.width < NARROW * ax.figure.dpi else MAX_LETTERS
+    pairs = list(zip(runs, zeros, strict=True))
+    wanted = [(run.run.t - zero, run.reference) for run, zero in pairs if run.reference is not None]
     shared = len(wanted) > 0 and all(alike(wanted[0], other) for other in wanted[1:])
-    for run, look in looks(runs):
-        ax.plot(*run.force_line, label=shortened(run.name, MAX_LETTERS), **look)
+    for (run, look), zero in zip(looks(runs), zeros, strict=True):
+        t, force = run.force_line
+        ax.plot(t - zero, force, label=shortened(run.name, letters), **look)
         if run.reference is not None and not shared:
-            ax.plot(run.run.t, run.reference, color=look["color"], ls=(0, (1, 2)), lw=1.0)
+            ax.plot(run.run.t - zero, run.reference, color=look["color"], ls=(0, (1, 2)), lw=1.0)
     if shared:
         longest = max(wanted, key=lambda line: line[0][-1])
-        ax.plot(*longest, color=BLACK, ls="--", lw=1.0, zorder=2.6, label="reference")
+        ax.plot(*longest, color=REFERENCE, ls="--", lw=1.0, zorder=2.6, label="reference")
     elif wanted:
-        ax.plot([], [], color=BLACK, ls=(0, (1, 2)), lw=1.0, label="references")
+        ax.plot([], [], color=REFERENCE, ls=(0, (1, 2)), lw=1.0, label="references")
 
 
 def alike(one: tuple[Floats, Floats], other: tuple[Floats, Floats]) -> bool:
     """Whether two lines are one where both have values."""
-    end = min(one[0][-1], other[0][-1])
-    t = one[0][one[0] <= end]
+    start, end = max(one[0][0], other[0][0]), min(one[0][-1], other[0][-1])
+    t = one[0][(one[0] >= start) & (one[0] <= end)]
     return bool(np.allclose(np.interp(t, *one), np.interp(t, *other), rtol=1e-6, atol=1e-6))
 
 
@@ -154,11 +163,12 @@ def draw_force_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
 
 def draw_path_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
     """As the table's numbers have it: of all three directions, without the normal one while force is controlled."""
-    overlay(ax, runs, lambda run: size(run.path_error), "path error,\nmm")
+    overlay(ax, runs, lambda run: size(run.path_error, 1e3), "path error,\nmm")
 
 
 def draw_joint_error(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
-    overlay(ax, runs, lambda run: size(run.joint_error), "joint error,\nmrad")
+    unit = runs[0].angle
+    overlay(ax, runs, lambda run: size(run.joint_error, unit.small_factor), f"joint error,\n{unit.small_name}")
 
 
 def draw_torque(runs: Sequence[ForceRun], joint: str, ax: Axes, _: float) -> None:
@@ -174,9 +184,9 @@ def overlay(ax: Axes, runs: Sequence[ForceRun], values: Callable[[ForceRun], Flo
     ax.set_ylabel(quantity)
 
 
-def size(error: Mapping[str, Floats]) -> Floats | None:
-    """Of an error of several parts, in thousandths."""
-    return 1e3 * np.linalg.norm(list(error.values()), axis=0) if error else None
+def size(error: Mapping[str, Floats], factor: float) -> Floats | None:
+    """Of an error of several parts, times a factor of its unit."""
+    return factor * np.linalg.norm(list(error.values()), axis=0) if error else None
 
 
 def draw_contact(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
@@ -194,21 +204,31 @@ def draw_contact(runs: Sequence[ForceRun], ax: Axes, _: float) -> None:
 
 
 def transient_panel(runs: Sequence[ForceRun]) -> list[Panel]:
-    windows = [window for run in runs if (window := transient(run))]
+    """Each run is counted from its own first contact."""
+    windows = [np.array(window) - begin_of_contact(run) for run in runs if (window := transient(run))]
     if not windows:
         return []
     window = min(start for start, _ in windows), max(end for _, end in windows)
     return [Panel(1.9, partial(draw_transient, runs, window))]
 
 
+def begin_of_contact(run: ForceRun) -> float:
+    """When the first contact begins, s; 0: there is none."""
+    spans = contact_spans(run.run)
+    return spans[0][0] if spans else 0.0
+
+
 def draw_transient(runs: Sequence[ForceRun], window: tuple[float, float], ax: Axes, _: float) -> None:
-    draw_forces(runs, ax)
-    for run, look in looks(runs):
-        peak = run.peak
-        if peak and window[0] <= peak.t <= window[1]:
-            ax.plot(peak.t, peak.force, color=look["color"], ls="", marker=7, ms=6, clip_on=False, zorder=5)
-    since_contact(ax, window, min(span[0] for run in runs for span in contact_spans(run.run)))
-    ax.set(ylabel="pressing force, N", ylim=heights(runs, window))
+    """window: time since the first contact, s."""
+    zeros = [begin_of_contact(run) for run in runs]
+    draw_forces(runs, ax, zeros)
+    for (run, look), zero in zip(looks(runs), zeros, strict=True):
+        peak = run.first_peak or run.peak
+        if peak and window[0] <= peak.t - zero <= window[1]:
+            ax.plot(peak.t - zero, peak.force, color=look["color"], ls="", marker=7, ms=6, clip_on=False, zorder=5)
+    since_contact(ax, window)
+    own = [(run, (window[0] + zero, window[1] + zero)) for run, zero in zip(runs, zeros, strict=True)]
+    ax.set(ylabel="pressing force, N", ylim=heights(own))
 
 
 def face_panel(runs: Sequence[ForceRun]) -> list[Panel]:
@@ -265,6 +285,6 @@ def cell(run: ForceRun, row: Row) -> str:
     value = run.metric(row.metric)
     if value is None:
         return "never" if run.settling and row.metric == "settling_time" else MISSING
-    value *= row.scale
+    value = row.scale * value if abs(value) > ROUNDING else 0
     is_count = row.metric == "contacts"
     return f"{value:#.3g}".rstrip(".") if 1e-3 <= abs(value) < 1e3 and not is_count else f"{value:.3g}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .style import AMBER, BLACK, RED, legend_above
+from .style import BLACK, REFERENCE, TIP, WALL, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,14 +84,14 @@ def draw_reference(ax: Axes, run: ForceRun, scale: float) -> None:
     label = "reference" if "reference" not in ax.get_legend_handles_labels()[1] else None
     still = np.ptp(reference, axis=0).max() < MIN_EXTENT
     look: dict[str, Any] = {"marker": "+", "ms": 9, "mew": 1.4, "ls": ""} if still else {"ls": "--", "lw": 1.0}
-    ax.plot(*(scale * (reference[-1:] if still else reference).T), color=BLACK, zorder=3, label=label, **look)
+    ax.plot(*(scale * (reference[-1:] if still else reference).T), color=REFERENCE, zorder=3, label=label, **look)
 
 
 def outline(ax: Any, half: tuple[float, float], scale: float) -> None:
     from matplotlib.patches import Rectangle
 
     corner, sides = (-scale * half[0], -scale * half[1]), (2 * scale * half[0], 2 * scale * half[1])
-    ax.add_patch(Rectangle(corner, *sides, fc=AMBER, ec=BLACK, lw=0.9, alpha=0.12, zorder=0.5))
+    ax.add_patch(Rectangle(corner, *sides, fc=WALL, ec=BLACK, lw=0.9, alpha=0.12, zorder=0.5))
     ax.add_patch(Rectangle(corner, *sides, fc="none", ec=BLACK, lw=0.9, zorder=1, label="plate"))
 
 
@@ -100,7 +100,7 @@ def locate(runs: Sequence[ForceRun], ax: Axes) -> None:
     half, (middle, _) = runs[0].half_sides, extent(runs)
     assert half is not None
     outline(ax, half, 1.0)
-    ax.plot(*middle, color=RED, marker="s", ms=4, ls="")
+    ax.plot(*middle, color=TIP, marker="s", ms=4, ls="")
     ax.set(xlim=(-1.12 * half[0], 1.12 * half[0]), ylim=(-1.12 * half[1], 1.12 * half[1]))
     ax.set_aspect("equal", anchor="N")
     ax.axis("off")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def overview(
     run: Run, *, width: float = WIDTH, height: float | None = None, panels: Sequence[str] | None = None,
-    start: float | None = None, end: float | None = None, stamp: bool = False,
+    start: float | None = None, end: float | None = None, degrees: bool | None = None, stamp: bool = False,
 ) -> Figure:  # fmt: skip
     """Joint angles, tip position, tracking errors, torques, observer, tank, and the force on the wall (without a wall:
     the energies), over time.
@@ -29,6 +29,7 @@ def overview(
         width, height: inches; None: as high as the panels need, at most a page of 9 inches.
         panels: names of those to draw, in order, such as ["angles", "tank"]; a wrong one lists what there is.
         start, end: of the part of the run that is drawn, s; None: its first or last row.
+        degrees: whether angles are in degrees; None: where the scenario gives angles of the start or reference in them.
         stamp: write scenario, convention and hash at the foot; in the metadata of a saved file they always are.
 
     Returns a matplotlib Figure. A notebook shows it as the value of a cell, `arm3r.plot.show(figure)` in a window;
@@ -43,7 +44,7 @@ def overview(
     def draw(parts: list[ForceRun], size: Size) -> RunFigure:
         return overview_figure(parts[0], panels, size)
 
-    return _figure(draw, [(None, run)], width, height, start, end, stamp)
+    return _figure(draw, [(None, run)], width, height, start, end, degrees, stamp)
 
 
 def lecture(
@@ -76,7 +77,7 @@ def lecture(
 
 def force(
     run: Run, *, width: float = WIDTH, height: float | None = None, panels: Sequence[str] | None = None,
-    start: float | None = None, end: float | None = None, stamp: bool = False,
+    start: float | None = None, end: float | None = None, degrees: bool | None = None, stamp: bool = False,
 ) -> Figure:  # fmt: skip
     """Force against reference with peak and settling, tracking, torques, observer; the first contact, and the path on
     the wall's face.
@@ -92,12 +93,13 @@ def force(
     def draw(parts: list[ForceRun], size: Size) -> RunFigure:
         return force_figure(parts[0], panels, size)
 
-    return _figure(draw, [(None, run)], width, height, start, end, stamp)
+    return _figure(draw, [(None, run)], width, height, start, end, degrees, stamp)
 
 
 def compare(
     runs: Sequence[Run] | Mapping[str, Run], *, width: float = WIDTH, height: float | None = None,
-    panels: Sequence[str] | None = None, start: float | None = None, end: float | None = None, stamp: bool = False,
+    panels: Sequence[str] | None = None, start: float | None = None, end: float | None = None,
+    degrees: bool | None = None, stamp: bool = False,
 ) -> Figure:  # fmt: skip
     """Runs over each other: force, errors, torques, contact; the first contact, the path on the wall's face; a table.
 
@@ -113,12 +115,12 @@ def compare(
         return compare_figure(parts, panels, size)
 
     pairs = list(runs.items()) if isinstance(runs, Mapping) else [(None, run) for run in runs]
-    return _figure(draw, pairs, width, height, start, end, stamp)
+    return _figure(draw, pairs, width, height, start, end, degrees, stamp)
 
 
 def _figure(
     draw: Callable[[list[ForceRun], Size], RunFigure], runs: Sequence[tuple[str | None, Run]], width: float,
-    height: float | None, start: float | None, end: float | None, stamp: bool,
+    height: float | None, start: float | None, end: float | None, degrees: bool | None, stamp: bool,
 ) -> Figure:  # fmt: skip
     """What `draw` makes of the parts of the runs from start to end, with their origin in the file's metadata."""
     from .force_run import ForceRun
@@ -127,7 +129,7 @@ def _figure(
     from .run_part import part_of
 
     with style():
-        parts = [ForceRun(part_of(run, start, end), name=name) for name, run in runs]
+        parts = [ForceRun(part_of(run, start, end), name=name, degrees=degrees) for name, run in runs]
         origins = [origin_of(run) for _, run in runs]
         figure = draw(parts, Size(width, height, stamp_height(origins, width) if stamp else 0.0))
         figure.set_origin(origins, stamp=stamp)

@@ -10,16 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .contact_plane import draw_contact_plane, extent, locate, needs_locating
-from .force_run import SETTLED, ForceRun
+from .force_run import SETTLED, ForceRun, Peak
 from .layout import Panel
 from .style import (
     BLACK,
     BLUE,
+    ESTIMATED,
     GREEN,
     JOINTS,
-    PINK,
+    MEASURED,
+    ON_WALL,
     RED,
-    SKY,
+    REFERENCE,
+    TIP,
     TRIPLE,
     contact_spans,
     finish,
@@ -36,6 +39,9 @@ TRANSIENT = 0.3  # of the run: a first contact that settles in less gets a panel
 FEW_ROWS = 60  # in that panel: they are marked
 LIMITS_IN_SIGHT = 3.0  # times the largest torque: limits beyond stand in the legend and are not drawn
 LEAST_PATH = 1e-4  # m: a path on the face that is shorter looks like a point
+LEAST_ERROR = 1e-9  # m: a smaller one is rounding
+FULL: dict[str, Any] = {"color": BLACK}
+HOLLOW: dict[str, Any] = {"color": BLACK, "mfc": "white"}
 
 
 # ---- force ----------------------------------------------------------------------------------------------------------
@@ -46,7 +52,7 @@ def draw_force(run: ForceRun, ax: Axes, room: float) -> None:
     shade_contact(ax, run.run, label="contact")
     strip(ax, run, "force_phase", GREEN, "force controlled")
     mark_settling(ax, run)
-    mark_peak(ax, run)
+    mark_peaks(ax, run)
     ax.set_ylabel("pressing force, N")
     widen_if_flat(ax)
     plain_ticks(ax)
@@ -55,26 +61,37 @@ def draw_force(run: ForceRun, ax: Axes, room: float) -> None:
 
 def draw_forces(ax: Axes, run: ForceRun, **look: Any) -> None:
     t, measured = run.run.t, run.column("force_measured")
+    differs = measured is not None and np.abs(measured - run.force).max() > 1e-6 * np.abs(run.force).max()
     if run.reference is not None:
-        ax.plot(t, run.reference, color=BLACK, ls="--", lw=1.1, zorder=2.6, label="reference")
-    ax.plot(*run.force_line, color=BLUE, zorder=2.5, label="true")
+        ax.plot(t, run.reference, color=REFERENCE, ls="--", lw=1.1, zorder=2.6, label="reference")
+    ax.plot(*run.force_line, color=ON_WALL, zorder=2.5, label="true" if differs else "force")
     if look and look["marker"]:
-        ax.plot(t, run.force, color=BLUE, ls="", zorder=2.5, **look)
-    if measured is not None and np.abs(measured - run.force).max() > 1e-6 * np.abs(run.force).max():
-        ax.plot(t, measured, color=SKY, lw=0.8, label="measured")
+        ax.plot(t, run.force, color=ON_WALL, ls="", zorder=2.5, **look)
+    if measured is not None and differs:
+        ax.plot(t, measured, color=MEASURED, lw=0.8, label="measured")
     if run.estimate is not None:
-        ax.plot(t, run.estimate, color=PINK, ls="-.", lw=1.1, label="estimated")
+        ax.plot(t, run.estimate, color=ESTIMATED, ls="-.", lw=1.1, label="estimated")
 
 
-def mark_peak(ax: Axes, run: ForceRun) -> None:
+def mark_peaks(ax: Axes, run: ForceRun, window: tuple[float, float] = (-math.inf, math.inf)) -> None:
+    """The largest force, and that of the first contact where it is another, if they lie in a window of time."""
+    largest, first = run.peak, run.first_peak
+    marks: list[tuple[Peak | None, str, dict[str, Any]]]
+    if largest and first and largest.t == first.t:
+        marks = [(largest, "peak {} (first contact)", FULL)]
+    else:
+        marks = [(largest, "peak {}", FULL), (first, "first contact's peak {}", HOLLOW)]
+    for peak, text, look in marks:
+        if peak and window[0] <= peak.t <= window[1]:
+            mark_peak(ax, run, peak, text, look)
+
+
+def mark_peak(ax: Axes, run: ForceRun, peak: Peak, text: str, look: dict[str, Any]) -> None:
     """Where rows do not show it, a dotted line leads up to it."""
-    peak = run.peak
-    if peak is None:
-        return
-    label = f"peak {peak.force:.4g} N, t {'=' if peak.exact or peak.seen else '≈'} {peak.t:.4f} s"
+    label = text.format(f"{peak.force:.4g} N, t {'=' if peak.exact or peak.seen else '≈'} {peak.t:.4f} s")
     if not peak.seen:
-        ax.vlines(peak.t, np.interp(peak.t, *run.force_line), peak.force, color=RED, ls=":", lw=1.0)
-    ax.plot(peak.t, peak.force, color=RED, ls="", marker=7, ms=7, clip_on=False, zorder=5, label=label)
+        ax.vlines(peak.t, np.interp(peak.t, *run.force_line), peak.force, color=BLACK, ls=":", lw=1.0)
+    ax.plot(peak.t, peak.force, ls="", marker=7, ms=7, clip_on=False, zorder=5, label=label, **look)
 
 
 def mark_settling(ax: Axes, run: ForceRun) -> None:
@@ -109,7 +126,9 @@ def transient(run: ForceRun) -> tuple[float, float] | None:
     else:
         return None
     length = min(length, run.run.t[-1] - start)
-    return (start - 0.15 * length, start + length) if length < TRANSIENT * (run.run.t[-1] - run.run.t[0]) else None
+    if length >= TRANSIENT * (run.run.t[-1] - run.run.t[0]):
+        return None
+    return max(start - 0.15 * length, float(run.run.t[0])), start + length
 
 
 def draw_transient(run: ForceRun, ax: Axes, room: float, *, legend: bool = False) -> None:
@@ -118,17 +137,16 @@ def draw_transient(run: ForceRun, ax: Axes, room: float, *, legend: bool = False
     shown = (run.run.t >= window[0]) & (run.run.t <= window[1])
     draw_forces(ax, run, marker="." if shown.sum() < FEW_ROWS else "", ms=4)
     mark_settling(ax, run)
-    if run.peak and window[0] <= run.peak.t <= window[1]:
-        mark_peak(ax, run)
+    mark_peaks(ax, run, window)
     shade_contact(ax, run.run)
     since_contact(ax, window, contact_spans(run.run)[0][0])
-    ax.set(ylabel="force, N" if legend else "pressing force, N", ylim=heights([run], window))
+    ax.set(ylabel="force, N" if legend else "pressing force, N", ylim=heights([(run, window)]))
     if legend:
         legend_above(ax, room=room)
 
 
-def since_contact(ax: Axes, window: tuple[float, float], start: float) -> None:
-    """The time axis counted from the first contact."""
+def since_contact(ax: Axes, window: tuple[float, float], start: float = 0.0) -> None:
+    """The time axis counted from the first contact, which is at `start`."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 
     scale, unit = (1e3, "ms") if window[1] - window[0] < 1 else (1.0, "s")
@@ -138,12 +156,14 @@ def since_contact(ax: Axes, window: tuple[float, float], start: float) -> None:
     ax.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{round(scale * (t - start), 6) + 0.0:g}"))
 
 
-def heights(runs: Sequence[ForceRun], window: tuple[float, float]) -> tuple[float, float]:
-    """From below to above all forces of the runs in a window of time."""
-    values = [0.0]
-    for run in runs:
+def heights(windows: Sequence[tuple[ForceRun, tuple[float, float]]]) -> tuple[float, float]:
+    """From below to above all forces of runs, each in a window of its time."""
+    values: list[float] = []
+    for run, window in windows:
+        t, force = run.force_line
+        values += force[(t >= window[0]) & (t <= window[1])].tolist()
         shown = (run.run.t >= window[0]) & (run.run.t <= window[1])
-        for line in (run.force, run.reference, run.column("force_measured")):
+        for line in (run.reference, run.column("force_measured")):
             values += [] if line is None else line[shown].tolist()
         if run.peak and window[0] <= run.peak.t <= window[1]:
             values.append(run.peak.force)
@@ -159,14 +179,14 @@ def draw_path_error(run: ForceRun, ax: Axes, room: float) -> None:
         ax.plot(run.run.t, 1e3 * error, label=f"along ${axis}$", **look)
     largest = run.metric("tip_path_error_max")
     if largest is not None:
-        ax.plot([], [], ls="", label=f"largest {1e3 * largest:.4g} mm")
+        ax.plot([], [], ls="", label=f"largest {1e3 * largest if largest > LEAST_ERROR else 0:.4g} mm")
     finish(ax, run.run, "path error, mm", room)
 
 
 def draw_joint_error(run: ForceRun, ax: Axes, room: float) -> None:
     for (joint, error), look in zip(run.joint_error.items(), TRIPLE, strict=True):
-        ax.plot(run.run.t, 1e3 * error, label=f"${joint}$", **look)
-    finish(ax, run.run, "joint error, mrad", room)
+        ax.plot(run.run.t, run.angle.small_factor * error, label=f"${joint}$", **look)
+    finish(ax, run.run, f"joint error, {run.angle.small_name}", room)
 
 
 def draw_torques(run: ForceRun, ax: Axes, room: float) -> None:
@@ -234,7 +254,7 @@ def face_panel(run: ForceRun) -> list[Panel]:
     """The tip's path; none where the plane is not known."""
     if run.on_contact_plane("tip") is None:
         return []
-    runs = [(run, {"color": BLUE, "ls": "-"}, "tip in contact")]
+    runs = [(run, {"color": TIP, "ls": "-"}, "tip in contact")]
     beside: Callable[[Any], None] | None = partial(locate, [run]) if needs_locating([run]) else None
     return [Panel(1.9, partial(draw_contact_plane, runs), beside=beside)]
 

@@ -12,7 +12,7 @@ from .._native import Floats
 from ..errors import UsageError
 from ..run import Run
 from ..scenario import Scenario
-from .style import contact_spans
+from .style import angle_unit, contact_spans
 from .wall_frame import WallFrame, half_sides, wall_frame
 
 SETTLED = 0.05  # of what is wanted: the force has settled within that
@@ -41,9 +41,11 @@ class Settling(NamedTuple):
 class ForceRun:
     """A run and what figures compute of it. Arrays have a row for each row of the run; None: the run lacks it."""
 
-    def __init__(self, run: Run, *, name: str | None = None) -> None:
+    def __init__(self, run: Run, *, name: str | None = None, degrees: bool | None = None) -> None:
+        """degrees: for angles; None: as the scenario gives them."""
         self.run = run
         self.name = name or run.summary["name"]
+        self.angle = angle_unit(self.scenario, degrees)
 
     def check(self) -> None:
         """
@@ -124,6 +126,15 @@ class ForceRun:
         if instant is not None:
             return Peak(float(instant), level, seen, exact=True)
         return Peak(float(t[row]) if seen else self._peak_between_rows(level), level, seen, exact=False)
+
+    @property
+    def first_peak(self) -> Peak | None:
+        """Of the first contact, while it is transient, as the summary tells it; None: it does not."""
+        force, instant = self.metric("first_contact_peak"), self.metric("first_contact_peak_time")
+        if not force or instant is None:
+            return None
+        nearest = self.force[np.abs(self.run.t - instant).argmin()]
+        return Peak(float(instant), float(force), bool(nearest >= SEEN * force), exact=True)
 
     def _peak_between_rows(self, level: float) -> float:
         """Where parabolas through rows and events come highest; else in the longest contact that no row saw."""

@@ -7,19 +7,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .._messages import did_you_mean
 from ..errors import UsageError
-from .style import MARGIN, WIDTH, legend_above
+from .style import MARGIN, NARROW, SMALL, WIDTH, legend_above
 
 if TYPE_CHECKING:
     from .run_figure import RunFigure
 
-TWO_PANELS = 5.0  # inches: narrower figures have one panel a row
 BESIDE = 0.28  # of a panel's width: what stands beside it
 GAP, LABELS = 0.14, 0.42  # inches of height: above a panel and its legend, and for the labels of a time axis
 PAD, RIGHT = 0.06, 0.2  # inches of width: between texts, and to the right of panels: half of a label
 PAGE = 9.0  # inches: no figure gets higher by itself
 LEAST = 0.5  # of their heights: panels do not get lower
 TRIES = 4  # a legend or a label that is changed moves the others
-SMALL = 7  # points: letters of labels that run into each other
 
 
 class Panel(NamedTuple):
@@ -87,7 +85,7 @@ def lay_out(
     from .run_figure import RunFigure
 
     figure = RunFigure(figsize=(size.width, PAGE))
-    step = 2 if size.width >= TWO_PANELS else 1
+    step = 2 if size.width >= NARROW else 1
     rows = [*draw_over_time(figure, over_time, size.width, start, end)]
     rows += [draw_row(figure, below[i : i + step], size.width) for i in range(0, len(below), step)]
     rows += [draw_row(figure, [panel], size.width) for panel in last]
@@ -238,10 +236,11 @@ def legend_height(ax: Any) -> float:
 
 def narrow_legends(figure: RunFigure, rows: Sequence[Row]) -> bool:
     """Give more rows to legends that leave the figure; whether there was one."""
-    wide = [ax for row in rows for ax in row.axes if ax.get_legend() and legend_end(ax) > figure.bbox.x1]
+    end = figure.bbox.x1 - PAD * figure.dpi
+    wide = [ax for row in rows for ax in row.axes if ax.get_legend() and legend_end(ax) > end]
     for ax in wide:
         look = {"handlelength": ax.get_legend().handlelength}
-        legend_above(ax, room=(figure.bbox.x1 - ax.bbox.x0) / figure.dpi, **look)
+        legend_above(ax, room=(end - ax.bbox.x0) / figure.dpi, **look)
     return bool(wide)
 
 

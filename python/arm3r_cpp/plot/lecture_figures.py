@@ -11,7 +11,7 @@ import numpy as np
 from .layout import Panel, Size, lay_out
 from .run_panels import draw_energies, draw_force_on_wall, explained, greyed_out, tip_panels
 from .strobe import strobe
-from .style import BLACK, BLUE, JOINTS, RED, SKY, TRIPLE, XYZ, contact_spans, finish
+from .style import BLACK, BLUE, JOINTS, RED, SKY, TIP, TRIPLE, XYZ, contact_spans, finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +55,7 @@ def contact_window(run: Run) -> tuple[float, float]:
     start, end = spans[0][0], spans[-1][1]
     if end - start >= NEEDLE * (whole[1] - whole[0]):
         return whole
-    return start - (end - start) / 2, end + (end - start) / 2
+    return max(start - (end - start) / 2, whole[0]), min(end + (end - start) / 2, whole[1])
 
 
 # ---- velocities and torques -----------------------------------------------------------------------------------------
@@ -118,7 +118,7 @@ def draw_wall_position(run: Run, ax: Axes, room: float) -> None:
 
 
 def draw_depth(run: Run, ax: Axes, room: float) -> None:
-    ax.plot(run.t, run["depth"], color=BLACK)
+    ax.plot(run.t, run["depth"], color=TIP)
     finish(ax, run, "depth of tip, m", room)
 
 

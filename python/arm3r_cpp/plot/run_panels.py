@@ -23,7 +23,22 @@ from .force_figure import (
     transient,
 )
 from .layout import Named, Panel, Size, chosen, lay_out
-from .style import AMBER, BLACK, BLUE, GREEN, JOINTS, PINK, RED, TRIPLE, XYZ, explain_contact, finish, grey_out
+from .style import (
+    AMBER,
+    BLACK,
+    BLUE,
+    GREEN,
+    JOINTS,
+    PINK,
+    RED,
+    REFERENCE,
+    TIP,
+    TRIPLE,
+    XYZ,
+    explain_contact,
+    finish,
+    grey_out,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +74,7 @@ def panels_of(run: ForceRun, names: Sequence[str] | None) -> Named:
         "force": [Panel(1.6, partial(draw_force, run))] if run.has_force else [],
         "force_on_wall": [Panel(1.0, partial(draw_force_on_wall, rows))] if has_wall_force(rows) else [],
         "depth": [Panel(0.8, partial(draw_depth, rows))] if "depth" in rows else [],
-        "angles": [Panel(1.0, partial(draw_angles, rows))] if "q" in rows else [],
+        "angles": [Panel(1.0, partial(draw_angles, run))] if "q" in rows else [],
         "tip": moving_tip_panels(rows),
         "path_error": [Panel(0.8, partial(draw_path_error, run))] if run.path_error else [],
         "joint_error": [Panel(0.8, partial(draw_joint_error, run))] if run.joint_error else [],
@@ -127,10 +142,10 @@ def greyed_out(run: Run, panels: Sequence[Panel]) -> list[Panel]:
 # ---- panels of any run ----------------------------------------------------------------------------------------------
 
 
-def draw_angles(run: Run, ax: Axes, room: float) -> None:
+def draw_angles(run: ForceRun, ax: Axes, room: float) -> None:
     for i, look in zip(JOINTS, TRIPLE, strict=True):
-        ax.plot(run.t, run[f"q{i}"], label=f"$q_{i}$", **look)
-    finish(ax, run, "joint angle, rad", room)
+        ax.plot(run.run.t, run.angle.factor * run.run[f"q{i}"], label=f"$q_{i}$", **look)
+    finish(ax, run.run, f"joint angle, {run.angle.name}", room)
 
 
 def tip_panels(run: Run, *, height: float) -> list[Panel]:
@@ -151,9 +166,9 @@ def moving_tip_panels(run: Run) -> list[Panel]:
 def draw_tip(run: Run, c: str, ax: Axes, room: float, *, constant: Sequence[str] = ()) -> None:
     """constant: what the legend says of the coordinates that do not change."""
     tip = 1e3 * run[f"tip_{c}"]
-    ax.plot(run.t, tip, color=BLUE, label="tip")
+    ax.plot(run.t, tip, color=TIP, label="tip")
     if f"tip_ref_{c}" in run:
-        ax.plot(run.t, 1e3 * run[f"tip_ref_{c}"], color=BLACK, ls="--", lw=1.0, label="reference")
+        ax.plot(run.t, 1e3 * run[f"tip_ref_{c}"], color=REFERENCE, ls="--", lw=1.0, label="reference")
     if np.ptp(tip) < LEAST_MILLIMETRES:
         middle = (tip.min() + tip.max()) / 2
         ax.set_ylim(middle - LEAST_MILLIMETRES / 2, middle + LEAST_MILLIMETRES / 2)
@@ -163,7 +178,7 @@ def draw_tip(run: Run, c: str, ax: Axes, room: float, *, constant: Sequence[str]
 
 
 def draw_depth(run: Run, ax: Axes, room: float) -> None:
-    ax.plot(run.t, 1e3 * run["depth"], color=BLUE)
+    ax.plot(run.t, 1e3 * run["depth"], color=TIP)
     ax.axhline(0, color=BLACK, lw=0.8)
     finish(ax, run, "depth, mm", room)
 

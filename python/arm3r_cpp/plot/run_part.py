@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from ..errors import UsageError
 from ..run import Run
 
 OF_FIRST_CONTACT = ("settling_time",)
-OF_PEAK = ("peak_force", "peak_force_time")
+PEAKS = ("peak_force", "first_contact_peak")
 
 
 def part_of(run: Run, start: float | None, end: float | None) -> Run:
@@ -39,8 +37,10 @@ def _summary(run: Run, first: float, last: float) -> dict[str, Any]:
     gone: set[str] = set()
     if begins is None or not first <= begins <= last:
         gone.update(OF_FIRST_CONTACT)
-    if not first <= (metrics.get("peak_force_time") or np.inf) <= last:
-        gone.update(OF_PEAK)
+    for peak in PEAKS:
+        instant = metrics.get(f"{peak}_time")
+        if instant is None or not first <= instant <= last:
+            gone.update((peak, f"{peak}_time"))
     return {
         **{key: value for key, value in run.summary.items() if key not in gone},
         "metrics": {key: value for key, value in metrics.items() if key not in gone},

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .force_run import ForceRun
-from .style import AMBER, BLACK, BLUE, GREEN, RED
+from .style import ARM, BLACK, ON_TIP, ON_WALL, TIP, TRIPLE, WALL
 from .wall_frame import half_sides, wall_frame
 
 if TYPE_CHECKING:
@@ -35,12 +35,12 @@ def strobe(run: Run, _: float) -> RunFigure:
     ax: Any = figure.add_axes((0, -0.02, 0.97, 0.97), projection="3d", computed_zorder=False)
     times = run.t[flashes]
     moment = f"{times[0]:.4g} to {times[-1]:.4g} s, darker is later" if len(flashes) > 1 else f"{times[0]:.4g} s"
-    ax.plot([], [], color=BLUE, lw=4, solid_capstyle="round", label=f"arm at {moment}")
+    ax.plot([], [], color=ARM, lw=4, solid_capstyle="round", label=f"arm at {moment}")
     ground(ax, shoulder, reach)
     if "depth" in run.units:
         draw_walls(ax, run, scenario, reach)
     if len(flashes) > 1:
-        ax.plot(*tip[: flashes[-1] + 1].T, color=BLACK, lw=0.8, ls=":", zorder=3, label="path of the tip")
+        ax.plot(*tip[: flashes[-1] + 1].T, color=TIP, lw=1.0, zorder=3, label="path of the tip")
     for k, row in enumerate(flashes):
         draw_arm(ax, shoulder, elbow[k], tip[row], alpha=0.15 + 0.85 * (k + 1) / len(flashes))
     draw_joint_axes(ax, scenario.arm.geometric_jacobian(q[flashes[-1]])[3:].T, [shoulder, shoulder, elbow[-1]], reach)
@@ -69,9 +69,9 @@ def ground(ax: Any, shoulder: NDArray[np.float64], reach: float) -> None:
 
 def draw_arm(ax: Any, shoulder: Any, elbow: Any, tip: Any, *, alpha: float) -> None:
     points = np.stack([shoulder, elbow, tip])
-    ax.plot(*points.T, color=BLUE, lw=4, alpha=alpha, solid_capstyle="round", solid_joinstyle="round", zorder=4)
+    ax.plot(*points.T, color=ARM, lw=4, alpha=alpha, solid_capstyle="round", solid_joinstyle="round", zorder=4)
     ax.plot(*points[:2].T, color=BLACK, ls="", marker="o", ms=5, alpha=alpha, zorder=5)
-    ax.plot(*points[2:].T, color=RED, ls="", marker="o", ms=4, alpha=alpha, zorder=5)
+    ax.plot(*points[2:].T, color=TIP, ls="", marker="o", ms=4, alpha=alpha, zorder=5)
 
 
 def draw_joint_axes(ax: Any, axes: Any, origins: Any, reach: float) -> None:
@@ -79,16 +79,16 @@ def draw_joint_axes(ax: Any, axes: Any, origins: Any, reach: float) -> None:
     from matplotlib.patheffects import withStroke
 
     for i, (axis, origin) in enumerate(zip(axes, origins, strict=True), start=1):
-        end = origin + 0.34 * reach * axis
-        arrow(ax, origin, end, GREEN, 1.4)
-        name = ax.text(*(end + 0.06 * reach * axis), f"$q_{i}$", color=GREEN, ha="center", va="center", zorder=9)
+        end, colour = origin + 0.34 * reach * axis, TRIPLE[i - 1]["color"]
+        arrow(ax, origin, end, colour, 1.4)
+        name = ax.text(*(end + 0.06 * reach * axis), f"$q_{i}$", color=colour, ha="center", va="center", zorder=9)
         name.set_path_effects([withStroke(linewidth=3, foreground="white")])
         side = np.cross(axis, [0, 1, 0] if abs(axis[1]) < 0.9 else [0, 0, 1])
         side *= 0.07 * reach / np.linalg.norm(side)
         angle = np.linspace(0, 1.5 * np.pi, 40)[:, None]
         circle = origin + 0.22 * reach * axis + np.cos(angle) * side + np.sin(angle) * np.cross(axis, side)
-        ax.plot(*circle.T, color=GREEN, lw=1.4, zorder=6)
-        arrow(ax, circle[-3], circle[-1], GREEN, 1.4, head=2.0)
+        ax.plot(*circle.T, color=colour, lw=1.4, zorder=6)
+        arrow(ax, circle[-3], circle[-1], colour, 1.4, head=2.0)
 
 
 def draw_forces(ax: Any, run: Run, tip: Any, reach: float) -> None:
@@ -101,8 +101,8 @@ def draw_forces(ax: Any, run: Run, tip: Any, reach: float) -> None:
     pull = 0.3 * reach * on_wall[row] / size[row]
     peak = ForceRun(run).peak
     when = f", peak {peak.force:.4g} N at {peak.t:.4f} s" if peak else ""
-    arrow(ax, tip[row], tip[row] + pull, RED, 2.2, label=f"force on the wall{when}")
-    arrow(ax, tip[row], tip[row] - pull, AMBER, 2.2, label="force on the tip, the opposite")
+    arrow(ax, tip[row], tip[row] + pull, ON_WALL, 2.2, label=f"force on the wall{when}")
+    arrow(ax, tip[row], tip[row] - pull, ON_TIP, 2.2, label="force on the tip, the opposite")
 
 
 def draw_walls(ax: Any, run: Run, scenario: Any, reach: float) -> None:
@@ -114,10 +114,10 @@ def draw_walls(ax: Any, run: Run, scenario: Any, reach: float) -> None:
     for k, t in enumerate(times):
         corners = wall_outline(scenario, reach, t) + [np.interp(t, run.t, origin[:, c]) for c in range(3)]
         alpha = 0.12 + 0.2 * (k + 1) / len(times)
-        ax.add_collection3d(Poly3DCollection([corners], fc=AMBER, ec=BLACK, alpha=alpha, lw=0.8, zorder=1))
+        ax.add_collection3d(Poly3DCollection([corners], fc=WALL, ec=BLACK, alpha=alpha, lw=0.8, zorder=1))
         ax.auto_scale_xyz(*corners.T, had_data=True)
     moments = ", ".join(f"{t:.4g}" for t in times)
-    ax.plot([], [], color=AMBER, alpha=0.4, lw=7, label=f"wall at {moments} s, darker is later")
+    ax.plot([], [], color=WALL, alpha=0.4, lw=7, label=f"wall at {moments} s, darker is later")
 
 
 def wall_outline(scenario: Any, reach: float, t: float) -> NDArray[np.float64]:

@@ -1,18 +1,26 @@
-"""How every figure looks: one palette, axes with units, legends outside the data, contact shaded, events marked."""
+"""How every figure looks: one palette, axes with units, legends outside the data, contact shaded, events marked.
+
+The colours and what they mean are those of films and of the live page (docs/live/src/app/colours.js), too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from math import pi
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..run import Run
+    from ..scenario import Scenario
 
 BLACK, BLUE, RED, GREEN, AMBER, SKY, PINK = "#222222", "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7"
+ARM, TIP, WALL = "#8A94A3", BLUE, AMBER
+ON_WALL, ON_TIP = RED, PINK  # forces; the pressing force is the normal part of that on the wall
+REFERENCE, MEASURED, ESTIMATED = BLACK, SKY, BLUE
 TRIPLE: tuple[dict[str, Any], ...] = (
     {"color": BLUE, "ls": "-"},
     {"color": RED, "ls": "--"},
@@ -21,13 +29,17 @@ TRIPLE: tuple[dict[str, Any], ...] = (
 LOOKS = tuple(zip((BLUE, RED, GREEN, AMBER, SKY, PINK, BLACK), ("-", "--", "-.", ":", "-", "--", "-."), strict=True))
 GREY = "#e4e4e4"
 XYZ, JOINTS = "xyz", "123"
+TENTH, NEARLY = 0.1, 1e-9  # degrees: an angle that was given in degrees is a multiple of the first within the second
 DASHES = {"make": ":", "break": (0, (4, 2))}
-EVENT_WORDS = {"make": "contact begins", "break": "contact ends"}
+EVENT_WORDS = {"make": "begins", "break": "ends"}
 MARKED_EVENTS = 4  # where there are more, the shade shows when there is contact
 HIDDEN = "_contact"  # a label that no legend shows
 FORMATS = ("png", "pdf", "svg")
 WIDTH = 6.3  # inches: that of a text; columns of a journal have some 3.4
+NARROW = 5.0  # inches: narrower figures have one panel a row, and smaller letters in their legends
+SMALL = 7  # points: the smallest letters that journals take
 MARGIN = 0.6  # inches of a figure's width: labels beside its axes
+POINTS = 72  # in an inch
 
 RC: Any = {
     "font.size": 9,
@@ -42,8 +54,10 @@ RC: Any = {
     "grid.linewidth": 0.6,
     "legend.fontsize": 8,
     "legend.frameon": False,
+    "legend.borderpad": 0.2,
     "legend.columnspacing": 0.9,
     "legend.handlelength": 1.7,
+    "legend.labelspacing": 0.2,
     "lines.linewidth": 1.4,
     "agg.path.chunksize": 20000,
     "savefig.dpi": 200,
@@ -89,7 +103,13 @@ def plain_ticks(ax: Axes) -> None:
 
     largest = max(map(abs, ax.get_ylim()))
     if not 1e-3 < largest < 1e5:
-        ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", "−")))
+        ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: in_full(value)))
+
+
+def in_full(value: float) -> str:
+    """A number for a tick; of a very small or very large one, with its power of ten."""
+    digits, _, power = f"{value:g}".replace("-", "−", 1 if value < 0 else 0).partition("e")
+    return rf"{digits}$\cdot$10$^{{{int(power)}}}$" if power else digits
 
 
 def contact_spans(run: Run) -> list[tuple[float, float]]:
@@ -105,7 +125,7 @@ def shade_contact(ax: Axes, run: Run, *, label: str | None = None) -> None:
     """As one artist, however often contact is made."""
     if spans := contact_spans(run):
         bars = [(start, end - start) for start, end in spans]
-        look: Any = {"color": AMBER, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label or HIDDEN}
+        look: Any = {"color": WALL, "alpha": 0.15, "lw": 0, "zorder": 0, "label": label or HIDDEN}
         ax.broken_barh(bars, (0, 1), transform=ax.get_xaxis_transform(), **look)
 
 
@@ -127,8 +147,9 @@ def grey_out(ax: Axes, run: Run, *, room: float | None = None) -> None:
 def mark_events(ax: Axes, run: Run, *, labelled: bool = False) -> None:
     """A line where contact begins or ends, unless there are too many; `labelled`: the legend is to say when."""
     if len(run.events) <= MARKED_EVENTS:
-        for event in run.events:
-            label = f"{EVENT_WORDS[event.type]} at {event.t:.4f} s" if labelled else HIDDEN
+        for k, event in enumerate(run.events):
+            what = "contact " if event.type == "make" or k == 0 else ""
+            label = f"{what}{EVENT_WORDS[event.type]} at {event.t:.4f} s" if labelled else HIDDEN
             ax.axvline(event.t, color=BLACK, lw=0.8, ls=DASHES[event.type], zorder=1, label=label)
 
 
@@ -145,10 +166,77 @@ def explain_contact(ax: Axes, run: Run, *, room: float) -> None:
 
 
 def legend_above(ax: Axes, *, room: float, **look: Any) -> None:
-    """All labelled artists above the axes, in as many rows as a width of `room` inches needs."""
+    """All labelled artists above the axes, in rows that a width of `room` inches holds, one entry after the other."""
     handles, labels = ax.get_legend_handles_labels()
     look = {"loc": "lower left", "bbox_to_anchor": (0, 1), "borderaxespad": 0.1, **look}
-    for columns in range(len(handles), 0, -1):
-        legend = ax.legend(handles, labels, ncols=columns, **look)
-        if legend.get_window_extent().width <= room * ax.figure.dpi:
-            return
+    if ax.figure.bbox.width < NARROW * ax.figure.dpi:
+        look["fontsize"] = SMALL
+    legend = ax.legend(handles, labels, ncols=len(handles), **look)
+    break_into_rows(legend, room * ax.figure.dpi)
+
+
+def break_into_rows(legend: Any, room: float) -> None:
+    """Matplotlib has columns, each as wide as its widest entry; in rows as full as they get, a legend is lower.
+
+    room: pixels. An entry without a line or a marker takes the place of its words only.
+    """
+    from matplotlib.offsetbox import HPacker, VPacker
+
+    renderer, letter = legend.figure.canvas.get_renderer(), legend.prop.get_size()
+    entries = [entry for column in legend._legend_handle_box.get_children() for entry in column.get_children()]
+    signs = [is_seen(handle) for handle in legend.legend_handles]
+    entries = [entry if sign else entry.get_children()[1] for entry, sign in zip(entries, signs, strict=True)]
+    gap = legend.columnspacing * letter
+    pixels = gap * legend.figure.dpi / POINTS
+    rows: list[list[Any]] = []
+    left = 0.0
+    for entry in entries:
+        width = entry.get_window_extent(renderer).width + pixels
+        if not rows or width - pixels > left:
+            rows.append([])
+            left = room
+        rows[-1].append(entry)
+        left -= width
+    lines: list[Any] = [HPacker(pad=0, sep=gap, align="baseline", children=row) for row in rows]
+    packed = VPacker(pad=0, sep=legend.labelspacing * letter, align="left", children=lines)
+    packed.set_figure(legend.figure)
+    legend._legend_box._children[-1] = legend._legend_handle_box = packed
+
+
+def is_seen(handle: Any) -> bool:
+    """Whether an artist of a legend draws a line, a marker or an area."""
+    from matplotlib.lines import Line2D
+
+    return not isinstance(handle, Line2D) or handle.get_linestyle() != "None" or handle.get_marker() != "None"
+
+
+# ---- angles ---------------------------------------------------------------------------------------------------------
+
+
+class Unit(NamedTuple):
+    """In which a quantity is drawn: its values in SI units times a factor; and that of small values."""
+
+    name: str
+    factor: float
+    small_name: str
+    small_factor: float
+
+
+RADIANS = Unit("rad", 1.0, "mrad", 1e3)
+DEGREES = Unit("deg", 180 / pi, "deg", 180 / pi)
+
+
+def angle_unit(scenario: Scenario | None, degrees: bool | None = None) -> Unit:
+    """Of a figure; `degrees` None: degrees where the scenario gives an angle of its start or its reference in them.
+
+    A run keeps its scenario in radians: a multiple of a tenth of a degree was given in degrees.
+    """
+    if degrees is None:
+        degrees = scenario is not None and speaks_degrees(scenario)
+    return DEGREES if degrees else RADIANS
+
+
+def speaks_degrees(scenario: Scenario) -> bool:
+    given = [scenario[key] for key in ("initial.q", "reference.q") if key in scenario]
+    angles = [DEGREES.factor * angle for three in given if three is not None for angle in three]
+    return any(angle and abs(angle - TENTH * round(angle / TENTH)) < NEARLY for angle in angles)

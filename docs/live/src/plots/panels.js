@@ -2,6 +2,9 @@
 
 const STILL = 1e-6; // m: a coordinate of the tip that changes less has no panel of its own
 const LOOKS = [["blue", []], ["red", [7, 4]], ["green", [2, 3]], ["amber", [8, 3, 2, 3]], ["sky", []], ["pink", [7, 4]], ["ink", [2, 3]]];
+const FORCE = ["onWall", []];
+const MEASURED = ["measured", []];
+const REFERENCE = ["ink", [7, 4]];
 const JOINTS = ["₁", "₂", "₃"];
 
 /** Series of three columns that belong together. */
@@ -13,18 +16,18 @@ function joints(name, symbol) {
   return three([1, 2, 3].map((joint) => `${name}${joint}`), JOINTS.map((sub) => symbol + sub));
 }
 
-function one(column, label, look = 0) {
-  return { column, label, look: LOOKS[look] };
+function one(column, label, look = LOOKS[0]) {
+  return { column, label, look };
 }
 
 const ALL = [
   { name: "force", title: "Pressing force", unit: "N",
-    series: [one("force", "force"), one("force_measured", "measured", 4), one("force_ref", "reference", 6)] },
+    series: [one("force", "force", FORCE), one("force_measured", "measured", MEASURED), one("force_ref", "reference", REFERENCE)] },
   { name: "force_on_wall", title: "Force on the wall", unit: "N",
     series: three(["f_on_wall_x", "f_on_wall_y", "f_on_wall_z"], ["x", "y", "z"]) },
   { name: "angles", title: "Joint angles", unit: "rad", series: joints("q", "q") },
   ...["x", "y", "z"].map((axis) => ({ name: `tip_${axis}`, title: `Tip, ${axis}`, unit: "mm", scale: 1e3, flat: 2,
-    series: [one(`tip_${axis}`, "tip"), one(`tip_ref_${axis}`, "reference", 6)] })),
+    series: [one(`tip_${axis}`, "tip"), one(`tip_ref_${axis}`, "reference", REFERENCE)] })),
   { name: "depth", title: "Depth of the tip in the wall", unit: "mm", scale: 1e3, zero: true, series: [one("depth", "depth")] },
   { name: "torques", title: "Torques", unit: "N m", series: joints("tau", "τ") },
   { name: "residuals", title: "Residual of the observer", unit: "N m", series: joints("residual", "r") },
@@ -32,9 +35,9 @@ const ALL = [
   { name: "tank", title: "Energy in the tank", unit: "J", series: [one("tank_energy", "tank")] },
   { name: "rates", title: "Joint rates", unit: "rad/s", series: joints("qd", "q̇") },
   { name: "energies", title: "Energies", unit: "J", series: [
-    one("energy_kinetic", "kinetic"), { ...one("energy_potential", "Δ potential", 1), change: true },
-    one("energy_contact", "contact", 2), one("work_actuators", "work of actuators", 3), one("work_wall", "work of wall", 5),
-    one("energy_dissipated", "dissipated", 6)] },
+    one("energy_kinetic", "kinetic"), { ...one("energy_potential", "Δ potential", LOOKS[1]), change: true },
+    one("energy_contact", "contact", LOOKS[2]), one("work_actuators", "work of actuators", LOOKS[3]), one("work_wall", "work of wall", LOOKS[5]),
+    one("energy_dissipated", "dissipated", LOOKS[6])] },
 ]; // prettier-ignore
 
 /** The panels of a run, each with the series that it has; `first`: whether it is drawn when none has been chosen. */

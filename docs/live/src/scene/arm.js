@@ -18,7 +18,7 @@ export class ArmModel {
   colour(theme) {
     this.links.color.set(theme.link);
     this.joints.color.set(theme.joint);
-    this.end.color.set(theme.blue);
+    this.end.color.set(theme.tip);
   }
 
   /** size: what the thickness of the parts goes by, m; floor: height of the floor, m. */

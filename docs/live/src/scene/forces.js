@@ -1,6 +1,6 @@
 /** Both contact forces: on the wall and on the tip, from the point of contact, on one scale. */
 import { Group, Vector3 } from "three";
-import { AMBER, PINK } from "../app/colours.js";
+import { ON_TIP, ON_WALL } from "../app/colours.js";
 import { shown } from "../app/numbers.js";
 import { Arrow } from "./arrow.js";
 
@@ -8,8 +8,8 @@ const LONGEST = 0.3; // of an arrow, in reaches of the arm
 
 export class Forces {
   constructor() {
-    this.onWall = new Arrow(AMBER, 1);
-    this.onTip = new Arrow(PINK, 1);
+    this.onWall = new Arrow(ON_WALL, 1);
+    this.onTip = new Arrow(ON_TIP, 1);
     this.object = new Group().add(this.onWall.object, this.onTip.object);
     this.largest = 0;
   }

@@ -1,6 +1,6 @@
 /** The joints' axes with their positive directions: an arrow along each axis, and an arc with a head around it. */
 import { ConeGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry, Vector3 } from "three";
-import { BLUE, GREEN, RED } from "../app/colours.js";
+import { JOINTS } from "../app/colours.js";
 import { Arrow } from "./arrow.js";
 
 const ARC = 1.5 * Math.PI;
@@ -8,7 +8,7 @@ const Z = new Vector3(0, 0, 1);
 
 export class JointAxes {
   constructor() {
-    this.axes = [BLUE, RED, GREEN].map((colour) => new JointAxis(colour));
+    this.axes = JOINTS.map((colour) => new JointAxis(colour));
     this.object = new Group().add(...this.axes.map((axis) => axis.object));
   }
 

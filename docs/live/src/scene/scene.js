@@ -1,6 +1,6 @@
 /** The arm, the wall and the forces at the present time of the run, in three dimensions. */
 import { AmbientLight, Color, DirectionalLight, Scene as Space, Vector3, WebGLRenderer } from "three";
-import { BLUE, GREEN, RED, colours } from "../app/colours.js";
+import { JOINTS, colours } from "../app/colours.js";
 import { at } from "../app/dom.js";
 import { later, show } from "../app/frames.js";
 import { shown } from "../app/numbers.js";
@@ -114,7 +114,8 @@ export class Scene {
     wall.object.visible = Boolean(frame);
     if (!frame) return;
     const { theme } = this;
-    wall.colour(contact ? theme.amber : theme.red, contact ? theme.amber : theme.red);
+    const colour = contact ? theme.wall : theme.link; // grey, as in films, while nothing touches it
+    wall.colour(colour, colour);
     const { face_offset: offset } = this.run.resolved.wall;
     const point = frame.point.map((value, i) => value + offset * frame.normal[i]);
     wall.place({ ...frame, point, sides: plateSize(this.run.resolved.wall) }, this.size);
@@ -125,7 +126,7 @@ export class Scene {
     const put = (name, text, point, look) => this.labels.put(name, text, point, camera, look);
     const visible = this.store.get("axes");
     this.parts.axes.ends().forEach((end, i) => {
-      put(`q${i + 1}`, visible ? `q${"₁₂₃"[i]}` : "", end, { colour: [BLUE, RED, GREEN][i] });
+      put(`q${i + 1}`, visible ? `q${"₁₂₃"[i]}` : "", end, { colour: JOINTS[i] });
     });
     this.parts.ground.axes.forEach((axis, i) => put("xyz"[i], "xyz"[i], axis.tip, { colour: this.theme.faint }));
     const { onWall, onTip } = this.parts.forces;

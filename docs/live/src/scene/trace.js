@@ -16,8 +16,8 @@ export class Trace {
   }
 
   colour(theme) {
-    this.whole.material.color.set(theme.amber);
-    this.past.material.color.set(theme.amber);
+    this.whole.material.color.set(theme.tip);
+    this.past.material.color.set(theme.tip);
     this.reference.material.color.set(theme.ink);
   }
 
