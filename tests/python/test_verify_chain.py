@@ -489,11 +489,69 @@ def test_of_several_matrices_the_one_that_fits_is_judged(
     assert lines == {TOGETHER[: TOGETHER.index(right)].count("\n") + 1}, str(verdict)
 
 
-@pytest.mark.parametrize(("wave", "along"), [("cos", "[0, -1, 0]"), ("sin", "[1, 0, 0]")])
+MISTAKES = {  # of [c, G], whose other output fits, too, and of [tau2, tau1], whose names look like an order
+    "[c, G]": ("c", "G"),
+    "[F, tau]": ("F", "tau"),
+    "[tau2, tau1]": ("tau2", "tau1"),
+}
+
+
+@pytest.mark.parametrize("outputs", MISTAKES)
+def test_of_several_vectors_the_one_that_is_named_so_is_judged_with_its_edits(outputs: str, written: Any) -> None:
+    chain = Chain.from_dh(written("paper.csv", PAPER)).placed(gravity=(0, -9.81, 0))
+    first, second = MISTAKES[outputs]
+    G = "[1.75*9.81*cos(q(1)) + 0.3*9.81*cos(q(1)+q(2)); 0.3*9.81*cos(q(1)+q(2))]"
+    text = f"function {outputs} = forces(q, qd)\n{first} = [0; 0];\n{second} = {G};\nend\n"
+    assert verify.gravity(written("right.m", text), chain).ok
+    wrong = text.replace("1.75*9.81*cos", "1.75*9.81*sin").replace("9.81*cos(q(1)+q(2))]", "9.81*cos(q(1))]")
+    verdict = verify.gravity(written("wrong.m", wrong), chain)
+    assert f"its output {second}" in str(verdict) and "the formula fails" not in str(verdict), str(verdict)
+    assert {one.line for one in verdict.findings} == {3}
+
+
+def test_an_output_that_is_not_asked_for_may_be_missing(written: Any) -> None:
+    chain = Chain.from_dh(written("paper.csv", PAPER))
+    text = "function [p, J, info] = kin(q)\np = [0.7*cos(q(1)); 0.7*sin(q(1))];\n" + (
+        "J = [-0.7*sin(q(1))-0.5*sin(q(1)+q(2)), -0.5*sin(q(1)+q(2)); "
+        "0.7*cos(q(1))+0.5*cos(q(1)+q(2)), 0.5*cos(q(1)+q(2))];\nend\n"
+    )
+    assert verify.jacobian(written("kin.m", text), chain).ok
+
+
+@pytest.mark.parametrize("change", [("cos(q[0] + q[1])]", "cos(q[1])]"), ("[G1 + G2, G2]", "[G1 + G2, 0*G2]")])
+def test_gravity_acts_on_an_arm_on_paper_whose_formula_has_numbers_alone(change: Any, written: Any) -> None:
+    """A mistake does not make an arm that lies across gravity the likelier one."""
+    chain = Chain.from_dh(written("paper.csv", PAPER))
+    text = (
+        "from math import cos\n\n\ndef gravity(q):\n    G1, [G2] = 1.75*9.81*cos(q[0]), [0.3*9.81*cos(q[0] + q[1])]\n"
+    )
+    text += "    return [G1 + G2, G2]\n"
+    assert verify.gravity(written("right.py", text), chain).ok
+    verdict = verify.gravity(written("wrong.py", text.replace(*change)), chain)
+    assert not verdict.ok and "along [0, -1, 0], as the formula has it" in str(verdict), str(verdict)
+    assert all(one.due != "0" for one in verdict.findings), str(verdict)
+
+
+def test_an_arm_that_slides_in_its_plane_lies_on_paper_too(written: Any) -> None:
+    table = "standard\ntype,a,alpha,d,theta,mass,cx,cy,cz,Ixx,Iyy,Izz\n" + (
+        "R,0,pi/2,0,pi/2,2.0,0,0,0,0.1,0.1,0.1\nP,0,0,0,0,1.0,0,0,0,0.1,0.1,0.1\n"
+    )
+    chain = Chain.from_dh(written("rp.csv", table))
+    verdict = verify.gravity(
+        written(
+            "g.py", "from math import cos, sin\n\n\ndef gravity(q):\n    return [9.81*q[1]*cos(q[0]), 9.81*sin(q[0])]\n"
+        ),
+        chain,
+    )
+    assert verdict.ok, str(verdict)
+
+
+@pytest.mark.parametrize(("wave", "along"), [("cos", "[0, -1, 0]"), ("sin", "[1, 0, 0]"), ("-sin", "[-1, 0, 0]")])
 def test_an_arm_that_lies_across_gravity_may_hang_or_stand_on_paper(wave: str, along: str, written: Any) -> None:
     """Its file says nothing of gravity: what the formula means is said first, and so is g."""
     chain = Chain.from_dh(written("paper.csv", PAPER))
-    text = TOGETHER.replace("g*cos(", f"g*{wave}(")
+    text = TOGETHER.replace("g*cos(", f"g*{wave.strip('-')}(")
+    text = text.replace("G = [", "G = -[") if "-" in wave else text
     verdict = verify.formula_verdict(written("gravity.m", text), "gravity", chain)
     assert verdict.ok and f"g = 9.81 m/s^2 along {along}" in str(verdict), str(verdict)
     verdict = verify.formula_verdict(written("gravity.m", text.replace("g = 9.81", "g = 9.7")), "gravity", chain)

@@ -12,7 +12,7 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
-from arm3r_cpp.verify import Chain
+from arm3r_cpp.verify import Chain, kinds
 from arm3r_cpp.verify.explain.frames import of_other_frames
 from arm3r_cpp.verify.kinds import KINDS
 from arm3r_cpp.verify.truth.bodies import Joint, rotation_about, rotation_of
@@ -260,7 +260,8 @@ def test_a_small_mistake_is_no_step_of_differences(small: str, tmp_path: Any) ->
 
 
 def test_what_depends_on_a_kind_is_told_in_its_class() -> None:
-    """No other module asks which kind a formula has."""
+    """No other module asks which kind a formula has, and names are compared with each of them."""
+    assert set(kinds._BY_NAME) == set(KINDS) == set(verify.__dir__()) & set(KINDS)
     package = Path(verify.__file__).parent
     found = []
     for path in package.rglob("*.py"):
@@ -348,6 +349,21 @@ def plant(t, x, u):
 """
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def power(qd, tau):\n    return qd @ tau\n",
+        "def friction(q, qd, tau, k):\n    return tau - k*qd\n",
+        "def observer(t, y, u):\n    return y[:3]\n",
+        "def reward(s, u):\n    return s[0]\n",
+        "def jdot_qd(q, qd):\n    return 0*qd\n",
+    ],
+)
+def test_what_only_looks_like_a_kind_is_asked_for(text: str, written: Any) -> None:
+    with pytest.raises(arm3r.UsageError, match="is not clear; name it by --kind"):
+        verify.formula_verdict(written("some.py", text))
+
+
 def test_a_right_hand_side_is_found_by_its_arguments_and_a_wrong_one_is_read(written: Any) -> None:
     """Its derivative of the state is solved for the torque as plain accelerations are."""
     verdict = verify.formula_verdict(written("plant.py", STATES))
@@ -389,3 +405,17 @@ def test_the_rates_of_euler_angles_are_those_of_a_rotation() -> None:
         whole = of_other_frames(jacobian, turn(angles)[None], np.zeros((1, 3)))
         found = [values()[0, 3:, 0] for words, values, weight in whole if "(XYZ)" in words and weight == 1]
         assert any(np.allclose(one, rates, rtol=0, atol=1e-7) for one in found)
+
+
+@pytest.mark.parametrize("name", ["Jdot", "dJ", "jacobianDot", "jacobianDerivative", "jacobian_rate", "d_jacobian"])
+def test_names_of_a_rate(name: str) -> None:
+    assert kinds.kind_of_name(name) == "jacobian_dot"
+
+
+def test_a_rate_beside_its_jacobian_is_judged_by_its_kind(written: Any) -> None:
+    whole = RATE + POSITIONS.replace("import numpy as np", "import numpy as np")
+    path = written(
+        "both.py", whole + "\n\ndef jacobians(q, qd):\n    return jacobian(q), np.array(jacobian_dot(q, qd))\n"
+    )
+    for kind in ("jacobian", "jacobian_dot"):
+        assert verify.formula_verdict(f"{path}:jacobians", kind).ok

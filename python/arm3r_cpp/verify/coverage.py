@@ -111,8 +111,11 @@ def _reason(case: Comparison, test: Trial, finding: Finding) -> str:
     """Why a test does not see a finding: the first of its special values without which it would."""
     column = (finding.entry or [1])[-1] - 1
     tries: list[tuple[str, Trial]] = []
-    if np.abs(test.qd[:, column]).max() <= _VISIBLE and case.kind.is_derivative:
-        tries.append((f"there qd{column + 1} = 0", test._replace(qd=np.ones_like(test.qd))))
+    for joint in range(test.qd.shape[1]) if "qd" in case.kind.inputs else [column]:
+        if np.abs(test.qd[:, joint]).max() <= _VISIBLE and ("qd" in case.kind.inputs or case.kind.is_derivative):
+            moving = test.qd.copy()
+            moving[:, joint] = 1.0
+            tries.append((f"there qd{joint + 1} = 0", test._replace(qd=moving)))
     for joint in range(test.q.shape[1]):
         if np.abs(test.q[:, joint]).max() <= _VISIBLE:
             moved = test.q.copy()

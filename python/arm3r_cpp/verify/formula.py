@@ -27,7 +27,7 @@ from ..user_functions.python_process import PythonProcess
 from ..user_functions.python_program import _numbers, value_of
 from ..user_functions.sympy_expressions import function_of, is_expression
 from .kinds import KINDS, Kind, kind_of_name
-from .names import TIME, quantities_of, slot_of, slots_of, takes_state_and_torque
+from .names import TIME, quantities_of, slot_of, slots_of
 from .samples import Samples, columns
 
 
@@ -123,7 +123,7 @@ class Formula:
     def order(self) -> list[int] | None:
         """The places of outputs 1 to n among several outputs whose names end with these numbers."""
         digits = numbers_of(self.outputs)
-        if len(digits) < 2 or sorted(digits) != [str(n + 1) for n in range(len(digits))]:
+        if self.output is not None or len(digits) < 2 or sorted(digits) != [str(n + 1) for n in range(len(digits))]:
             return None
         if self.language == "python" and numbers_of(self.arguments)[: len(digits)] != digits:
             return None  # a Python function returns by position, unless its arguments have the same order
@@ -402,12 +402,8 @@ def likely_function(source: PythonText, file: str, kind: str | None = None) -> s
     raise UsageError(f"{file}: there is no function in this file{hint}")
 
 
-def kind_of(formula: Formula, joints: int) -> Kind:
-    """The kind of formula, from its names.
-
-    Raises:
-        UsageError: they do not tell it.
-    """
+def kind_of(formula: Formula) -> Kind | None:
+    """The kind of formula, from its names; None where they do not tell it."""
     outputs = [formula.outputs[0]] if formula.outputs else []
     if formula.language == "matlab" and isinstance(formula.program, MatlabProgram):
         outputs = formula.program.outputs[:1]
@@ -417,6 +413,4 @@ def kind_of(formula: Formula, joints: int) -> Kind:
             return KINDS[kind]
     if outputs and outputs[0].rstrip("123").lower() in ("t", "tau", "torque", "g"):
         return KINDS["gravity"]
-    if takes_state_and_torque(formula.arguments):
-        return KINDS["forward"]
-    raise UsageError(f"{formula.file}: what {formula.name} computes is not clear; name it by --kind {'|'.join(KINDS)}")
+    return None

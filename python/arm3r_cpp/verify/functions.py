@@ -15,6 +15,7 @@ from .judge import Progress, judge
 from .kinds import KINDS
 from .log.judge import judge_log
 from .log.reading import ENDINGS, read_log
+from .meaning import kind_by_arguments
 from .told import told
 from .truth.chain_files import Chain
 from .truth.three_r import ThreeR
@@ -119,7 +120,10 @@ def _verdict_of(
         else from_callable(f)
     )
     formula = told(formula, args, given)
-    chosen = KINDS[kind] if kind else kind_of(formula, truth.joints)
+    chosen = KINDS[kind] if kind else kind_of(formula) or kind_by_arguments(formula, truth)
+    if chosen is None:
+        kinds = "|".join(KINDS)
+        raise UsageError(f"{formula.file}: what {formula.name} computes is not clear; name it by --kind {kinds}")
     return judge(formula, chosen, truth, seen_by=seen_by, progress=progress)
 
 

@@ -181,7 +181,8 @@ def _found(case: Comparison) -> list[str]:
     if formula.order and formula.order != sorted(formula.order):
         found.append(f"outputs in the order {', '.join(formula.outputs)}")
     if formula.output is not None:
-        found.append(f"its output {formula.outputs[0] if formula.language == 'matlab' else formula.output + 1}")
+        is_named = formula.language == "matlab"
+        found.append(f"its output {formula.outputs[formula.output] if is_named else formula.output + 1}")
     if formula.as_columns:
         found.append("with vectors as columns")
     if formula.given:

@@ -14,7 +14,8 @@ from ..errors import UsageError
 from ..user_functions.programs import ProcessEnded, ProgramError
 from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
-from .kinds import Kind
+from .kinds import KINDS, Kind, kind_of_name
+from .names import takes_state_and_torque
 from .samples import Samples
 from .truth.three_r import FOLLOWING
 
@@ -26,19 +27,33 @@ _MOST_OUTPUTS = 4
 def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
     """The formula in the way in which it returns what its kind does: given plain vectors or else columns (n, 1).
 
-    Of several results the one is taken that fits by its shape, and by fewest wrong entries.
+    Of several results that fit by their shapes the one is taken whose name says the kind, else the nearest one.
     """
     if formula.output is not None or _has_fitting_shape(formula, kind, truth):
         return formula
     if formula.language == "matlab":
-        others = [replace(formula, output=one, outputs=[name]) for one, name in enumerate(formula.outputs)]
+        others = [replace(formula, output=one) for one in range(len(formula.outputs))]
     elif formula.language == "python":
         ways = product((False, True), (None, *range(_MOST_OUTPUTS)))
         others = [replace(formula, output=one, as_columns=columns) for columns, one in ways]
     else:
         others = []
     fitting = [one for one in others if _has_fitting_shape(one, kind, truth)]
-    return min(fitting, key=lambda one: wrong_count(one, kind, truth), default=formula)
+    named = [one for one in fitting if one.output is not None and _kind_of_output(one) == kind.name]
+    return min(named or fitting, key=lambda one: _distance(one, kind, truth), default=formula)
+
+
+def _distance(formula: Formula, kind: Kind, truth: Any) -> tuple[bool, int, float]:
+    """How far it is from what is right: whether it is the same at all states, the wrong entries, and by how much."""
+    case = meant(formula, kind, truth)[0]
+    values = case.values(case.second)
+    return bool((values == values[:1]).all()), len(case.wrong(values, case.second)), case.error
+
+
+def _kind_of_output(formula: Formula) -> str | None:
+    """The kind that the name of the chosen output tells."""
+    place = formula.output
+    return kind_of_name(formula.outputs[place]) if place is not None and place < len(formula.outputs) else None
 
 
 def _has_fitting_shape(formula: Formula, kind: Kind, truth: Any) -> bool:
@@ -53,8 +68,7 @@ def _has_fitting_shape(formula: Formula, kind: Kind, truth: Any) -> bool:
 
 def wrong_count(formula: Formula, kind: Kind, truth: Any) -> int:
     """How many entries are wrong in the likeliest meaning."""
-    case = meant(formula, kind, truth)[0]
-    return len(case.wrong(case.values(case.second), case.second))
+    return _distance(formula, kind, truth)[1]
 
 
 def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
@@ -64,17 +78,43 @@ def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
     """
     others = truth.open_to(kind)
     numbers = formula.numbers()
-    has_gravity = "gravity" in _parameters(formula, kind, truth).values()
+    is_pointless_across = kind.depends_on_gravity and _feels_gravity(formula, kind, truth)
 
     def wrong(one: Any) -> tuple[int, bool, int]:
         own = one.values_of_quantities
         given = [
             (numbers[name], own[what]) for name, what in _parameters(formula, kind, one).items() if name in numbers
         ]
-        is_pointless = has_gravity and one.is_across_gravity()
+        is_pointless = is_pointless_across and one.is_across_gravity()
         return wrong_count(formula, kind, one), is_pointless, sum(not np.isclose(*pair, rtol=1e-9) for pair in given)
 
     return min([truth, *others], key=wrong) if others else truth
+
+
+def _feels_gravity(formula: Formula, kind: Kind, truth: Any) -> bool:
+    """Whether it returns something for an arm at rest, which no torque drives."""
+    case = Comparison(formula, truth, kind, _parameters(formula, kind, truth))
+    still = {name: np.zeros_like(values) for name, values in case.second.states.items()}
+    try:
+        values = case.values(Samples({**still, "q": case.second.states["q"]}, case.second.arms))
+    except ProgramError:
+        return False
+    return bool(np.abs(values).max(initial=0.0) > TOLERANCE)
+
+
+def kind_by_arguments(formula: Formula, truth: Any) -> Kind | None:
+    """Forward dynamics, where a function takes a state and a torque and returns what depends on the torque."""
+    kind = truth.allowing(KINDS["forward"])
+    if not takes_state_and_torque(formula.arguments):
+        return None
+    try:
+        case = Comparison(formula, truth, kind, _parameters(formula, kind, truth))
+        states = case.second.states
+        other = Samples({**states, "tau": states["tau"] + 1.0}, case.second.arms)
+        changed = case.values(other) != case.values(case.second)
+    except (ProgramError, UsageError):
+        return None
+    return kind if changed.any() else None
 
 
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:

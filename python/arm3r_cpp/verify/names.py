@@ -112,9 +112,12 @@ def quantities_of(names: Iterable[str]) -> dict[str, str]:
 
 
 def takes_state_and_torque(arguments: Sequence[str]) -> bool:
-    """Whether they are those of a right-hand side: f(t, x, u), f(q, qd, tau)."""
-    vectors = {slot[0] for slot in map(slot_of, arguments) if slot}
-    return "tau" in vectors and ("qd" in vectors or any(_STATE.fullmatch(name) for name in arguments))
+    """Whether they are those of a right-hand side, and no others: f(t, x, u), f(q, qd, tau)."""
+    untimed = [name for name in arguments if not _TIME.fullmatch(name)]
+    states = [name for name in untimed if _STATE.fullmatch(name)]
+    vectors = [slot[0] for name in untimed if name not in states and (slot := slot_of(name))]
+    is_whole = len(states) + len(vectors) == len(untimed)
+    return is_whole and (set(vectors) == {"q", "qd", "tau"} or (set(vectors) == {"tau"} and len(states) == 1))
 
 
 def slots_of(

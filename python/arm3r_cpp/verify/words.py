@@ -46,8 +46,8 @@ def _covered(verdict: Judgement, name: str) -> str:
     """The joints that a test moves, the entries that it tests, and how many planted mistakes it would catch."""
     test = verdict.coverage[name]
     count = int(np.prod(verdict.shape)) if verdict.shape else 0
-    *others, last = map(str, test["joints"] or ["none"])
-    joints = f"joints {', '.join(others)} and {last}" if others else f"joint {last}"
+    *others, last = map(str, test["joints"] or [""])
+    joints = f"joints {', '.join(others)} and {last}" if others else f"joint {last}" if last else "no joint"
     moves = "moves" if KINDS[verdict.kind].is_derivative else "turns"
     text = f"{name}: {moves} {joints}, tests {len(test['entries'])} of {count} entries"
     return text + (f", would catch {test['seen']} of {test['planted']} typical mistakes" if "planted" in test else "")

@@ -194,9 +194,8 @@ class MatlabProgram:
             for slot in call.slots
         ]
         with np.errstate(all="ignore"):
-            outputs = self._run(self.functions[self.function], inputs, asked=len(self.outputs))
-        if call.output is not None:
-            outputs = [outputs[call.output]]
+            chosen = None if call.output is None else [self.outputs[call.output]]
+            outputs = self._run(self.functions[self.function], inputs, asked=len(self.outputs), chosen=chosen)
         if not all(isinstance(one, np.ndarray) for one in outputs):
             raise ProgramError("returns a cell array, a text or a function instead of numbers")
         outputs = [np.broadcast_to(as_numbers(one), (len(table), *one.shape[1:])) for one in outputs]
@@ -245,17 +244,23 @@ class MatlabProgram:
     # ---- functions ---------------------------------------------------------------------------------------------------
 
     def _run(
-        self, function: Function, inputs: list[Any], outer: dict[str, Any] | None = None, asked: int = 1
+        self,
+        function: Function,
+        inputs: list[Any],
+        outer: dict[str, Any] | None = None,
+        asked: int = 1,
+        chosen: list[str] | None = None,
     ) -> list[Any]:
         """
         Args:
             outer: the variables of the place of the call, which a nested function uses.
-            asked: how many outputs are needed.
+            asked: how many outputs the function is asked for.
+            chosen: those that are needed; by default all that are asked for.
         """
         with self._called(function.line):
             if function.is_nested and isinstance(outer, Workspace):
                 return self._run_nested(function, inputs, outer, asked)
-            return self._outputs(function, inputs, Workspace(function), asked)
+            return self._outputs(function, inputs, Workspace(function), asked, chosen)
 
     def _run_nested(self, function: Function, inputs: list[Any], outer: Workspace, asked: int) -> list[Any]:
         """In the variables of the function around it, but for its own arguments and outputs."""
@@ -282,7 +287,14 @@ class MatlabProgram:
         finally:
             self._depth -= 1
 
-    def _outputs(self, function: Function, inputs: list[Any], variables: Workspace, asked: int) -> list[Any]:
+    def _outputs(
+        self,
+        function: Function,
+        inputs: list[Any],
+        variables: Workspace,
+        asked: int,
+        chosen: list[str] | None = None,
+    ) -> list[Any]:
         names = function.inputs
         if names and names[-1] == "varargin":
             inputs, names = [*inputs[: len(names) - 1], list(inputs[len(names) - 1 :])], names[: len(inputs) + 1]
@@ -301,7 +313,7 @@ class MatlabProgram:
                 raise ProgramError(f"`{left.word}` stands outside of a loop", function.line) from None
         finally:
             self._kept.update({(of, name): variables[name] for name, of in variables.kept.items() if name in variables})
-        outputs = function.outputs[:asked]
+        outputs = chosen or function.outputs[:asked]
         for name in outputs:
             if name not in variables and not _fields(variables, name):
                 raise ProgramError(f"the output {name} is not assigned", function.line)

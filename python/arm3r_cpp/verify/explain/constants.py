@@ -9,6 +9,8 @@ from ..comparison import Comparison
 from ..finding import Finding
 from ..verdict import Verdict
 
+_NEAR = 0.01  # of g: what it may be somewhere on Earth, or is rounded to
+
 
 def judge_constants(verdict: Verdict, case: Comparison) -> None:
     """The numbers that the text gives to the arm's quantities, against the arm's own."""
@@ -16,6 +18,9 @@ def judge_constants(verdict: Verdict, case: Comparison) -> None:
         quantity = case.parameters.get(name)
         own = case.truth.values_of_quantities.get(quantity) if quantity else None
         if own is None or abs(constant.value - own) <= 1e-9 * max(abs(own), 1e-3):
+            continue
+        if quantity == "gravity" and not case.truth.states_gravity and abs(constant.value / own - 1) < _NEAR:
+            verdict.warnings.append(f"{name} is {constant.value:.10g}; standard gravity is {own:.10g} m/s^2")
             continue
         places = _depending(case, str(quantity), constant.value)
         text = case.formula.text or ""

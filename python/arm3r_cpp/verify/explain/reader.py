@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from itertools import combinations_with_replacement
 from typing import Any, NamedTuple
 
@@ -153,6 +154,7 @@ class _Reader:
         names = sorted({*self.varied, *self.lifted})
         values = {self.shown[name]: np.array([arm[name] for arm in self.due_arms]) for name in names}
         parameters = Parameters(values, dict(self.case.truth.named_numbers), len(self.due_arms))
+        parameters.may_stand = partial(self._has_few_lengths, part)
         parameters.candidates = self._candidates(part, names, parameters)
         spectrum = self._spectrum(index, True)
         result = spectrum and terms_of(spectrum, parameters, {}, self._scale(index, True), part.words)
@@ -172,7 +174,9 @@ class _Reader:
         parameters = Parameters(values, fixed, len(self.arms))
         parameters.candidates = self._candidates(part, known, parameters)
         units = {self._units(powers.items()) for found in monomials_due.values() for _, powers in found}
-        if units and not self.case.truth.named_numbers:  # whose units are not known
+        if self.case.truth.named_numbers:  # lengths of a table; what stands beside them has no name
+            parameters.may_stand = partial(self._has_few_lengths, part)
+        elif units:
             parameters.may_stand = lambda names: self._units((name, 1) for name in names) in units
         spectrum = self._spectrum(index, False)
         if spectrum is None or self._scale(index, False) > _ROUNDING * self._scale(index, True):
@@ -181,6 +185,11 @@ class _Reader:
             spectrum, parameters, _hints(monomials_due, parameters, fixed), self._scale(index, False), part.words
         )
         return result[0] if result else None
+
+    def _has_few_lengths(self, part: Part, names: Iterable[str]) -> bool:
+        """Whether so many lengths may stand in one term: two where a mass stands before them, which moves."""
+        is_of_motion = self.kind.has_products and (bool(part.words) or not self.kind.polynomial_in)
+        return len(list(names)) <= 1 + is_of_motion
 
     def _spectrum(self, index: int, of_truth: bool) -> Spectrum | None:
         truth = self.case.truth

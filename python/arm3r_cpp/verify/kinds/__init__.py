@@ -2,10 +2,12 @@
 
 A kind says what its formulas take and return, what is due (asked of an arm), on what of an arm that depends, and by
 which names of functions and columns of a log it is found. Everything else in `verify` is the same for all kinds: a new
-one is a class in a module here, and an entry in `KINDS`.
+one is a class in a module here, an entry in `KINDS` and in `_BY_NAME`, and a function in `functions`.
 """
 
 from __future__ import annotations
+
+import re
 
 from .controller import Controller
 from .coriolis import Coriolis
@@ -47,6 +49,8 @@ def kind_of_name(name: str) -> str | None:
     lower = name.rpartition(".")[2].lower()
     if "forward_kin" in lower or "fkin" in lower:
         return "kinematics"
+    if re.search(r"dot_?q", lower):  # the product of a rate and the rates
+        return None
     for kind in (KINDS[one] for one in _BY_NAME):
         for word in kind.called:
             if (len(word) > 2 and word in lower) or lower == word or lower.startswith(f"{word}_"):

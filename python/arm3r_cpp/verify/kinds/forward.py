@@ -16,6 +16,7 @@ class Forward(Kind):
     inputs, unit, shapes = ("q", "qd", "tau"), "rad/s^2", ("n", "2n")
     called = ("forward_dyn", "fwddyn", "fd", "aba", "accel")
     columns, columns_words = r"qdd(\d)", "qdd1.."
+    is_logged_anyway = True
     depends_on_gravity, depends_on_inertia = True, True
     is_read = False
 

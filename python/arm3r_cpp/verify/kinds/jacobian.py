@@ -16,7 +16,7 @@ class Jacobian(Kind):
     inputs, unit, shapes, planar_shape = ("q",), "m", ("3xn", "6xn"), "2xn"
     called, letters = ("jac",), ("j",)
     columns, columns_words = r"J_?[(\[]?(\d)[_,]?(\d)[)\]]?", "J11.."
-    needs_masses, depends_on_base, is_derivative = False, True, True
+    needs_masses, depends_on_base, is_derivative, comes_with_others = False, True, True, True
     quantities = ("length2", "length3")
     monomials = (("length2",), ("length3",))
     planted = (

@@ -11,9 +11,12 @@ class JacobianDot(Kind):
 
     name, words, letter = "jacobian_dot", "rate of the jacobian", "Jdot"
     inputs, unit, shapes, planar_shape = ("q", "qd"), "m/s", ("3xn", "6xn"), "2xn"
-    called = ("jdot", "j_dot", "jacobian_dot", "jac_dot", "djac", "jacobian_rate", "jacobian_deriv")
+    called = (
+        "jdot", "j_dot", "jacobian_dot", "jacobiandot", "jac_dot", "djac", "d_jac", "jacobian_rate", "jacobianrate",
+        "jacobian_deriv", "jacobianderiv", "jacobian_time",
+    )  # fmt: skip
     letters = ("dj", "jd")
-    needs_masses, depends_on_base, is_derivative = False, True, True
+    needs_masses, depends_on_base, is_derivative, comes_with_others = False, True, True, True
     quantities = ("length2", "length3")
     polynomial_in = ("qd",)
 

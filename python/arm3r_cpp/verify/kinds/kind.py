@@ -66,6 +66,8 @@ class Kind(ABC):
     columns: str = ""
     """The columns of a log that are its entries, a regular expression; "" where none are."""
     columns_words: str = ""
+    is_logged_anyway = False
+    """Whether a log of other entries may have them, too: what an arm measures."""
 
     # ---- what it depends on ----
     needs_masses = True

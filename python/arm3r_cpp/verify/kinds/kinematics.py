@@ -13,6 +13,7 @@ class Kinematics(Kind):
     inputs, unit, shapes, planar_shape = ("q",), "m", ("3", "4x4"), "2"
     called = ("kin", "fk", "tip", "position")
     columns, columns_words = r"(?:p_?|tip_)([123xyz])", "p1.."
+    is_logged_anyway = True
     needs_masses, depends_on_base = False, True
     quantities = ("length2", "length3", "height")
     monomials = (("length2",), ("length3",), ("height",))

@@ -20,6 +20,8 @@ from ..kinds import KINDS, Kind
 from ..names import quantities_of
 
 ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".log", *ARRAYS)
+_JUDGED = sorted((kind for kind in KINDS.values() if kind.columns), key=lambda kind: kind.is_logged_anyway)
+"""The kinds that have columns; those that logs hold beside others come last."""
 LARGEST = 1e12  # of a number
 _STATES = re.compile(r"(q|qd|qdd|tau)\d")
 
@@ -85,7 +87,7 @@ class Log(NamedTuple):
         """The columns of a kind of formula, by their places from 0."""
         found = {}
         for name, values in self.columns.items():
-            match = re.fullmatch(kind.columns, name)
+            match = re.fullmatch(kind.columns, name) if kind.columns else None
             if match:
                 found[tuple("xyz".index(one) if one in "xyz" else int(one) - 1 for one in match.groups())] = values
         return found
@@ -96,10 +98,10 @@ class Log(NamedTuple):
         Raises:
             UsageError: it has none.
         """
-        for kind in KINDS.values():
+        for kind in _JUDGED:
             if self.entries(kind):
                 return kind
-        *others, last = (kind.columns_words for kind in KINDS.values() if kind.columns)
+        *others, last = (kind.columns_words for kind in _JUDGED)
         raise UsageError(f"{self.file}: no column is judged; name them {', '.join(others)} or {last}{self._hint()}")
 
     def judged(self, kind: Kind) -> dict[tuple[int, ...], Floats]:
@@ -124,7 +126,7 @@ class Log(NamedTuple):
 
 def is_known(name: str) -> bool:
     """Whether a log's column of this name is judged, or says at which state or of which arm a row is."""
-    entries = any(re.fullmatch(kind.columns, name) for kind in KINDS.values())
+    entries = any(re.fullmatch(kind.columns, name) for kind in _JUDGED)
     return bool(_STATES.fullmatch(name)) or entries or bool(quantities_of([name]))
 
 

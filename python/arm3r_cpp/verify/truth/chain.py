@@ -65,15 +65,18 @@ class SerialChain:
         self.states_gravity, self.tip, self.frame = states_gravity, tip, ""
         self.takes_gravity = False
         """Whether its size is what a formula says, as the chain's file does not."""
+        self.takes_direction = False
         self.held = tuple(held)
         self.named_numbers = dict(named_numbers or {})
 
     def plane(self) -> int | None:
         """The axis of the base across which the chain moves, 0 for x; None where it leaves every such plane."""
-        if not all(self.revolute) or len(self.groups) > 1:
+        axes = [rotation @ joint.axis for rotation, joint in zip(self._at_rest(), self.parts, strict=True)]
+        if not any(self.revolute):
             return None
-        axis = np.abs(self.parts[0].rotation @ self.parts[0].axis)
-        return int(np.argmax(axis)) if np.max(axis) > 1 - 1e-12 else None
+        across = axes[self.revolute.index(True)]
+        off = np.abs(np.abs(np.array(axes) @ across) - np.array(self.revolute, float)).max()
+        return int(np.argmax(np.abs(across))) if np.abs(across).max() > 1 - 1e-12 and off < 1e-9 else None
 
     def _parallel_groups(self) -> tuple[tuple[int, ...], ...]:
         """Neighbouring revolute joints with parallel axes."""

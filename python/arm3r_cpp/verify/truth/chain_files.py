@@ -81,12 +81,12 @@ class Chain(SerialChain):
         )
 
     def _ways_down(self) -> list[Floats]:
-        """Of an arm that moves across gravity, as it lies on paper: down the page, or along its first axis, hanging."""
+        """Of an arm that moves across gravity, as it lies on paper: down the page, or it hangs or stands at zero."""
         if not self.is_across_gravity():
             return []
         plane = self.plane() or 0
         first, second = np.eye(3)[(plane + 1) % 3], np.eye(3)[(plane + 2) % 3]
-        return [-second, first]
+        return [-second, first, -first]
 
     def is_across_gravity(self) -> bool:
         """Whether it moves in a plane across gravity, which then asks no torque."""
@@ -95,7 +95,7 @@ class Chain(SerialChain):
 
     def _falling_along(self, direction: Floats, size: float) -> Chain:
         other = copy.copy(self)
-        other.gravity = size * direction
+        other.gravity, other.takes_direction = size * direction, True
         return other
 
     def in_frame_of_first_joint(self) -> Chain:
@@ -157,6 +157,7 @@ class Chain(SerialChain):
             down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)
             words = "" if down or not size else f" along {vector_words(self.gravity / size)}"
             words += ", across the arm's plane" if self.is_across_gravity() else ""
+            words += ", as the formula has it" if self.takes_direction else ""
             is_known = "gravity" not in varied or self.takes_gravity
             found += [f"g = {size:.7g} m/s^2{words}" if is_known else f"gravity{words}"] if is_known or words else []
         return found

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..._native import Floats
 from ...arm import Arm
-from ...errors import UsageError
+from ...errors import UnjudgedError, UsageError
 from ...params import param_index
 from ...scenario import Scenario
 from ..kinds import KINDS, SPATIAL, Kind, Rows
@@ -254,13 +254,28 @@ class ThreeR:
         here = self._scenario.copy()._quiet()
         start = here["time.start"]
         here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}
-        if here["reference.type"] == "hold":  # of where the scenario starts, and not of each state
-            here["reference.type"], here["reference.q"] = "point", list(here["initial.q"])
+        self._stay_at_start(here)
         torques = []
         for angles, rates in zip(q, qd, strict=True):
             here["initial.q"], here["initial.qd"] = signs * angles, signs * rates
             torques.append(signs * here.run()["tau"][0])
         return np.array(torques)
+
+    def _stay_at_start(self, here: Scenario) -> None:
+        """Make a reference begin where the scenario starts, and not at each state.
+
+        Raises:
+            UnjudgedError: it moves at once.
+        """
+        word = str(here["reference.type"])
+        if word in ("line", "sinusoid"):
+            raise UnjudgedError(
+                f"cannot be judged: the reference `{word}` moves from where the arm starts; a law is judged with the "
+                "reference hold or point"
+            )
+        if word in ("hold", "minimum_jerk", "circle"):  # at rest at the start
+            force = here["reference.force"]
+            here["reference"] = {"type": "point", "q": list(here["initial.q"]), "force": force}
 
     def variants(self, kind: Kind) -> list[tuple[str, ThreeR]]:
         """Arms with a mistake that its quantities do not tell."""
