@@ -92,9 +92,13 @@ def controller(q, qd):
 """
 
 
-def test_a_reference_that_holds_stays_where_the_scenario_starts(tmp_path: Path) -> None:
-    gains = "{type: joint_pd, joint_stiffness: [60, 50, 30], joint_damping: [6, 5, 3]}"
-    (tmp_path / "pd.yaml").write_text(HOLDS.replace("GAINS", gains))
+GAINS = "{type: joint_pd, joint_stiffness: [60, 50, 30], joint_damping: [6, 5, 3]}"
+
+
+@pytest.mark.parametrize("reference", ["{type: hold}", "{type: minimum_jerk, q: [0.2, 0.1, 0.4], duration: 1}"])
+def test_a_reference_that_begins_at_the_start_stays_there(reference: str, tmp_path: Path) -> None:
+    text = HOLDS.replace("GAINS", f"{GAINS}, reference: {reference}")
+    (tmp_path / "pd.yaml").write_text(text)
     text = LAW.replace("STIFFNESS", "[60, 50, 30]")
     (tmp_path / "pd.py").write_text(text.replace("DAMPING", "[6, 5, 3]"))
     verdict = arm3r.verify.controller(tmp_path / "pd.py", tmp_path / "pd.yaml")
@@ -102,3 +106,11 @@ def test_a_reference_that_holds_stays_where_the_scenario_starts(tmp_path: Path) 
     (tmp_path / "pd.py").write_text(text.replace("DAMPING", "[6, 5, 4]"))
     verdict = arm3r.verify.controller(tmp_path / "pd.py", tmp_path / "pd.yaml")
     assert [one.entry for one in verdict.findings] == [[3]], str(verdict)
+
+
+def test_a_reference_that_moves_at_once_is_not_judged(tmp_path: Path) -> None:
+    moving = "{type: sinusoid, q_amplitude: [0.1, 0, 0], frequency: 1}"
+    (tmp_path / "pd.yaml").write_text(HOLDS.replace("GAINS", f"{GAINS}, reference: {moving}"))
+    (tmp_path / "pd.py").write_text(LAW.replace("STIFFNESS", "[60, 50, 30]").replace("DAMPING", "[6, 5, 3]"))
+    with pytest.raises(arm3r.UnjudgedError, match="the reference `sinusoid` moves from where the arm starts"):
+        arm3r.verify.controller(tmp_path / "pd.py", tmp_path / "pd.yaml")

@@ -559,3 +559,19 @@ def test_an_arm_that_lies_across_gravity_may_hang_or_stand_on_paper(wave: str, a
     upright = Chain.from_dh(written("paper.csv", PAPER)).placed(gravity=(0, 0, -9.81))
     verdict = verify.formula_verdict(written("gravity.m", text), "gravity", upright)
     assert not verdict.ok and "across the arm's plane" in str(verdict), str(verdict)
+
+
+@pytest.mark.parametrize(("g", "is_near"), [("9.807", True), ("9.82", True), ("9.18", False)])
+def test_g_may_be_what_it_is_somewhere_on_earth(g: str, is_near: bool, written: Any) -> None:
+    chain = Chain.from_dh(written("paper.csv", PAPER))
+    verdict = verify.gravity(written("gravity.m", TOGETHER.replace("g = 9.81", f"g = {g}")), chain)
+    assert verdict.ok == is_near and f"g is {g}" in str(verdict), str(verdict)
+
+
+def test_a_term_of_a_table_has_the_units_of_its_entry(written: Any) -> None:
+    """0.3 kg m is no product of two lengths, 3/2 a1 a2, though 0.3 = 3/2 0.4 0.5 by chance."""
+    chain = Chain.from_dh(written("paper.csv", PAPER.replace("R,0.7", "R,0.4").replace("-0.35", "-0.2")))
+    text = (
+        "function G = gravity(q)\nG = [2.0*9.81*cos(q(1)) - 0.3*9.81*cos(q(1)+q(2)); -0.3*9.81*cos(q(1)+q(2))];\nend\n"
+    )
+    assert "a1 a2" not in str(verify.gravity(written("gravity.m", text), chain))

@@ -155,3 +155,28 @@ def test_a_kind_that_the_log_has_not_is_said(tmp_path: Any, kind: str, words: st
     (tmp_path / "log.csv").write_text(f"q1,q2,q3,J11\n{rows}\n")
     with pytest.raises(arm3r.UsageError, match=words):
         verify.formula_verdict(tmp_path / "log.csv", kind)
+
+
+def poses(path: Path, kinds: list[str], names: list[str], *, factor: float = 1.0) -> Path:
+    """A log of the lecture's arm at random poses; the first kind is a factor times what is right."""
+    q = np.random.default_rng(7).uniform(-2, 2, (60, 3))
+    arm = arm3r.Scenario().arm
+    values = {"gravity": arm.gravity_torque(q), "mass": arm.mass_matrix(q), "kinematics": arm.tip_position(q)}
+    columns = [values[kind].reshape(60, -1) * (factor if kind == kinds[0] else 1.0) for kind in kinds]
+    table = np.concatenate([np.arange(60.0)[:, None], q, *columns], axis=1)
+    np.savetxt(path, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
+    return path
+
+
+def test_a_column_without_a_name_is_passed_over(tmp_path: Path) -> None:
+    """As tables of pandas have one, with the number of the row."""
+    path = poses(tmp_path / "log.csv", ["gravity"], ["", "q1", "q2", "q3", "g1", "g2", "g3"])
+    verdict = verify.formula_verdict(path)
+    assert verdict.ok and verdict.kind == "gravity", str(verdict)
+
+
+def test_what_a_log_holds_beside_its_subject_is_not_judged_in_its_place(tmp_path: Path) -> None:
+    entries = [f"M{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)]
+    names = ["row", "q1", "q2", "q3", *entries, "p1", "p2", "p3"]
+    verdict = verify.formula_verdict(poses(tmp_path / "log.csv", ["mass", "kinematics"], names, factor=1.1))
+    assert verdict.kind == "mass" and not verdict.ok

@@ -11,6 +11,7 @@ import numpy as np
 
 from .._native import Floats
 from ..errors import UsageError
+from ..user_functions.expressions import Number
 from ..user_functions.programs import ProcessEnded, ProgramError
 from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
@@ -72,23 +73,39 @@ def wrong_count(formula: Formula, kind: Kind, truth: Any) -> int:
 
 
 def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
-    """Of the arms that a file may mean, the one by which fewest entries are wrong, and fewest numbers of the text.
+    """Of the arms that a file may mean, the one by which fewest entries are wrong.
 
-    Of equals it is one on which the gravity of the formula acts, and the likeliest.
+    Of equals it is one on which the formula's gravity acts, with a size that stands in its text; then the nearest.
     """
     others = truth.open_to(kind)
+    if not others:
+        return truth
     numbers = formula.numbers()
-    is_pointless_across = kind.depends_on_gravity and _feels_gravity(formula, kind, truth)
+    literals = {node.word for top in formula.nodes for node in top.walk() if isinstance(node, Number)}
+    feels_gravity = kind.depends_on_gravity and _feels_gravity(formula, kind, truth)
+    has_size = {f"{one.gravity_size:.10g}" for one in others} & literals
 
-    def wrong(one: Any) -> tuple[int, bool, int]:
-        own = one.values_of_quantities
-        given = [
-            (numbers[name], own[what]) for name, what in _parameters(formula, kind, one).items() if name in numbers
-        ]
-        is_pointless = is_pointless_across and one.is_across_gravity()
-        return wrong_count(formula, kind, one), is_pointless, sum(not np.isclose(*pair, rtol=1e-9) for pair in given)
+    def distance(one: Any) -> tuple[int, bool, int, bool, bool, float]:
+        parameters = _parameters(formula, kind, one)
+        given = [(numbers[name], one.values_of_quantities[parameters[name]]) for name in parameters if name in numbers]
+        return (
+            wrong_count(formula, kind, one),
+            feels_gravity and one.is_across_gravity(),
+            sum(not np.isclose(*pair, rtol=1e-9) for pair in given),
+            bool(has_size) and f"{one.gravity_size:.10g}" not in has_size,
+            one.takes_gravity,
+            _distance_but_for_the_sign(formula, kind, one),
+        )
 
-    return min([truth, *others], key=wrong) if others else truth
+    return min([truth, *others], key=distance)
+
+
+def _distance_but_for_the_sign(formula: Formula, kind: Kind, truth: Any) -> float:
+    """The median difference from what is right, or from its opposite: a lost sign is no other arm."""
+    case = meant(formula, kind, truth)[0]
+    values, due = case.values(case.second), case.due(case.second)
+    error = min(float(np.median(np.abs(values - sign * due) / scales(due))) for sign in (1, -1))
+    return float(f"{error:.6g}") if np.isfinite(error) else float("inf")
 
 
 def _feels_gravity(formula: Formula, kind: Kind, truth: Any) -> bool:

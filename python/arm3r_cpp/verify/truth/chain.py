@@ -60,7 +60,7 @@ class SerialChain:
         self.tool_rotation = np.eye(3) if tool_rotation is None else tool_rotation
         self.tool, self.gravity = np.array(tool, float), np.array(gravity, float)
         self.groups = self._parallel_groups()
-        g = float(np.linalg.norm(self.gravity))
+        g = self.gravity_size
         self.values_of_quantities: dict[str, float] = {"gravity": g} if g and self._has_masses() else {}
         self.states_gravity, self.tip, self.frame = states_gravity, tip, ""
         self.takes_gravity = False
@@ -68,6 +68,11 @@ class SerialChain:
         self.takes_direction = False
         self.held = tuple(held)
         self.named_numbers = dict(named_numbers or {})
+
+    @property
+    def gravity_size(self) -> float:
+        """m/s^2"""
+        return float(np.linalg.norm(self.gravity))
 
     def plane(self) -> int | None:
         """The axis of the base across which the chain moves, 0 for x; None where it leaves every such plane."""

@@ -90,7 +90,7 @@ class Chain(SerialChain):
 
     def is_across_gravity(self) -> bool:
         """Whether it moves in a plane across gravity, which then asks no torque."""
-        plane, size = self.plane(), float(np.linalg.norm(self.gravity))
+        plane, size = self.plane(), self.gravity_size
         return plane is not None and size > 0 and abs(self.gravity[plane]) > (1 - 1e-12) * size
 
     def _falling_along(self, direction: Floats, size: float) -> Chain:
@@ -108,8 +108,8 @@ class Chain(SerialChain):
 
     def open_to(self, kind: Kind) -> list[Chain]:
         """Other chains that its file may mean: it says nothing of g, and a base may stand anywhere."""
-        if kind.depends_on_gravity and not self.states_gravity and np.linalg.norm(self.gravity) > 0:
-            size = float(np.linalg.norm(self.gravity))
+        if kind.depends_on_gravity and not self.states_gravity and self.gravity_size > 0:
+            size = self.gravity_size
             placed = [self, *(self._falling_along(direction, size) for direction in self._ways_down())]
             return [*placed[1:], *(one.with_gravity(g) for one in placed for g in _OTHER_GRAVITIES)]
         first = self.parts[0]
@@ -153,7 +153,7 @@ class Chain(SerialChain):
         if self.held and not kind.depends_on_base:
             found.append(f"{', '.join(self.held)} at zero")
         if kind.depends_on_gravity:
-            size = float(np.linalg.norm(self.gravity))
+            size = self.gravity_size
             down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)
             words = "" if down or not size else f" along {vector_words(self.gravity / size)}"
             words += ", across the arm's plane" if self.is_across_gravity() else ""

@@ -275,7 +275,7 @@ class ThreeR:
             )
         if word in ("hold", "minimum_jerk", "circle"):  # at rest at the start
             force = here["reference.force"]
-            here["reference"] = {"type": "point", "q": list(here["initial.q"]), "force": force}
+            here["reference"] = {"type": "point", "q": list(here["initial.q"]), **({"force": force} if force else {})}
 
     def variants(self, kind: Kind) -> list[tuple[str, ThreeR]]:
         """Arms with a mistake that its quantities do not tell."""
