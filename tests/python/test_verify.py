@@ -366,7 +366,7 @@ def test_many_mistakes_by_a_foreign_tool(part: int, tmp_path: Path) -> None:
 
 @pytest.mark.gate
 @pytest.mark.random
-@pytest.mark.parametrize("part", range(5))
+@pytest.mark.parametrize("part", range(4))
 def test_many_single_mistakes(part: int, tmp_path: Path) -> None:
     outcomes = counted(100, SEED + part, tmp_path)
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
@@ -399,8 +399,8 @@ def test_equivalent_programs_raise_no_alarm(tmp_path: Path) -> None:
 
 @pytest.mark.gate
 @pytest.mark.random
-@pytest.mark.parametrize("part", range(4))
-def test_no_alarm_on_four_thousand_right_programs(part: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize("part", range(2))
+def test_no_alarm_on_two_thousand_right_programs(part: int, tmp_path: Path) -> None:
     no_alarms(1000, SEED + part, tmp_path)
 
 
