@@ -164,6 +164,7 @@ def gravity_that_may_hang(q1: float, q2: float, q3: float) -> list[float]:
 def test_no_edit_of_a_function_in_memory_runs_in_this_process(function: Any, monkeypatch: Any) -> None:
     """An edit of `2` to `0` ends the process or hangs; the edit that mends the formula is found all the same."""
     monkeypatch.setattr("arm3r_cpp.user_functions.python_process.EDIT_TIME", 0.3)
+    start.prepare()  # the process that is copied stays for others
     before = state()
     verdict = verify.gravity(function)
     assert {(one.old, one.new) for one in verdict.findings} == {("m3", "m3/2")}, str(verdict)
