@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
+from functools import cached_property
 from itertools import combinations, product
 
 import numpy as np
@@ -130,14 +130,14 @@ class Parameters:
         number = float(np.mean(coefficient / monomial))
         return (number, powers) if np.abs(coefficient - number * monomial).max() <= limit else None
 
-    @cache  # noqa: B019
+    @cached_property  # a cache of the class would keep what judges one formula, with its process, for ever
     def _dictionary(self) -> tuple[list[tuple[int, ...]], Floats]:
         powers = [one for one in product(range(3), repeat=len(self.names)) if sum(one) <= 4]
         return powers, np.array([self.monomial(one) for one in powers])
 
     def double(self, coefficient: Floats, limit: float) -> list[tuple[float, tuple[int, ...]]] | None:
         """Two monomials with simple numbers."""
-        powers, monomials = self._dictionary()
+        powers, monomials = self._dictionary
         for number in (1, -1, 1 / 2, -1 / 2, 1 / 4, -1 / 4, 1 / 3, -1 / 3, 2, -2, 1 / 8, -1 / 8, 1 / 12, -1 / 12):
             rest = coefficient - number * monomials
             with np.errstate(divide="ignore"):
