@@ -518,17 +518,19 @@ def test_an_output_that_is_not_asked_for_may_be_missing(written: Any) -> None:
     assert verify.jacobian(written("kin.m", text), chain).ok
 
 
+@pytest.mark.parametrize("g", ["9.81", "9.810"])
 @pytest.mark.parametrize("change", [("cos(q[0] + q[1])]", "cos(q[1])]"), ("[G1 + G2, G2]", "[G1 + G2, 0*G2]")])
-def test_gravity_acts_on_an_arm_on_paper_whose_formula_has_numbers_alone(change: Any, written: Any) -> None:
+def test_gravity_acts_on_an_arm_on_paper_whose_formula_has_numbers_alone(g: str, change: Any, written: Any) -> None:
     """A mistake does not make an arm that lies across gravity the likelier one."""
     chain = Chain.from_dh(written("paper.csv", PAPER))
     text = (
         "from math import cos\n\n\ndef gravity(q):\n    G1, [G2] = 1.75*9.81*cos(q[0]), [0.3*9.81*cos(q[0] + q[1])]\n"
     )
     text += "    return [G1 + G2, G2]\n"
+    text = text.replace("9.81", g)
     assert verify.gravity(written("right.py", text), chain).ok
     verdict = verify.gravity(written("wrong.py", text.replace(*change)), chain)
-    assert not verdict.ok and "along [0, -1, 0], as the formula has it" in str(verdict), str(verdict)
+    assert not verdict.ok and "g = 9.81 m/s^2 along [0, -1, 0], as the formula has it" in str(verdict), str(verdict)
     assert all(one.due != "0" for one in verdict.findings), str(verdict)
 
 

@@ -250,6 +250,14 @@ def test_the_step_of_differences_is_no_mistake(step: str, tmp_path: Any) -> None
     assert not verify.coriolis(path).ok
 
 
+def test_a_number_without_decimals_is_no_step_of_differences(tmp_path: Any) -> None:
+    """Nor is it an error: 0x1 stands in what differs by a small term."""
+    text = "from math import cos\n\n\ndef gravity(q):\n    t3 = -0x1*0.785*9.80665/2*cos(q[1] + q[2])\n"
+    path = tmp_path / "gravity.py"
+    path.write_text(f"{text}    return [0, -1.5*0.785*9.80665*cos(q[1]) + t3, t3 + 1e-4*cos(q[0])]\n")
+    assert [one.entry for one in verify.gravity(path).findings] == [[3]]
+
+
 @pytest.mark.parametrize("small", ["+ 0.0005*cos(q[0])", "+ 1e-5*q[1]", "*(1 + 0.0003)", "+ 0.002*tanh(q[0]/0.01)"])
 def test_a_small_mistake_is_no_step_of_differences(small: str, tmp_path: Any) -> None:
     """Its term shrinks with its number, too; where the number is tiny it is gone, and no rounding is left."""

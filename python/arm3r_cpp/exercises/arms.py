@@ -44,6 +44,11 @@ slender, with the centre of mass in the middle. Joint 1 turns about the vertical
 simscape, as in the lecture's code: positive q2 and q3 lower the arm. Angles are in radians."""
 
     @property
+    def weight_listing(self) -> str:
+        """The numbers of a listing of the gravity torque in MATLAB."""
+        return f"m2 = {self.m2};\nm3 = {self.m3};\ng = {G};\na2 = {self.a2};\na3 = {self.a3};\n"
+
+    @property
     def jacobian_listing(self) -> str:
         """What is given in MATLAB where the arm's Jacobian J of q is right."""
         return f"""\

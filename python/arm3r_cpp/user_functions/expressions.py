@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -34,7 +35,14 @@ class Root(Node):
 class Name(Node): ...
 
 
-class Number(Node): ...
+class Number(Node):
+    @property
+    def value(self) -> float:
+        """NaN: it is written in another way than with decimals, such as 0x1F."""
+        try:
+            return float(self.word.lower().replace("d", "e"))
+        except ValueError:
+            return math.nan
 
 
 class Text(Node): ...

@@ -2,9 +2,10 @@
 
 In comes a formula of an arm (a function, a file, a log), and the arm it is meant for. Out comes a `Verdict`. `judge`
 goes the way from one to the other: `formula` evaluates what the user wrote, by the room `user_functions`, and what is
-`told` of its names; `truth` knows what is right, `comparison` holds both beside each other, `explain` finds causes,
-`coverage` says what other tests would have seen, and `words` says it all in sentences. Nothing here steps physics, and
-files of the user run in a process of their own.
+`told` of its names; `kinds` says what its kind takes and returns, `truth` knows what is right, `comparison` holds both
+beside each other, `meaning` finds how it is meant, `explain` finds causes, `failure` is for what returns no numbers,
+`doubts` for what stays open, `coverage` says what other tests would have seen, and `words` says it all in sentences.
+Nothing here steps physics, and files of the user run in a process of their own.
 
 >>> verdict = arm3r.verify.jacobian(my_jacobian)
 >>> verdict.ok, verdict.findings

@@ -184,4 +184,4 @@ def scales(due: Floats) -> Floats:
 
 
 def _words(shape: tuple[int, ...]) -> str:
-    return "x".join(map(str, shape)) or "single"
+    return "x".join(map(str, shape)) or "1"

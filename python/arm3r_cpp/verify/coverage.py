@@ -111,8 +111,9 @@ def _reason(case: Comparison, test: Trial, finding: Finding) -> str:
     """Why a test does not see a finding: the first of its special values without which it would."""
     column = (finding.entry or [1])[-1] - 1
     tries: list[tuple[str, Trial]] = []
-    for joint in range(test.qd.shape[1]) if "qd" in case.kind.inputs else [column]:
-        if np.abs(test.qd[:, joint]).max() <= _VISIBLE and ("qd" in case.kind.inputs or case.kind.is_derivative):
+    rates = range(test.qd.shape[1]) if "qd" in case.kind.inputs else [column] if case.kind.is_derivative else []
+    for joint in rates:
+        if np.abs(test.qd[:, joint]).max() <= _VISIBLE:
             moving = test.qd.copy()
             moving[:, joint] = 1.0
             tries.append((f"there qd{joint + 1} = 0", test._replace(qd=moving)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
 from itertools import product
 from typing import Any
 
@@ -13,13 +12,13 @@ from ..errors import UnjudgedError
 from ..user_functions.programs import ProcessEnded, ProgramError, Unread, line_and_column
 from .explain.budget import Budget
 from .explain.causes import put_edit, repairs_of
+from .explain.repair import Progress
 from .finding import Finding
 from .formula import Formula
 from .kinds import Kind
 from .meaning import ways
 from .verdict import Verdict
 
-Progress = Callable[[int, int], None]
 MENDING_EDITS = 3000
 
 

@@ -10,8 +10,9 @@ from ..arm import Arm
 from ..errors import UnjudgedError, UsageError
 from ..scenario import Scenario
 from ..user_functions.python_process import PythonProcess
+from .explain.repair import Progress
 from .formula import Formula, from_callable, from_file, kind_of
-from .judge import Progress, judge
+from .judge import judge
 from .kinds import KINDS
 from .log.judge import judge_log
 from .log.reading import ENDINGS, read_log

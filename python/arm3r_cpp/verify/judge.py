@@ -7,7 +7,7 @@ of the text against the arm's; what tests would have seen.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from .explain.budget import Budget
 from .explain.causes import explain
 from .explain.constants import judge_constants
 from .explain.differences import only_structured
+from .explain.repair import Progress
 from .failure import failed
 from .formula import Formula
 from .kinds import KINDS, Kind
@@ -29,7 +30,6 @@ from .meaning import as_called, assumed, doubted, meant
 from .names import slot_of
 from .verdict import Verdict
 
-Progress = Callable[[int, int], None]
 REPAIR_EDITS = 10_000  # of all that a formula may mean
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
@@ -81,29 +82,33 @@ def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
     if not others:
         return truth
     numbers = formula.numbers()
-    literals = {node.word for top in formula.nodes for node in top.walk() if isinstance(node, Number)}
+    literals = {node.value for top in formula.nodes for node in top.walk() if isinstance(node, Number)}
     feels_gravity = kind.depends_on_gravity and _feels_gravity(formula, kind, truth)
-    has_size = {f"{one.gravity_size:.10g}" for one in others} & literals
+
+    def has_size(one: Any) -> bool:
+        return any(math.isclose(one.gravity_size, number, rel_tol=1e-9) for number in literals)
+
+    is_written = any(map(has_size, [truth, *others]))
 
     def distance(one: Any) -> tuple[int, bool, int, bool, bool, float]:
         parameters = _parameters(formula, kind, one)
         given = [(numbers[name], one.values_of_quantities[parameters[name]]) for name in parameters if name in numbers]
+        case = meant(formula, kind, one)[0]
+        values, due = case.values(case.second), case.due(case.second)
         return (
-            wrong_count(formula, kind, one),
+            len(case.wrong(values, case.second, due)),
             feels_gravity and one.is_across_gravity(),
             sum(not np.isclose(*pair, rtol=1e-9) for pair in given),
-            bool(has_size) and f"{one.gravity_size:.10g}" not in has_size,
+            is_written and not has_size(one),
             one.takes_gravity,
-            _distance_but_for_the_sign(formula, kind, one),
+            _apart_but_for_the_sign(values, due),
         )
 
     return min([truth, *others], key=distance)
 
 
-def _distance_but_for_the_sign(formula: Formula, kind: Kind, truth: Any) -> float:
+def _apart_but_for_the_sign(values: Floats, due: Floats) -> float:
     """The median difference from what is right, or from its opposite: a lost sign is no other arm."""
-    case = meant(formula, kind, truth)[0]
-    values, due = case.values(case.second), case.due(case.second)
     error = min(float(np.median(np.abs(values - sign * due) / scales(due))) for sign in (1, -1))
     return float(f"{error:.6g}") if np.isfinite(error) else float("inf")
 

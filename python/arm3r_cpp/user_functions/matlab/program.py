@@ -616,7 +616,7 @@ class MatlabProgram:
     def _value(self, node: Node, variables: dict[str, Any]) -> Any:
         match node:
             case Number():
-                return number(float(node.word.lower().replace("d", "e")))
+                return number(node.value)
             case Name() | Last():
                 return variables[node.word] if node.word in variables else self._call(node, variables)
             case Group():

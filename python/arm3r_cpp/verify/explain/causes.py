@@ -21,10 +21,9 @@ from .budget import Budget
 from .edits import Editor
 from .hypotheses import Hypothesis, hypotheses
 from .reader import read_entries
-from .repair import Repair, cover, influential, tried, wrong_entries
+from .repair import Progress, Repair, cover, influential, tried, wrong_entries
 from .terms import difference_words
 
-Progress = Callable[[int, int], None]
 _MOST_PARTS = 3000
 """Of a statement that is edited: what programs write in one is read back, and not mended."""
 

@@ -47,7 +47,7 @@ def _step_of_differences(case: Comparison, values: Floats, due: Floats) -> str:
         return np.asarray(np.abs(other.reshape(len(other), -1) - due).max(axis=0))
 
     for node in (inner for top in every for inner in top.walk() if isinstance(inner, Number)):
-        number = float(node.word.lower().replace("d", "e"))
+        number = node.value
         if not 0 < number < _LARGEST_STEP:
             continue
         try:

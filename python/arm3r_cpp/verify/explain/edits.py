@@ -196,11 +196,8 @@ class Editor:
                 yield from (self._at(node, f"{prefix}{name}({node.word})", 4) for name in ("sin", "cos"))
                 yield from (self._at(node, angle, 3, parent) for angle in self.angles)
 
-    def _number(self, node: Node, parent: Node) -> Iterator[Edit]:
-        try:
-            value = float(node.word.lower().replace("d", "e"))
-        except ValueError:
-            return
+    def _number(self, node: Number, parent: Node) -> Iterator[Edit]:
+        value = node.value
         if not math.isfinite(value):
             return
         values = [0, 1, 2, 3, 4, 12, 0.5, -1, value + 1, value - 1, value / 2, 2 * value, -value, 9.80665]

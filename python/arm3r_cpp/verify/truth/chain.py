@@ -66,6 +66,7 @@ class SerialChain:
         self.takes_gravity = False
         """Whether its size is what a formula says, as the chain's file does not."""
         self.takes_direction = False
+        """Whether its direction is."""
         self.held = tuple(held)
         self.named_numbers = dict(named_numbers or {})
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arms import G, arm_of
+from ...arms import arm_of
 from ...numbers import Numbers
 from ...task import FunctionTask, Input, Mistake
 
@@ -26,12 +26,7 @@ one.
         ),
         given=f"""\
 function [t3, t2, t1] = fcn(q3, q2, q1)
-m2 = {lab.m2};
-m3 = {lab.m3};
-g = {G};
-a2 = {lab.a2};
-a3 = {lab.a3};
-t1 = q1;
+{lab.weight_listing}t1 = q1;
 t2 = -m2*g*(a2/2)*cos(q2) - m3*g*(a2*cos(q2) + (a3/2)*cos(q2+q3));
 t3 = -m3*g*(a3/2)*cos(q2+q3);
 """,

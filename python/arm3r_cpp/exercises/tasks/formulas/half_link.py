@@ -34,12 +34,7 @@ out why, and hand in the right one.
         ),
         given=f"""\
 function [t3, t2, t1] = fcn(q3, q2, q1)
-m2 = {lab.m2};
-m3 = {lab.m3};
-g = {G};
-a2 = {lab.a2};
-a3 = {lab.a3};
-t1 = q1*0;
+{lab.weight_listing}t1 = q1*0;
 t2 = -m2*g*(a2/2)*cos(q2) - m3*g*(a2*cos(q2) + (a2/2)*cos(q2+q3));
 t3 = -m3*g*(a2/2)*cos(q2+q3);
 """,
