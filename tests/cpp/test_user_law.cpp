@@ -6,7 +6,7 @@
 #include "check.hpp"
 #include "control/controller_view.hpp"
 #include "fixtures.hpp"
-#include "run/adaptive_run.hpp"
+#include "lanes/single_run.hpp"
 #include "run/interactive_run.hpp"
 
 namespace arm3r {

@@ -38,7 +38,6 @@ enum : std::size_t {
 enum class ContactForceMode {
     none,        // the tip is free, or behind the plate without having crossed its face
     pressed,     // in contact: the contact law, smoothly continued past the instants at which contact ends
-    released,    // inside a wall that would have to pull: no force; the elastic energy is lost
     each_stage,  // fixed steps: there is contact wherever the tip is inside, which each stage decides again
 };
 
@@ -129,10 +128,23 @@ public:
                          plant.has_wall || plant.needs_azimuth),
           common_(plant) {}
 
+    // Of an equal plant: its own one stays.
+    RightHandSide& operator=(const RightHandSide& other) {
+        force_mode = other.force_mode, touching = other.touching, separated = other.separated;
+        contact = other.contact, force_phase = other.force_phase, latest = other.latest;
+        cached_q_ = other.cached_q_, cached_pose_ = other.cached_pose_;
+        return *this;
+    }
+
     // Called when numbers of the plant have changed.
     ARM3R_INLINE void update_common_numbers() { common_ = CommonNumbers(plant_); }
 
+    using Mask = decltype(T(0.0) >= T(0.0));
+
     ContactForceMode force_mode = ContactForceMode::none;
+    // Of `pressed`: the lanes that touch, and those of them inside a wall that would have to pull: there the elastic
+    // energy is lost, and there is no force.
+    Mask touching = T(0.0) >= T(0.0), separated = T(0.0) > T(0.0);
     T contact{0.0}, force_phase{0.0};          // inputs of a continuous controller, constant within a step
     LawFunction<P, T> law_function = nullptr;  // the law of a continuous controller, or null
     // s: formulas of time are evaluated at this instant at the latest, just before a jump at the end of the step (5.8)
@@ -438,7 +450,7 @@ private:
     // The effect of the wall on the tip; zero without contact.
     struct ContactLoad {
         bool anything = false;
-        decltype(T(0.0) > T(0.0)) where = T(0.0) > T(0.0);
+        Mask where = T(0.0) > T(0.0);
         Vec3<T> on_tip{T(0.0), T(0.0), T(0.0)};            // N
         T wall_power{0.0}, loss{0.0}, friction_loss{0.0};  // W; the last is a part of the loss
     };
@@ -449,18 +461,17 @@ private:
 
     ARM3R_INLINE void set_contact_load(const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
                                        ContactLoad& contact_load) const {
-        if (force_mode == ContactForceMode::each_stage) {
-            contact_load.where = in.depth > T(0.0);
-            if (!in_any_lane(contact_load.where)) return;
-            contact_load.where = contact_load.where && within(in);
-        }
+        const bool decides = force_mode == ContactForceMode::each_stage;
+        contact_load.where = decides ? in.depth > T(0.0) : touching;
+        if (!in_any_lane(contact_load.where)) return;
+        if (decides) contact_load.where = contact_load.where && within(in);
         const ContactForce<T> force = contact_force_at(wall, in);
         contact_load.anything = true;
         contact_load.on_tip = force.on_tip;
         contact_load.wall_power = dot(force.on_tip, velocity_at(plant_.wall, wall, tip_position(plant_.arm, p)));
         contact_load.loss = force.dissipated;
         contact_load.friction_loss = force.friction_loss;
-        if (force_mode != ContactForceMode::each_stage) return;
+        if (!decides && in_all_lanes(contact_load.where)) return;
         const T o(0.0);
         for (int i = 0; i < 3; ++i) contact_load.on_tip[i] = select(contact_load.where, contact_load.on_tip[i], o);
         contact_load.wall_power = select(contact_load.where, contact_load.wall_power, o);
@@ -500,8 +511,15 @@ private:
         if (is_plain_spring(plant_.wall, plant_.contact))
             return plain_spring_force(plant_.wall, plant_.contact, in.depth);
         return called<ContactForce<T>>(
-            [this](const WallState<T>& state, const Indentation<T>& inside)
-                ARM3R_INLINE_LAMBDA { return contact_force(plant_.wall, state, plant_.contact, inside, clamping()); },
+            [this](const WallState<T>& state, const Indentation<T>& inside) ARM3R_INLINE_LAMBDA {
+                const auto force = [&](Clamping clamping) ARM3R_INLINE_LAMBDA {
+                    return contact_force(plant_.wall, state, plant_.contact, inside, clamping);
+                };
+                const bool decides = force_mode == ContactForceMode::each_stage;
+                if (decides || !in_any_lane(separated)) return force(decides ? Clamping::clamped : Clamping::smooth);
+                const ContactForce<T> released = force(Clamping::released);
+                return in_all_lanes(separated) ? released : selected(separated, released, force(Clamping::smooth));
+            },
             wall, in);
     }
 
@@ -515,11 +533,6 @@ private:
         if (Lanes<T>::count == 1 && in_all_lanes(nearest == cached_q_[i])) return;
         const SinCos<T> there = sincos(nearest);
         cached_q_[i] = nearest, sine = there.sin, cosine = there.cos;
-    }
-
-    ARM3R_INLINE Clamping clamping() const {
-        if (force_mode == ContactForceMode::each_stage) return Clamping::clamped;
-        return force_mode == ContactForceMode::released ? Clamping::released : Clamping::smooth;
     }
 
     ARM3R_INLINE auto within(const Indentation<T>& in) const {

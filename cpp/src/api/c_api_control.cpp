@@ -10,7 +10,7 @@
 #include "batch/law_adapter.hpp"
 #include "batch/simulation.hpp"
 #include "control/controller_view.hpp"
-#include "run/adaptive_run.hpp"
+#include "lanes/single_run.hpp"
 #include "run/interactive_run.hpp"
 #include "schema/schema.hpp"
 #include "setup/setup.hpp"
@@ -142,8 +142,8 @@ std::unique_ptr<arm3r_simulation> copied(const arm3r_simulation& from) {
     return copy;
 }
 
-void refuse_lane_method(const Setup& setup) {
-    if (!setup.solver.runs_in_lanes()) return;
+void refuse_other_methods(const Setup& setup) {
+    if (setup.solver.stands_at_samples()) return;
     throw Error(ARM3R_E_SCENARIO,
                 {{.code = "scenario.other_choice",
                   .path = "solver.method",
@@ -164,7 +164,7 @@ int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation
         with_locations(scenario->scenario, [&] {
             refuse_other_controllers(handle->resolved->params);
             const Setup& setup = handle->resolved->setup;
-            refuse_lane_method(setup);
+            refuse_other_methods(setup);
             handle->view = std::make_shared<LawView>(setup);
             handle->run = start_interactive_run(setup, {.kept = columns_in(handle->resolved->checks)});
         });

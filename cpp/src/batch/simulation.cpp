@@ -1,8 +1,7 @@
 #include "batch/simulation.hpp"
 
 #include "base/error.hpp"
-#include "lanes/single_lane_run.hpp"
-#include "run/adaptive_run.hpp"
+#include "lanes/single_run.hpp"
 #include "schema/schema.hpp"
 
 namespace arm3r {
@@ -28,7 +27,7 @@ void refuse_other_controllers(std::span<const double> params) {
 
 Run simulate(const Setup& setup, const RunOptions& options) {
     if (setup.controller().type == ControllerType::user && !options.user_law.function) refuse_missing_law();
-    return setup.solver.runs_in_lanes() ? run_in_lane(setup, options) : run_adaptively(setup, options);
+    return run_alone(setup, options);
 }
 
 }  // namespace arm3r

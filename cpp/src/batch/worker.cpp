@@ -27,8 +27,12 @@ MetricGroups groups_of(const std::vector<std::size_t>& summary) {
 }
 
 auto lane_group_of(const Setup& first) {
-    if (first.solver.method == SolverMethod::taylor) return run_lanes_taylor;
-    return has_memory(first.plant) ? run_lanes_rk4_controlled : run_lanes_rk4;
+    const bool remembers = has_memory(first.plant);
+    switch (first.solver.method) {
+        case SolverMethod::taylor: return run_lanes_taylor;
+        case SolverMethod::rk4: return remembers ? run_lanes_rk4_controlled : run_lanes_rk4;
+        default: return remembers ? run_lanes_dopri5_controlled : run_lanes_dopri5;
+    }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "arm3r/numbers/dual.hpp"
+#include "contact/contact_watch.hpp"
 
 namespace arm3r {
 namespace {
@@ -18,14 +19,6 @@ bool is_narrow(const DenseOutput& dense, double a, double b) {
            0.5 * (a + b) == a || 0.5 * (a + b) == b;
 }
 
-template <class T>
-Indentation<T> indentation_at(const Plant<double>& plant, const DenseOutput& dense, const T& theta) {
-    const auto y = [&](std::size_t i) { return dense.component(i, theta); };
-    const Pose<T> p = pose(Vec3<T>(y(0), y(1), y(2)));
-    const WallState<T> wall = wall_at(plant.wall, T(dense.t0 + theta * dense.h));
-    return tip_indentation(plant, wall, p, Vec3<T>(y(3), y(4), y(5)));
-}
-
 // m: the rounding errors of a depth in a step: those of the angles, of the tip's position and of the wall's.
 double rounding_of_depth(const Plant<double>& plant, const DenseOutput& dense) {
     const auto size = [](const Vec3<double>& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
@@ -36,16 +29,6 @@ double rounding_of_depth(const Plant<double>& plant, const DenseOutput& dense) {
 }
 
 }  // namespace
-
-ContactMode ContactSearch::mode_at_start(double t, const FullState& y) const {
-    if (!plant_.has_wall) return ContactMode::free;
-    const Pose<double> p = pose(angles(y));
-    const Indentation<double> in = tip_indentation(plant_, wall_at(plant_.wall, t), p, rates(y));
-    if (!(in.depth > 0)) return ContactMode::free;
-    if (!(inside_outline(plant_.wall, in) >= 0)) return ContactMode::embedded;
-    return is_damped(plant_.contact.law) && normal_force_law(plant_.contact, in).release < 0 ? ContactMode::separated
-                                                                                             : ContactMode::contact;
-}
 
 ContactSearch::SignalSample ContactSearch::sample(const DenseOutput& dense, double theta) const {
     const Indentation<double> in = indentation_at(plant_, dense, theta);
@@ -121,8 +104,8 @@ void ContactSearch::update_peak(const DenseOutput& dense, double a, const Signal
 void ContactSearch::include_peak(const DenseOutput& dense, double end, Peak& peak) const {
     double a = 0;
     SignalSample at_a = sample(dense, a);
-    for (int n = 1; n < sample_count_; ++n) {
-        const double b = end * n / (sample_count_ - 1);
+    for (int n = 1; n < samples_per_step; ++n) {
+        const double b = end * n / (samples_per_step - 1);
         const SignalSample at_b = sample(dense, b);
         update_peak(dense, a, at_a, b, at_b, peak);
         a = b;
@@ -131,7 +114,8 @@ void ContactSearch::include_peak(const DenseOutput& dense, double end, Peak& pea
 }
 
 double ContactSearch::impulse(const DenseOutput& dense, double a, double b) const {
-    if (plant_.contact.law != ContactLaw::hunt_crossley) return impulse_by_gauss(dense, a, b);
+    if (plant_.contact.law != ContactLaw::hunt_crossley)
+        return impulse_by_gauss(plant_, plant_.contact, dense, a, b);
     constexpr double negligible = 1e-4;  // a depth, as a share of the largest: less than 1e-8 of the impulse lies below
     const double depth_a = depth(dense, a), depth_b = depth(dense, b);
     const double largest = std::max({depth_a, depth(dense, 0.5 * (a + b)), depth_b});
@@ -146,7 +130,8 @@ double ContactSearch::impulse_in_parts(const DenseOutput& dense, double a, doubl
     constexpr double most_growth = 1.5;  // of the depth in a part
     const double middle = 0.5 * (a + b), depth_middle = depth(dense, middle);
     const double low = std::min(depth_a, depth_b), high = std::max({depth_a, depth_middle, depth_b});
-    if (halvings == 0 || !(high > most_growth * low && high > least)) return impulse_by_gauss(dense, a, b);
+    if (halvings == 0 || !(high > most_growth * low && high > least))
+        return impulse_by_gauss(plant_, plant_.contact, dense, a, b);
     return impulse_in_parts(dense, a, depth_a, middle, depth_middle, least, halvings - 1) +
            impulse_in_parts(dense, middle, depth_middle, b, depth_b, least, halvings - 1);
 }
@@ -155,23 +140,12 @@ double ContactSearch::depth(const DenseOutput& dense, double theta) const {
     return indentation_at(plant_, dense, theta).depth;
 }
 
-double ContactSearch::impulse_by_gauss(const DenseOutput& dense, double a, double b) const {
-    constexpr double place[] = {0, 0.53846931010568309, 0.90617984593866399};  // Gauss and Legendre, five points
-    constexpr double weight[] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
-    const auto force = [&](double x) {
-        return normal_force(plant_.contact, indentation_at(plant_, dense, 0.5 * ((a + b) + (b - a) * x)));
-    };
-    double sum = weight[0] * force(0);
-    for (int i = 1; i < 3; ++i) sum += weight[i] * (force(-place[i]) + force(place[i]));
-    return 0.5 * (b - a) * dense.h * sum;
-}
-
 std::optional<Crossing> ContactSearch::next(const DenseOutput& dense, double from, ContactMode mode, Peak& peak) const {
     if (!plant_.has_wall) return std::nullopt;
     double a = from;
     SignalSample at_a = sample(dense, a);
-    for (int n = 1; n < sample_count_; ++n) {
-        const double b = from + (1.0 - from) * n / (sample_count_ - 1);
+    for (int n = 1; n < samples_per_step; ++n) {
+        const double b = from + (1.0 - from) * n / (samples_per_step - 1);
         const SignalSample at_b = sample(dense, b);
         std::optional<Crossing> first;
         const auto consider = [&](const ZeroCrossing& event) {

@@ -10,10 +10,7 @@ namespace arm3r {
 
 class ContactSearch {
 public:
-    // `sample_count`: at how many points of a step the depth is sampled, ends included.
-    ContactSearch(const Plant<double>& plant, int sample_count) : plant_(plant), sample_count_(sample_count) {}
-
-    ContactMode mode_at_start(double t, const FullState& y) const;
+    explicit ContactSearch(const Plant<double>& plant) : plant_(plant) {}
 
     // The first change of mode after `from`, if there is one. `peak` becomes the largest normal force in contact until
     // then.
@@ -47,7 +44,6 @@ private:
     // Includes the largest normal force in contact from a to b in the peak.
     void update_peak(const DenseOutput& dense, double a, const SignalSample& at_a, double b, const SignalSample& at_b,
                      Peak& peak) const;
-    double impulse_by_gauss(const DenseOutput& dense, double a, double b) const;
     // Halves a part in which the depth grows by much, at most so many times, unless all of it is below `least`, m.
     double impulse_in_parts(const DenseOutput& dense, double a, double depth_a, double b, double depth_b, double least,
                             int halvings) const;
@@ -55,7 +51,6 @@ private:
     double root(const DenseOutput& dense, const ZeroCrossing& event, double a, double b) const;
 
     const Plant<double>& plant_;
-    int sample_count_;
 };
 
 }  // namespace arm3r

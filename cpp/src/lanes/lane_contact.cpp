@@ -21,8 +21,10 @@ void LaneContact<T>::set_mode(int lane, ContactMode mode) {
     mode_[lane] = mode;
     Lanes<T>::mark(touching_, lane, mode == ContactMode::contact);
     Lanes<T>::mark(embedded_, lane, mode == ContactMode::embedded);
+    Lanes<T>::mark(separated_, lane, mode == ContactMode::separated);
     any_touching_ = std::ranges::count(mode_, ContactMode::contact) > 0;
     any_embedded_ = std::ranges::count(mode_, ContactMode::embedded) > 0;
+    any_separated_ = std::ranges::count(mode_, ContactMode::separated) > 0;
 }
 
 template <class T>

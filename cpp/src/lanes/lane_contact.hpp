@@ -37,7 +37,7 @@ public:
     using Mask = typename Lanes<T>::Mask;
     static constexpr int lanes = Lanes<T>::count;
 
-    LaneContact(const Contact<T>& law, bool is_damped) : law_(law), is_elastic_(!is_damped) {}
+    LaneContact(const Contact<T>& law, bool sums_force) : law_(law), is_elastic_(!sums_force) {}
 
     // The run of the lane begins without contact.
     void load_lane(int lane, const Contact<double>& law, double start);
@@ -49,13 +49,18 @@ public:
 
     // In every mode, for sensors and performance.
     const Contact<T>& law() const { return law_; }
-    // Then the force is the stiffness times the depth.
+    // Then depths are summed, and the force is the stiffness times the depth.
     bool is_elastic() const { return is_elastic_; }
     ContactMode mode(int lane) const { return mode_[lane]; }
     ARM3R_INLINE const Mask& touching() const { return touching_; }
     ARM3R_INLINE const Mask& embedded() const { return embedded_; }
+    ARM3R_INLINE const Mask& separated() const { return separated_; }
+    ARM3R_INLINE bool any_separated() const { return any_separated_; }
     ARM3R_INLINE bool any_touching() const { return any_touching_; }
     ARM3R_INLINE bool any_embedded() const { return any_embedded_; }
+    // Whether the first contact of a lane is transient, and until when, s; infinite in the others.
+    bool any_transient() const { return is_any_transient_; }
+    const T& transient_until() const { return transient_until_; }
     // Where the first contact ceases to be transient by t.
     ARM3R_INLINE Mask ends_transient(const T& t) const {
         return is_any_transient_ ? t >= transient_until_ : Mask(false);
@@ -102,6 +107,21 @@ public:
             add_forces(lane, alone, Lanes<T>::get(t0, lane), Lanes<T>::get(h, lane));
         }
     }
+    // The largest force and its time, and the impulse, where forces are summed.
+    const T& peak() const { return peak_; }
+    const T& peak_time() const { return peak_time_; }
+    ARM3R_INLINE void set_peak(const Mask& here, const T& force, const T& t) {
+        peak_ = select(here, force, peak_), peak_time_ = select(here, t, peak_time_);
+    }
+    void set_peak(int lane, const Peak& peak) {
+        Lanes<T>::set(peak_, lane, peak.force), Lanes<T>::set(peak_time_, lane, peak.t);
+    }
+    ARM3R_INLINE void add_impulse(const T& impulse) { impulse_ = impulse_ + impulse; }
+    // The first contact of a lane ceases to be transient, with this peak.
+    void end_transient(int lane, const Peak& peak) {
+        tally_[lane].end_transient(peak);
+        store_transient(lane);
+    }
     // Adds a part of a step of one lane, in its present mode.
     void add(int lane, const Contact<double>& law, const Polynomial<double>& depth, const StepPart& part);
 
@@ -135,10 +155,10 @@ private:
     Contact<T> law_;
     bool is_elastic_;
     std::array<ContactMode, lanes> mode_{};
-    Mask touching_ = false, embedded_ = false;
-    bool any_touching_ = false, any_embedded_ = false;
-    T max_depth_{0.0}, depth_time_{0.0};  // m, m s: of an elastic contact
-    T peak_{0.0}, impulse_{0.0};          // N, N s: of a damped one
+    Mask touching_ = false, embedded_ = false, separated_ = false;  // touching_: in the mode `contact`
+    bool any_touching_ = false, any_embedded_ = false, any_separated_ = false;
+    T max_depth_{0.0}, depth_time_{0.0};  // m, m s: where depths are summed
+    T peak_{0.0}, impulse_{0.0};          // N, N s: where forces are
     T peak_time_{0.0};                    // s
     T transient_until_{infinite};         // s
     bool is_any_transient_ = false;

@@ -32,6 +32,13 @@ public:
           contact_(contact),
           controller_(controller) {}
 
+    // Of an equal run: what it refers to stays.
+    LanePerformance& operator=(const LanePerformance& other) {
+        sums_ = other.sums_, segment_ = other.segment_, last_ = other.last_, continues_ = other.continues_;
+        force_phase_ = other.force_phase_, tau_at_start_ = other.tau_at_start_;
+        return *this;
+    }
+
     bool is_on() const { return is_on_; }
     // Whether the works of the torques are needed, and whether more than these is.
     bool sums_work() const { return sums_work_; }
@@ -67,6 +74,20 @@ public:
         for (int i = 0; i < 3; ++i) sums_.work[i] = sums_.work[i] + select(moved, work[i], T(0.0));
     }
 
+    // Adds a whole segment where `moved`, of which `sample_at(j, sample)` takes sample j; phase and a held torque are those
+    // of the segment. Returns the lanes in which it must be refined.
+    template <const auto& rule, class SampleAt>
+    ARM3R_INLINE Mask add_whole(const T& start, const T& duration, const Mask& touching, const T& force_phase,
+                                const Vec3<T>& held, const Mask& moved, SampleAt sample_at) {
+        segment_.start = start, segment_.duration = duration, segment_.touching = touching;
+        force_phase_ = force_phase, tau_at_start_ = held;
+#pragma GCC unroll 1
+        for (std::size_t j = 0; j < rule.node.size(); ++j) sample_at(j, segment_.samples[j]);
+        return add_segment(tracked_, rule, moved, segment_, sums_);
+    }
+    const Controller<T>& controller() const { return controller_; }
+    ARM3R_INLINE bool was_touching(int lane) const { return Lanes<T>::is(segment_.touching, lane); }
+
     // Adds the part of a lane's step from theta = a to b, without the works.
     template <std::size_t n>
     void add(int lane, const Rule<n>& rule, const StepView& view, double a, double b) {
@@ -76,10 +97,9 @@ public:
     }
     // Refines a lane's last segment between its samples; it ends at theta = b of the step.
     template <std::size_t n>
-    void refine(int lane, const Rule<n>& rule, StepView view, double b) {
+    void refine(int lane, const Rule<n>& rule, const StepView& view, double b) {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-        view.pressed = Lanes<T>::is(segment_.touching, lane);
-        Segment<double> segment{get(segment_.start), get(segment_.duration), view.pressed, {}};
+        Segment<double> segment{get(segment_.start), get(segment_.duration), was_touching(lane), {}};
         for (std::size_t j = 0; j < n; ++j) {
             const PerformanceSample<T>& sample = segment_.samples[j];
             segment.samples[j] = {get(sample.force), get(sample.desired_force), get(sample.path_error_2),

@@ -55,7 +55,7 @@ public:
         LaneRk4* const alone = this;
         step_together(&alone, 1);
     }
-    // step() as a function call: the long code is compiled once (single_lane_run.cpp).
+    // step() as a function call: the long code is compiled once (single_run.cpp).
     void step_outlined()
         requires(Base::lanes == 1)
     {
@@ -407,13 +407,15 @@ private:
     [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
         for (int lane = 0; lane < Base::lanes; ++lane)
             if (Lanes<T>::is(unresolved, lane))
-                this->visit_step(lane, dense_output_of(lane),
-                                 [&](const StepView& view) { this->performance_.refine(lane, rule, view, 1.0); });
+                this->visit_step(lane, dense_output_of(lane), this->t(lane), [&](StepView view) {
+                    view.pressed = this->performance_.was_touching(lane);
+                    this->performance_.refine(lane, rule, view, 1.0);
+                });
     }
 
     // A part of the step, in the lane's present contact mode, from knot to knot of the reference.
     void add_lane_performance(int lane, const DenseOutput& dense, double a, double b) {
-        this->visit_step(lane, dense, [&](StepView view) {
+        this->visit_step(lane, dense, this->t(lane), [&](StepView view) {
             const double latest = view.latest, end = slightly_before(dense.t0 + b * dense.h);
             double knot = this->next_metric_knot(lane, dense.t0 + a * dense.h);
             for (; knot < end; knot = this->next_metric_knot(lane, knot)) {

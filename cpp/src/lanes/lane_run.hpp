@@ -53,6 +53,10 @@ ARM3R_INLINE T event_resolution(const T& t, const T& h) {
     return max(T(event_time_tolerance), T(4 * std::numeric_limits<double>::epsilon() * abs(t))) / h;
 }
 
+// Where the wall acts on the motion: wherever the tip is inside, as each stage of a step decides; in contact; or as the
+// contact mode says, which the steps then end at.
+enum class ContactFelt { inside, in_contact, by_mode };
+
 // N: state_size, or full_size where a continuous controller remembers something.
 template <class T, std::size_t N = state_size>
 class LaneRun {
@@ -61,21 +65,17 @@ public:
     using Y = State<T, N>;
     static constexpr int lanes = Lanes<T>::count;
 
-    explicit LaneRun(const Setup& any_lane);
+    explicit LaneRun(const Setup& any_lane, ContactFelt felt = ContactFelt::inside);
     LaneRun(const LaneRun&) = delete;  // an empty lane points to rest_
-    LaneRun& operator=(const LaneRun&) = delete;
 
     // Loads a run into a lane; the setup must stay where it is until the next one is loaded. The lanes loaded since the
     // last call of start_lanes() start with the next one.
     void load_lane(int lane, const Setup& setup);
     ARM3R_INLINE void start_lanes() {
-        observe_outlined();
-        for (int lane = 0; lane < lanes; ++lane)
-            if (is_new_[lane]) start_lane(lane);
-        if (N == full_size) start_memory();
+        place_new_lanes();
         started_ = active_;
         if (is_controlled_ || N == full_size || contact_.any_embedded()) observe_outlined();
-        for (bool& is_new : is_new_) is_new = false;
+        is_new_.fill(false);
     }
 
     // Called before each change of contact of a lane.
@@ -84,6 +84,14 @@ public:
     void set_user_law(const UserLaw& law) { sampled_.user = law; }
     std::string error_message() const { return sampled_.error_message(); }
     const ControllerState<T>& controller_state() const { return sampled_.controller_state(); }
+    // Calls a law as the present sample would, without an effect on the run.
+    void preview(const UserLaw& law) const {
+        SampledController<T> rehearsal = sampled_;
+        rehearsal.user = law;
+        Vec3<T> held;
+        PlantOutput<T> now = plant_output();
+        rehearsal.update(true, slack_, plant_.arm, now, held);
+    }
     ContinuousInputs inputs(int lane) const {
         return {Lanes<T>::get(rhs_.contact, lane), Lanes<T>::get(rhs_.force_phase, lane)};
     }
@@ -97,6 +105,7 @@ public:
     bool any_running() const { return any_running_; }
     bool has_ended(int lane) const { return running_[lane] && (outcome_[lane] != ARM3R_RUN_OK || at_stop(lane)); }
     ARM3R_INLINE bool any_ended() const { return failed_ || in_any_lane(active_ && t_ >= stop_); }
+    bool has_failed() const { return failed_; }
     void clear_failures() { failed_ = false; }
 
     void stop_lane(int lane, arm3r_outcome outcome) {
@@ -109,7 +118,7 @@ public:
     }
     Steps steps(int lane) const {
         const auto count = [&](const T& x) { return std::int64_t(Lanes<T>::get(x, lane)); };
-        return {count(accepted_), 0, count(evaluations_)};
+        return {count(accepted_), count(rejected_), count(evaluations_)};
     }
 
     // One lane, in doubles.
@@ -121,6 +130,32 @@ public:
     arm3r_outcome outcome(int lane) const { return outcome_[lane]; }
 
 protected:
+    // The lanes that were loaded since the last start, at their start: contact, energy and memory.
+    ARM3R_INLINE void place_new_lanes() {
+        observe_outlined();
+        for (int lane = 0; lane < lanes; ++lane)
+            if (is_new_[lane]) start_lane(lane);
+        if (N == full_size) start_memory();
+    }
+
+    // A copy of a single run continues as it would; the setup is to be set next, and what observes it.
+    LaneRun& operator=(const LaneRun&) = default;
+    void set_setup(const Setup& setup) { setups_[0] = &setup; }
+
+    // The lanes whose run goes on.
+    ARM3R_INLINE Mask goes_on() const {
+        if (!failed_) return active_;
+        Mask going = active_;
+        for (int lane = 0; lane < lanes; ++lane)
+            if (outcome_[lane] != ARM3R_RUN_OK) Lanes<T>::mark(going, lane, false);
+        return going;
+    }
+    // Stops the lanes for one reason.
+    [[gnu::noinline]] void stop_lanes(const Mask& here, arm3r_outcome outcome) {
+        for (int lane = 0; lane < lanes; ++lane)
+            if (running_[lane] && Lanes<T>::is(here, lane)) stop_lane(lane, outcome);
+    }
+
     static FullState state_of(const Y& y, int lane) {
         FullState one{};
         for (std::size_t i = 0; i < N; ++i) one[i] = Lanes<T>::get(y[i], lane);
@@ -140,7 +175,7 @@ protected:
         }
         const Vec3<T> qd(y_[3], y_[4], y_[5]);
         if (plant_.has_wall) locate_wall<terms>(qd);
-        if (is_controlled_ && in_any_lane(is_due())) update_controller();
+        if (is_controlled_ && in_any_lane(is_due())) update_controller(is_due());
         if (needs_derivative_) derive<terms>();
         else if (performance_.is_on()) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
         kinetic_ = kinetic_energy(plant_.arm, p_, qd);
@@ -190,16 +225,17 @@ protected:
     ARM3R_INLINE T next_instant() const { return is_controlled_ ? min(stop_, sampled_.next()) : stop_; }
 
     ARM3R_INLINE Mask is_due() const { return started_ && sampled_.next() <= t_ + slack_; }
-    void update_controller();
+    void update_controller(const Mask& due);
 
     ARM3R_INLINE PlantOutput<T> plant_output() const {
         return arm3r::plant_output(plant_, wall_, t_, y_, p_, plant_.has_wall ? force_on_tip() : zero_vector<T>());
     }
 
-    // The contact force at this instant, also where the contact mode has not changed yet.
+    // The contact force at this instant, as far as the mode decides, also where that has not changed yet.
     ARM3R_INLINE Vec3<T> force_on_tip() const {
-        Mask pressed = in_.depth > T(0.0) && !contact_.embedded();
-        if (plant_.wall.has_outline) pressed = pressed && inside_outline(plant_.wall, in_) >= T(0.0);
+        const bool by_mode = felt_ == ContactFelt::by_mode;
+        Mask pressed = in_.depth > T(0.0) && (by_mode ? contact_.touching() : !contact_.embedded());
+        if (!by_mode && plant_.wall.has_outline) pressed = pressed && inside_outline(plant_.wall, in_) >= T(0.0);
         if (!in_any_lane(pressed)) return zero_vector<T>();
         return only_where(pressed, contact_force(plant_.wall, wall_, contact_.law(), in_, Clamping::clamped)).on_tip;
     }
@@ -230,9 +266,10 @@ protected:
         return tracks_force(law.type) || tracks_path(law.type) ? next_knot(law.reference, t) : infinite;
     }
 
-    // The step of one lane in doubles, as a function of theta; the torque of a sampled controller is that of the step.
+    // The step of one lane in doubles, as a function of theta; it ends at t1, and the torque of a sampled controller is
+    // that of the step.
     template <class Visit>
-    void visit_step(int lane, const DenseOutput& dense, Visit visit) const {
+    void visit_step(int lane, const DenseOutput& dense, double t1, Visit visit) const {
         const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
         const Setup* setup = setups_[lane];
         std::optional<Setup> of_estimate;
@@ -245,13 +282,13 @@ protected:
         const ContinuousInputs inputs = this->inputs(lane);
         const double phase = sampled_.is_on() ? get(performance_.force_phase()) : inputs.force_phase;
         visit(StepView{*setup, dense, mode(lane) == ContactMode::contact, inputs.contact, phase,
-                       plant_.holds_torque ? &held : nullptr, slightly_before(t(lane))});
+                       plant_.holds_torque ? &held : nullptr, slightly_before(t1)});
     }
 
     ARM3R_INLINE T stored(const Indentation<T>& in) const {
         if (!plant_.acts_on_arm) return T(0.0);
         const Contact<T>& law = contact_.law();
-        const auto pressed = contact_.touching() && in.depth > T(0.0);
+        const Mask pressed = (contact_.touching() || contact_.separated()) && in.depth > T(0.0);
         if (law.law == ContactLaw::spring)
             return select(pressed, T(0.5 * law.stiffness[0] * in.depth * in.depth), T(0.0));
         return select(pressed, T(normal_force_law(law, in).stored + stored_tangential(law, in)), T(0.0));
@@ -287,8 +324,6 @@ protected:
 
     ARM3R_INLINE void update_energy_balance() { balance_.update(Energies<T>{kinetic_, potential_, stored(in_)}, y_); }
 
-    bool has_failed() const { return failed_; }
-
     ARM3R_INLINE void check_lanes(bool may_end_budget = true) {
         Mask bad = is_out_of_range(y_);
         if (may_be_ill_conditioned_) bad = bad || !is_well_conditioned(plant_.arm, p_);
@@ -306,6 +341,7 @@ protected:
     void change_mode(int lane, const ContactChange& change);
 
     const Setup& setup(int lane) const { return *setups_[lane]; }
+    Indentation<double> indentation_of(int lane) const;
 
     // Evaluates the derivative again after change_mode().
     void reevaluate();
@@ -334,8 +370,9 @@ protected:
         // only_contact_is_felt_, in free ones
         plant_;
     RightHandSide<T, T> rhs_;
-    const bool has_common_terms_;
-    bool needs_derivative_ = true, only_contact_is_felt_ = false, may_be_ill_conditioned_;
+    bool has_common_terms_;
+    ContactFelt felt_;
+    bool needs_derivative_ = true, may_be_ill_conditioned_;
 
     bool is_controlled_;
     SampledController<T> sampled_;
@@ -350,10 +387,12 @@ protected:
     WallState<T> wall_ = no_wall<T>();
     Indentation<T> in_{};
     Vec3<T> tau_ = zero_vector<T>();  // N m, applied
-    T kinetic_, potential_;           // J; potential_: of the pose
+    T kinetic_{0.0}, potential_{0.0};  // J; potential_: of the pose
 
     Mask active_ = false, started_ = false;
-    T accepted_{0.0}, evaluations_{0.0}, max_steps_{0.0};
+    T accepted_{0.0}, rejected_{0.0}, evaluations_{0.0}, max_steps_{0.0};
+
+    std::array<bool, lanes> is_new_{};  // loaded since the last start
 
 private:
     bool at_stop(int lane) const { return !(Lanes<T>::get(t_, lane) < Lanes<T>::get(stop_, lane)); }
@@ -361,12 +400,13 @@ private:
     void start_memory();
     void update_inputs(int lane);
     void set_mode(int lane, ContactMode mode);
-    double force_of(int lane) const;  // N, normal
+    double force_of(int lane) const;  // N, normal, in contact
+    bool would_pull(int lane) const;
     void set_running(int lane, bool running);
 
     Setup rest_;  // a run of no duration, at rest: in empty lanes
     std::array<const Setup*, lanes> setups_{};
-    std::array<bool, lanes> running_{}, is_new_{};
+    std::array<bool, lanes> running_{};
     bool any_running_ = false;
     std::array<arm3r_outcome, lanes> outcome_{};
     bool failed_ = false;

@@ -11,12 +11,13 @@
 namespace arm3r {
 
 template <class T, std::size_t N>
-LaneRun<T, N>::LaneRun(const Setup& any_lane)
+LaneRun<T, N>::LaneRun(const Setup& any_lane, ContactFelt felt)
     : rhs_((copy_choices(any_lane.plant, plant_), plant_)),
       has_common_terms_(has_common_terms(any_lane.plant)),
+      felt_(felt),
       may_be_ill_conditioned_(batch_key_of(any_lane).may_be_ill_conditioned),
       is_controlled_(any_lane.digital.sampling.on || any_lane.estimation.on),
-      contact_(plant_.contact, is_damped(any_lane.plant.contact.law)),
+      contact_(plant_.contact, is_damped(any_lane.plant.contact.law) || felt == ContactFelt::by_mode),
       performance_(any_lane, plant_, contact_.law(),
                    any_lane.digital.sampling.on ? sampled_.controller() : plant_.controller),
       rest_(any_lane) {
@@ -37,7 +38,7 @@ void LaneRun<T, N>::load_lane(int lane, const Setup& setup) {
         set(y_[3 + i], setup.qd[i]);
     }
     for (std::size_t i = motion_size; i < N; ++i) set(y_[i], 0.0);
-    set(accepted_, 0.0), set(evaluations_, 0.0);
+    set(accepted_, 0.0), set(rejected_, 0.0), set(evaluations_, 0.0);
     if (has_law(plant_.controller.type)) each_law_number(set, plant_.controller, setup.plant.controller);
     if (has_memory(plant_)) {
         each_sensor_number(set, plant_.sensors, setup.plant.sensors);
@@ -65,8 +66,10 @@ void LaneRun<T, N>::start_lane(int lane) {
         const bool within =
             abs(Lanes<T>::get(in_.across1, lane)) <= wall.half1 && abs(Lanes<T>::get(in_.across2, lane)) <= wall.half2;
         set_mode(lane, within ? ContactMode::contact : ContactMode::embedded);
+        if (mode(lane) == ContactMode::contact && felt_ == ContactFelt::by_mode && would_pull(lane))
+            set_mode(lane, ContactMode::separated);
     }
-    if (mode(lane) == ContactMode::contact) contact_.begin(lane, setups_[lane]->start, depth, force_of(lane));
+    if (is_touching(mode(lane))) contact_.begin(lane, setups_[lane]->start, depth, force_of(lane));
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
     balance_.start(lane, {get(kinetic_), get(potential_), get(stored(in_))});
     Lanes<T>::set(evaluations_, lane, needs_derivative_ ? 1.0 : 0.0);
@@ -85,10 +88,10 @@ void LaneRun<T, N>::reevaluate() {
 }
 
 template <class T, std::size_t N>
-void LaneRun<T, N>::update_controller() {
-    Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA {
+void LaneRun<T, N>::update_controller(const Mask& due) {
+    Outlined<T>::run([this, &due]() ARM3R_INLINE_LAMBDA {
         PlantOutput<T> now = plant_output();
-        sampled_.update(is_due(), slack_, plant_.arm, now, plant_.held_torque);
+        sampled_.update(due, slack_, plant_.arm, now, plant_.held_torque);
         if (!asks_estimator(plant_.controller)) return;
         if (sampled_.estimates())
             plant_.controller.gains.assumed_stiffness = sampled_.controller_state().assumed_stiffness;
@@ -142,8 +145,14 @@ void LaneRun<T, N>::set_running(int lane, bool running) {
 template <class T, std::size_t N>
 void LaneRun<T, N>::set_mode(int lane, ContactMode mode) {
     contact_.set_mode(lane, mode);
-    const bool feels =
-        only_contact_is_felt_ ? mode == ContactMode::contact && plant_.acts_on_arm : mode != ContactMode::embedded;
+    if (felt_ == ContactFelt::by_mode) {
+        rhs_.touching = contact_.touching() || contact_.separated();
+        rhs_.separated = contact_.separated();
+        rhs_.force_mode = any(rhs_.touching) ? ContactForceMode::pressed : ContactForceMode::none;
+        return;
+    }
+    const bool feels = felt_ == ContactFelt::in_contact ? mode == ContactMode::contact && plant_.acts_on_arm
+                                                        : mode != ContactMode::embedded;
     const Contact<double>& own = setups_[lane]->plant.contact;
     const auto set = [&](T& strength, double value) { Lanes<T>::set(strength, lane, feels ? value : 0.0); };
     for (int i = 0; i < 3; ++i) set(plant_.contact.stiffness[i], own.stiffness[i]);
@@ -151,9 +160,21 @@ void LaneRun<T, N>::set_mode(int lane, ContactMode mode) {
 }
 
 template <class T, std::size_t N>
-double LaneRun<T, N>::force_of(int lane) const {
+Indentation<double> LaneRun<T, N>::indentation_of(int lane) const {
     const auto get = [&](const T& x) { return Lanes<T>::get(x, lane); };
-    return normal_force(setups_[lane]->plant.contact, Indentation<double>{get(in_.depth), get(in_.rate), 0, 0, 0, 0});
+    return {get(in_.depth), get(in_.rate), get(in_.across1), get(in_.across2), get(in_.slip1), get(in_.slip2)};
+}
+
+template <class T, std::size_t N>
+double LaneRun<T, N>::force_of(int lane) const {
+    if (mode(lane) != ContactMode::contact) return 0;
+    return normal_force(setups_[lane]->plant.contact, indentation_of(lane));
+}
+
+template <class T, std::size_t N>
+bool LaneRun<T, N>::would_pull(int lane) const {
+    const Contact<double>& law = setups_[lane]->plant.contact;
+    return is_damped(law.law) && normal_force_law(law, indentation_of(lane)).release < 0;
 }
 
 template <class T, std::size_t N>
@@ -189,7 +210,7 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
     m.outcome = outcome_[lane];
     set_end_values(setup, get(t_), state_of(y_, lane), touches, contact_.tally(lane), contact_.peak(lane), m);
     m.impulse = contact_.impulse(lane);
-    m.final_force = touches ? force_of(lane) : 0;
+    m.final_force = force_of(lane);
     m.steps = steps(lane);
     if (performance_.is_on()) write_performance(performance_.sums(lane), setup, m);
     if (is_controlled_ && touches) set_estimate(sampled_.controller_state(), lane, m);
@@ -202,16 +223,16 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
 
 // Each member by name: `template class` would also compile the functions that are inlined everywhere (ARM3R_INLINE).
 #define ARM3R_LANE_RUN(T, N)                                             \
-    template LaneRun<T, N>::LaneRun(const Setup&);                       \
+    template LaneRun<T, N>::LaneRun(const Setup&, ContactFelt);          \
     template void LaneRun<T, N>::load_lane(int, const Setup&);           \
     template void LaneRun<T, N>::start_lane(int);                        \
     template void LaneRun<T, N>::observe_outlined();                     \
     template void LaneRun<T, N>::reevaluate();                           \
-    template void LaneRun<T, N>::update_controller();                    \
+    template void LaneRun<T, N>::update_controller(const Mask&);         \
     template void LaneRun<T, N>::start_memory();                         \
     template void LaneRun<T, N>::clear_lane(int);                        \
     template void LaneRun<T, N>::change_mode(int, const ContactChange&); \
     template void LaneRun<T, N>::fail_lanes(const Mask&);                \
-    template Metrics LaneRun<T, N>::metrics(int) const;
+    template Metrics LaneRun<T, N>::metrics(int) const;                      template Indentation<double> LaneRun<T, N>::indentation_of(int) const;
 
 }  // namespace arm3r

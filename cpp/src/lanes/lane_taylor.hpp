@@ -14,12 +14,11 @@ class LaneTaylor : public LaneRun<T> {
 
 public:
     explicit LaneTaylor(const Setup& any_lane)
-        : Base(any_lane),
+        : Base(any_lane, ContactFelt::in_contact),
           order_(batch_key_of(any_lane).order),
           free_kernel_(kernel_of(any_lane.plant, false)),
           pressed_kernel_(kernel_of(any_lane.plant, true)) {
         this->needs_derivative_ = false;
-        this->only_contact_is_felt_ = true;
     }
 
     void load_lane(int lane, const Setup& setup) {
@@ -65,7 +64,7 @@ public:
         this->check_lanes();
     }
 
-    // step() as a function call: the long code is compiled once (single_lane_run.cpp).
+    // step() as a function call: the long code is compiled once (single_run.cpp).
     void step_outlined()
         requires(Base::lanes == 1)
     {
@@ -346,7 +345,8 @@ private:
     [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
         for (int lane = 0; lane < Base::lanes; ++lane)
             if (Lanes<T>::is(unresolved, lane))
-                this->visit_step(lane, dense_output(lane), [&](const StepView& view) {
+                this->visit_step(lane, dense_output(lane), this->t(lane), [&](StepView view) {
+                    view.pressed = this->performance_.was_touching(lane);
                     this->performance_.refine(lane, rule, view, theta(lane));
                 });
     }

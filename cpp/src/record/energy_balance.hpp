@@ -41,7 +41,17 @@ public:
         set(stored_, energies.kinetic + energies.contact);
     }
 
-    // Updates the residual and the maxima after each step.
+    // Updates the residual and the maxima after each step, or where there was one.
+    template <std::size_t N>
+    ARM3R_INLINE void update_where(const typename Lanes<T>::Mask& here, const Energies<T>& now,
+                                   const State<T, N>& y) {
+        if (in_all_lanes(here)) return update(now, y);
+        const EnergyBalance before = *this;
+        update(now, y);
+        residual_ = select(here, residual_, before.residual_);
+        throughput_ = select(here, throughput_, before.throughput_);
+        stored_ = select(here, stored_, before.stored_);
+    }
     template <std::size_t N>
     ARM3R_INLINE void update(const Energies<T>& now, const State<T, N>& y) {
         const T residual = energy_residual(y, now.sum(), energy_at_start_);

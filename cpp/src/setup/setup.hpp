@@ -20,9 +20,9 @@ struct Solver {
     double max_step, step;  // s; max_step may be inf
     double max_steps;
 
-    bool runs_in_lanes() const {
-        return method == SolverMethod::rk4 || method == SolverMethod::taylor;
-    }  // also in lanes (lane_run.hpp)
+    // Whether a batch has runs by this method side by side, and whether its steps end at the samples of a controller.
+    bool runs_in_lanes() const { return method != SolverMethod::rodas4 && method != SolverMethod::automatic; }
+    bool stands_at_samples() const { return method != SolverMethod::rk4 && method != SolverMethod::taylor; }
 };
 
 struct Setup {

@@ -125,16 +125,19 @@ ARM3R_INLINE ContactForce<T> no_contact() {
     return {{T(0.0), T(0.0), T(0.0)}, T(0.0), T(0.0), T(0.0), T(0.0)};
 }
 
-// `force` where `touching`, zero in the other lanes.
+// `a` where `here`, `b` in the other lanes.
+template <class M, class T>
+ARM3R_INLINE ContactForce<T> selected(const M& here, const ContactForce<T>& a, const ContactForce<T>& b) {
+    return {{select(here, a.on_tip[0], b.on_tip[0]), select(here, a.on_tip[1], b.on_tip[1]),
+             select(here, a.on_tip[2], b.on_tip[2])},
+            select(here, a.normal, b.normal),
+            select(here, a.stored, b.stored),
+            select(here, a.dissipated, b.dissipated),
+            select(here, a.friction_loss, b.friction_loss)};
+}
 template <class M, class T>
 ARM3R_INLINE ContactForce<T> only_where(const M& touching, const ContactForce<T>& force) {
-    const T o(0.0);
-    return {{select(touching, force.on_tip[0], o), select(touching, force.on_tip[1], o),
-             select(touching, force.on_tip[2], o)},
-            select(touching, force.normal, o),
-            select(touching, force.stored, o),
-            select(touching, force.dissipated, o),
-            select(touching, force.friction_loss, o)};
+    return selected(touching, force, no_contact<T>());
 }
 
 }  // namespace arm3r

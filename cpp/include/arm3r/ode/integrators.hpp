@@ -41,7 +41,7 @@ struct Interpolant {
 
 // Cubic Hermite from both ends of a step: the first four coefficients of either method.
 template <class T, std::size_t N>
-Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0, const State<T, N>& y1,
+ARM3R_INLINE Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0, const State<T, N>& y1,
                           const State<T, N>& f1) {
     Interpolant<T, N> dense{t, h, {}};
     for (std::size_t i = 0; i < N; ++i) {
@@ -113,7 +113,7 @@ struct Dopri5 {
     std::array<State<T, N>, 6> k;  // k[0] = f0 .. k[5]
 
     template <class F>
-    void step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
+    ARM3R_INLINE void step(const F& f, const T& t, const State<T, N>& y, const State<T, N>& f0, const T& h) {
         State<T, N> s;
         k[0] = f0;
         for (std::size_t i = 0; i < N; ++i) s[i] = y[i] + h * (1.0 / 5 * k[0][i]);
@@ -138,20 +138,29 @@ struct Dopri5 {
     }
 
     // The error estimate of component i over the step of h.
-    T error_of(std::size_t i, const T& h) const {
+    ARM3R_INLINE T error_of(std::size_t i, const T& h) const {
         const T e = h * (71.0 / 57600 * k[0][i] - 71.0 / 16695 * k[2][i] + 71.0 / 1920 * k[3][i] -
                          17253.0 / 339200 * k[4][i] + 22.0 / 525 * k[5][i] - 1.0 / 40 * f1[i]);
         return abs(e);
     }
 
-    // The largest error estimate in units of its tolerance, without the quadratures or with them. The step is accepted
-    // below 1. It is the maximum and not a mean: a joint at rest must not loosen the tolerance of one that moves.
-    T error(const State<T, N>& y, const T& h, double rtol, double atol, bool with_quadratures = false) const {
+    // The largest error estimate in units of its tolerance, without the quadratures or, in some lanes, with them. The step
+    // is accepted below 1. It is the maximum and not a mean: a joint at rest must not loosen the tolerance of one that
+    // moves.
+    template <class R, class M = bool>
+    ARM3R_INLINE T error(const State<T, N>& y, const T& h, const R& rtol, const R& atol,
+                         const M& with_quadratures = false) const {
         T largest(0.0);
-        const std::size_t counted = with_quadratures ? Norm + Quadratures - Parts : Norm;
-        for (std::size_t i = 0; i < N; i = i + 1 == counted ? Norm + Quadratures : i + 1)
-            largest = max(largest, T(error_of(i, h) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
-        return largest;
+        const auto include = [&](std::size_t begin, std::size_t end) ARM3R_INLINE_LAMBDA {
+            for (std::size_t i = begin; i < end; ++i)
+                largest = max(largest, T(error_of(i, h) / (atol + rtol * max(abs(y[i]), abs(y1[i])))));
+        };
+        include(0, Norm);
+        include(Norm + Quadratures, N);
+        if (!any(with_quadratures)) return largest;
+        const T of_others = largest;
+        include(Norm, Norm + Quadratures - Parts);
+        return select(with_quadratures, largest, of_others);
     }
 
     // h times the magnitude of the dominant eigenvalue, from the difference between the last two stages, which are both
@@ -168,7 +177,7 @@ struct Dopri5 {
         return way > T(0.0) ? sqrt(T(rate / way)) : T(0.0);
     }
 
-    Interpolant<T, N> interpolant(const T& t, const State<T, N>& y, const T& h) const {
+    ARM3R_INLINE Interpolant<T, N> interpolant(const T& t, const State<T, N>& y, const T& h) const {
         Interpolant<T, N> dense = hermite(t, h, y, k[0], y1, f1);
         for (std::size_t i = 0; i < N; ++i)
             dense.c[4][i] = h * (-12715105075.0 / 11282082432 * k[0][i] + 87487479700.0 / 32700410799 * k[2][i] -
@@ -180,7 +189,7 @@ struct Dopri5 {
 
 // The factor of the step size that puts the next error a little below the tolerance (5.2).
 template <class T>
-T step_factor(const T& error) {
+ARM3R_INLINE T step_factor(const T& error) {
     const T floored = max(error, T(1e-10));
     return min(T(10.0), max(T(0.2), T(0.9 / fifth_root(floored))));
 }
