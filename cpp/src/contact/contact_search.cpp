@@ -77,12 +77,20 @@ double ContactSearch::turning_point(const DenseOutput& dense, const ZeroCrossing
     return b;
 }
 
+double ContactSearch::turning_value(const DenseOutput& dense, int signal, double a, const SignalSample& at_a, double b,
+                                    const SignalSample& at_b) const {
+    const bool is_by_theta = is_damped(plant_.contact.law) && (signal == release_signal || signal == force_signal);
+    return tangents_meet(at_a.value[signal], at_a.rate[signal], at_b.value[signal], at_b.rate[signal],
+                         (b - a) * (is_by_theta ? 1 : dense.h));
+}
+
 std::optional<double> ContactSearch::first_crossing(const DenseOutput& dense, const ZeroCrossing& event, double a,
                                                     const SignalSample& at_a, double b,
                                                     const SignalSample& at_b) const {
     const int i = event.signal;
     if (has_crossed(event, at_b)) return root(dense, event, a, b);
     if (event.sign * at_a.rate[i] < 0 && event.sign * at_b.rate[i] > 0) {  // it may have been negative in between
+        if (event.sign * turning_value(dense, i, a, at_a, b, at_b) > 0) return std::nullopt;
         const double lowest = turning_point(dense, event, a, b);
         if (has_crossed(event, sample(dense, lowest))) return root(dense, event, a, lowest);
     }
@@ -97,6 +105,7 @@ void ContactSearch::update_peak(const DenseOutput& dense, double a, const Signal
     include(a, at_a);
     include(b, at_b);
     if (!(at_a.rate[force_signal] > 0 && at_b.rate[force_signal] < 0)) return;
+    if (turning_value(dense, force_signal, a, at_a, b, at_b) < peak.force) return;
     const double top = turning_point(dense, {force_signal, -1, ContactMode::contact}, a, b);
     include(top, sample(dense, top));
 }
@@ -114,8 +123,7 @@ void ContactSearch::include_peak(const DenseOutput& dense, double end, Peak& pea
 }
 
 double ContactSearch::impulse(const DenseOutput& dense, double a, double b) const {
-    if (plant_.contact.law != ContactLaw::hunt_crossley)
-        return impulse_by_gauss(plant_, plant_.contact, dense, a, b);
+    if (plant_.contact.law != ContactLaw::hunt_crossley) return impulse_by_gauss(plant_, plant_.contact, dense, a, b);
     constexpr double negligible = 1e-4;  // a depth, as a share of the largest: less than 1e-8 of the impulse lies below
     const double depth_a = depth(dense, a), depth_b = depth(dense, b);
     const double largest = std::max({depth_a, depth(dense, 0.5 * (a + b)), depth_b});

@@ -25,7 +25,8 @@ public:
 
 private:
     // The signals at an instant: the depth and the four distances inside the outline, m; the signal that is negative
-    // where a damped law would pull (NormalForce::release); the normal force, N. The rates are correct in sign only.
+    // where a damped law would pull (NormalForce::release); the normal force, N. The rates are by theta where a damped law
+    // gives the signal, else by time.
     struct SignalSample {
         std::array<double, 7> value, rate;
     };
@@ -41,6 +42,9 @@ private:
     std::optional<double> first_crossing(const DenseOutput& dense, const ZeroCrossing& event, double a,
                                          const SignalSample& at_a, double b, const SignalSample& at_b) const;
     double turning_point(const DenseOutput& dense, const ZeroCrossing& event, double a, double b) const;
+    // A bound of a signal that turns between a and b.
+    double turning_value(const DenseOutput& dense, int signal, double a, const SignalSample& at_a, double b,
+                         const SignalSample& at_b) const;
     // Includes the largest normal force in contact from a to b in the peak.
     void update_peak(const DenseOutput& dense, double a, const SignalSample& at_a, double b, const SignalSample& at_b,
                      Peak& peak) const;

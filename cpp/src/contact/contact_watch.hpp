@@ -35,34 +35,45 @@ ARM3R_INLINE T impulse_by_gauss(const Plant<P>& plant, const Contact<P>& law, co
     return 0.5 * (b - a) * dense.h * sum;
 }
 
+// Where the tangents of a signal at both ends of an interval meet: beyond a maximum or minimum that lies between them. The
+// rates have opposite signs.
+template <class T>
+ARM3R_INLINE T tangents_meet(const T& a, const T& rate_a, const T& b, const T& rate_b, const T& duration) {
+    return a + rate_a * (((b - a) - rate_b * duration) / (rate_a - rate_b));
+}
+
 // Of the signals that a contact mode watches: whether one may cross zero between two samples, or the force have a maximum.
 template <class T>
 class ContactWatch {
 public:
     using Mask = typename Lanes<T>::Mask;
 
-    // touching: by an elastic law; `held`: where contact ends when the depth falls to zero.
-    ContactWatch(const Wall<T>& wall, const Mask& free, const Mask& touching, const Mask& held)
-        : wall_(wall), free_(free), touching_(touching), held_(held) {}
+    // touching: by an elastic law; `held`: where contact ends when the depth falls to zero; duration: s, between samples.
+    ContactWatch(const Wall<T>& wall, const Mask& free, const Mask& touching, const Mask& held, const T& duration)
+        : wall_(wall), free_(free), touching_(touching), held_(held), duration_(duration) {}
 
-    ARM3R_INLINE Mask may_change(const Indentation<T>& a, const Indentation<T>& b) const {
-        const T o(0.0);
+    // `most`: the depth, m, of the largest force so far.
+    ARM3R_INLINE Mask may_change(const Indentation<T>& a, const Indentation<T>& b, const T& most) const {
+        const T o(0.0), turns_at = tangents_meet(a.depth, a.rate, b.depth, b.rate, duration_);
         const Mask rises_and_falls = a.rate > o && b.rate < o, falls_and_rises = a.rate < o && b.rate > o;
-        Mask may = (free_ && (b.depth > o || rises_and_falls)) || (held_ && (b.depth <= o || falls_and_rises)) ||
-                   (touching_ && rises_and_falls);
+        const Mask may = (free_ && (b.depth > o || (rises_and_falls && turns_at > o))) ||
+                         (held_ && (b.depth <= o || (falls_and_rises && turns_at <= o))) ||
+                         (touching_ && rises_and_falls && turns_at >= most);
         if (!wall_.has_outline) return may;
-        const auto may_leave = [&](const T& half, const T& across, const T& slip_a, const T& slip_b)
-                                   ARM3R_INLINE_LAMBDA {
-                                       return half - abs(across) < o || (slip_a > o && slip_b < o) ||
-                                              (slip_a < o && slip_b > o);
-                                   };
-        return may || (touching_ && (may_leave(wall_.half1, b.across1, a.slip1, b.slip1) ||
-                                     may_leave(wall_.half2, b.across2, a.slip2, b.slip2)));
+        const auto may_leave = [&](const T& half, const T& across_a, const T& slip_a, const T& across_b,
+                                   const T& slip_b) ARM3R_INLINE_LAMBDA {
+            const Mask turns = (slip_a > o && slip_b < o) || (slip_a < o && slip_b > o);
+            return half - abs(across_b) < o ||
+                   (turns && half - abs(tangents_meet(across_a, slip_a, across_b, slip_b, duration_)) < o);
+        };
+        return may || (touching_ && (may_leave(wall_.half1, a.across1, a.slip1, b.across1, b.slip1) ||
+                                     may_leave(wall_.half2, a.across2, a.slip2, b.across2, b.slip2)));
     }
 
 private:
     const Wall<T>& wall_;
     const Mask free_, touching_, held_;
+    const T duration_;
 };
 
 }  // namespace arm3r

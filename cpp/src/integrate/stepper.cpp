@@ -90,9 +90,8 @@ double Stepper<N>::attempt(bool, double t, const Y& y, double h) {
     }
     if (!has_end) return infinite;
     const bool heat = judge_.has_contact_heat();
-    const double error = state_.is_stiff
-                             ? state_.by_stiff.error(y, tolerance.rtol, tolerance.atol, heat)
-                             : state_.by_explicit.error(y, h, tolerance.rtol, tolerance.atol, heat);
+    const double error = state_.is_stiff ? state_.by_stiff.error(y, tolerance.rtol, tolerance.atol, heat)
+                                         : state_.by_explicit.error(y, h, tolerance.rtol, tolerance.atol, heat);
     return judge_.with_work_of_wall(error, y, end(), [&](std::size_t i) { return error_of(i, h); });
 }
 

@@ -125,8 +125,8 @@ public:
         const Mask is_new = sample_where(moved_);
         this->rhs_.latest = T(infinite);
         method_.accept(moved_, moved_ && continues_ && !is_new, this->t_, this->y_, this->h_);
-        this->balance_.update_where(
-            moved_, Energies<T>{this->kinetic_, this->potential_, this->stored(this->in_)}, this->y_);
+        this->balance_.update_where(moved_, Energies<T>{this->kinetic_, this->potential_, this->stored(this->in_)},
+                                    this->y_);
         const T factor = method_.factor(error_);
         const T whole = max(this->h_, select(was_last_, next_h_, T(0.0)));
         next_h_ = select(moved_, T(whole * select(was_refused_, min(factor, T(1.0)), factor)), next_h_);
@@ -144,9 +144,7 @@ public:
     }
 
     // Of a single run: whether it stands at a sample that has not been taken.
-    bool stands_at_sample() const {
-        return any(this->sampled_.next_sample() <= this->t_ + this->slack_);
-    }
+    bool stands_at_sample() const { return any(this->sampled_.next_sample() <= this->t_ + this->slack_); }
     // Whether a formula of time may jump, or the torque, at the end of the last step that was accepted.
     bool may_jump_at_end() const { return any(may_jump_); }
     // Whether the last step was refused because it had no finite end.
@@ -168,9 +166,9 @@ private:
 
     // The latest end of the step and the reasons for it.
     struct StepEnd {
-        T t;                             // s
-        Mask is_knot, is_jump, is_due;   // a formula of time changes, or jumps; the controller is due
-        T latest;                        // s, where formulas of time are evaluated at the latest (5.8)
+        T t;                            // s
+        Mask is_knot, is_jump, is_due;  // a formula of time changes, or jumps; the controller is due
+        T latest;                       // s, where formulas of time are evaluated at the latest (5.8)
     };
 
     ARM3R_INLINE StepEnd step_end() const {
@@ -214,8 +212,7 @@ private:
         if (may_press)
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
                 const T quarter = contact_time(this->plant_, this->wall_, this->p_, this->in_);
-                const T breaks =
-                    time_to_break(this->plant_.contact, this->in_, quarter, method_.tolerance().rtol);
+                const T breaks = time_to_break(this->plant_.contact, this->in_, quarter, method_.tolerance().rtol);
                 h = select(touching, min(h, min(quarter, breaks)), h);
             });
         return h;
@@ -252,8 +249,8 @@ private:
     }
 
     [[gnu::noinline]] void restart_after_jump(const Mask& here) {
-        Outlined<T>::run(
-            [&]() ARM3R_INLINE_LAMBDA { next_h_ = select(here, min(next_h_, first_step(here)), next_h_); });
+        Outlined<T>::run([&]()
+                             ARM3R_INLINE_LAMBDA { next_h_ = select(here, min(next_h_, first_step(here)), next_h_); });
     }
 
     ARM3R_INLINE void refuse(const Mask& here) {
@@ -276,8 +273,7 @@ private:
         theta_ = T(1.0);
         crosses_ = false;
         const T peak = this->contact_.peak(), peak_time = this->contact_.peak_time();
-        if (this->plant_.has_wall)
-            Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { watch_contact(); });
+        if (this->plant_.has_wall) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { watch_contact(); });
         Y y1 = method_.end();
         T t1 = select(was_last_, end.t, T(t0_ + this->h_));
         if (in_any_lane(crosses_)) {
@@ -285,8 +281,7 @@ private:
             stop_at_crossing(y1);
         }
         if (this->contact_.any_transient()) end_transients(peak, peak_time);
-        if (this->contact_.any_touching())
-            Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { add_impulse(); });
+        if (this->contact_.any_touching()) Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { add_impulse(); });
         if (this->performance_.samples() || this->performance_.sums_work())
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { add_performance(t1); });
         Mask comes_to_rest = false;
@@ -343,7 +338,10 @@ private:
         auto& contact = this->contact_;
         const bool is_elastic = !is_damped(this->plant_.contact.law);
         const Mask held = contact.touching() || contact.embedded();
-        const ContactWatch<T> watch(this->plant_.wall, !held && !contact.separated(), contact.touching(), held);
+        const ContactWatch<T> watch(this->plant_.wall, !held && !contact.separated(), contact.touching(), held,
+                                    T(this->h_ * (1.0 / (samples_per_step - 1))));
+        const T& stiffness = this->plant_.contact.stiffness[0];
+        T most = contact.peak() / stiffness;
         Mask eventful = is_elastic ? Mask(false) : contact.touching() || contact.separated();
         T force = contact.peak(), time = contact.peak_time();
         Indentation<T> before;
@@ -351,8 +349,9 @@ private:
         for (int n = 0; n < samples_per_step; ++n) {
             const T theta(double(n) / (samples_per_step - 1));
             const Indentation<T> now = indentation_at(this->plant_, dense_, theta);
-            if (n > 0) eventful = eventful || watch.may_change(before, now);
-            const T here = this->plant_.contact.stiffness[0] * now.depth;
+            if (n > 0) eventful = eventful || watch.may_change(before, now, most);
+            const T here = stiffness * now.depth;
+            most = max(most, now.depth);
             time = select(here > force, T(dense_.t0 + theta * dense_.h), time);
             force = max(force, here);
             before = now;
@@ -363,10 +362,9 @@ private:
     }
 
     [[gnu::noinline]] void search_lanes(const Mask& here) {
-        DenseOutput dense;
         for (int lane = 0; lane < Base::lanes; ++lane) {
             if (!Lanes<T>::is(here, lane)) continue;
-            fill_dense_output(lane, dense);
+            const DenseOutput dense = this->dense_output(*this, lane);
             Peak peak = this->contact_.peak(lane);
             const std::optional<Crossing> crossing =
                 ContactSearch(this->setup(lane).plant).next(dense, 0, this->mode(lane), peak);
@@ -380,15 +378,13 @@ private:
 
     // The first contact of a run that lasts is transient until an instant within this step; its peak is that until then.
     [[gnu::noinline]] void end_transients(const T& peak, const T& peak_time) {
-        DenseOutput dense;
         for (int lane = 0; lane < Base::lanes; ++lane) {
             const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
             const double end = std::max((get(this->contact_.transient_until()) - get(t0_)) / this->h(lane), 0.0);
             if (!Lanes<T>::is(moved_, lane) || !(end <= get(theta_))) continue;
             Peak until_then{get(peak), get(peak_time)};
-            fill_dense_output(lane, dense);
             if (this->mode(lane) == ContactMode::contact)
-                ContactSearch(this->setup(lane).plant).include_peak(dense, end, until_then);
+                ContactSearch(this->setup(lane).plant).include_peak(this->dense_output(*this, lane), end, until_then);
             this->contact_.end_transient(lane, until_then);
         }
     }
@@ -400,13 +396,12 @@ private:
         this->contact_.add_impulse(select(here, impulse, T(0.0)));
     }
     [[gnu::noinline]] void add_impulses(const Mask& here) {
-        DenseOutput dense;
         T impulse(0.0);
-        for (int lane = 0; lane < Base::lanes; ++lane) {
-            if (!Lanes<T>::is(here, lane)) continue;
-            fill_dense_output(lane, dense);
-            Lanes<T>::set(impulse, lane, ContactSearch(this->setup(lane).plant).impulse(dense, 0, theta(lane)));
-        }
+        for (int lane = 0; lane < Base::lanes; ++lane)
+            if (Lanes<T>::is(here, lane))
+                Lanes<T>::set(
+                    impulse, lane,
+                    ContactSearch(this->setup(lane).plant).impulse(this->dense_output(*this, lane), 0, theta(lane)));
         this->contact_.add_impulse(impulse);
     }
 
@@ -435,7 +430,7 @@ private:
         };
         const Mask unresolved = this->performance_.template add_whole<rule>(t0_, duration, this->rhs_.touching, phase,
                                                                             held, moved_, sample_at);
-        if (in_any_lane(unresolved)) refine_segment(rule, unresolved, t1);
+        if (in_any_lane(unresolved)) this->refine_segment(*this, rule, unresolved, t1);
         if (!this->performance_.sums_work()) return;
         Vec3<T> work = scaled(duration, mean_power);
         if (holds_samples_)
@@ -487,18 +482,6 @@ private:
             if (plant.external_force.on) force = plus(force, external_force_at(plant.external_force, t));
             Y rates;
             return this->rhs_.torque(t, wall, p, q, qd, force, y, rates);
-        }
-    }
-
-    template <std::size_t n>
-    [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved, const T& t1) {
-        DenseOutput dense;
-        for (int lane = 0; lane < Base::lanes; ++lane) {
-            if (!Lanes<T>::is(unresolved, lane)) continue;
-            fill_dense_output(lane, dense);
-            this->visit_step(lane, dense, Lanes<T>::get(t1, lane), [&](const StepView& view) {
-                this->performance_.refine(lane, rule, view, theta(lane));
-            });
         }
     }
 

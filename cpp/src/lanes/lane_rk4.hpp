@@ -65,6 +65,12 @@ public:
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
     FullState y0(int lane) const { return Base::state_of(y0_, lane); }
     FullState f0(int lane) const { return Base::state_of(f0_, lane); }
+    // The dense output of the last step, as the metrics see it.
+    void fill_dense_output(int lane, DenseOutput& dense) const {
+        dense.assign(hermite(t0(lane), this->h(lane), y0(lane), f0(lane), this->y(lane),
+                             Base::state_of(derivative_at_end(), lane)));
+    }
+    double theta(int) const { return 1; }  // its end
     // Whether a formula may have jumped at the end of the last step, and the derivative there before the jump.
     bool may_jump_at_end() const { return has_jump_ || any_was_due_; }
     FullState f1()
@@ -348,7 +354,7 @@ private:
         const double resolution = event_resolution(this->t(lane), h);
         const ContactSignals<double> signals = signals_of(lane);
         DenseOutput dense;
-        if (this->performance_.samples()) dense = dense_output_of(lane);
+        if (this->performance_.samples()) fill_dense_output(lane, dense);
         double from = 0;
         bool is_stale = false;
         while (const auto crossing = next_crossing(wall, signals, from, this->mode(lane), resolution)) {
@@ -367,13 +373,6 @@ private:
 
     // ---- performance
 
-    DenseOutput dense_output_of(int lane) const {
-        DenseOutput dense;
-        dense.assign(hermite(t0(lane), this->h(lane), y0(lane), f0(lane), this->y(lane),
-                             Base::state_of(derivative_at_end(), lane)));
-        return dense;
-    }
-
     // Handles the lanes alone in which the reference has a knot within the step, and takes them out of `whole`.
     [[gnu::noinline]] void split_at_knots(Mask& whole) {
         for (int lane = 0; lane < Base::lanes; ++lane) {
@@ -381,7 +380,7 @@ private:
             if (!(knot <= end)) continue;
             Lanes<T>::set(this->next_knot_, lane, this->next_metric_knot(lane, end));
             if (!(knot < slightly_before(end)) || !Lanes<T>::is(whole, lane)) continue;
-            add_lane_performance(lane, dense_output_of(lane), 0, 1);
+            add_lane_performance(lane, this->dense_output(*this, lane), 0, 1);
             Lanes<T>::mark(whole, lane, false);
         }
     }
@@ -400,17 +399,7 @@ private:
     ARM3R_INLINE void end_segment(const Mask& whole) {
         Mask unresolved = false;
         this->performance_.template end<rule>(this->instant(), this->h_, whole, unresolved);
-        if (in_any_lane(unresolved)) refine_segment(rule, unresolved);
-    }
-
-    template <std::size_t n>
-    [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
-        for (int lane = 0; lane < Base::lanes; ++lane)
-            if (Lanes<T>::is(unresolved, lane))
-                this->visit_step(lane, dense_output_of(lane), this->t(lane), [&](StepView view) {
-                    view.pressed = this->performance_.was_touching(lane);
-                    this->performance_.refine(lane, rule, view, 1.0);
-                });
+        if (in_any_lane(unresolved)) this->refine_segment(*this, rule, unresolved, this->t_);
     }
 
     // A part of the step, in the lane's present contact mode, from knot to knot of the reference.

@@ -285,6 +285,26 @@ protected:
                        plant_.holds_torque ? &held : nullptr, slightly_before(t1)});
     }
 
+    template <class Steps>
+    static DenseOutput dense_output(const Steps& steps, int lane) {
+        DenseOutput dense;
+        steps.fill_dense_output(lane, dense);
+        return dense;
+    }
+
+    // Refines the segment up to t1 in the lanes in which it is unresolved; `steps` has the dense output of the step, and
+    // the theta at which it ends.
+    template <class Steps, std::size_t n>
+    [[gnu::noinline]] void refine_segment(const Steps& steps, const Rule<n>& rule, const Mask& unresolved,
+                                          const T& t1) {
+        for (int lane = 0; lane < lanes; ++lane)
+            if (Lanes<T>::is(unresolved, lane))
+                visit_step(lane, dense_output(steps, lane), Lanes<T>::get(t1, lane), [&](StepView view) {
+                    view.pressed = performance_.was_touching(lane) && mode(lane) != ContactMode::separated;
+                    performance_.refine(lane, rule, view, steps.theta(lane));
+                });
+    }
+
     ARM3R_INLINE T stored(const Indentation<T>& in) const {
         if (!plant_.acts_on_arm) return T(0.0);
         const Contact<T>& law = contact_.law();
@@ -386,7 +406,7 @@ protected:
     Pose<T> p_;
     WallState<T> wall_ = no_wall<T>();
     Indentation<T> in_{};
-    Vec3<T> tau_ = zero_vector<T>();  // N m, applied
+    Vec3<T> tau_ = zero_vector<T>();   // N m, applied
     T kinetic_{0.0}, potential_{0.0};  // J; potential_: of the pose
 
     Mask active_ = false, started_ = false;

@@ -233,6 +233,7 @@ Metrics LaneRun<T, N>::metrics(int lane) const {
     template void LaneRun<T, N>::clear_lane(int);                        \
     template void LaneRun<T, N>::change_mode(int, const ContactChange&); \
     template void LaneRun<T, N>::fail_lanes(const Mask&);                \
-    template Metrics LaneRun<T, N>::metrics(int) const;                      template Indentation<double> LaneRun<T, N>::indentation_of(int) const;
+    template Metrics LaneRun<T, N>::metrics(int) const;                  \
+    template Indentation<double> LaneRun<T, N>::indentation_of(int) const;
 
 }  // namespace arm3r

@@ -71,11 +71,6 @@ public:
         step();
     }
     // The dense output of the last step.
-    DenseOutput dense_output(int lane) const {
-        DenseOutput dense;
-        fill_dense_output(lane, dense);
-        return dense;
-    }
     void fill_dense_output(int lane, DenseOutput& dense) const {
         dense.t0 = Lanes<T>::get(t0_, lane);
         dense.h = this->h(lane);
@@ -324,7 +319,7 @@ private:
         for (std::size_t j = 1; j + 1 < rule.node.size(); ++j)
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { sample_at(T(rule.node[j] * h), j); });
         this->performance_.template end<rule>(this->instant(), h, moved, unresolved);
-        if (in_any_lane(unresolved)) refine_segment(rule, unresolved);
+        if (in_any_lane(unresolved)) this->refine_segment(*this, rule, unresolved, this->t_);
     }
 
     ARM3R_INLINE void sample_at(const T& seconds, std::size_t j) {
@@ -339,16 +334,6 @@ private:
             in = tip_indentation(this->plant_, wall, p, qd);
         }
         this->performance_.sample(j, {t, p, wall, in, this->performance_.torque_at_start()});
-    }
-
-    template <std::size_t n>
-    [[gnu::noinline]] void refine_segment(const Rule<n>& rule, const Mask& unresolved) {
-        for (int lane = 0; lane < Base::lanes; ++lane)
-            if (Lanes<T>::is(unresolved, lane))
-                this->visit_step(lane, dense_output(lane), this->t(lane), [&](StepView view) {
-                    view.pressed = this->performance_.was_touching(lane);
-                    this->performance_.refine(lane, rule, view, theta(lane));
-                });
     }
 
     [[gnu::noinline]] void pass_knots() {

@@ -12,26 +12,6 @@
 namespace arm3r {
 namespace {
 
-template <std::size_t N>
-void fill_dense_output(LaneRk4<double, N>& lane_run, DenseOutput& dense) {
-    dense.assign(hermite(lane_run.t0(0), lane_run.h(0), lane_run.y0(0), lane_run.f0(0), lane_run.y(0), lane_run.f1()));
-}
-template <class LaneRun>
-    requires requires(const LaneRun& run, DenseOutput& dense) { run.fill_dense_output(0, dense); }
-void fill_dense_output(const LaneRun& lane_run, DenseOutput& dense) {
-    lane_run.fill_dense_output(0, dense);
-}
-
-template <std::size_t N>
-double end_theta(const LaneRk4<double, N>&) {
-    return 1;
-}
-template <class LaneRun>
-    requires requires(const LaneRun& run) { run.theta(0); }
-double end_theta(const LaneRun& lane_run) {
-    return lane_run.theta(0);
-}
-
 // Whether the method tells a step from the sample at its end, so that a caller can stand between them.
 template <class Integrator>
 concept StandsAtSamples = requires(Integrator run) { run.take_step_outlined(); };
@@ -88,7 +68,7 @@ protected:
 
     // What the last step leaves in the records; its dense output is computed only if rows or events lie in it.
     void record_step() {
-        theta_ = end_theta(lane_run_);
+        theta_ = lane_run_.theta(0);
         run_.t_end = lane_run_.t(0);
         run_.steps = lane_run_.steps(0);
         const double until = lane_run_.may_jump_at_end() ? run_.t_end - setup_.clock_rounding() : run_.t_end;
@@ -130,8 +110,11 @@ private:
     }
 
     void update_dense_output() {
-        if (!has_dense_output_) fill_dense_output(lane_run_, dense_);
-        has_dense_output_ = true;
+        if (std::exchange(has_dense_output_, true)) return;
+        if constexpr (requires { lane_run_.f1(); })
+            dense_.assign(hermite(lane_run_.t0(0), lane_run_.h(0), lane_run_.y0(0), lane_run_.f0(0), lane_run_.y(0),
+                                  lane_run_.f1()));
+        else lane_run_.fill_dense_output(0, dense_);
     }
 
     EnergyTotals set_end_metrics() {

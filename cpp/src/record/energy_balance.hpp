@@ -43,8 +43,7 @@ public:
 
     // Updates the residual and the maxima after each step, or where there was one.
     template <std::size_t N>
-    ARM3R_INLINE void update_where(const typename Lanes<T>::Mask& here, const Energies<T>& now,
-                                   const State<T, N>& y) {
+    ARM3R_INLINE void update_where(const typename Lanes<T>::Mask& here, const Energies<T>& now, const State<T, N>& y) {
         if (in_all_lanes(here)) return update(now, y);
         const EnergyBalance before = *this;
         update(now, y);

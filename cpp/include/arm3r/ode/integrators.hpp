@@ -41,8 +41,8 @@ struct Interpolant {
 
 // Cubic Hermite from both ends of a step: the first four coefficients of either method.
 template <class T, std::size_t N>
-ARM3R_INLINE Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0, const State<T, N>& y1,
-                          const State<T, N>& f1) {
+ARM3R_INLINE Interpolant<T, N> hermite(const T& t, const T& h, const State<T, N>& y0, const State<T, N>& f0,
+                                       const State<T, N>& y1, const State<T, N>& f1) {
     Interpolant<T, N> dense{t, h, {}};
     for (std::size_t i = 0; i < N; ++i) {
         const T difference = y1[i] - y0[i];
