@@ -130,7 +130,7 @@ def check(options: argparse.Namespace, marks: list[str]) -> None:
 
     task = task_of(options.name, numbers_of(options))
     if not options.file.is_file():
-        raise UsageError(f"{options.file}: is no file that can be read", code="usage")
+        raise UsageError(f"{options.file}: is not a readable file", code="usage")
     if options.file.suffix == ".py":
         say_what_is_not_barred()
     with closing(Worker()) as worker:
