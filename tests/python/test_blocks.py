@@ -376,7 +376,7 @@ def test_the_command_runs_both_and_says_how_far_apart_they_are(command: Any, tmp
     done = command("run", "s.yaml", "--controller", "right.m", "-o", "out.csv")
     assert done.returncode == 0, done.stderr
     assert re.search(r"^  controller +right\.m: fcn\(q3, q2, q1, a2", done.stdout, re.M)
-    assert re.search(r"^  beside it +gravity_compensation at the same samples$", done.stdout, re.M)
+    assert re.search(r"^  compared with +gravity_compensation at the same samples$", done.stdout, re.M)
     assert re.search(r"^  joint angles, rad .* \S+ at \S+ s$", done.stdout, re.M)
     expected = arm3r.Scenario.load(tmp_path / "s.yaml").run(controller=tmp_path / "right.m")
     assert same(arm3r.Run.load(tmp_path / "out.csv"), expected)
@@ -393,7 +393,7 @@ def test_the_command_obeys_all_options_of_run(command: Any, tmp_path: Path) -> N
     assert summary["beside"]["true_controller"] == "gravity_compensation"
     assert summary["beside"]["differences"]["q"]["largest"] > 0.1
     done = command("run", "-o-", "--no-checks", "--controller", "wrong.py", "--", "s.yaml")
-    assert done.stdout.startswith("t,q1,") and "beside it" in done.stderr
+    assert done.stdout.startswith("t,q1,") and "compared with" in done.stderr
     done = command("run", "-", "--controller", "right.m", input=(tmp_path / "s.yaml").read_text())
     assert done.returncode == 0, done.stderr
     (tmp_path / "other.yaml").write_text(TEXT)
