@@ -405,7 +405,7 @@ def test_the_command_obeys_all_options_of_run(command: Any, tmp_path: Path) -> N
 @pytest.mark.parametrize("words, code, message", [
     (["s.yaml", "--controller", "none.m"], 2, "none.m: this file cannot be read: No such file"),
     (["s.yaml", "--controller"], 2, "--controller needs a value"),
-    (["s.yaml", "--controller", "a", "--controller", "b"], 2, "--controller stands there twice"),
+    (["s.yaml", "--controller", "a", "--controller", "b"], 2, "--controller is given twice"),
     (["s.yaml", "--controller", "right.m", "-o", "s.yaml"], 2, "this would overwrite s.yaml"),
     (["s.yaml", "--controller", "right.m", "-o", "right.m"], 2, "this would overwrite right.m"),
     (["s.yaml", "--controller", "right.m", "-o", "no/folder/x.csv"], 6, "no/folder"),
