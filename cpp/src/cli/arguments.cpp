@@ -54,7 +54,7 @@ constexpr Option options[] = {
      "set PATH to VALUE (YAML), e.g. initial.q[1]='-30 deg'; null removes it; may be given several times"},
     {"--no-checks", "", "", "run", "leave out the scenario's checks, which hold for its own values only"},
     {"--json", "", "", "run", "print the summary as JSON: one object, or an array for several files"},
-    {"--trust", "", "", "run", "print up to which time the joint angles are right to 1e-6 rad; it takes three more runs"},
+    {"--trust", "", "", "run", "print up to which time the joint angles are right to 1e-6 rad; takes three more runs"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
     {"--controller", "", "FILE[:FUNCTION]", "run",
      "use a MATLAB or Python function of yours as the controller, and compare it with the scenario's own; "

@@ -54,7 +54,14 @@ def parser() -> argparse.ArgumentParser:
     add = call("check", check, "judge a file: exit code 0 if it is right, 11 if it is wrong, 12 if that is unclear")
     add("name", metavar="NAME")
     add("file", metavar="FILE", type=Path, help="a function in Python or MATLAB, or a scenario")
-    add("--hint", metavar="GRADE", type=int, choices=(1, 2, 3), default=0, help="print the hints up to this one: 1, 2 or 3")
+    add(
+        "--hint",
+        metavar="GRADE",
+        type=int,
+        choices=(1, 2, 3),
+        default=0,
+        help="print the hints up to this one: 1, 2 or 3",
+    )
     add_student(add)
     add = call("mark", mark, "mark a folder of submissions: a folder for each student, in it a file for each task")
     add("folder", metavar="DIR", type=Path)
@@ -70,14 +77,26 @@ def parser() -> argparse.ArgumentParser:
     add("--forbid-import", action="store_true", help="Python files can neither import nor read arm3r_cpp")
     add("--trust-code", action="store_true", help="run Python files also where this system cannot confine them")
     add = call("sheet", sheet, "write the exercises for printing, on A4 pages")
-    add("-o", dest="out", type=Path, metavar="SHEET.pdf", default=Path("sheet.pdf"), help="write the sheet there (default: sheet.pdf)")
+    add(
+        "-o",
+        dest="out",
+        type=Path,
+        metavar="SHEET.pdf",
+        default=Path("sheet.pdf"),
+        help="write the sheet there (default: sheet.pdf)",
+    )
     add_student(add)
     return parser
 
 
 def add_student(add: Any) -> None:
     add("--seed", type=int, metavar="N", help="use numbers of your own, drawn from N and your name")
-    add("--student", metavar="NAME", default="", help="the name from which the numbers are drawn: that of the folder that is handed in")
+    add(
+        "--student",
+        metavar="NAME",
+        default="",
+        help="the name from which the numbers are drawn: that of the folder that is handed in",
+    )
 
 
 def numbers_of(options: argparse.Namespace) -> Numbers:

@@ -62,7 +62,13 @@ def parser() -> argparse.ArgumentParser:
     )
     add("--jobs", type=int, metavar="N", help="shards computed at the same time (default: the number of usable CPUs)")
     add("--resume", action="store_true", help="go on where an interrupted sweep in DIR stopped")
-    add("--set", action="append", default=[], metavar="PATH=VALUE", help="set a value of the scenario; may be given several times")
+    add(
+        "--set",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="set a value of the scenario; may be given several times",
+    )
     controller = "a MATLAB or Python function of yours as the controller of every run; "
     unconfined = "FILE is executed without confinement"
     add("--controller", metavar="FILE[:FUNCTION]", help=controller + unconfined)

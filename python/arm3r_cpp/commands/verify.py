@@ -69,7 +69,12 @@ def parser() -> argparse.ArgumentParser:
     add("--base-rotation", type=angles, metavar="R,P,Y", help="of a chain: roll, pitch, yaw of its base, rad or 90deg")
     add("--payload", type=float, metavar="KG", help="a mass at the tip")
     add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: would it show the mistakes?")
-    add("--noise", type=float, metavar="X", help="noise of a log, relative to an entry's scale (default: estimated by a fit)")
+    add(
+        "--noise",
+        type=float,
+        metavar="X",
+        help="noise of a log, relative to an entry's scale (default: estimated by a fit)",
+    )
     add(
         "--columns",
         action="extend",
@@ -91,7 +96,7 @@ def parser() -> argparse.ArgumentParser:
         default=[],
         type=setting,
         metavar="NAME=VALUE",
-        help="value of an argument or of a name that the file does not define: a number or [1, 2]; p.l1 is a field of p",
+        help="value of an argument or of a name that the file lacks: a number or [1, 2]; p.l1 is a field of p",
     )
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser
