@@ -441,7 +441,7 @@ def test_without_the_python_package_it_is_one_line(executable: Path, tmp_path: P
 def test_the_help_says_in_whose_trust_the_code_runs(command: Any) -> None:
     for words in (["run"], ["plot"], ["sweep"]):
         text = " ".join(command(*words, "--help").stdout.split())
-        assert "--controller FILE[:FUNCTION]" in text and "executed as you would execute it, unconfined" in text
+        assert "--controller FILE[:FUNCTION]" in text and "executed without confinement" in text
 
 
 def test_plot_draws_both(command: Any, tmp_path: Path) -> None:
