@@ -252,7 +252,7 @@ def rotors() -> list[Formula]:
 HEAD = r"""
 # The derivation
 
-From the frames of the arm to $`J`$, $`M`$, $`C`$ and $`\tau_g`$, to lay beside your own sheet.
+From the frames of the arm to $`J`$, $`M`$, $`C`$ and $`\tau_g`$, to compare with your own.
 Every formula is computed by sympy from the ones above it, in both conventions of
 [the model](model.md) (1.1), and compared with the library at random arms and states. This page is
 written by `docs/derivation.py`. [`arm3r verify`](verify.md) compares your program.
@@ -267,7 +267,7 @@ FRAMES = r"""
 ## 1. Frames
 
 The frame of a link has $`x`$ along the link and $`z`$ along the joint axis. A right angle about
-$`x`$ takes the vertical axis of joint 1 to that of joint 2; its sign is the whole difference
+$`x`$ takes the vertical axis of joint 1 to that of joint 2; its sign is the only difference
 between the conventions: $`-90°`$ in `simscape`, where a positive angle lowers the arm, and
 $`+90°`$ in `slide`, where it raises the arm. The axes of joints 2 and 3 are parallel, so their
 angles add up.
@@ -287,7 +287,7 @@ c_2 = d_1\mathbf k + l_2 R_2\mathbf i \qquad c_3 = d_1\mathbf k + a_2 R_2\mathbf
 x = d_1\mathbf k + a_2 R_2\mathbf i + a_3 R_3\mathbf i
 ```
 
-Reach and height of the tip, seen from joint 2, make them shorter.
+With the reach $`r`$ and the height $`h`$ of the tip from joint 2 they become shorter.
 """
 TIP_JACOBIAN = r"""
 ## 3. Jacobian

@@ -27,24 +27,24 @@ PAGE = DOCS / "scenarios.md"
 PICTURES = DOCS / "images" / "scenarios"
 
 TITLES = {
-    "scenarios": "To start with",
+    "scenarios": "First scenarios",
     "lecture": "The demonstrations of the lecture",
     "contact": "Contact",
-    "joint_control": "Control of the joints",
+    "joint_control": "Joint control",
     "impedance": "Stiffness, impedance and admittance",
     "force_control": "Force control",
     "collision": "Momentum observer and collisions",
-    "sampled_control": "Controllers in samples, with sensors",
-    "passivity": "Energy of the controller",
+    "sampled_control": "Sampled control and sensors",
+    "passivity": "Passivity",
     "sweeps": "Sweeps",
 }
 HEAD = """\
 # Scenarios
 
-Every scenario that is installed, in a line and a picture. `arm3r examples` lists them too, `arm3r
-examples NAME` prints one, and `arm3r examples --copy DIR` copies all of them. In a picture, the
-left part shows the arm and the wall from the side, where darker is later; the right part shows a
-quantity over time, dashed where it is a reference. The lines of a file's head say more: where its
+Every installed scenario, with a line and a picture. `arm3r examples` lists them,
+`arm3r examples NAME` prints one, and `arm3r examples --copy DIR` copies all of them. In a picture,
+the left part shows the arm and the wall from the side, darker at later times; the right part shows
+quantities over time, with references dashed. The comment at the head of a file says more: where its
 numbers come from, and which equation of [the model](model.md) it shows.
 
 This page and its pictures are written by `docs/scenario_index.py`.

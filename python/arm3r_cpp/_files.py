@@ -63,7 +63,7 @@ def check_folder(folder: Path) -> None:
         OutputError: a file cannot be written there, because the folder does not exist.
     """
     if not folder.is_dir():
-        raise OutputError(f"{folder}: is no folder that exists; make it first, or name another one", code="output")
+        raise OutputError(f"{folder}: there is no such folder; create it first, or name another one", code="output")
 
 
 def make_folder(folder: Path) -> None:

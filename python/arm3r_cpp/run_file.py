@@ -133,11 +133,11 @@ def _fault(value: Any, shape: Any, place: str) -> str:
     """Where a value from JSON has not the shape that is needed; "" where it has."""
     if isinstance(shape, Mapping):
         if not isinstance(value, dict):
-            return f"{place} is no map"
+            return f"{place} is not a map"
         parts = ((value.get(key), part, f"{key} of {place}") for key, part in shape.items())
     elif isinstance(shape, list):
         if not isinstance(value, list):
-            return f"{place} is no list"
+            return f"{place} is not a list"
         parts = ((item, shape[0], f"item {i} of {place}") for i, item in enumerate(value))
     else:
         return "" if isinstance(value, shape) else f"{place} is missing or of the wrong type"

@@ -376,7 +376,7 @@ def test_the_command_runs_both_and_says_how_far_apart_they_are(command: Any, tmp
     done = command("run", "s.yaml", "--controller", "right.m", "-o", "out.csv")
     assert done.returncode == 0, done.stderr
     assert re.search(r"^  controller +right\.m: fcn\(q3, q2, q1, a2", done.stdout, re.M)
-    assert re.search(r"^  beside it +gravity_compensation at the same samples$", done.stdout, re.M)
+    assert re.search(r"^  compared with +gravity_compensation at the same samples$", done.stdout, re.M)
     assert re.search(r"^  joint angles, rad .* \S+ at \S+ s$", done.stdout, re.M)
     expected = arm3r.Scenario.load(tmp_path / "s.yaml").run(controller=tmp_path / "right.m")
     assert same(arm3r.Run.load(tmp_path / "out.csv"), expected)
@@ -393,7 +393,7 @@ def test_the_command_obeys_all_options_of_run(command: Any, tmp_path: Path) -> N
     assert summary["beside"]["true_controller"] == "gravity_compensation"
     assert summary["beside"]["differences"]["q"]["largest"] > 0.1
     done = command("run", "-o-", "--no-checks", "--controller", "wrong.py", "--", "s.yaml")
-    assert done.stdout.startswith("t,q1,") and "beside it" in done.stderr
+    assert done.stdout.startswith("t,q1,") and "compared with" in done.stderr
     done = command("run", "-", "--controller", "right.m", input=(tmp_path / "s.yaml").read_text())
     assert done.returncode == 0, done.stderr
     (tmp_path / "other.yaml").write_text(TEXT)
@@ -405,7 +405,7 @@ def test_the_command_obeys_all_options_of_run(command: Any, tmp_path: Path) -> N
 @pytest.mark.parametrize("words, code, message", [
     (["s.yaml", "--controller", "none.m"], 2, "none.m: this file cannot be read: No such file"),
     (["s.yaml", "--controller"], 2, "--controller needs a value"),
-    (["s.yaml", "--controller", "a", "--controller", "b"], 2, "--controller stands there twice"),
+    (["s.yaml", "--controller", "a", "--controller", "b"], 2, "--controller is given twice"),
     (["s.yaml", "--controller", "right.m", "-o", "s.yaml"], 2, "this would overwrite s.yaml"),
     (["s.yaml", "--controller", "right.m", "-o", "right.m"], 2, "this would overwrite right.m"),
     (["s.yaml", "--controller", "right.m", "-o", "no/folder/x.csv"], 6, "no/folder"),
@@ -441,7 +441,7 @@ def test_without_the_python_package_it_is_one_line(executable: Path, tmp_path: P
 def test_the_help_says_in_whose_trust_the_code_runs(command: Any) -> None:
     for words in (["run"], ["plot"], ["sweep"]):
         text = " ".join(command(*words, "--help").stdout.split())
-        assert "--controller FILE[:FUNCTION]" in text and "executed as you would execute it, unconfined" in text
+        assert "--controller FILE[:FUNCTION]" in text and "executed without confinement" in text
 
 
 def test_plot_draws_both(command: Any, tmp_path: Path) -> None:

@@ -149,7 +149,7 @@ def test_links_fifos_and_two_files_of_a_name_are_refused(tmp_path: Path) -> None
     (student / "first_joint.csv").write_text("q1\n1\n")
     assert call("mark", "--trust-code", tmp_path / "class", "-o", tmp_path / "t.csv") == 0
     reasons = {row["task"]: row["reason"] for row in rows_of(tmp_path / "t.csv")}
-    assert "is a link" in reasons["moon"] and "is no file" in reasons["plate_face"]
+    assert "is a link" in reasons["moon"] and "is not a readable file" in reasons["plate_face"]
     assert "there are 2 files of this name (.m, .py)" in reasons["observer"]
     assert "it should be .py or .m" in reasons["first_joint"]
 
@@ -226,10 +226,10 @@ def test_list_and_show(cli: Any, scripts: Path, capsys: Any) -> None:
     [
         (("show", "first_join"), 2, "did you mean first_joint?"),
         (("show", "cake"), 2, "`arm3r exercise list` lists them"),
-        (("check", "moon", "nothing.yaml"), 2, "nothing.yaml: is no file that can be read"),
-        (("mark", "nothing"), 2, "nothing: is no folder"),
+        (("check", "moon", "nothing.yaml"), 2, "nothing.yaml: is not a readable file"),
+        (("mark", "nothing"), 2, "nothing: is not a folder"),
         (("mark", "empty"), 2, "empty: holds no folders"),
-        (("mark", "class", "-o", "away/t.csv"), 6, "away: is no folder that exists"),
+        (("mark", "class", "-o", "away/t.csv"), 6, "away: there is no such folder; create it first"),
     ],
 )
 def test_what_is_wrong_is_one_line(

@@ -194,7 +194,7 @@ def test_the_list_of_a_folder_says_what_is_done(tmp_path: Path, capsys: Any) -> 
         (("check", "moon", "moon.yaml", "--student", "anna"), 2, "add --seed N"),
         (("list", "away"), 2, "away: cannot be read"),
         (("sheet", "-o", "sheet.png"), 2, ".pdf is written there, got .png"),
-        (("sheet", "-o", "away/sheet.pdf"), 6, "away: is no folder that exists"),
+        (("sheet", "-o", "away/sheet.pdf"), 6, "away: there is no such folder; create it first"),
     ],
 )
 def test_what_is_wrong_is_one_line(

@@ -190,7 +190,7 @@ def test_no_mark_hangs_on_a_number_near_its_threshold() -> None:
     ("name", "text", "words"),
     [
         ("plate_face", "format: 1\n", "the instant of contact: there is none"),
-        ("moon", "", "is no valid scenario: the scenario is empty"),
+        ("moon", "", "is not a valid scenario: the scenario is empty"),
         ("gravity_constant", "format: 1\ncontroller: {type: joint_pd}\n", "controller.type is joint_pd; it should be"),
         ("steady_force", "format: 1\ncontroller: {type: user}\n", "does not go with what is given: reference.type"),
         (

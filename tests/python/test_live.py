@@ -135,7 +135,7 @@ def test_a_file_is_written_whole_or_not_at_all(folder: Path, tmp_path: Path) -> 
     with pytest.raises(arm3r.OutputError, match=re.escape(str(target))):
         short_run().to_html(target)
     assert {path.name for path in tmp_path.iterdir()} == {"live", "run.html"}
-    with pytest.raises(arm3r.OutputError, match="is no folder that exists"):
+    with pytest.raises(arm3r.OutputError, match="there is no such folder; create it first"):
         short_run().to_html(tmp_path / "missing" / "run.html")
 
 

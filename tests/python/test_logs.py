@@ -234,7 +234,7 @@ def test_a_constant_where_zero_is_due_is_read(tmp_path: Path) -> None:
         (b"a,b\n1,2,3\n", ":2: a row has 2 numbers, got 3"),
         (b"a,b\n1,5,2,5\n", "decimal commas need another separator"),
         (b'a,b\n"1,2\n', ":2: this row cannot be read"),
-        (b"a,b\n\0,2\n", "it is no text"),
+        (b"a,b\n\0,2\n", "it is not text"),
     ],
 )
 def test_what_is_no_table_is_refused_in_a_line(data: bytes, due: str, tmp_path: Path) -> None:

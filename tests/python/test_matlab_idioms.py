@@ -155,7 +155,7 @@ UNREAD = {
     "sum(A, 3)": "goes along dimension 1 or 2",
     "['a' 3]": "a number beside a text",
     "sin('a')": "sin of a text is not read",
-    "'a' + 1": "is no number",
+    "'a' + 1": "is not a number",
     "zeros(101)": "a matrix of 101 x 101 is too large",
 }
 

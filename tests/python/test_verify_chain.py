@@ -560,7 +560,7 @@ def test_an_arm_that_lies_across_gravity_may_hang_or_stand_on_paper(wave: str, a
     assert "g is 9.7 in line 2; standard gravity is 9.80665 m/s^2, --gravity X,Y,Z gives another" in str(verdict)
     upright = Chain.from_dh(written("paper.csv", PAPER)).placed(gravity=(0, 0, -9.81))
     verdict = verify.formula_verdict(written("gravity.m", text), "gravity", upright)
-    assert not verdict.ok and "across the arm's plane" in str(verdict), str(verdict)
+    assert not verdict.ok and "perpendicular to the arm's plane" in str(verdict), str(verdict)
 
 
 @pytest.mark.parametrize(("g", "is_near"), [("9.807", True), ("9.82", True), ("9.18", False)])

@@ -90,7 +90,7 @@ REFUSED = {
     ("--set", "p.a=1", "--set", "p=2"): "p is a number and a structure",
     ("--set", 'g="1"'): "a number or a list of numbers is needed",
     ("--set", "g=NaN"): "a number or a list of numbers is needed",
-    ("--set", "2x=1"): "'2x' is no name",
+    ("--set", "2x=1"): "'2x' is not a name",
     ("--set", "a2=1"): "x.py:1: a2 has a value here: change it there",
     ("--args", "q,qd"): "--args names 2 arguments; gravity takes 1: q",
     ("--args", "q d"): "names with commas between them are needed",

@@ -19,7 +19,7 @@ void check_variation(const Variation& variation) {
         seen[number] = true;
         const Key& key = key_at(number);
         if (key.kind == Kind::choice || key.kind == Kind::flag || key.kind == Kind::section)
-            throw Error(ARM3R_E_INDEX, "varied: " + key.path + " is no number but a choice; make a batch for each");
+            throw Error(ARM3R_E_INDEX, "varied: " + key.path + " is a choice, not a number; make a batch for each");
         if (key.kind == Kind::column)
             throw Error(ARM3R_E_INDEX,
                         "varied: " + key.path + " chooses columns of a log; arm3r_batch_rows chooses those of a batch");

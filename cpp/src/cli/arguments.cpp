@@ -48,17 +48,17 @@ constexpr std::string_view no_call = "-";  // as `calls` of an option of the pro
 
 constexpr Option options[] = {
     {"--output", "-o", "OUT", "run",
-     "write OUT (.csv, or .npz for numpy; no other ending) and, beside it, the summary as .json; - is standard output; "
-     "for several files, or with / at its end, a directory, which is made"},
+     "write OUT (.csv, or .npz for NumPy; no other ending) and, beside it, the summary as .json; - is standard output; "
+     "for several files, or with / at its end, OUT is a directory, which is created"},
     {"--set", "", "PATH=VALUE", "run check",
-     "put VALUE (YAML) in place of what stands at PATH, e.g. initial.q[1]='-30 deg'; null takes it out"},
+     "set PATH to VALUE (YAML), e.g. initial.q[1]='-30 deg'; null removes it; may be given several times"},
     {"--no-checks", "", "", "run", "leave out the scenario's checks, which hold for its own values only"},
     {"--json", "", "", "run", "print the summary as JSON: one object, or an array for several files"},
-    {"--trust", "", "", "run", "say up to which time the joint angles are right to 1e-6 rad; it takes three more runs"},
+    {"--trust", "", "", "run", "print up to which time the joint angles are right to 1e-6 rad; takes three more runs"},
     {"--time-limit", "", "SECONDS", "run", "end a run that takes longer by the wall clock as `budget`"},
     {"--controller", "", "FILE[:FUNCTION]", "run",
-     "run a MATLAB or Python function of yours as the controller, beside the scenario's own, in its convention; "
-     "FILE is executed as you would execute it, unconfined"},
+     "use a MATLAB or Python function of yours as the controller, and compare it with the scenario's own; "
+     "FILE is executed without confinement"},
     {"--format", "", "md", "schema columns", "print a Markdown page instead"},
     {"--help", "-h", "", "", "print this"},
     {"--version", "", "", "", "print the version"},
@@ -125,7 +125,7 @@ double read_seconds(const std::string& text) {
 void apply(const Option& option, const std::string& value, Arguments& arguments) {
     if (option.name == "--output") {
         if (value.empty()) usage_error("-o needs a file name");
-        if (!arguments.output.empty()) usage_error("-o stands there twice");
+        if (!arguments.output.empty()) usage_error("-o is given twice");
         arguments.output = value;
     } else if (option.name == "--set") {
         const std::size_t equals = value.find('=');
@@ -138,7 +138,7 @@ void apply(const Option& option, const std::string& value, Arguments& arguments)
         arguments.time_limit = read_seconds(value);
     } else if (option.name == "--controller") {
         if (value.empty()) usage_error("--controller needs a file name");
-        if (!arguments.controller.empty()) usage_error("--controller stands there twice");
+        if (!arguments.controller.empty()) usage_error("--controller is given twice");
         arguments.controller = value;
     } else {
         arguments.json |= option.name == "--json";

@@ -33,7 +33,7 @@ const char* what_jumps(const Setup& setup, const Event& event) {
     const Controller<double>& law = setup.controller();
     if (!setup.digital.sampling.on && tracks_force(law.type) &&
         (law.switching != Switching::always || integrates_force(law.type)))
-        return "the law switches, which learns of it at the end of the step";
+        return "the law switches, and sees this only at the end of the step";
     const Plant<double>& plant = setup.plant;
     if (!plant.acts_on_arm) return nullptr;
     if (plant.contact.law == ContactLaw::kelvin_voigt && plant.contact.damping > 0)
@@ -86,9 +86,9 @@ std::optional<std::string> TorqueOscillation::error_message(double period) const
     if (since_ < 0 || !(last_swing_ > min_growth * first_swing_)) return std::nullopt;
     const double samples = std::max(1.0, (until_ - since_) / period - changes_per_block);
     const double growth = exp(log(last_swing_ / first_swing_) / samples);
-    return "the sampled loop is unstable: from t = " + shortest(since_) + " s on the torque swings to and fro, and " +
-           shortest(to_thousandths(growth)) +
-           " times as far from sample to sample; take a higher sampling.rate, less delay, or lower gains";
+    return "the sampled loop is unstable: from t = " + shortest(since_) +
+           " s on the torque oscillates, and its amplitude grows by a factor of " + shortest(to_thousandths(growth)) +
+           " per sample; use a higher sampling.rate, less delay, or lower gains";
 }
 
 std::optional<std::string> singular_pose(const Setup& setup, const Run& run, const Vec3<double>& q) {

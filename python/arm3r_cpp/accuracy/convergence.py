@@ -46,7 +46,7 @@ class Convergence(NamedTuple):
     """The slope of all levels together; None: their errors are mere rounding."""
 
     def __str__(self) -> str:
-        head = f"{self.name}: {self.method}, angles beside those of a run with {self.key} = {self.reference:.3g}"
+        head = f"{self.name}: {self.method}, joint angles compared with a run with {self.key} = {self.reference:.3g}"
         rows = [[self.key, "steps", "error, rad", "order"], *map(_cells, self.levels)]
         return "\n".join([head, *(f"  {line}" for line in in_columns(rows, right=True)), self._verdict()])
 

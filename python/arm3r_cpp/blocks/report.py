@@ -21,9 +21,9 @@ def report(beside: Comparison) -> str:
     """The lines behind the summary of the user's run."""
     lines = [f"  controller      {shown(beside.name)}"]
     if beside.true is None:
-        return "\n".join([*lines, "  beside it       nothing: the scenario has no controller of its own"])
+        return "\n".join([*lines, "  compared with   nothing: the scenario has no controller of its own"])
     ended = "" if beside.true.outcome == "ok" else f", which ended as {beside.true.outcome}"
-    lines.append(f"  beside it       {beside.true_name} at the same samples{ended}")
+    lines.append(f"  compared with   {beside.true_name} at the same samples{ended}")
     if not beside.rows:
         return "\n".join([*lines, "  difference      no row to compare"])
     lines.append(table(beside))

@@ -38,8 +38,14 @@ def parser() -> argparse.ArgumentParser:
     add_part(parser)
     pace = parser.add_mutually_exclusive_group()
     pick = pace.add_argument
-    pick("--speed", type=float, metavar="X", default=1.0, help="seconds of the run in one of the film (default: 1)")
-    pick("--every", type=int, metavar="N", help="a frame for each N-th row of the run instead, whatever its time")
+    pick(
+        "--speed",
+        type=float,
+        metavar="X",
+        default=1.0,
+        help="seconds of the run in each second of the film (default: 1)",
+    )
+    pick("--every", type=int, metavar="N", help="one frame for every N-th row of the run, whatever its time")
     return parser
 
 

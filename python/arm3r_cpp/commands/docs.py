@@ -24,7 +24,7 @@ def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="arm3r-docs",
         description="The pages of this installation, as Markdown: list them, or print one. Their pictures and the "
-        "notebooks are in the sources alone.",
+        "notebooks are only in the sources.",
     )
     parser.add_argument("name", nargs="?", metavar="NAME", help="print this page, such as verify or sweeps")
     return parser

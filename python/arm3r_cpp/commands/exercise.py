@@ -44,7 +44,7 @@ def parser() -> argparse.ArgumentParser:
         one.set_defaults(do=do)
         return one.add_argument
 
-    add = call("list", list_tasks, "list the exercises, and for a folder with your files what is right of them")
+    add = call("list", list_tasks, "list the exercises; with a folder, judge the files in it")
     add("folder", metavar="DIR", nargs="?", type=Path, help="your folder: its files are judged")
     add_student(add)
     add = call("show", show, "print an exercise: what is asked, and what is given")
@@ -54,7 +54,14 @@ def parser() -> argparse.ArgumentParser:
     add = call("check", check, "judge a file: exit code 0 if it is right, 11 if it is wrong, 12 if that is unclear")
     add("name", metavar="NAME")
     add("file", metavar="FILE", type=Path, help="a function in Python or MATLAB, or a scenario")
-    add("--hint", metavar="GRADE", type=int, choices=(1, 2, 3), default=0, help="say more: 1, 2 or 3")
+    add(
+        "--hint",
+        metavar="GRADE",
+        type=int,
+        choices=(1, 2, 3),
+        default=0,
+        help="print the hints up to this one: 1, 2 or 3",
+    )
     add_student(add)
     add = call("mark", mark, "mark a folder of submissions: a folder for each student, in it a file for each task")
     add("folder", metavar="DIR", type=Path)
@@ -66,18 +73,30 @@ def parser() -> argparse.ArgumentParser:
     )
     add("--seed", type=int, metavar="N", help="each student has numbers of their own, from N and the folder's name")
     add("--task", metavar="NAME", action="append", help="mark only this task; may be given several times")
-    add("--jobs", type=int, metavar="N", help="files judged at a time (default: one for each CPU allowed)")
-    add("--forbid-import", action="store_true", help="a Python file cannot import or read arm3r_cpp, to copy from it")
+    add("--jobs", type=int, metavar="N", help="files judged at the same time (default: the number of usable CPUs)")
+    add("--forbid-import", action="store_true", help="Python files can neither import nor read arm3r_cpp")
     add("--trust-code", action="store_true", help="run Python files also where this system cannot confine them")
     add = call("sheet", sheet, "write the exercises for printing, on A4 pages")
-    add("-o", dest="out", type=Path, metavar="SHEET.pdf", default=Path("sheet.pdf"), help="(default: sheet.pdf)")
+    add(
+        "-o",
+        dest="out",
+        type=Path,
+        metavar="SHEET.pdf",
+        default=Path("sheet.pdf"),
+        help="write the sheet there (default: sheet.pdf)",
+    )
     add_student(add)
     return parser
 
 
 def add_student(add: Any) -> None:
-    add("--seed", type=int, metavar="N", help="have numbers of your own, drawn from N and your name")
-    add("--student", metavar="NAME", default="", help="whose numbers: the name of the folder that is handed in")
+    add("--seed", type=int, metavar="N", help="use numbers of your own, drawn from N and your name")
+    add(
+        "--student",
+        metavar="NAME",
+        default="",
+        help="the name from which the numbers are drawn: that of the folder that is handed in",
+    )
 
 
 def numbers_of(options: argparse.Namespace) -> Numbers:
@@ -130,7 +149,7 @@ def check(options: argparse.Namespace, marks: list[str]) -> None:
 
     task = task_of(options.name, numbers_of(options))
     if not options.file.is_file():
-        raise UsageError(f"{options.file}: is no file that can be read", code="usage")
+        raise UsageError(f"{options.file}: is not a readable file", code="usage")
     if options.file.suffix == ".py":
         say_what_is_not_barred()
     with closing(Worker()) as worker:

@@ -37,7 +37,7 @@ def parser() -> argparse.ArgumentParser:
 def add_server(parser: argparse.ArgumentParser) -> None:
     """The options for how a page is served."""
     add = parser.add_argument
-    add("--port", type=port, metavar="N", default=0, help="of the address (default: a free one)")
+    add("--port", type=port, metavar="N", default=0, help="port of the address (default: a free one)")
     add("--no-browser", action="store_true", help="only print the address")
 
 

@@ -69,7 +69,7 @@ def check_measured(logs: Sequence[Path], options: argparse.Namespace) -> None:
 def draw_beside(options: argparse.Namespace) -> None:
     """Your function as the controller, and the scenario's."""
     if options.panels:
-        raise UsageError("--panels: with --controller the panels are those of two controllers; leave it away")
+        raise UsageError("--panels: with --controller the panels are those of two controllers; leave it out")
     paths_of(options)
     scenario, (stem, suffix) = scenario_of(options.run, options.set), target_of(options)
     with contextlib.redirect_stdout(sys.stderr):  # what the user's function prints
@@ -88,7 +88,7 @@ def parser() -> argparse.ArgumentParser:
         usage="arm3r-plot RUN [options] | arm3r-plot --compare RUN RUN ... [options]",
         description="Draw a run: its force control, if it controls force, else an overview; or the lecture's figures; "
         "or several runs over each other. A file names scenario, convention and hash in its metadata. "
-        "`arm3r docs figures` says what stands on the figures.",
+        "`arm3r docs figures` describes the figures.",
         epilog="arm3r-plot sweep DIR draws the table of a sweep: see arm3r-plot sweep --help.",
     )
     add = parser.add_argument
@@ -124,7 +124,7 @@ def parser() -> argparse.ArgumentParser:
         help="folder, made if it is missing, or without --lecture also a file in a folder that exists (default: here)",
     )
     controller = "run your function as the controller of the scenario RUN, beside its own, and draw both; FILE is "
-    pick("--controller", metavar="FILE[:FUNCTION]", help=f"{controller}executed as you would execute it, unconfined")
+    pick("--controller", metavar="FILE[:FUNCTION]", help=f"{controller}executed without confinement")
     add_set(parser)
     add("--format", choices=FORMATS, help="of the files written (default: that of -o FILE, else png)")
     add_part(parser)
@@ -145,7 +145,7 @@ def add_layout(parser: argparse.ArgumentParser) -> None:
     angles = parser.add_mutually_exclusive_group()
     angles.add_argument("--degrees", action="store_true", default=None, help=unit)
     angles.add_argument("--radians", dest="degrees", action="store_false", default=None, help="see --degrees")
-    add("--stamp", action="store_true", help="write scenario, convention and hash at the figure's foot")
+    add("--stamp", action="store_true", help="write scenario, convention and hash at the bottom of the figure")
 
 
 def inches(least: float, most: float, text: str) -> float:
@@ -179,7 +179,7 @@ def target_of(options: argparse.Namespace) -> tuple[Path, str]:
     check_format(out)
     check_folder(out.parent)
     if options.format not in (None, out.suffix[1:]):
-        raise UsageError(f"-o {out}: is not {options.format}; leave --format away or change the name")
+        raise UsageError(f"-o {out}: is not {options.format}; leave out --format or change the name")
     return out.with_suffix(""), out.suffix[1:]
 
 
@@ -199,10 +199,10 @@ def figures(runs: dict[Path, Run], options: argparse.Namespace, logs: Sequence[P
 
     if options.lecture and (options.width or options.height):
         given = "--width" if options.width else "--height"
-        raise UsageError(f"{given}: the lecture's figures have a size of their own; leave it away", code="usage")
+        raise UsageError(f"{given}: the lecture's figures have a fixed size; leave it out", code="usage")
     if options.lecture and options.degrees is not None:
         given = "--degrees" if options.degrees else "--radians"
-        raise UsageError(f"{given}: the lecture's figures show no joint angles; leave it away", code="usage")
+        raise UsageError(f"{given}: the lecture's figures show no joint angles; leave it out", code="usage")
     part = {"start": options.start, "end": options.end, "panels": options.panels, "stamp": options.stamp}
     look = {"width": options.width or WIDTH, "height": options.height, "degrees": options.degrees}
     if logs:

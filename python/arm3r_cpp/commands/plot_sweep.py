@@ -21,10 +21,17 @@ def parser() -> argparse.ArgumentParser:
     )
     add = parser.add_argument
     add("folder", type=Path, metavar="DIR", help="folder of a finished sweep")
-    add("-o", dest="out", type=Path, metavar="OUT.png", default=Path("sweep.png"), help="also .pdf or .svg")
+    add(
+        "-o",
+        dest="out",
+        type=Path,
+        metavar="OUT.png",
+        default=Path("sweep.png"),
+        help="the figure, .png, .pdf or .svg (default: sweep.png)",
+    )
     add("--metric", metavar="NAME", help="column that is drawn (default: the first one kept)")
     add("--log", action="store_true", help="logarithmic scale of the metric")
-    add("--stamp", action="store_true", help="write scenario, convention and hash at the figure's foot")
+    add("--stamp", action="store_true", help="write scenario, convention and hash at the bottom of the figure")
     return parser
 
 

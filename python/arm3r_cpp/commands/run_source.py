@@ -18,7 +18,7 @@ SCENARIOS = (".yaml", ".yml")
 
 def add_set(parser: argparse.ArgumentParser) -> None:
     """The option by which a scenario is changed before it is run."""
-    help = "put VALUE in place of what stands at PATH of a scenario .yaml; again for more"
+    help = "set PATH of a scenario .yaml to VALUE; may be given several times"
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help=help)
 
 

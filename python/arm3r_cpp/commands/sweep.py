@@ -60,11 +60,17 @@ def parser() -> argparse.ArgumentParser:
         required=True,
         help="folder (without an ending) of the sweep: its table and its finished shards",
     )
-    add("--jobs", type=int, metavar="N", help="shards computed at a time (default: one for each CPU allowed)")
+    add("--jobs", type=int, metavar="N", help="shards computed at the same time (default: the number of usable CPUs)")
     add("--resume", action="store_true", help="go on where an interrupted sweep in DIR stopped")
-    add("--set", action="append", default=[], metavar="PATH=VALUE", help="put a value into the scenario")
+    add(
+        "--set",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="set a value of the scenario; may be given several times",
+    )
     controller = "a MATLAB or Python function of yours as the controller of every run; "
-    unconfined = "FILE is executed as you would execute it, unconfined"
+    unconfined = "FILE is executed without confinement"
     add("--controller", metavar="FILE[:FUNCTION]", help=controller + unconfined)
     add("--parquet", action="store_true", help="table.parquet instead of table.csv; needs pyarrow")
     add("--schema", action=_PrintSchema, nargs=0, help="print the JSON Schema of sweep files, for editors")

@@ -57,26 +57,31 @@ def parser() -> argparse.ArgumentParser:
     add("--kind", choices=KINDS, help="what the formulas compute (default: found from names)")
     arm = parser.add_mutually_exclusive_group()
     arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
-    arm.add_argument("--urdf", metavar="FILE", help="a serial chain of up to 7 joints")
+    arm.add_argument("--urdf", metavar="FILE", help="the arm is this serial chain of up to 7 joints")
     arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: `arm3r docs verify` says how it is written")
     add("--tip", metavar="LINK", help="of a URDF: the link whose frame is the tip (default: the last one)")
     add(
         "--gravity",
         type=vector,
         metavar="X,Y,Z",
-        help="in the base frame, m/s^2 (default: the arm's own); --gravity=-9.81,0,0 where it begins with a minus",
+        help="in the base frame, m/s^2 (default: the arm's own); with a minus first: --gravity=-9.81,0,0",
     )
     add("--base-rotation", type=angles, metavar="R,P,Y", help="of a chain: roll, pitch, yaw of its base, rad or 90deg")
     add("--payload", type=float, metavar="KG", help="a mass at the tip")
-    add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: does it see the mistakes?")
-    add("--noise", type=float, metavar="X", help="of a log, relative to an entry's scale (default: what a fit shows)")
+    add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: would it show the mistakes?")
+    add(
+        "--noise",
+        type=float,
+        metavar="X",
+        help="noise of a log, relative to an entry's scale (default: estimated by a fit)",
+    )
     add(
         "--columns",
         action="extend",
         default=[],
         type=pairs,
         metavar="FILE=OURS,...",
-        help="of a log: what its columns are, such as joint_a=q1,jac_12=J12; units in brackets: angle=q1[deg]",
+        help="what the columns of a log are, such as joint_a=q1,jac_12=J12; units in brackets: angle=q1[deg]",
     )
     add(
         "--args",
@@ -91,7 +96,7 @@ def parser() -> argparse.ArgumentParser:
         default=[],
         type=setting,
         metavar="NAME=VALUE",
-        help="of an argument or a name that the file does not define: a number or [1, 2]; p.l1 is a field of p",
+        help="value of an argument or of a name that the file lacks: a number or [1, 2]; p.l1 is a field of p",
     )
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser

@@ -46,7 +46,7 @@ def students(folder: Path) -> list[Path]:
         UsageError: there is no such folder, or no folder of a student in it.
     """
     if not folder.is_dir():
-        raise UsageError(f"{folder}: is no folder; name one that holds a folder for each student")
+        raise UsageError(f"{folder}: is not a folder; name one that holds a folder for each student")
     found = [one for one in _inside(folder) if one.is_dir() and not one.name.startswith(".")]
     if not found:
         raise UsageError(f"{folder}: holds no folders; make one for each student, with files named by task")

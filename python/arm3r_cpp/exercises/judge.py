@@ -34,7 +34,7 @@ def refused(task: Task, file: Path) -> str:
     if file.suffix not in task.suffixes:
         return f"ends with {file.suffix!r}; it should be {' or '.join(task.suffixes)}"
     if not file.is_file() or not os.access(file, os.R_OK):
-        return "is no file that can be read"
+        return "is not a readable file"
     if file.stat().st_size > MOST_BYTES:
         return f"is larger than {MOST_BYTES // 1000} kB"
     return ""

@@ -18,9 +18,9 @@ def judge_scenario(task: ScenarioTask, path: Path) -> Mark:
         student = Scenario(path.read_text(encoding="utf-8"), file=path.name)._quiet()
         student.validate()
     except UnicodeDecodeError:
-        return Mark(WRONG, "is no text in UTF-8")
+        return Mark(WRONG, "is not UTF-8 text")
     except ScenarioError as error:
-        return Mark(WRONG, one_line(f"is no valid scenario: {_problem(error)}"), message=one_line(str(error), 400))
+        return Mark(WRONG, one_line(f"is not a valid scenario: {_problem(error)}"), message=one_line(str(error), 400))
     try:
         return _judge_run(task, judged(task, student))
     except ScenarioError as error:

@@ -99,7 +99,7 @@ def _text(file: str) -> str:
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     if "\0" in text:
-        raise UsageError(f"{file}: this file cannot be read: it is no text", code="file.log")
+        raise UsageError(f"{file}: this file cannot be read: it is not text", code="file.log")
     return text
 
 

@@ -310,4 +310,4 @@ def _numbers(result: Any, output: int | None) -> Floats:
         try:
             return np.concatenate([np.atleast_1d(np.asarray(part, np.float64)).ravel() for part in result])
         except Exception:
-            raise ProgramError(f"returns {kind} that is no array of numbers") from None
+            raise ProgramError(f"returns {kind} that is not an array of numbers") from None

@@ -57,7 +57,7 @@ def _renamed(formula: Formula, arguments: list[str]) -> Formula:
 def _put(given: dict[str, Any], name: str, value: Any) -> None:
     """A value under its name, in the structure that the name is a field of."""
     if not _NAME.fullmatch(name):
-        raise UsageError(f"--set: {name!r} is no name")
+        raise UsageError(f"--set: {name!r} is not a name")
     *structures, field = name.split(".")
     for structure in structures:
         given = given.setdefault(structure, {})

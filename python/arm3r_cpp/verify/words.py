@@ -48,9 +48,9 @@ def _covered(verdict: Judgement, name: str) -> str:
     count = int(np.prod(verdict.shape)) if verdict.shape else 0
     *others, last = map(str, test["joints"] or [""])
     joints = f"joints {', '.join(others)} and {last}" if others else f"joint {last}" if last else "no joint"
-    moves = "moves" if KINDS[verdict.kind].is_derivative else "turns"
-    text = f"{name}: {moves} {joints}, tests {len(test['entries'])} of {count} entries"
-    return text + (f", would catch {test['seen']} of {test['planted']} typical mistakes" if "planted" in test else "")
+    verb = ("move" if KINDS[verdict.kind].is_derivative else "turn") + ("" if others else "s")
+    text = f"{name}: {joints} {verb}, {len(test['entries'])} of {count} entries tested"
+    return text + (f", {test['seen']} of {test['planted']} typical mistakes would show" if "planted" in test else "")
 
 
 def _edit_of(finding: Finding) -> tuple[int, int, str, str]:

@@ -509,7 +509,7 @@ class MatlabProgram:
             return _with_where(held, mask, given)
         array = _NOTHING if held is None else held
         if not isinstance(array, np.ndarray):
-            raise ProgramError("an index is set of what is no matrix")
+            raise ProgramError("an index is assigned of what is not a matrix")
         if len(step.parts) > 2:
             raise Unread("an index of more than three dimensions is not read")
         is_all = [isinstance(part, All) for part in step.parts]
@@ -596,9 +596,9 @@ class MatlabProgram:
         if isinstance(value, Pages):
             raise Unread("of an array of three dimensions one page at a time is read, such as T(:,:,1)")
         if isinstance(value, str):
-            raise Unread(f"the text {self.text[node.start : node.end]!r} is no number")
+            raise Unread(f"the text {self.text[node.start : node.end]!r} is not a number")
         if not isinstance(value, np.ndarray):
-            raise ProgramError(f"{self.text[node.start : node.end]!r} is no number")
+            raise ProgramError(f"{self.text[node.start : node.end]!r} is not a number")
         return as_numbers(value)
 
     def _values(self, parts: Sequence[Node], variables: dict[str, Any]) -> list[Any]:
@@ -674,7 +674,7 @@ class MatlabProgram:
                 raise Unread("a number beside a text in one matrix is not read")
             return "".join(one for row in rows for one in row)
         if any(not isinstance(one, np.ndarray) or isinstance(one, Pages) for row in rows for one in row):
-            raise Unread(f"{self.text[node.start : node.end]!r} holds what is no matrix of numbers")
+            raise Unread(f"{self.text[node.start : node.end]!r} holds what is not a matrix of numbers")
         return stacked([stacked(row, 2) for row in rows] or [_NOTHING], 1)
 
     def _range(self, node: Node, variables: dict[str, Any]) -> list[float]:
@@ -762,7 +762,7 @@ class MatlabProgram:
         if isinstance(held, list):
             return [held[place] for place in self._places(parts[0], len(held), variables) if place < len(held)]
         if not isinstance(held, np.ndarray):
-            raise Unread(f"{shown!r} is an index of what is no matrix")
+            raise Unread(f"{shown!r} indexes what is not a matrix")
         return self._part(held, parts, variables)
 
     def _apply(self, handle: Handle, inputs: list[Any], variables: dict[str, Any]) -> Any:

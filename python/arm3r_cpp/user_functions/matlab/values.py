@@ -64,7 +64,7 @@ def as_numbers(array: Any) -> Floats:
 def text_in(value: Any) -> str:
     """
     Raises:
-        Unread: it is no text.
+        Unread: it is not text.
     """
     if not isinstance(value, str):
         raise Unread("a text is needed here; what stands here is none, or is not read")

@@ -156,7 +156,7 @@ class Chain(SerialChain):
             size = self.gravity_size
             down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)
             words = "" if down or not size else f" along {vector_words(self.gravity / size)}"
-            words += ", across the arm's plane" if self.is_across_gravity() else ""
+            words += ", perpendicular to the arm's plane" if self.is_across_gravity() else ""
             words += ", as the formula has it" if self.takes_direction else ""
             is_known = "gravity" not in varied or self.takes_gravity
             found += [f"g = {size:.7g} m/s^2{words}" if is_known else f"gravity{words}"] if is_known or words else []

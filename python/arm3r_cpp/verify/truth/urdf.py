@@ -85,7 +85,7 @@ def _name(file: str, joint: ElementTree.Element, end: str) -> str:
 def _child(file: str, joint: ElementTree.Element, links: dict[str, ElementTree.Element]) -> str:
     name = _name(file, joint, "child")
     if name not in links:
-        raise UsageError(f"{file}: the joint {joint.get('name')!r} has the child {name!r}, which is no link")
+        raise UsageError(f"{file}: the joint {joint.get('name')!r} has the child {name!r}, which is not a link")
     return name
 
 

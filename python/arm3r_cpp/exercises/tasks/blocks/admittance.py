@@ -30,16 +30,16 @@ def task(numbers: Numbers) -> FunctionTask:
     m, b, k = f"{point.m:g}", f"{point.b:g}", f"{point.k:g}"
     return FunctionTask(
         name="admittance",
-        title="a tip that should give way, and presses harder",
+        title="a tip that should yield, but presses harder",
         points=3,
         text=f"""\
 Admittance control moves a point x_c, which the tip follows. The point yields to the measured force on
-the tip as a mass M = {m} kg with a damper B = {b} N s/m and a spring K = {k} N/m to the goal x_d would.
+the tip like a mass M = {m} kg with a damper B = {b} N s/m, and a spring K = {k} N/m to the goal x_d.
 Write its acceleration, acceleration(x_c, v_c, x_d, f_on_tip), all vectors of three. With the listing the
-tip presses harder and harder, once it touches.""",
+tip presses harder and harder once it touches the wall.""",
         hints=(
-            "The wall pushes the tip back, f_on_tip points away from it: which way should x_c go?",
-            "Write the equation of a mass on a spring and a damper that the force f_on_tip pushes.",
+            "The wall pushes the tip back, so f_on_tip points away from the wall: which way should x_c go?",
+            "Write the equation of motion of a mass on a spring and a damper, on which f_on_tip acts.",
             "M a = f_on_tip - B v_c - K (x_c - x_d).",
         ),
         given=f"""\

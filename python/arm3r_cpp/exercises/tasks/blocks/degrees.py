@@ -16,18 +16,18 @@ def task(numbers: Numbers) -> FunctionTask:
     lab = arm_of(numbers)
     return FunctionTask(
         name="degrees",
-        title="the sensors speak in degrees",
+        title="sensors that measure in degrees",
         points=3,
         text=f"""\
 The joint sensors give angles in degrees and rates in degrees per second. Write the velocity of the tip
-in m/s, J qd, as tip_velocity(q_deg, qd_deg), each a vector of three. In the listing it comes out far
-too large.
+in m/s, J qd, as tip_velocity(q_deg, qd_deg), each a vector of three. The listing returns a velocity
+that is far too large.
 
 {lab.text.replace(" Angles are in radians.", "")}""",
         hints=(
             f"How fast can the tip be, {lab.a2 + lab.a3:g} m from joint 1, at 90 degrees per second?",
             "cosd takes the angle in degrees. What unit does J*qd have, if qd is in degrees per second?",
-            "Both are converted: q = q_deg*pi/180 and qd = qd_deg*pi/180.",
+            "Convert both: q = q_deg*pi/180 and qd = qd_deg*pi/180.",
         ),
         given=f"""\
 function v = tip_velocity(q, qd)

@@ -88,20 +88,20 @@ def task(numbers: Numbers) -> FunctionTask:
     )
     return FunctionTask(
         name="hybrid_selection",
-        title="which direction is controlled how?",
+        title="which direction for force, which for position?",
         points=5,
         text=f"""\
-A hybrid law controls the pressing force along the wall's normal and the position across it. The tip
+A hybrid law controls the pressing force along the wall's normal and the position along its face. The tip
 presses in the direction p = (1, 0, 0); S_f selects the force, S_p = I - S_f the position:
 
     F = S_p (K (x_d - x) - D v) + S_f p (f_d + k (f_d - f))
 
 with K = {law.k:g} N/m, D = {law.d:g} N s/m, k = {law.k_f}. x, v, x_d are vectors of three, the pressing force f and its
 goal f_d are numbers. Write command(x, v, x_d, f, f_d), which returns F. With the listing nothing holds
-the tip along the wall, and the force goes where it likes.""",
+the tip along the wall, and nothing controls the pressing force.""",
         hints=(
             "In which directions can the tip move freely, and in which does the wall hold it?",
-            "Force along the normal: S_f = diag(1, 0, 0). Position across it: S_p = diag(0, 1, 1).",
+            "Force along the normal: S_f = diag(1, 0, 0). Position along the face: S_p = diag(0, 1, 1).",
             "F = (f_d + k*(f_d - f), K*(x_d(2) - x(2)) - D*v(2), K*(x_d(3) - x(3)) - D*v(3)).",
         ),
         given=f"""\
@@ -137,17 +137,17 @@ def command(x, v, x_d, f, f_d):
         ),
         mistakes=(
             Mistake(
-                "the selections are swapped: it should be force along the normal, position across it",
+                "the selections are swapped: it should be force along the normal, position along the face",
                 lambda **given: law.command(**given, position=FORCE, force=POSITION),
             ),
             Mistake(
-                "position is controlled along the normal, too: S_p is missing",
+                "position is controlled along the normal too: S_p is missing",
                 lambda **given: law.command(**given, position=ALL),
             ),
             Mistake(
                 "the force error, f_d - f, has the wrong sign",
                 lambda **given: law.command(**given, sign=-1),
             ),
-            Mistake("the goal f_d itself is missing", lambda **given: law.command(**given, feedforward=0)),
+            Mistake("the feedforward of f_d is missing", lambda **given: law.command(**given, feedforward=0)),
         ),
     )

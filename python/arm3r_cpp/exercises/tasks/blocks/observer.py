@@ -51,11 +51,12 @@ def task(_: Numbers) -> FunctionTask:
         title="an observer that takes the weight for a collision",
         points=5,
         text="""\
-A momentum observer finds forces on the arm without a sensor. With p = M qd it keeps a sum s and puts out
+A momentum observer detects forces on the arm without a force sensor. It compares the momentum p = M qd
+with the momentum s that it expects, and returns
 
-    r = K_O (p - s),    ds/dt = what changes p, as far as it is known, and r
+    r = K_O (p - s),    ds/dt = the known terms of dp/dt, plus r
 
-r then follows the torque J^T f of an unknown force. The equation of motion is
+so that r follows the torque J^T f of an unknown force f. The equation of motion is
 M qdd + C qd + tau_g = tau + J^T f, and dM/dt = C + C^T. Write momentum_rate(tau, c, g, r), which returns
 ds/dt: tau is the motors' torque, c = C^T qd, g = tau_g the torque that holds the arm, r the output; each
 is a vector of three. With the listing the observer reports a collision of an arm that stands still.""",

@@ -22,11 +22,11 @@ def task(numbers: Numbers) -> FunctionTask:
         points=2,
         text=f"""\
 The lecture's function block is `function [t3, t2, t1] = fcn(q3, q2, q1)`. In Simulink each port carries
-its name. Here it was translated to Python as it stands, and is called as
+its name. Here it was translated to Python in the same order, and is called as
 
     t1, t2, t3 = gravity(q1, q2, q3)
 
-Hand in a function that is right when it is called so, by position.
+Hand in a function that is right when it is called in this way, by position.
 
 {lab.text}""",
         hints=(

@@ -12,7 +12,7 @@ def task(numbers: Numbers) -> FunctionTask:
         title="from a force to torques",
         points=3,
         text=f"""\
-A force f_on_tip, in base axes, acts on the tip. Write the torque that it puts on the joints, as
+A force f_on_tip, in base axes, acts on the tip. Write the torque that it exerts on the joints, as
 torque(q, f_on_tip), each a vector of three. The units of the listing are right, its power is not.
 
 {lab.text}""",
@@ -32,7 +32,7 @@ function tau = torque(q, f)
         mistakes=(
             Mistake("J is not transposed, as in J^T f", lambda q, f_on_tip: times(lab.arm.jacobian(q), f_on_tip)),
             Mistake(
-                "this is the torque that holds against the force; the force itself puts its opposite on the joints",
+                "this is the torque that balances the force; the torque of the force itself is the opposite",
                 lambda q, f_on_tip: -times(transposed(lab.arm.jacobian(q)), f_on_tip),
             ),
         ),

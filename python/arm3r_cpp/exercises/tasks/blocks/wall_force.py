@@ -36,16 +36,16 @@ def task(numbers: Numbers) -> FunctionTask:
     k_e = numbers.pick("wall_force K_E", 1000.0, steps(600.0, 1900.0, 100.0))
     return FunctionTask(
         name="wall_force",
-        title="what the tip feels of the wall",
+        title="the force of the wall on the tip",
         points=4,
         text=f"""\
 The lecture computes f = K_E (x - x_E) when the tip x is in the wall, whose frame stands at x_E, and a
 contact flag. Write it for the arm: wall_force(x, x_E), with two vectors of three, returns the force on
-the tip and the flag, (f_x, f_y, f_z, contact). The wall stands across the x axis, the tip comes from
-smaller x, K_E = {k_e:g} N/m; only normal forces act. contact is 1 in the wall and 0 outside.""",
+the tip and the flag, (f_x, f_y, f_z, contact). The wall is perpendicular to the x axis, the tip comes from
+smaller x, K_E = {k_e:g} N/m; only the normal force acts. contact is 1 in the wall and 0 outside.""",
         hints=(
-            "Three questions: on whom does your force act, what is it outside, and in which directions does it act?",
-            "The tip at x > x_E is pushed back, towards smaller x; y and z of the difference press nothing.",
+            "On which body does your force act, what is it outside of the wall, and in which directions does it act?",
+            "The tip at x > x_E is pushed back, towards smaller x; the differences in y and z cause no force.",
             f"d = x(1) - x_E(1); with d > 0 the result is (-{k_e:g}*d, 0, 0, 1), otherwise (0, 0, 0, 0).",
         ),
         given=f"""\
@@ -74,7 +74,7 @@ def wall_force(x, x_E):
                 lambda x, x_E: force_and_flag(k_e, x, x_E, clipped=False),
             ),
             Mistake(
-                "y and z of the difference press, too; only normal forces act",
+                "the differences in y and z cause forces too; only the normal force acts",
                 lambda x, x_E: force_and_flag(k_e, x, x_E, along=3),
             ),
             Mistake(

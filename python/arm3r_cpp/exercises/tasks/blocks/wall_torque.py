@@ -13,12 +13,12 @@ def task(numbers: Numbers) -> FunctionTask:
         points=3,
         text=f"""\
 A sensor in the wall measures f_on_wall, the lecture's K_E (x - x_E), in base axes. Write the torque that
-the contact puts on the arm's joints, as torque(q, f_on_wall), each a vector of three. With the listing
-in the simulation, the wall draws the arm in.
+the contact exerts on the arm's joints, as torque(q, f_on_wall), each a vector of three. In a simulation
+with the listing, the wall pulls the arm in.
 
 {lab.text}""",
         hints=(
-            "The tip presses on the wall with f_on_wall. With what does the wall press on the tip?",
+            "The tip presses on the wall with f_on_wall. With which force does the wall press on the tip?",
             "Action and reaction: f_on_tip = -f_on_wall. The joints feel J^T f_on_tip.",
             "tau = -J' * f_on_wall.",
         ),

@@ -15,8 +15,7 @@ def task(numbers: Numbers) -> FunctionTask:
         points=2,
         text=f"""\
 This is the lecture's first listing of the gravity torque, with the numbers of this arm. In the lecture
-the arm holds still with it. Turned to q1 = 20 degrees it does not. Find out why, and hand in the right
-one.
+the arm holds still with it. At q1 = 20 degrees it does not. Find out why, and hand in the right one.
 
 {lab.text}""",
         hints=(

@@ -28,8 +28,8 @@ out why, and hand in the right one.
 
 {lab.text}""",
         hints=(
-            "With equal links a2 = a3. Which letters could then be exchanged without a trace?",
-            "m3 hangs at the centre of link 3: how far is that from joint 3?",
+            "With equal links a2 = a3. Which letters could then be exchanged without changing a number?",
+            "The weight of link 3 acts at its centre of mass: how far is that from joint 3?",
             "It is a3/2, in t2 and in t3; a2/2 belongs to m2 only.",
         ),
         given=f"""\

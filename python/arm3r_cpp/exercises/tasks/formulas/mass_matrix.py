@@ -28,7 +28,7 @@ def task(numbers: Numbers) -> FunctionTask:
     lab = arm_of(numbers)
     return FunctionTask(
         name="mass_matrix",
-        title="a mass matrix in which the links know too little of each other",
+        title="a mass matrix with too little coupling",
         points=4,
         text=f"""\
 The kinetic energy of the arm is T = qd' M(q) qd / 2. In this listing one term of M is wrong. Find it,

@@ -21,7 +21,7 @@ follows the lecture's code. Find out what is wrong with it, and hand in the righ
 
 {lab.text}""",
         hints=(
-            "Compare J with differences of x(q) at a pose in which no angle is zero: which row does not fit?",
+            "Compare J with finite differences of x(q) at a pose in which no angle is zero: which row does not fit?",
             "On the slide a positive angle raises the arm, in the code it lowers it. What changes in dz/dq?",
             "The third row is 0, -(a2 cos(q2) + a3 cos(q2+q3)), -a3 cos(q2+q3).",
         ),

@@ -19,8 +19,8 @@ Write the position of the tip, x(q) = (x, y, z), as a function of q1, q2, q3.
 {lab.text}
 The origin lies on the axis of joint 1 at the height of joint 2.""",
         hints=(
-            "Put all joints to zero, then turn one after the other: where does the tip go?",
-            "Link 3 stands at q2 + q3 from the horizontal, and a positive angle lowers the arm.",
+            "Set all joint angles to zero, then change one after the other: where does the tip go?",
+            "The angle of link 3 from the horizontal is q2 + q3, and a positive angle lowers the arm.",
             "r = a2 cos(q2) + a3 cos(q2+q3); x = r cos(q1), y = r sin(q1), z = -(a2 sin(q2) + a3 sin(q2+q3)).",
         ),
         kind="kinematics",
@@ -35,7 +35,7 @@ The origin lies on the axis of joint 1 at the height of joint 2.""",
                 lambda q: lab.arm.tip_position(q) * [1, 1, -1],
             ),
             Mistake(
-                "link 3 stands at q2 + q3 from the horizontal, not at q3",
+                "the angle of link 3 from the horizontal is q2 + q3, not q3",
                 lambda q: lab.arm.tip_position(q - np.stack([0 * q[:, 1], 0 * q[:, 1], q[:, 1]], 1)),
             ),
         ),

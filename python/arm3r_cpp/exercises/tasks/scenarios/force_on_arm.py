@@ -38,12 +38,12 @@ time: {{stop: 7, log_every: 0.001}}
         title="a wall that goes through the arm",
         points=3,
         text="""\
-In the lecture the wall pushes through the tip of an arm that does not move. Hand in a scenario in which
-the arm feels the wall, with its stiffness and its speed. Before you run it: what does an arm do
-that is pushed and has nothing but gravity compensation? Only the section `wall` of your file counts.""",
+In the lecture the wall passes through the tip of an arm that does not move. Hand in a scenario in which
+the arm feels the wall, with the same stiffness and speed. Before you run it: how does an arm move that
+is pushed and has gravity compensation only? Only the section `wall` of your file counts.""",
         hints=(
             "`arm3r template` prints all keys of a scenario with what they mean; look at those of the wall.",
-            "The force is computed, but not applied: there is a key for that.",
+            "The force is computed, but not applied to the arm: there is a key for that.",
             "wall.acts_on_arm: true. The arm then bounces off, at twice the speed of the wall.",
         ),
         given=given,

@@ -37,7 +37,7 @@ time: {stop: 10}
                 threshold=1e-4,
             ),
             Condition(
-                what="the largest way of a joint",
+                what="the largest displacement of a joint",
                 unit="rad",
                 measure=lambda run: float(max(np.ptp(run[name]) for name in ("q1", "q2", "q3"))),
                 due=0.0,

@@ -34,15 +34,15 @@ def task(numbers: Numbers) -> ScenarioTask:
 
     return ScenarioTask(
         name="moon",
-        title="on the moon, or held by a sixth?",
+        title="on the moon, or compensated by a sixth?",
         points=3,
         text=f"""\
 The lecture puts 9.81/6 into its gravity compensation and calls it the moon. Hand in a scenario in which
 the lecture's arm falls freely on {moon}, where g = {gravity} m/s^2, with no control at all. `arm.gravity`
 and `controller` of your file count.""",
         hints=(
-            "What does the plant feel in the given scenario, and what does the motor do about it?",
-            f"On {moon} the plant itself is lighter, and nothing compensates.",
+            "Which gravity acts on the arm in the given scenario, and what do the motors do?",
+            f"On {moon} the gravity of the plant itself is smaller, and nothing compensates it.",
             f"arm: {{gravity: [0, 0, -{gravity}]}} and controller: {{type: none}}.",
         ),
         given=GIVEN,

@@ -19,9 +19,10 @@ def task(numbers: Numbers) -> ScenarioTask:
         points=3,
         text=f"""\
 The lecture compares the tip with the frame of the wall, which lies in the middle of a plate 5 mm thick
-and starts at x = 2 m. The arm does not feel the force. By hand: contact at (2 - 2 cos 30 deg)/{speed}
-= {begins} s, and {presses} N after 10 s with K_E = {stiffness} N/m. In this scenario contact begins {sooner} s earlier.
-Find out why, and hand in one that replays the lecture. Only the section `wall` of your file counts.""",
+and starts at x = 2 m. The arm does not feel the force. Computed by hand, contact begins at
+(2 - 2 cos 30 deg)/{speed} s = {begins} s, and the force after 10 s is {presses} N with
+K_E = {stiffness} N/m. In this scenario contact begins {sooner} s earlier.
+Find out why, and hand in one that agrees with the lecture. Only the section `wall` of your file counts.""",
         hints=(
             f"How far does the wall move in {sooner} s? Which length of the plate is that?",
             "Half of 5 mm: what is compared with the tip here is the face of the plate, not its frame.",

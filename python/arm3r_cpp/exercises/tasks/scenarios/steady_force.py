@@ -20,10 +20,10 @@ def task(numbers: Numbers) -> ScenarioTask:
         text=f"""\
 The tip should press on a wall with {force} N, while the wall moves towards the arm at {speed} m/s. In this
 scenario it presses with {pressing} N. Find out why, and hand in one in which the force settles at {force} N within
-three seconds, and the tip never leaves the wall. Only the section `controller` of your file counts.""",
+2.5 seconds, and the tip never leaves the wall. Only the section `controller` of your file counts.""",
         hints=(
-            "The wall moves at constant speed: what must the force error be, so that the tip moves at that speed?",
-            "Without memory the law needs an error of b v/k to keep moving. What makes an error vanish that lasts?",
+            "The wall moves at constant speed: what must the force error be, so that the tip moves at this speed?",
+            "Without memory the law needs the error b v/k_P to keep moving. What removes a steady-state error?",
             "An integral: controller.force_integral_gain, with k_I below b k_P/m_f so that the loop is stable.",
         ),
         given=f"""\
