@@ -147,9 +147,9 @@ void refuse_other_methods(const Setup& setup) {
     throw Error(ARM3R_E_SCENARIO,
                 {{.code = "scenario.other_choice",
                   .path = "solver.method",
-                  .message = "a simulation stands at its samples only by a method that chooses its steps",
+                  .message = "a simulation stands at its samples only by a method whose steps end there",
                   .got = setup.solver.method == SolverMethod::rk4 ? "rk4" : "taylor",
-                  .allowed = "dopri5, rodas4 or auto"}});
+                  .allowed = "dopri5, rodas4, auto, or rk4 with solver.events: located"}});
 }
 
 }  // namespace

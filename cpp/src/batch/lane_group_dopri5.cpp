@@ -1,11 +1,11 @@
 #include "batch/lane_group.hpp"
 #include "batch/lane_group_template.hpp"
-#include "lanes/lane_adaptive.hpp"
+#include "lanes/lane_events.hpp"
 
 namespace arm3r {
 
 template <class T>
-using LaneDopri5 = LaneAdaptive<T, state_size>;
+using LaneDopri5 = LaneEvents<T, state_size>;
 
 void run_lanes_dopri5(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
     run_lane_groups<LaneDopri5>(lanes, worker, first, run);

@@ -1,11 +1,11 @@
 #include "batch/lane_group.hpp"
 #include "batch/lane_group_template.hpp"
-#include "lanes/lane_adaptive.hpp"
+#include "lanes/lane_events.hpp"
 
 namespace arm3r {
 
 template <class T>
-using ControlledLaneDopri5 = LaneAdaptive<T, full_size>;
+using ControlledLaneDopri5 = LaneEvents<T, full_size>;
 
 void run_lanes_dopri5_controlled(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
     run_lane_groups<ControlledLaneDopri5>(lanes, worker, first, run);

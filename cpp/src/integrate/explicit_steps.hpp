@@ -87,6 +87,8 @@ public:
     using Mask = typename Lanes<T>::Mask;
     using Y = State<T, N>;
 
+    static constexpr bool chooses_length = true;
+
     // Adds to `evaluations` whenever it evaluates f.
     ExplicitSteps(const Setup&, const Plant<T>& plant, RightHandSide<T, T>& rhs, T& evaluations)
         : rhs_(rhs), evaluations_(evaluations), judge_(plant, rhs) {}
@@ -121,6 +123,7 @@ public:
     ARM3R_INLINE Interpolant<T, N> dense_output(const T& t, const Y& y, const T& h) const {
         return step_.interpolant(t, y, h);
     }
+    ARM3R_INLINE bool repeats_to_event() const { return false; }
     ARM3R_INLINE T factor(const T& error) const { return step_factor(error); }
 
     // Accepts the step to (t, y) where `moved`; where it `continues`, the next step starts there without a restart.

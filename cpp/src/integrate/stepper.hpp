@@ -16,6 +16,8 @@ class Stepper {
 public:
     using Y = State<double, N>;
 
+    static constexpr bool chooses_length = true;
+
     Stepper(const Setup& setup, const Plant<double>& plant, RightHandSide<double, double>& rhs, double& evaluations);
     void load_lane(int, const Solver& solver);
     // Of an equal setup: what it refers to stays.
@@ -37,6 +39,8 @@ public:
     Interpolant<double, N> dense_output(double t, const Y& y, double h) const {
         return state_.is_stiff ? state_.by_stiff.interpolant(t, y, h) : state_.by_explicit.interpolant(t, y, h);
     }
+    // The dense output of RODAS4 has one order less than the end of its step, which the works need.
+    bool repeats_to_event() const { return state_.is_stiff; }
     double factor(double error) const { return state_.is_stiff ? Stiff::step_factor(error) : step_factor(error); }
     // Where a step continues, the method may be changed.
     void accept(bool, bool continues, double t, const Y& y, double h);

@@ -48,8 +48,7 @@ void LaneContact<T>::add(int lane, const Contact<double>& law, const Polynomial<
     const auto& [t0, h, a, b] = part;
     if (const double until = tally_[lane].transient_until; t0 + h * b >= until) {
         include_peak(lane, law, depth, {t0, h, a, std::max((until - t0) / h, a)});
-        tally_[lane].end_transient(peak(lane));
-        store_transient(lane);
+        end_transient(lane, peak(lane));
     }
     if (mode_[lane] != ContactMode::contact) return;
     if (!is_elastic_) return add_forces(lane, normal_forces(law, depth, h, a, b), t0 + h * a, h * (b - a));
@@ -77,6 +76,12 @@ void LaneContact<T>::include_peak(int lane, const std::array<double, 5>& force, 
 }
 
 template <class T>
+void LaneContact<T>::end_transient(int lane, const Peak& peak) {
+    tally_[lane].end_transient(peak);
+    store_transient(lane);
+}
+
+template <class T>
 void LaneContact<T>::store_transient(int lane) {
     Lanes<T>::set(transient_until_, lane, tally_[lane].transient_until);
     is_any_transient_ = std::ranges::any_of(tally_, &ContactTally::is_transient);
@@ -99,6 +104,7 @@ void LaneContact<T>::update_peak(int lane, double value, double t, T& peak) {
 #define ARM3R_LANE_CONTACT(T)                                                                                   \
     template void LaneContact<T>::load_lane(int, const Contact<double>&, double);                               \
     template void LaneContact<T>::set_mode(int, ContactMode);                                                   \
+    template void LaneContact<T>::end_transient(int, const Peak&);                                              \
     template void LaneContact<T>::begin(int, double, double, double);                                           \
     template bool LaneContact<T>::count(int, const ContactChange&);                                             \
     template void LaneContact<T>::add(int, const Contact<double>&, const Polynomial<double>&, const StepPart&); \

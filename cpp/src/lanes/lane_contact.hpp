@@ -118,10 +118,7 @@ public:
     }
     ARM3R_INLINE void add_impulse(const T& impulse) { impulse_ = impulse_ + impulse; }
     // The first contact of a lane ceases to be transient, with this peak.
-    void end_transient(int lane, const Peak& peak) {
-        tally_[lane].end_transient(peak);
-        store_transient(lane);
-    }
+    void end_transient(int lane, const Peak& peak);
     // Adds a part of a step of one lane, in its present mode.
     void add(int lane, const Contact<double>& law, const Polynomial<double>& depth, const StepPart& part);
 

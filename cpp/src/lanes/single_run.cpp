@@ -3,7 +3,8 @@
 #include <utility>
 
 #include "arm3r/numbers/eigen_traits.hpp"
-#include "lanes/lane_adaptive.hpp"
+#include "integrate/fixed_steps.hpp"
+#include "lanes/lane_events.hpp"
 #include "lanes/lane_taylor.hpp"
 #include "lanes/single_rk4.hpp"
 #include "record/end_messages.hpp"
@@ -15,6 +16,9 @@ namespace {
 // Whether the method tells a step from the sample at its end, so that a caller can stand between them.
 template <class Integrator>
 concept StandsAtSamples = requires(Integrator run) { run.take_step_outlined(); };
+
+template <std::size_t N>
+using LocatedRk4 = LaneEvents<double, N, FixedSteps<double, N>>;
 
 FullState initial_derivative(const FullState& y) { return {y[3], y[4], y[5]}; }
 
@@ -121,7 +125,7 @@ private:
         const arm3r_outcome asked = run_.outcome;
         static_cast<Metrics&>(run_) = lane_run_.metrics(0);
         run_.outcome = asked;
-        if constexpr (StandsAtSamples<Integrator>) {
+        if constexpr (requires { lane_run_.method().choices(); }) {
             run_.stiff_steps = double(lane_run_.method().stiff_steps());
             run_.choices = lane_run_.method().choices();
         }
@@ -218,17 +222,25 @@ Run run_alone(const Setup& setup, const RunOptions& options) {
     switch (setup.solver.method) {
         case SolverMethod::taylor: return SingleRun<LaneTaylor<double>>(setup, options).run();
         case SolverMethod::rk4:
+            if (setup.solver.events == StepEvents::located)
+                return remembers ? SingleRun<LocatedRk4<full_size>>(setup, options).run()
+                                 : SingleRun<LocatedRk4<state_size>>(setup, options).run();
             return remembers ? SingleRun<LaneRk4<double, full_size>>(setup, options).run()
                              : SingleRun<SingleRk4>(setup, options).run();
         default:
-            return remembers ? SingleRun<LaneAdaptive<double, full_size>>(setup, options).run()
-                             : SingleRun<LaneAdaptive<double, state_size>>(setup, options).run();
+            return remembers ? SingleRun<LaneEvents<double, full_size>>(setup, options).run()
+                             : SingleRun<LaneEvents<double, state_size>>(setup, options).run();
     }
 }
 
 std::unique_ptr<InteractiveRun> start_interactive_run(const Setup& setup, const RunOptions& options) {
-    if (has_memory(setup.plant)) return std::make_unique<StandingRun<LaneAdaptive<double, full_size>>>(setup, options);
-    return std::make_unique<StandingRun<LaneAdaptive<double, state_size>>>(setup, options);
+    const bool remembers = has_memory(setup.plant);
+    if (setup.solver.method == SolverMethod::rk4) {
+        if (remembers) return std::make_unique<StandingRun<LocatedRk4<full_size>>>(setup, options);
+        return std::make_unique<StandingRun<LocatedRk4<state_size>>>(setup, options);
+    }
+    if (remembers) return std::make_unique<StandingRun<LaneEvents<double, full_size>>>(setup, options);
+    return std::make_unique<StandingRun<LaneEvents<double, state_size>>>(setup, options);
 }
 
 }  // namespace arm3r

@@ -143,14 +143,14 @@ std::optional<std::string> friction_in_residual(const Setup& setup, const Run& r
 }
 
 std::optional<std::string> jump_at_contact(const Setup& setup, const Run& run) {
-    if (setup.solver.method != SolverMethod::rk4) return std::nullopt;
+    if (!setup.solver.is_on_grid()) return std::nullopt;
     for (const Event& event : run.events) {
         const char* what = event.t > setup.start ? what_jumps(setup, event) : nullptr;
         if (!what) continue;
         return std::string("contact ") + (event.type == Event::make ? "begins" : "ends") +
                " at t = " + rounded(event.t, 9) + " s within a step of rk4, where " + what +
                ": that step is of first order, and so is what follows; compare with a smaller solver.step, or take "
-               "method: dopri5, whose steps end there";
+               "solver.events: located, or method: dopri5: their steps end there";
     }
     return std::nullopt;
 }

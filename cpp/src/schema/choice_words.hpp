@@ -98,6 +98,9 @@ inline constexpr std::array choice_words<Reaction> =
                                          {Reaction::reflex, "reflex"},
                                          {Reaction::retreat, "retreat"}});
 template <>
+inline constexpr std::array choice_words<StepEvents> =
+    std::to_array<ChoiceWord<StepEvents>>({{StepEvents::grid, "grid"}, {StepEvents::located, "located"}});
+template <>
 inline constexpr std::array choice_words<SolverMethod> =
     std::to_array<ChoiceWord<SolverMethod>>({{SolverMethod::dopri5, "dopri5"},
                                              {SolverMethod::rk4, "rk4"},

@@ -66,6 +66,11 @@ void append_solver(std::vector<Key>& keys) {
                                                     "Maximum step size."))));
     keys.push_back(where("solver.method", {"rk4"},
                          number("solver.step", {1e-3}, Source::ours, {1e-12, 1e9}, "s", "Step size of rk4.")));
+    keys.push_back(where(
+        "solver.method", {"rk4"},
+        choice(
+            "solver.events", words_of<StepEvents>(), Source::ours,
+            "Where a step of rk4 ends. grid: at multiples of solver.step alone; located: also at samples, where contact begins or ends, and where a formula of time changes, so that rk4 keeps its order there.")));
     keys.push_back(of_kind(Kind::integer, number("solver.max_steps", {1e7}, Source::ours, {1, 1e9}, "",
                                                  "Accepted and rejected steps after which the run ends as `budget`.")));
 }

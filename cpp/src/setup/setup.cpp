@@ -190,7 +190,8 @@ Solver make_solver(std::span<const double> params) {
             .tol = at<"solver.tol">(params),
             .max_step = given_or(at<"solver.max_step">(params), infinite),
             .step = at<"solver.step">(params),
-            .max_steps = at<"solver.max_steps">(params)};
+            .max_steps = at<"solver.max_steps">(params),
+            .events = choice_at<"solver.events", StepEvents>(params)};
 }
 
 ColumnSet logged_columns(std::span<const double> params) {

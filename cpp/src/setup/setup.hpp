@@ -19,10 +19,15 @@ struct Solver {
     double tol;             // of taylor
     double max_step, step;  // s; max_step may be inf
     double max_steps;
+    StepEvents events;  // of rk4
 
-    // Whether a batch has runs by this method side by side, and whether its steps end at the samples of a controller.
-    bool runs_in_lanes() const { return method != SolverMethod::rodas4 && method != SolverMethod::automatic; }
-    bool stands_at_samples() const { return method != SolverMethod::rk4 && method != SolverMethod::taylor; }
+    // Whether all steps have one length, wherever contact or a formula of time changes.
+    bool is_on_grid() const { return method == SolverMethod::rk4 && events == StepEvents::grid; }
+    // Whether a batch has runs by this method side by side, and whether a run can stand at the samples of a controller.
+    bool runs_in_lanes() const {
+        return method == SolverMethod::dopri5 || method == SolverMethod::taylor || is_on_grid();
+    }
+    bool stands_at_samples() const { return method != SolverMethod::taylor && !is_on_grid(); }
 };
 
 struct Setup {

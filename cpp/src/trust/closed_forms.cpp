@@ -238,7 +238,7 @@ std::vector<Event> exact_events(const Setup& setup, const Run& run) {
 
 // Whether the tip has its speed of before the contact where a run meets the wall: steps of rk4 end beyond it.
 bool knows_approach(const Setup& setup) {
-    return has_closed_motion(setup) || setup.solver.method != SolverMethod::rk4 || !setup.plant.acts_on_arm;
+    return has_closed_motion(setup) || !setup.solver.is_on_grid() || !setup.plant.acts_on_arm;
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ double nearest_working_step(const Sampling<double>& sampling, double step) {
 void check_grid(const Setup& setup, ProblemList& problem_list) {
     const Sampling<double>& sampling = setup.digital.sampling;
     const double step = setup.solver.step, parts = sampling.period / step, later = sampling.delay * parts;
-    if (setup.solver.method != SolverMethod::rk4 || !sampling.on) return;
+    if (!setup.solver.is_on_grid() || !sampling.on) return;
     const bool fits = parts > 0.5 && is_whole(parts);
     if (fits && is_whole(later)) return;
     problem_list.add([&] {
@@ -93,7 +93,7 @@ void check_grid(const Setup& setup, ProblemList& problem_list) {
 // The estimator uses the samples of a sampled controller, if there is one; else it samples at the ends of steps.
 void check_estimates(const Setup& setup, ProblemList& problem_list) {
     const Estimation<double>& estimation = setup.estimation;
-    if (setup.solver.method != SolverMethod::rk4 || !estimation.on || setup.digital.sampling.on) return;
+    if (!setup.solver.is_on_grid() || !estimation.on || setup.digital.sampling.on) return;
     const double step = setup.solver.step, later = estimation.start - setup.start;
     const double parts = estimation.period / step, nearest = std::max(1.0, nearest_integer(parts));
     const bool fits = is_whole(parts) && parts > 0.5;

@@ -108,14 +108,14 @@ double max_shoulder_depth(const Setup& setup) {
 
 // A fixed step keeps its order only if a jump lies on its grid (5.8).
 void warn_of_jump(const Setup& setup, std::vector<std::string>& warnings) {
-    if (setup.solver.method != SolverMethod::rk4) return;
+    if (!setup.solver.is_on_grid()) return;
     const double step = setup.solver.step;
     for (double t = next_jump(setup, setup.start); t < setup.stop; t = next_jump(setup, t)) {
         if (t == setup.start + nearest_integer((t - setup.start) / step) * step) continue;
         warnings.push_back(
             "a push, the reference or the wall's table jumps at t = " + rounded(t, 15) +
             " s, within a step of rk4, which is of first order there; take a solver.step that reaches this "
-            "instant in whole steps, or method: dopri5");
+            "instant in whole steps, solver.events: located, or method: dopri5");
         return;
     }
 }

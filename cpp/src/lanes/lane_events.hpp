@@ -1,6 +1,7 @@
 #pragma once
-// Runs in lanes by steps that an error estimate chooses (5.2), (5.6), (5.7): each lane has its own step, which ends at the
-// next sample of its controller, where a formula of time changes, and where its contact changes.
+// Runs in lanes by steps that end at events: each lane has its own step, which ends at the next sample of its controller,
+// where a formula of time changes, and where its contact changes. Method: its steps, with their error and dense output,
+// of a length that the error chooses (5.2), (5.6), (5.7) or of one length (5.1).
 
 #include "contact/contact_search.hpp"
 #include "contact/contact_watch.hpp"
@@ -10,14 +11,14 @@
 
 namespace arm3r {
 
-template <class T, std::size_t N>
-class LaneAdaptive : public LaneRun<T, N> {
+template <class T, std::size_t N, class Method = StepMethod<T, N>>
+class LaneEvents : public LaneRun<T, N> {
     using Base = LaneRun<T, N>;
     using Mask = typename Base::Mask;
     using Y = typename Base::Y;
 
 public:
-    explicit LaneAdaptive(const Setup& any_lane)
+    explicit LaneEvents(const Setup& any_lane)
         : Base(any_lane, ContactFelt::by_mode),
           method_(any_lane, this->plant_, this->rhs_, this->evaluations_),
           holds_samples_(any_lane.digital.sampling.on),
@@ -25,7 +26,7 @@ public:
         this->needs_derivative_ = false;
     }
     // A copy of a single run, which continues as `other` would; `setup` is a copy of its setup.
-    void continue_as(const LaneAdaptive& other, const Setup& setup) {
+    void continue_as(const LaneEvents& other, const Setup& setup) {
         *this = other;
         this->set_setup(setup);
     }
@@ -38,7 +39,9 @@ public:
         const Plant<double>& plant = setup.plant;
         set(max_step_, std::min(setup.solver.max_step, plant.has_wall ? max_wall_step(plant.wall) : infinite));
         set(max_turn_, std::min(0.25 * std::numbers::pi, fifth_root(1e5 * setup.solver.rtol)));
-        set(next_h_, 0.0);
+        set(next_h_, infinite);
+        set(start_, setup.start), set(step_, Method::chooses_length ? infinite : setup.solver.step);
+        set(whole_steps_, 0.0);
         Lanes<T>::mark(was_refused_, lane, false);
         Lanes<T>::mark(had_finite_end_, lane, true);
         set_knots(lane, setup.start);
@@ -63,7 +66,7 @@ public:
         this->rhs_.latest = T(infinite);
         Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
             method_.set_start(fresh, this->t_, this->y_);
-            next_h_ = select(fresh, first_step(fresh), next_h_);
+            if constexpr (Method::chooses_length) next_h_ = select(fresh, first_step(fresh), next_h_);
         });
     }
 
@@ -98,10 +101,7 @@ public:
     ARM3R_INLINE bool take_step() {
         t0_ = this->t_;
         const StepEnd end = step_end();
-        const T rest = end.t - t0_, wanted = min(next_h_, max_step());
-        was_last_ = wanted >= rest - this->slack_;
-        const T half_rest = 0.5 * rest;  // avoids a very short last step
-        this->h_ = select(was_last_, rest, select(rest < 2.0 * wanted, half_rest, wanted));
+        choose_length(end);
         moved_ = this->active_;
         const Mask collapses = moved_ && !was_last_ && this->h_ < min_step(t0_);
         if (in_any_lane(collapses)) {
@@ -127,12 +127,8 @@ public:
         method_.accept(moved_, moved_ && continues_ && !is_new, this->t_, this->y_, this->h_);
         this->balance_.update_where(moved_, Energies<T>{this->kinetic_, this->potential_, this->stored(this->in_)},
                                     this->y_);
-        const T factor = method_.factor(error_);
-        const T whole = max(this->h_, select(was_last_, next_h_, T(0.0)));
-        next_h_ = select(moved_, T(whole * select(was_refused_, min(factor, T(1.0)), factor)), next_h_);
-        was_refused_ = was_refused_ && !moved_;
-        const Mask at_jump = moved_ && ends_at_jump_;
-        if (in_any_lane(at_jump)) restart_after_jump(at_jump);
+        if constexpr (Method::chooses_length) choose_next_length();
+        else whole_steps_ = whole_steps_ + select(this->t_ >= next_on_grid() - this->slack_, T(1.0), T(0.0));
         if (in_any_lane(moved_ && this->t_ >= knot_)) pass_knots();
     }
 
@@ -150,7 +146,7 @@ public:
     // Whether the last step was refused because it had no finite end.
     bool lacks_end(int lane) const { return !Lanes<T>::is(had_finite_end_, lane); }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
-    const StepMethod<T, N>& method() const { return method_; }
+    const Method& method() const { return method_; }
     // The dense output of the last step that was accepted.
     void fill_dense_output(int lane, DenseOutput& dense) const {
         const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
@@ -160,7 +156,7 @@ public:
     }
 
 private:
-    LaneAdaptive& operator=(const LaneAdaptive&) = default;
+    LaneEvents& operator=(const LaneEvents&) = default;
 
     // ---- the length of a step
 
@@ -174,11 +170,37 @@ private:
     ARM3R_INLINE StepEnd step_end() const {
         const T due = this->is_controlled_ ? this->sampled_.next() : T(infinite);
         T t = min(min(knot_, due), this->stop_);
+        if constexpr (!Method::chooses_length) t = min(t, next_on_grid());
         t = select(knot_ <= t + this->slack_, last_knot_, t);
         t = select(t >= this->stop_ - this->slack_, this->stop_, t);
         const Mask is_knot = knot_ <= t, is_jump = jump_ <= t;
         const Mask has_sides = this->plant_.wall.motion == Motion::table ? is_jump || is_knot : is_jump;
         return {t, is_knot, is_jump, due <= t + this->slack_, select(has_sides, before_knot_, T(infinite))};
+    }
+
+    // The end of the next step of the given length; the last one may be cut short, or lengthened by a rounding error.
+    ARM3R_INLINE T next_on_grid() const { return start_ + (whole_steps_ + 1.0) * step_; }
+
+    ARM3R_INLINE void choose_length(const StepEnd& end) {
+        const T rest = end.t - t0_;
+        if constexpr (Method::chooses_length) {
+            const T wanted = min(next_h_, max_step());
+            was_last_ = wanted >= rest - this->slack_;
+            const T half_rest = 0.5 * rest;  // avoids a very short last step
+            this->h_ = select(was_last_, rest, select(rest < 2.0 * wanted, half_rest, wanted));
+        } else {
+            was_last_ = true;
+            this->h_ = rest;
+        }
+    }
+
+    ARM3R_INLINE void choose_next_length() {
+        const T factor = method_.factor(error_);
+        const T whole = max(this->h_, select(was_last_, next_h_, T(0.0)));
+        next_h_ = select(moved_, T(whole * select(was_refused_, min(factor, T(1.0)), factor)), next_h_);
+        was_refused_ = was_refused_ && !moved_;
+        const Mask at_jump = moved_ && ends_at_jump_;
+        if (in_any_lane(at_jump)) restart_after_jump(at_jump);
     }
 
     // The next knots of a lane after t. No step is as short as the rounding errors of the clock: those that lie as close
@@ -258,8 +280,12 @@ private:
         this->rejected_ = this->rejected_ + select(here, T(1.0), T(0.0));
         was_refused_ = was_refused_ || here;
         had_finite_end_ = (had_finite_end_ && !here) || (is_finite && here);
-        const T shorter = select(is_finite, T(this->h_ * min(T(1.0), method_.factor(error_))), T(0.1 * this->h_));
-        next_h_ = select(here, shorter, next_h_);
+        if constexpr (Method::chooses_length) {
+            const T shorter = select(is_finite, T(this->h_ * min(T(1.0), method_.factor(error_))), T(0.1 * this->h_));
+            next_h_ = select(here, shorter, next_h_);
+        } else {
+            this->stop_lanes(here, ARM3R_RUN_DIVERGED);
+        }
     }
 
     [[gnu::noinline]] void stop_collapsed(const Mask& here) {
@@ -314,14 +340,16 @@ private:
         if (in_any_lane(ill)) this->stop_lanes(ill, ARM3R_RUN_ILL_CONDITIONED);
     }
 
-    // The dense output of RODAS4 has one order less than the end of its step, which is not accurate enough for the
-    // works: these come from a second step, which ends at the crossing (5.6).
+    // The state at the crossing is that of the dense output. Where this is not accurate enough, a second step ends there:
+    // that of RODAS4 gives the works (5.6), that of one length all.
     ARM3R_INLINE void stop_at_crossing(Y& y1) {
         for (std::size_t i = 0; i < N; ++i) y1[i] = select(crosses_, dense_.component(i, theta_), y1[i]);
-        if constexpr (Base::lanes == 1) {
-            if (method_.is_stiff() && method_.attempt(true, t0_, this->y_, theta_ * this->h_) < infinite)
-                std::copy_n(method_.end().begin() + motion_size, quadrature_count, y1.begin() + motion_size);
-        }
+        if (!method_.repeats_to_event()) return;
+        const T h = select(crosses_, T(theta_ * this->h_), this->h_);
+        const Mask ends = method_.attempt(crosses_, t0_, this->y_, h) < T(infinite);
+        constexpr std::size_t first = Method::chooses_length ? std::size_t{motion_size} : 0;
+        constexpr std::size_t last = Method::chooses_length ? state_size : N;
+        for (std::size_t i = first; i < last; ++i) y1[i] = select(crosses_ && ends, method_.end()[i], y1[i]);
     }
 
     // Takes the samples of the lanes that are due. Returns where the torque may be new.
@@ -485,9 +513,10 @@ private:
         }
     }
 
-    StepMethod<T, N> method_;
+    Method method_;
     bool holds_samples_, has_constant_samples_;  // of a sampled controller; where metrics see nothing but its torque
     T max_step_{infinite}, max_turn_{0.0};       // s, rad
+    T start_{0.0}, step_{infinite}, whole_steps_{0.0};                                 // of steps of one length
     T knot_{infinite}, last_knot_{infinite}, before_knot_{infinite}, jump_{infinite};  // s
 
     T next_h_{0.0}, error_{0.0};  // s; in units of the tolerance
