@@ -59,6 +59,7 @@ PARTS = {
         lambda: have_modules("nbclient", "nbformat", "ipykernel"),
         "`pip install nbclient nbformat ipykernel`, which the extra `test` brings",
     ),
+    "octave": Part(lambda: shutil.which("octave-cli") is not None, "the system's package octave"),
     "qemu": Part(lambda: shutil.which("qemu-x86_64") is not None, "the system's package qemu-user"),
     "qemu-aarch64": Part(
         lambda: shutil.which("qemu-aarch64") is not None and Path(AARCH64_LIBRARIES, "lib/libgcc_s.so.1").is_file(),
