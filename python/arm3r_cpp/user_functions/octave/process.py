@@ -8,16 +8,21 @@ from typing import Any
 from ..programs import Call, Edit, ProcessEnded, Unjudged
 from ..python_process import Floats, PythonProcess
 from .installation import Installation
-from .source import headers_of
+from .names import with_own_names
+from .source import OWN, headers_of
 
 
 class OctaveProcess(PythonProcess):
     """A function of a MATLAB file, which Octave evaluates in a process of its own."""
 
     def __init__(self, text: str, function: str, file: str, installation: Installation) -> None:
-        super().__init__(text, function, file)
-        self.installation = installation
-        self.header = headers_of(text)[function]
+        """
+        Raises:
+            UnreadError: the text holds what is no token.
+        """
+        headers = headers_of(text)
+        super().__init__(with_own_names(text, set(headers), file), f"{function}{OWN}", file)
+        self.installation, self.header = installation, headers[function]
 
     def evaluate(self, call: Call, table: Floats, edit: Edit | None = None) -> Floats:
         """As of `PythonProcess`; the end of the process is no verdict, as Octave may be its reason."""

@@ -14,16 +14,19 @@ from numpy.typing import NDArray
 
 from ..programs import Call, Edit, Given, ProgramError, Unread
 from .interpreter import Interpreter
-from .source import constants_of, functions_alone, headers_of
+from .source import OWN, constants_of, functions_alone, headers_of
 
 Floats = NDArray[np.float64]
+# What they draw changes no value, and here is nothing to draw on.
+_DRAWING: tuple[str, ...] = ("axis", "close", "drawnow", "figure", "grid", "hold", "legend", "plot", "plot3", "subplot")
+_DRAWING += ("title", "view", "xlabel", "ylabel", "zlabel")
 _NO_NUMBERS = "arm3r:numbers"
 _NO_MEMORY = "out of memory"
 # For each column of x__ one of a__; d__ is the size of what the function returns.
 _ROWS = """
 {given}
 d__ = []; r__ = cell(1, {asked});
-for k__ = 1:columns(x__)
+for k__ = 1:size(x__, 2)
   [r__{{:}}] = {function}({arguments});
   if numel({chosen}) == 1
     v__ = r__{{{chosen}}};
@@ -42,7 +45,7 @@ for k__ = 1:columns(x__)
   elseif k__ > 1 && ! isequal(size(v__), d__)
     error('{no_numbers}', 'returns arrays of different shapes at different states');
   elseif k__ == 1
-    d__ = size(v__); a__ = zeros(2 + prod(d__), columns(x__)); a__(1:2, :) = repmat(d__(:), 1, columns(x__));
+    d__ = size(v__); a__ = zeros(2 + prod(d__), size(x__, 2)); a__(1, :) = d__(1); a__(2, :) = d__(2);
   end
   a__(3:end, k__) = double(full(v__))(:);
 end
@@ -111,13 +114,20 @@ class OctaveProgram:
             Unread: Octave raised an error.
         """
         if self._interpreter is None:
-            if self.folder:
-                os.chdir(self.folder)  # where it looks for functions in files of their own
-            self._interpreter = Interpreter(self.library)
+            self._interpreter = self._started()
         answer = self._interpreter.ask(code, numbers)
         if answer.error:
             self._fail(answer.error)
         return np.frombuffer(answer.numbers).reshape(answer.columns, -1) if answer.columns else np.zeros((0, 0))
+
+    def _started(self) -> Interpreter:
+        if self.folder:
+            os.chdir(self.folder)  # where it looks for functions in files of their own
+        interpreter = Interpreter(self.library)
+        for name in _DRAWING:
+            if not os.path.exists(os.path.join(self.folder, f"{name}.m")):
+                interpreter.ask(f"function varargout = {name}(varargin), varargout = cell(1, nargout); end")
+        return interpreter
 
     def _fail(self, error: str) -> None:
         """
@@ -133,6 +143,7 @@ class OctaveProgram:
             raise MemoryError
         if message.startswith("parse error"):
             message = message.partition(">>>")[0].removeprefix("parse error:")
+        message = message.replace(OWN, "")
         words = re.sub(r" near line \d+, column \d+", "", " ".join(message.split()))
         file, line = self._place(calls)
         raise Unread(f"Octave says{f' in {file}' if file else ''}: {words}", line)

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from ..programs import Constant
 
+OWN = "_of_this_file"
+"""Behind the names of functions in the text that Octave reads."""
 _COMMENT_BLOCK = re.compile(r"^[ \t]*[%#]\{[ \t]*$.*?^[ \t]*[%#]\}[ \t]*$", re.M | re.S)
 _COMMENT_LINE = re.compile(r"^[ \t]*[%#].*$", re.M)
 _CONTINUED = re.compile(r"\.\.\.[^\n]*\n")
@@ -45,15 +47,15 @@ def headers_of(text: str) -> dict[str, Header]:
 
 
 def functions_alone(text: str) -> str:
-    """The text without a script before its first function, every line in its place."""
+    """The text without a script before its first function, everything in its place."""
     first = _HEADER.search(without_comments(text))
-    return re.sub(r"[^\n]", "", text[: first.start()]) + text[first.start() :] if first else text
+    return re.sub(r"[^\n]", " ", text[: first.start()]) + text[first.start() :] if first else text
 
 
 def constants_of(text: str) -> list[Constant]:
     """The names that are given a number in a line of its own, and nothing else in the whole text."""
-    plain = without_comments(text)
-    taken = {name for header in headers_of(text).values() for name in (*header.inputs, *header.outputs)}
+    plain = without_comments(functions_alone(text))
+    taken = {word for one in headers_of(text).values() for word in (one.name, *one.inputs, *one.outputs)}
     return [
         Constant(one["name"], float(one["value"]), one.start("value"), one.end("value"))
         for one in _CONSTANT.finditer(plain)
