@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -22,6 +23,7 @@ from arm3r_cpp.user_functions.octave.process import OctaveProcess
 from arm3r_cpp.user_functions.octave.source import constants_of, functions_alone, headers_of
 from arm3r_cpp.user_functions.programs import Call, Given, ProgramError, Unjudged, Unread
 from formulas import octave_ways_out as ways_out
+from test_sandbox import USERS, become
 
 octave = pytest.mark.needs("octave")
 STUDENTS = Path(__file__).parent / "formulas" / "students"
@@ -39,6 +41,7 @@ JACOBIAN = """function J = jacobian(q)
 end
 """
 Q = ((0, 1, 2),)
+NO_NAMESPACES = 77
 
 
 @pytest.fixture(autouse=True)
@@ -309,8 +312,8 @@ def test_the_table_of_ways_is_long_enough() -> None:
     assert len(set(ways_out.WAYS.values())) >= 80
 
 
-@octave
-def test_no_way_out(paths: tuple[str, ...]) -> None:
+def open_ways(paths: tuple[str, ...]) -> list[str]:
+    """The ways that are open to the file `own`."""
     found = installed()
     assert found
     process = OctaveProcess(ways_out.text(*paths), "gravity", paths[0], found)
@@ -320,7 +323,27 @@ def test_no_way_out(paths: tuple[str, ...]) -> None:
         assert process.unbarred == []
     finally:
         process.close()
-    assert [way for way, is_open in zip(ways_out.WAYS, values, strict=True) if is_open] == []
+    return [way for way, is_open in zip(ways_out.WAYS, values, strict=True) if is_open]
+
+
+@octave
+@pytest.mark.parametrize("user", USERS)
+def test_no_way_out(user: str, paths: tuple[str, ...]) -> None:
+    words = json.dumps([USERS[user], paths])
+    one_thread = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # no other process can enter a user namespace
+    done = subprocess.run([sys.executable, __file__, words], capture_output=True, text=True, env=one_thread)
+    if done.returncode == NO_NAMESPACES:
+        pytest.skip("this system has no user namespaces to try it in")
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert json.loads(done.stdout) == []
+
+
+def main(user: int, paths: list[str]) -> None:
+    try:
+        become(user)
+    except (AssertionError, OSError):
+        sys.exit(NO_NAMESPACES)
+    print(json.dumps(open_ways(tuple(paths))))
 
 
 @octave
@@ -368,3 +391,7 @@ def test_reading_the_judges_requests_is_no_verdict(evaluated: Any, monkeypatch: 
     monkeypatch.setattr("arm3r_cpp.system.patience.WAITING_TIME", 1.0)
     with pytest.raises(Unjudged):
         evaluated("function out = f(q)\n  fread(stdin, 100); out = 1;\nend\n")
+
+
+if __name__ == "__main__":
+    main(*json.loads(sys.argv[1]))
