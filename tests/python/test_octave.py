@@ -180,6 +180,7 @@ def test_scripts_and_classes_are_refused_as_before(text: str, written: Any) -> N
 
 
 @octave
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", FILES)
 def test_octave_and_the_reader_return_the_same(name: str, evaluated: Any) -> None:
     program = MatlabProgram(FILES[name].read_text(), name)
