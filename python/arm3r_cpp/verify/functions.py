@@ -124,11 +124,12 @@ def _verdict_of(
     try:
         return verdict_on(from_file(f, kind=kind, sandbox=PythonProcess))
     except UnreadError as refusal:
-        formula = by_octave(f, refusal)
+        formula, unread = by_octave(f, refusal), refusal
     try:
         return verdict_on(formula)
     except UnjudgedError as error:
-        raise UnjudgedError(f"{error}; {formula.engine}") from None
+        where = f" in line {unread.line}" if unread.line else ""
+        raise UnjudgedError(f"{error}; Octave was asked because{where} {unread.reason}") from None
 
 
 def _of_kind(
