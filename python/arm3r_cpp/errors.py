@@ -43,6 +43,20 @@ class UnjudgedError(UsageError):
     """A formula cannot be judged: it is not read, is too slow, or breaks the connection to its judge."""
 
 
+class UnreadError(UnjudgedError):
+    """A formula holds what is not read; its language may take it.
+
+    Attributes:
+        line: of the file, where it is known.
+        reason: what is not read.
+    """
+
+    def __init__(self, message: str, *, line: int | None, reason: str) -> None:
+        super().__init__(message)
+        self.line = line
+        self.reason = reason
+
+
 class ColumnError(UsageError, KeyError):
     """A run or a table has no column of this name."""
 

@@ -10,6 +10,7 @@ import difflib
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -58,6 +59,9 @@ PARTS = {
     "notebooks": Part(
         lambda: have_modules("nbclient", "nbformat", "ipykernel"),
         "`pip install nbclient nbformat ipykernel`, which the extra `test` brings",
+    ),
+    "octave": Part(
+        lambda: sys.platform == "linux" and shutil.which("octave-cli") is not None, "the system's package octave"
     ),
     "qemu": Part(lambda: shutil.which("qemu-x86_64") is not None, "the system's package qemu-user"),
     "qemu-aarch64": Part(

@@ -15,7 +15,7 @@ from arm3r_cpp.user_functions.programs import Call, ProgramError
 from formulas.mutants import matlab_mutants
 from formulas.programs import PROGRAMS
 
-OCTAVE = shutil.which("octave-cli") or shutil.which("octave")
+OCTAVE = shutil.which("octave-cli")
 STUDENTS = Path(__file__).parent / "formulas" / "students"
 FILES = {path.name: path.read_text() for path in sorted(STUDENTS.glob("*/*.m"))}
 LISTINGS = {one.name: one.text for one in PROGRAMS if one.language == "matlab"}
@@ -52,7 +52,7 @@ def by_verify(program: MatlabProgram) -> Any:
 
 
 @pytest.mark.sample(8)
-@pytest.mark.skipif(OCTAVE is None, reason="Octave is not installed")
+@pytest.mark.needs("octave")
 @pytest.mark.parametrize("name", [*FILES, *LISTINGS])
 def test_octave_returns_the_same(name: str, tmp_path: Path) -> None:
     text = {**FILES, **LISTINGS}[name]

@@ -24,6 +24,7 @@ PROGRAM = "arm3r-verify"
 EXAMPLES = """\
 A file holds a function of the joint angles that returns numbers: in Python `def jacobian(q)` or
 `def gravity(q1, q2, q3)`, in MATLAB `function J = jacobian(q)`. Its name says what it computes, or --kind.
+GNU Octave, where it is installed on Linux, evaluates what is not read of a MATLAB file.
 
   arm3r verify my_jacobian.m my_gravity.m      against the lecture's arm
   arm3r verify dynamics.py:mass_matrix --arm my_arm.yaml

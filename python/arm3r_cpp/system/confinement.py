@@ -7,7 +7,7 @@ import glob
 import os
 import signal
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from .landlock import Readable, read_only
 from .seccomp import refuse_system_calls
@@ -35,12 +35,13 @@ def end_with_parent() -> None:
         libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
 
 
-def confine(folder: str, hidden_package: str) -> list[str]:
+def confine(folder: str, hidden_package: str, readable: Sequence[str] = ()) -> list[str]:
     """This process gives up all privileges, all files but those that programs need, and all other processes.
 
     Args:
         folder: of the user's file, whose neighbours can be read; "" where there is none.
         hidden_package: the folder of a package that cannot be read, and no copy of it; "" where none is hidden.
+        readable: other folders that the program which runs the file needs.
 
     Returns what could not be barred, some of `EVERYTHING`.
     """
@@ -48,7 +49,7 @@ def confine(folder: str, hidden_package: str) -> list[str]:
         return list(EVERYTHING)
     libc = _libc()
     _give_up_privileges(libc)
-    can_bar_files = read_only(libc, _readable(folder, hidden_package))
+    can_bar_files = read_only(libc, _readable(folder, hidden_package, readable))
     if not refuse_system_calls(libc):
         return list(EVERYTHING)
     return [] if can_bar_files else ["files"]
@@ -74,14 +75,15 @@ def _give_up_privileges(libc: ctypes.CDLL) -> None:
         raise OSError(ctypes.get_errno(), "the privileges of this process stay")
 
 
-def _readable(folder: str, hidden_package: str) -> list[Readable]:
-    """The system's libraries, Python's modules, and the folder of the user's file."""
+def _readable(folder: str, hidden_package: str, others: Sequence[str]) -> list[Readable]:
+    """The system's libraries, Python's modules, the folder of the user's file, and others."""
     modules = [path for path in sys.path if os.path.isdir(path)]
     libraries = [*_SYSTEM, *(f"{prefix}/lib" for prefix in {sys.prefix, sys.base_prefix})]
     pythons = _found(libraries, "python3*")
     pythons += _found([*pythons, *modules], "*-packages")
     hidden = _real(_copies_of(hidden_package, [*libraries, *modules])) if hidden_package else frozenset()
     found = [Readable(path, hidden | _real(pythons) - _real([path])) for path in (*libraries, *modules)]
+    found += [Readable(path, hidden) for path in others]
     found += [Readable(path) for path in _FILES]
     return [*found, Readable(folder, hidden, is_foreign=True)] if folder else found
 

@@ -1,4 +1,4 @@
-"""The process that runs a user's Python file: answers requests for evaluations until its input ends."""
+"""The process that runs a user's file: answers requests for evaluations until its input ends."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from ..system.confinement import confine, end_with_parent
 from ..system.limits import limit_resources
+from .octave.program import OctaveProgram
 from .programs import Call, Edit, Given, ProgramError, Unread
 from .python_program import PythonProgram
 
@@ -44,16 +45,23 @@ def serve(requests: IO[bytes], answers: IO[bytes]) -> NoReturn:
     end_with_parent()
     head, _ = receive(requests)
     limit_resources()
-    unbarred = confine(head["folder"], head["hidden_package"])
+    unbarred = confine(head["folder"], head["hidden_package"], head.get("readable", ()))
     if head["hidden_package"]:  # it cannot be read; its import says so as of one that is not there
         sys.modules[os.path.basename(head["hidden_package"])] = None  # type: ignore[assignment]
     sys.addaudithook(say_what_is_barred)
     if head["folder"]:
         sys.path.insert(0, head["folder"])
-    program = PythonProgram(head["text"], head["function"], head["file"])
+    program = program_of(head)
     send(answers, {"unbarred": unbarred}, b"")
     while True:
         answer(program, requests, answers)
+
+
+def program_of(head: dict[str, Any]) -> PythonProgram | OctaveProgram:
+    """The program that a first request describes."""
+    if "octave" in head:
+        return OctaveProgram(head["text"], head["function"], head["octave"], head["folder"])
+    return PythonProgram(head["text"], head["function"], head["file"])
 
 
 def say_what_is_barred(event: str, _: object) -> None:
@@ -64,7 +72,7 @@ def say_what_is_barred(event: str, _: object) -> None:
         raise PermissionError("a formula may not open sockets")
 
 
-def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> None:
+def answer(program: PythonProgram | OctaveProgram, requests: IO[bytes], answers: IO[bytes]) -> None:
     head, body = receive(requests)
     try:
         found, numbers = _result(program, head, body)
@@ -77,7 +85,7 @@ def answer(program: PythonProgram, requests: IO[bytes], answers: IO[bytes]) -> N
         send(answers, {"error": "needs too much memory", "line": None}, b"")
 
 
-def _result(program: PythonProgram, head: dict[str, Any], body: bytes) -> tuple[dict[str, Any], bytes]:
+def _result(program: PythonProgram | OctaveProgram, head: dict[str, Any], body: bytes) -> tuple[dict[str, Any], bytes]:
     """The names of arguments, for a request without rows; or the values at the states of the body."""
     if head["rows"] is None:
         return {"arguments": program.arguments()}, b""

@@ -91,21 +91,22 @@ class PythonProcess:
 
     def _start(self) -> None:
         self._attach(*start())
-        folder = os.path.dirname(os.path.abspath(self.file)) if os.path.isfile(self.file) else ""
-        self._send(
-            {
-                "text": self.text,
-                "function": self.function,
-                "file": self.file,
-                "folder": folder,
-                "hidden_package": _PACKAGE if self.forbid_own_package else "",
-            },
-            b"",
-        )
+        self._send(self._described(), b"")
         head, _ = self._receive(STARTING_TIME)
         self.unbarred = self._understood(lambda: unbarred_of(head))
         if self.unbarred and PythonProcess.report:
             PythonProcess.report(self.unbarred)
+
+    def _described(self) -> dict[str, Any]:
+        """The program, for the process that is to run it."""
+        folder = os.path.dirname(os.path.abspath(self.file)) if os.path.isfile(self.file) else ""
+        return {
+            "text": self.text,
+            "function": self.function,
+            "file": self.file,
+            "folder": folder,
+            "hidden_package": _PACKAGE if self.forbid_own_package else "",
+        }
 
     def _attach(self, process: Process, answers: SelectedPipe | PumpedPipe) -> None:
         self._process, self._answers = process, answers

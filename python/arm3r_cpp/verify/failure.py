@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import UnjudgedError
+from ..errors import UnreadError
 from ..user_functions.programs import ProcessEnded, ProgramError, Unread, line_and_column
 from .explain.budget import Budget
 from .explain.causes import put_edit, repairs_of
@@ -26,15 +26,16 @@ def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progre
     """The verdict on a formula that raises, or returns no numbers.
 
     Raises:
-        UnjudgedError: it holds what is not read, which no edit mends.
+        UnreadError: it holds what is not read, which no edit mends.
     """
     finding = Finding(None, f"the formula fails: {error}", line=error.line)
     verdict = Verdict(False, kind.name, truth.convention, float("inf"), [finding], file=formula.file, text=formula.text)
+    verdict.found = [formula.engine] if formula.engine else []
     if not isinstance(error, ProcessEnded) and not (isinstance(error, Unread) and not error.name):
         _mend_failure(verdict, formula, kind, truth, progress)
     if isinstance(error, Unread) and not _is_renamed(finding, error.name):
         place = f"{formula.file}:{error.line}" if error.line else formula.file
-        raise UnjudgedError(f"{place}: cannot be judged: {error}") from None
+        raise UnreadError(f"{place}: cannot be judged: {error}", line=error.line, reason=str(error)) from None
     return verdict
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 import textwrap
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
@@ -14,11 +15,14 @@ import numpy as np
 
 from .._files import regular
 from .._native import Floats
-from ..errors import UnjudgedError, UsageError
+from ..errors import UnjudgedError, UnreadError, UsageError
 from ..user_functions.c_symbol import text_of
 from ..user_functions.documents import MATLAB, code_of
 from ..user_functions.expressions import Node
 from ..user_functions.matlab.program import MatlabProgram
+from ..user_functions.octave.installation import installed
+from ..user_functions.octave.process import OctaveProcess
+from ..user_functions.octave.source import constants_of, headers_of
 from ..user_functions.programs import Call, Constant, Edit, Given, ProgramError, numbers_of
 from ..user_functions.python_functions import needed_by, objects_of
 from ..user_functions.python_in_memory import PythonInMemory
@@ -89,6 +93,8 @@ class Formula:
     """Numbers outside of the text that a function in memory uses."""
     output: int | None = None
     """Which of several results is meant, from 0; None: there is one."""
+    engine: str = ""
+    """Which program evaluates it in the place of this package, and what this package does not read."""
     as_columns: bool = False
     """Whether vectors are given with two axes, (n, 1)."""
     given: dict[str, Any] = field(default_factory=dict)
@@ -242,14 +248,53 @@ def from_file(
             f"{file}: cannot be judged as text: compile it, cc -shared -fPIC -O2 {file} -o {library} -lm, "
             f"and name the function, {library}:{function or 'FUNCTION'}"
         )
+    text = _code_in(file)
+    folder = None if is_alone else os.path.dirname(os.path.abspath(file))
+    return from_text(text, file, function, kind=kind, sandbox=sandbox, folder=folder)
+
+
+def _code_in(file: str) -> str:
     try:
-        text = code_of(file, regular(Path(file)).read_bytes())
+        return code_of(file, regular(Path(file)).read_bytes())
     except UsageError:
         raise
     except (OSError, ValueError) as error:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    folder = None if is_alone else os.path.dirname(os.path.abspath(file))
-    return from_text(text, file, function, kind=kind, sandbox=sandbox, folder=folder)
+
+
+def by_octave(path: str | os.PathLike[str], refusal: UnreadError) -> Formula:
+    """A function of a MATLAB file that this package does not read, evaluated by GNU Octave.
+
+    Its text is not edited, as no part of it is understood but its constants.
+
+    Raises:
+        UnreadError: the refusal, as it is no such function, or as there is no Octave.
+    """
+    file, function = split_name(os.fspath(path))
+    if not file.endswith(MATLAB):
+        raise refusal
+    text = _code_in(file)
+    headers = headers_of(text)
+    name = function or next(iter(headers), "")
+    if name not in headers or not headers[name].outputs:
+        raise refusal
+    if (octave := installed()) is None:
+        remedy = "GNU Octave, where it is installed, evaluates such a file"
+        raise UnreadError(f"{refusal}; {remedy}", line=refusal.line, reason=refusal.reason)
+    place = f"line {refusal.line}: " if refusal.line else ""
+    header = headers[name]
+    return Formula(
+        file,
+        name,
+        OctaveProcess(text, name, file, octave),
+        header.inputs,
+        {one.name: one for one in constants_of(text)},
+        text=text,
+        language="matlab",
+        outputs=header.outputs if len(header.outputs) > 1 else [],
+        optional=[one for one in header.inputs if one == "varargin"],
+        engine=f"evaluated by {octave.name} ({place}{re.split('[:;] ', refusal.reason)[0]})",
+    )
 
 
 def _from_library(file: str, function: str | None) -> Formula:
@@ -405,8 +450,10 @@ def likely_function(source: PythonText, file: str, kind: str | None = None) -> s
 def kind_of(formula: Formula) -> Kind | None:
     """The kind of formula, from its names; None where they do not tell it."""
     outputs = [formula.outputs[0]] if formula.outputs else []
-    if formula.language == "matlab" and isinstance(formula.program, MatlabProgram):
+    if isinstance(formula.program, MatlabProgram):
         outputs = formula.program.outputs[:1]
+    elif isinstance(formula.program, OctaveProcess):
+        outputs = formula.program.header.outputs[:1]
     for name in (formula.name, Path(formula.file).stem, *outputs):
         kind = kind_of_name(name)
         if kind:

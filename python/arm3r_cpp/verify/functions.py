@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from ..arm import Arm
-from ..errors import UnjudgedError, UsageError
+from ..errors import UnjudgedError, UnreadError, UsageError
 from ..scenario import Scenario
 from ..user_functions.python_process import PythonProcess
 from .explain.repair import Progress
-from .formula import Formula, from_callable, from_file, kind_of
+from .formula import Formula, by_octave, from_callable, from_file, kind_of
 from .judge import judge
 from .kinds import KINDS
 from .log.judge import judge_log
@@ -113,14 +113,29 @@ def _verdict_of(
             raise UsageError(f"{f}: --args and --set say what a function needs; --columns is for a log")
         log = read_log(f, columns)
         return judge_log(log, KINDS[kind] if kind else log.kind(), truth, noise=noise)
-    formula = (
-        f
-        if isinstance(f, Formula)
-        else from_file(f, kind=kind, sandbox=PythonProcess)
-        if isinstance(f, (str, os.PathLike))
-        else from_callable(f)
-    )
-    formula = told(formula, args, given)
+
+    def verdict_on(formula: Formula) -> Verdict:
+        return _of_kind(told(formula, args, given), kind, truth, seen_by, progress)
+
+    if isinstance(f, Formula):
+        return verdict_on(f)
+    if not isinstance(f, (str, os.PathLike)):
+        return verdict_on(from_callable(f))
+    try:
+        return verdict_on(from_file(f, kind=kind, sandbox=PythonProcess))
+    except UnreadError as refusal:
+        formula, unread = by_octave(f, refusal), refusal
+    try:
+        return verdict_on(formula)
+    except UnjudgedError as error:
+        where = f" in line {unread.line}" if unread.line else ""
+        raise UnjudgedError(f"{error}; Octave was asked because{where} {unread.reason}") from None
+
+
+def _of_kind(
+    formula: Formula, kind: str | None, truth: Any, seen_by: Sequence[Any], progress: Progress | None
+) -> Verdict:
+    """The verdict on a formula whose kind its names tell where it is not given."""
     chosen = KINDS[kind] if kind else kind_of(formula) or kind_by_arguments(formula, truth)
     if chosen is None:
         kinds = "|".join(KINDS)

@@ -189,6 +189,8 @@ def _found(case: Comparison) -> list[str]:
         found.append(f"with {', '.join(sorted(formula.given))} as it is given")
     if case.degrees:
         found.append("angles in degrees")
+    if formula.engine:
+        found.insert(0, formula.engine)
     if case.convention:
         found.append(f"convention {case.convention}")
     return found + case.truth.assumed(case.kind, case.rows, case.known)

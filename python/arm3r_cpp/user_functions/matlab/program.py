@@ -121,7 +121,8 @@ class MatlabProgram:
     @property
     def optional(self) -> list[str]:
         """The arguments that have a value without being given one."""
-        return list(self.functions[self.function].defaults)
+        function = self.functions[self.function]
+        return [*function.defaults, *(name for name in function.inputs[-1:] if name == "varargin")]
 
     @property
     def outputs(self) -> list[str]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from ...errors import UnjudgedError
+from ...errors import UnjudgedError, UnreadError
 from ..expressions import (
     All,
     AnonymousFunction,
@@ -125,7 +125,7 @@ class _Reader:
 
     def refusal(self, message: str, token: Token | None = None) -> UnjudgedError:
         line, column = line_and_column(self.text, (token or self.peek()).start)
-        return UnjudgedError(f"{self.file}:{line}:{column}: {message}")
+        return UnreadError(f"{self.file}:{line}:{column}: {message}", line=line, reason=message)
 
     def expect(self, text: str) -> Token:
         if self.peek().text != text:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from ...errors import UnjudgedError
+from ...errors import UnreadError
 from ..programs import line_and_column
 
 _TOKEN = re.compile(
@@ -41,7 +41,7 @@ def tokens_of(text: str, file: str) -> list[Token]:
     """Those of a text, and one for its end.
 
     Raises:
-        UnjudgedError: there is what is no token.
+        UnreadError: there is what is no token.
     """
     text = _BLOCK_COMMENT.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text).replace("\r", " ")
     tokens: list[Token] = []
@@ -52,7 +52,8 @@ def tokens_of(text: str, file: str) -> list[Token]:
         if not found:
             line, column = line_and_column(text, at)
             why = "begins a text that does not end in its line" if begins_text else f"is not read; {KNOWN}"
-            raise UnjudgedError(f"{file}:{line}:{column}: {text[at]!r} {why}")
+            reason = f"{text[at]!r} {why}"
+            raise UnreadError(f"{file}:{line}:{column}: {reason}", line=line, reason=reason)
         kind = "text" if begins_text else found.lastgroup or ""
         if kind in ("blank", "comment"):
             spaced = True
