@@ -37,6 +37,7 @@ METHODS: dict[str, dict[str, Any]] = {
     "dopri5": {"method": "dopri5", "rtol": 1e-10, "atol": 1e-13},
     "rodas4": {"method": "rodas4", "rtol": 1e-10, "atol": 1e-13},
     "rk4": {"method": "rk4", "step": 2.5e-5},
+    "rk4 to events": {"method": "rk4", "step": 2.5e-5, "events": "located"},
 }
 STOP, ROWS = 0.6, 24000
 DENSER = {"energy_balance": 4}

@@ -41,6 +41,7 @@ METHODS: dict[str, dict[str, Any]] = {
     "rodas4": {"method": "rodas4", "rtol": 1e-10},
     "taylor": {"method": "taylor", "tol": 1e-12},
     "rk4": {"method": "rk4", "step": 2e-4},
+    "rk4 to events": {"method": "rk4", "step": 2e-4, "events": "located"},
 }
 WALLS: dict[str, dict[str, Any]] = {
     "one_way": {},

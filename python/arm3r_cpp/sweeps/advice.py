@@ -10,8 +10,8 @@ from ..batch import run_batch
 from ..errors import Arm3rError
 from ..scenario import Scenario
 
-ADAPTIVE = ("dopri5", "rodas4", "auto")  # one run after the other
-IN_LANES = ("rk4", "taylor")  # several runs at once
+SLOW = ("rodas4", "auto", "dopri5")  # the first two compute one run after the other
+IN_LANES = ("rk4", "taylor", "dopri5")  # several runs at once
 AFTER = 1.0  # s of clock until a trial
 WORTH = 10.0  # s left below which nothing is said
 LEAST = 3.0  # times
@@ -27,7 +27,7 @@ class Advice:
 
     def __init__(self, scenario: Scenario) -> None:
         self._scenario, self._start = scenario, time.monotonic()
-        self._is_given = scenario["solver.method"] not in ADAPTIVE
+        self._is_given = scenario["solver.method"] not in SLOW
 
     def after(self, done: int, all_of_them: int) -> str:
         """The sentence, or "" where there is none at this time; done: runs."""
@@ -47,7 +47,8 @@ def sentence(scenario: Scenario) -> str:
     while 0 < now < ENOUGH and span < whole:
         span = min(2 * span, whole)
         now = seconds_by(scenario, method, span)
-    times = {other: now / seconds for other in IN_LANES if (seconds := seconds_by(scenario, other, span))}
+    others = [other for other in IN_LANES if other != method]
+    times = {other: now / seconds for other in others if (seconds := seconds_by(scenario, other, span))}
     best = max(times, key=times.__getitem__, default="")
     if not best or times[best] < LEAST:
         return ""
