@@ -23,12 +23,13 @@ class Mutant(NamedTuple):
     text: str
 
 
-_STATICS = ("gravity",)
-_INERTIAL = ("mass", "coriolis", "inverse", "forward")
-_DYNAMICS = (*_STATICS, *_INERTIAL)
+INERTIAL = ("mass", "coriolis", "inverse", "forward")
+_DYNAMICS = ("gravity", *INERTIAL)
 _RATES = ("coriolis", "inverse", "forward", "jacobian_dot")
 _SUM = r"\b(\w+?)([\[(]?)([12])([\])]?) ?\+ ?\1\2([23])\4(?![\d*(\[])"
 """The absolute angle of link 3: q2 + q3, q[1] + q[2], th(2)+th(3)."""
+_LEVEL = r"(?:[^\n()\[\]]|\([^\n()]*\)|\[[^\n\[\]]*\])"
+"""A letter, or what stands in brackets."""
 _INNER = r"(?:[^(),]|\[[^\]]*\]|\([^()]*\))+?"
 """An argument."""
 _OTHER = {"sin": "cos", "cos": "sin", "s": "c", "c": "s"}
@@ -91,18 +92,18 @@ _CONCEPTS: dict[str, tuple[tuple[str, ...], tuple[Replacement, ...]]] = {
         ),
     ),
     "the parallel axes twice": (
-        _INERTIAL,
+        INERTIAL,
         (
             (r"\b0\.071\b", "(0.071 + 1.3*0.37*0.37)"),
             (r"\b0\.043\b", "(0.043 + 2.1*0.21*0.21)"),
             (r"\bI2\b(?! ?[,=])", "(I2 + m2*0.37*0.37)"),
         ),
     ),
-    "no parallel axes": (_INERTIAL, ((r" ?\+ ?1\.3\*0\.37(\*\*|\^)2", ""), (r" ?\+ ?2\.1\*0\.21(\*\*|\^)2", ""))),
-    "no inertia about the centre": (_INERTIAL, ((r"\b0\.071 ?[-+] ", ""), (r"\b0\.043\b", "0"), (r"\b0\.071\b", "0"))),
-    "the other link's inertia": (_INERTIAL, ((r"\b0\.043\b", "0.071"), (r"\b0\.071\b", "0.043"))),
-    "a sphere for a rod": (_INERTIAL, ((r"\b0\.002\b", "0.071"), (r"\b0\.003\b", "0.043"))),
-    "the carried link is left out": (_INERTIAL, ((r" ?\+ ?2\.1\*0\.8(\*\*|\^)2", ""),)),
+    "no parallel axes": (INERTIAL, ((r" ?\+ ?1\.3\*0\.37(\*\*|\^)2", ""), (r" ?\+ ?2\.1\*0\.21(\*\*|\^)2", ""))),
+    "no inertia about the centre": (INERTIAL, ((r"\b0\.071 ?[-+] ", ""), (r"\b0\.043\b", "0"), (r"\b0\.071\b", "0"))),
+    "the other link's inertia": (INERTIAL, ((r"\b0\.043\b", "0.071"), (r"\b0\.071\b", "0.043"))),
+    "a sphere for a rod": (INERTIAL, ((r"\b0\.002\b", "0.071"), (r"\b0\.003\b", "0.043"))),
+    "the carried link is left out": (INERTIAL, ((r" ?\+ ?2\.1\*0\.8(\*\*|\^)2", ""),)),
     "a missing factor 2": ((), ((r"(?<![\w.*^/])2\*(?=[A-Za-z(])", ""),)),
     "a missing half": (_DYNAMICS, ((r"/2\b(?!\.)", ""), (r"\b0\.5\*", ""))),
     "a missing square": (_DYNAMICS, ((r"(\*\*|\.?\^)2\b", ""),)),
@@ -173,6 +174,10 @@ _CONCEPTS: dict[str, tuple[tuple[str, ...], tuple[Replacement, ...]]] = {
     ),
     "the other sign of a row": ((), ((r"(?<=[\[;,])( ?)-(?=[\w(])", r"\1"), (r"(?<=return )-", ""))),
     "the last term is lost": ((), ((r" ?[+] ?[^-+()\[\],;=\n]+(?=;?$)", ""), (r" \.\.\.\n[^;\n]*(?=;)", ""))),
+    "a lost continuation": (
+        (),
+        ((rf"^( *)(\w[^\n=]* ?[-+]?= ?[^\n]*?) ([-+]) ({_LEVEL}+?)(;?)$", r"\1\2\n\1\3 \4\5"),),
+    ),
     "an index too few": ((), ((r"\b([ijk]) ?\+ ?1\b", r"\1"), (r">= j", "> j"), (r"\bk\+1\b", "k"))),
     "not added up": ((), ((r"(?<=\S )\+=", "="), (r"np\.cumsum\(([^()]+)\)", r"\1"), (r"-=", "+="))),
     "sine for cosine": ((), ((r"\b(sin|cos)(?=\()", "OTHER"), (r"(?<=\*)([cs])(?=\d+\b)", "OTHER"))),
