@@ -43,8 +43,8 @@ _CONCEPTS: dict[str, tuple[tuple[str, ...], tuple[Replacement, ...]]] = {
     "degrees for radians": (
         (),
         (
-            (r"\b(np\.cos|np\.sin)\((\w+\[?\w*\]?)\)", r"\1(np.deg2rad(\2))"),
-            (r"\b(cos|sin)\((q\(?\d\)?)\)", r"\1d(\2)"),
+            (r"\b(np\.cos|np\.sin)\(([\w\[\] +]+)\)", r"\1(np.deg2rad(\2))"),
+            (r"(?<![.\w])(cos|sin)(?=\()", r"\1d"),
             (r"np\.pi/180\*|\*np\.pi/180|\*pi/180", ""),
         ),
     ),
