@@ -5,6 +5,7 @@ Each gate prints what it counts, and how much of it.
 
 from __future__ import annotations
 
+import itertools
 import os
 import random
 from collections import Counter, defaultdict
@@ -95,8 +96,8 @@ def test_some_mistakes_of_understanding(tmp_path: Path) -> None:
 @pytest.mark.gate
 @pytest.mark.random
 def test_four_hundred_mistakes_of_understanding(tmp_path: Path) -> None:
-    right = [Mutant("", path, path.read_text()) for path in FILES]
-    found = counted(400, tmp_path, [*right, *drawn()])
+    right = (Mutant("", path, path.read_text()) for path in FILES)
+    found = counted(400, tmp_path, itertools.chain(right, drawn()))
     paths = {one.path for one in found.mutants}
     assert len(paths) >= 40 and len(set(map(style, paths))) >= 15
     assert found.located >= 0.99 and found.named >= 0.97
