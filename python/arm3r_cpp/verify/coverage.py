@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,23 +18,45 @@ from .comparison import Comparison
 from .finding import Finding, Judgement
 from .log.reading import read_log
 from .planted import planted_and_seen
-from .samples import Samples
+from .samples import VECTORS, Samples
 from .truth.three_r import CONVENTIONS, ThreeR
 
 _VISIBLE = 1e-9  # m/s of J qd, N m of a torque
 D = np.array([1.0, -1.0, -1.0])
 _UNEQUAL = {"length2": 0.8, "length3": 0.55, "mass2": 2.592, "mass3": 3.052}
+_ORDER = ("qd", "qdd", "tau", "q")
+_MOST_REASONS = 3  # columns that are zero, of which none alone hides a mistake
+Column = tuple[str, int]
+"""A joint vector, and the joint."""
 
 
 class Trial(NamedTuple):
-    """States at which somebody compared a formula with something: (S, n)."""
+    """States at which somebody compared a formula with something: joint vectors "q", "qd", "qdd", "tau", (S, n)."""
 
     name: str
-    q: Floats
-    qd: Floats
-    convention: str = CONVENTIONS[0]
+    states: dict[str, Floats]
+    convention: str | None = None
+    """That of the states, where it need not be the formula's."""
     quantities: dict[str, float] | None = None
     """Of the arm that was tested, where it is another one."""
+
+    def vanishing(self, vectors: Iterable[str]) -> list[Column]:
+        """The columns that are zero throughout."""
+        return [
+            (vector, int(joint))
+            for vector in vectors
+            for joint in np.flatnonzero(np.abs(self.states[vector]).max(axis=0) <= _VISIBLE)
+        ]
+
+    def with_vector(self, vector: str, values: Floats) -> Trial:
+        return self._replace(states={**self.states, vector: values})
+
+    def with_some(self, columns: Iterable[Column]) -> Trial:
+        """The test with other numbers in columns."""
+        states = {vector: values.copy() for vector, values in self.states.items()}
+        for vector, joint in columns:
+            states[vector][:, joint] = 0.7 + 0.19 * joint
+        return self._replace(states=states)
 
 
 @cache
@@ -46,16 +69,20 @@ def tests_of(given: Iterable[Any], joints: int) -> list[Trial]:
     found = []
     for number, one in enumerate(given, start=1):
         if isinstance(one, (str, os.PathLike)) and not os.fspath(one).endswith((".yaml", ".yml")):
-            states = read_log(one).states(joints)
-            found.append(Trial(os.fspath(one), states["q"], states["qd"]))
+            found.append(Trial(os.fspath(one), read_log(one).states(joints)))
         elif isinstance(one, (str, os.PathLike, Scenario)):
             scenario = one if isinstance(one, Scenario) else Scenario.load(one)
             run, arm = scenario.run(), ThreeR(scenario)
-            found.append(Trial(str(scenario.name), run["q"], run["qd"], arm.convention, arm.values_of_quantities))
+            states = {vector: run[vector] for vector in VECTORS}
+            found.append(Trial(str(scenario.name), states, arm.convention, arm.values_of_quantities))
         else:
             poses = np.atleast_2d(np.asarray(one, float))
-            found.append(Trial(f"poses {number}", poses, np.ones_like(poses)))
+            found.append(_at(f"poses {number}", poses, np.ones_like(poses)))
     return found
+
+
+def _at(name: str, q: Floats, qd: Floats, convention: str | None = None) -> Trial:
+    return Trial(name, {"q": q, "qd": qd, "qdd": np.zeros_like(q), "tau": np.zeros_like(q)}, convention)
 
 
 def seen_by_tests(verdict: Judgement, case: Comparison, given: Iterable[Any]) -> None:
@@ -63,10 +90,10 @@ def seen_by_tests(verdict: Judgement, case: Comparison, given: Iterable[Any]) ->
     tests = tests_of(given, case.truth.joints)
     if isinstance(case.truth, ThreeR):
         own = case.kind.lecture_test(_free_fall)
-        tests = [*([Trial(*own)] if own else []), *tests]
+        tests = [*([_at(*own, CONVENTIONS[0])] if own else []), *tests]
     for test in tests:
-        if case.convention != test.convention and isinstance(case.truth, ThreeR):
-            test = test._replace(q=test.q * D, qd=test.qd * D, convention=case.convention)
+        if test.convention not in (None, case.convention) and isinstance(case.truth, ThreeR):
+            test = test._replace(states={vector: values * D for vector, values in test.states.items()})
         verdict.coverage[test.name] = _excited(case, test)
         for finding in verdict.findings:
             if finding.entry is None:
@@ -78,8 +105,7 @@ def seen_by_tests(verdict: Judgement, case: Comparison, given: Iterable[Any]) ->
 
 def _samples(case: Comparison, test: Trial) -> Samples:
     own = {**case.truth.values_of_quantities, **(test.quantities or {})}
-    zero = np.zeros_like(test.q)
-    return Samples({"q": test.q, "qd": test.qd, "qdd": zero, "tau": zero}, [{name: own[name] for name in case.known}])
+    return Samples(test.states, [{name: own[name] for name in case.known}])
 
 
 def _error(case: Comparison, test: Trial, finding: Finding) -> Floats:
@@ -97,7 +123,7 @@ def _error(case: Comparison, test: Trial, finding: Finding) -> Floats:
     place = tuple(one - 1 for one in finding.entry or [])
     difference = case.values(here) - case.due(samples)
     column = int(np.ravel_multi_index(place, case.shape))
-    return difference.reshape(len(difference), -1)[:, column] * case.kind.weights(test.qd, place[-1])
+    return difference.reshape(len(difference), -1)[:, column] * case.kind.weights(test.states["qd"], place[-1])
 
 
 def _sees(case: Comparison, test: Trial, finding: Finding) -> bool:
@@ -108,43 +134,62 @@ def _sees(case: Comparison, test: Trial, finding: Finding) -> bool:
 
 
 def _reason(case: Comparison, test: Trial, finding: Finding) -> str:
-    """Why a test does not see a finding: the first of its special values without which it would."""
-    column = (finding.entry or [1])[-1] - 1
-    tries: list[tuple[str, Trial]] = []
-    rates = range(test.qd.shape[1]) if "qd" in case.kind.inputs else [column] if case.kind.is_derivative else []
-    for joint in rates:
-        if np.abs(test.qd[:, joint]).max() <= _VISIBLE:
-            moving = test.qd.copy()
-            moving[:, joint] = 1.0
-            tries.append((f"there qd{joint + 1} = 0", test._replace(qd=moving)))
-    for joint in range(test.q.shape[1]):
-        if np.abs(test.q[:, joint]).max() <= _VISIBLE:
-            moved = test.q.copy()
-            moved[:, joint] = 0.7
-            tries.append((f"there q{joint + 1} = 0", test._replace(q=moved)))
-            tries.append(
-                (f"there q{joint + 1} = 0 and qd{joint + 1} = 0", test._replace(q=moved, qd=np.ones_like(test.qd)))
-            )
-    if test.q.shape[1] == 3 and np.abs(test.q[:, 2] + 2 * test.q[:, 1]).max() <= 1e-9:
-        tries.append(("there q3 = -2 q2", test._replace(q=test.q + np.array([0, 0, 0.3]))))
+    """Why a test does not see a finding: the fewest of its special values without which it would."""
+    return next((words for words, other in _others(case, test, finding) if _sees(case, other, finding)), "")
+
+
+def _others(case: Comparison, test: Trial, finding: Finding) -> Iterator[tuple[str, Trial]]:
+    """Tests without some of the special values, and these in words."""
+    place = (finding.entry or [1])[-1] - 1
+    weight = {"qd"} if case.kind.is_derivative and "qd" not in case.kind.inputs else set()
+    zero = [
+        (vector, joint)
+        for vector, joint in test.vanishing(one for one in _ORDER if one in {*case.kind.inputs, *weight})
+        if vector not in weight or joint == place
+    ]
+    for count in range(1, _MOST_REASONS + 1):
+        for columns in combinations(zero, count):
+            yield f"there {_all_of([f'{vector}{joint + 1} = 0' for vector, joint in columns])}", test.with_some(columns)
+        if count == 1:
+            yield from _special(case, test)
+
+
+def _special(case: Comparison, test: Trial) -> Iterator[tuple[str, Trial]]:
+    """Of the lecture's own tests: link 3 that hangs as link 2 does, and equal links."""
+    q = test.states["q"]
+    if q.shape[1] == 3 and np.abs(q[:, 2] + 2 * q[:, 1]).max() <= 1e-9:
+        yield "there q3 = -2 q2", test.with_vector("q", q + np.array([0, 0, 0.3]))
     if isinstance(case.truth, ThreeR):
-        tries.append(("there the links are equal", test._replace(quantities=_UNEQUAL)))
-    return next((words for words, other in tries if _sees(case, other, finding)), "")
+        yield "there the links are equal", test._replace(quantities=_UNEQUAL)
+
+
+def _all_of(words: list[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def _excited(case: Comparison, test: Trial) -> dict[str, Any]:
     """The joints that move or are turned, the entries that show, and how many planted mistakes are seen."""
-    due = case.due(_samples(case, test))
-    entries = []
-    for place in np.ndindex(due.shape[1:]):
-        if np.abs(due[(slice(None), *place)] * case.kind.weights(test.qd, place[-1])).max() > _VISIBLE:
-            entries.append([one + 1 for one in place])
-    moved = test.qd if case.kind.is_derivative else test.q
+    entries = [[one + 1 for one in place] for place in np.argwhere(_shows(case, test)).tolist()]
+    moved = test.states["qd" if case.kind.is_derivative else "q"]
     joints = [int(joint) + 1 for joint in np.flatnonzero(np.abs(moved).max(axis=0) > _VISIBLE)]
     found: dict[str, Any] = {"joints": joints, "entries": entries}
     if isinstance(case.truth, ThreeR):
-        sign = D if test.convention == CONVENTIONS[1] else np.ones(3)
+        sign = D if case.convention == CONVENTIONS[1] else np.ones(3)
         numbers = {**case.truth.values_of_quantities, **(test.quantities or {})}
-        planted, seen = planted_and_seen(case.kind, test.q * sign, test.qd * sign, numbers)
+        q, qd = test.states["q"] * sign, test.states["qd"] * sign
+        planted, seen = planted_and_seen(case.kind, q, qd, numbers)
         found |= {"planted": planted, "seen": seen} if planted else {}
+    return found
+
+
+def _shows(case: Comparison, test: Trial) -> Any:
+    """For each entry whether something of it shows: also where its parts, of rates and torques, cancel as in a fall."""
+    vectors = [one for one in case.kind.inputs if one != "q"]
+    doubled = [test.with_vector(vector, 2 * test.states[vector]) for vector in vectors]
+    found: Any = False
+    for one in (test, *doubled):
+        due = case.due(_samples(case, one))
+        weights = np.stack([case.kind.weights(test.states["qd"], column) for column in range(due.shape[-1])], axis=1)
+        size = np.abs(due * weights.reshape(len(due), *[1] * (due.ndim - 2), -1)).max(axis=0)
+        found = found | (size > _VISIBLE)
     return found

@@ -79,9 +79,17 @@ def _block(verdict: Judgement, findings: list[Finding]) -> list[str]:
         if first.old is None or not lines:
             lines.append(cause)
     lines += [f"  {line}" for line in _place(verdict, first)]
-    unseen = {name: first.unseen_because.get(name, "") for name, seen in first.seen_by.items() if not seen}
-    lines += [f"  {name} cannot see it{f': {why}' if why else ''}" for name, why in unseen.items()]
+    lines += [f"  {name} cannot see it{f': {why}' if why else ''}" for name, why in _unseen(findings).items()]
     return lines
+
+
+def _unseen(findings: list[Finding]) -> dict[str, str]:
+    """The tests that see a mistake in none of its entries, and why."""
+    found = {}
+    for name in findings[0].seen_by:
+        if not any(one.seen_by.get(name) for one in findings):
+            found[name] = next(filter(None, (one.unseen_because.get(name) for one in findings)), "")
+    return found
 
 
 def _lower(text: str) -> str:

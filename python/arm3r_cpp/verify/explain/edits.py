@@ -34,6 +34,8 @@ from ...user_functions.expressions import (
 from ...user_functions.programs import Edit
 
 _TRIGONOMETRIC = {"sin": "cos", "cos": "sin", "sind": "cosd", "cosd": "sind", "tan": "sin"}
+_OTHER_UNIT = {"sin": "sind", "cos": "cosd", "sind": "sin", "cosd": "cos"}
+"""Of MATLAB: of an angle in degrees for one in radians."""
 _ADDITIVE, _MULTIPLICATIVE = ("+", "-"), ("*", "/", ".*", "./")
 _COMPARISONS = ("<", "<=", ">", ">=", "==", "!=", "~=")
 _MOST = 8000
@@ -275,6 +277,8 @@ class Editor:
         if last in _TRIGONOMETRIC and len(node.parts) == 1:
             name = node.word[: -len(last)] + _TRIGONOMETRIC[last]
             yield Edit(node.at, node.at + len(node.word), name, 1)
+            if self.language == "matlab" and last in _OTHER_UNIT:
+                yield Edit(node.at, node.at + len(node.word), _OTHER_UNIT[last], 2)
             for angle in self.angles:
                 if " ".join(angle.split()) != " ".join(inner[0].split()):
                     yield Edit(node.parts[0].start, node.parts[0].end, angle, 1)
