@@ -125,3 +125,15 @@ def test_what_one_entry_shows_is_no_blind_spot(tmp_path: Path) -> None:
     name = "the lecture's free fall"
     seen = [one.seen_by[name] for one in verdict.findings]
     assert any(seen) and not all(seen) and f"{name} cannot see it" not in str(verdict), str(verdict)
+
+
+@pytest.mark.parametrize("head", ["def gravity(q, g=10):", "g = 10\n\n\ndef gravity(q):"])
+def test_a_number_that_is_not_the_arms_is_seen_where_the_entry_is(head: str, tmp_path: Path) -> None:
+    path = tmp_path / "gravity.py"
+    path.write_text(
+        f"from math import cos\n\n{head}\n    third = -2.1*0.21*g*cos(q[1] + q[2])\n"
+        "    return [0, third - (1.3*0.37 + 2.1*0.8)*g*cos(q[1]), third]\n"
+    )
+    findings = verify.gravity(path, arm_of("unequal"), seen_by=[[[0.1, 0.2, 0.3]]]).findings
+    assert [one.entry for one in findings] == [[2], [3]]
+    assert all("g is 10" in one.cause and one.new == "9.80665" and all(one.seen_by.values()) for one in findings)

@@ -15,6 +15,7 @@ from ..run import Run
 from ..scenario import Scenario
 from ..user_functions.programs import ProgramError
 from .comparison import Comparison
+from .explain.constants import stated_numbers
 from .finding import Finding, Judgement
 from .log.reading import read_log
 from .planted import planted_and_seen
@@ -111,14 +112,9 @@ def _samples(case: Comparison, test: Trial) -> Samples:
 def _error(case: Comparison, test: Trial, finding: Finding) -> Floats:
     """What the test sees of a wrong entry, in each state; a number that is not the arm's stands as it is written."""
     samples = _samples(case, test)
-    written = {}
-    for name, constant in case.formula.constants.items():
-        if (
-            finding.old is not None
-            and name in case.parameters
-            and constant.name in finding.cause.split(" is ")[0].split()
-        ):
-            written[case.parameters[name]] = constant.value
+    names = finding.cause.split(" is ")[0].split() if finding.old is not None else []
+    numbers = [one for one in stated_numbers(case.formula) if one.name in case.parameters and one.name in names]
+    written = {case.parameters[one.name]: one.value for one in numbers}
     here = Samples(samples.states, [{**samples.arms[0], **written}])
     place = tuple(one - 1 for one in finding.entry or [])
     difference = case.values(here) - case.due(samples)

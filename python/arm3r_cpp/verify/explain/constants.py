@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
-from ...user_functions.programs import line_and_column
+from ...user_functions.expressions import Number
+from ...user_functions.programs import Constant, line_and_column
 from ..comparison import Comparison
 from ..finding import Finding
+from ..formula import Formula
 from ..verdict import Verdict
 
 _NEAR = 0.01  # of g: what it may be somewhere on Earth, or is rounded to
@@ -14,7 +18,8 @@ _NEAR = 0.01  # of g: what it may be somewhere on Earth, or is rounded to
 
 def judge_constants(verdict: Verdict, case: Comparison) -> None:
     """The numbers that the text gives to the arm's quantities, against the arm's own."""
-    for name, constant in case.formula.constants.items():
+    for constant in stated_numbers(case.formula):
+        name = constant.name
         quantity = case.parameters.get(name)
         own = case.truth.values_of_quantities.get(quantity) if quantity else None
         if own is None or abs(constant.value - own) <= 1e-9 * max(abs(own), 1e-3):
@@ -44,6 +49,20 @@ def judge_constants(verdict: Verdict, case: Comparison) -> None:
                     f"{own:.12g}",
                 )
             )
+
+
+def stated_numbers(formula: Formula) -> list[Constant]:
+    """The numbers that a text gives to names, and those of arguments by default, `def gravity(q, g=9.80665)`."""
+    text = formula.text or ""
+    by_default = [
+        Constant(name, value, node.start, node.end)
+        for name, value in formula.defaults.items()
+        if name not in formula.given
+        for node in formula.default_nodes
+        if isinstance(node, Number) and node.value == value
+        if re.search(rf"\b{name}\b[^=,()]*=\s*$", text[: node.start])
+    ]
+    return [*formula.constants.values(), *by_default]
 
 
 def _depending(case: Comparison, quantity: str, value: float) -> list[int]:
