@@ -41,7 +41,9 @@ def order(law: str, contact: str, size: str, events: str = "grid") -> float:
 
     def error(about: float) -> float:
         steps = about * rng.uniform(0.8, 1.25, 24)
-        ends = [run_of(law, contact, size, f"method: rk4, step: {step:.9e}, events: {events}")["q2"][-1] for step in steps]
+        ends = [
+            run_of(law, contact, size, f"method: rk4, step: {step:.9e}, events: {events}")["q2"][-1] for step in steps
+        ]
         return float(np.sqrt(np.mean(np.square(np.array(ends) - right))))
 
     return float(np.log(error(1e-3) / error(1e-3 / 16)) / np.log(16))

@@ -28,7 +28,7 @@ constexpr SummaryNumber numbers[] = {
     {"tip_y", "m", "tip position along base y at the end", [](R r) { return r.tip[1]; }},
     {"tip_z", "m", "tip position along base z at the end", [](R r) { return r.tip[2]; }},
     {"work_actuators", "J", "work of the applied torques", [](R r) { return r.work_of_actuators; }},
-    {"work_wall", "J", "work of the wall's drive on the arm", [](R r) { return r.work_of_wall; }},
+    {"work_wall", "J", "work of the wall's drive on the arm, and of a push", [](R r) { return r.work_of_wall; }},
     {"energy_dissipated", "J", "energy lost to friction, damping and contact", [](R r) { return r.dissipated; }},
     {"ledger_residual", "J", "largest residual of the energy balance at the end of a step",
      [](R r) { return r.ledger_residual; }},

@@ -75,7 +75,7 @@ inline constexpr std::array column_table = std::to_array<Column>({
     {"energy_potential", "J", "potential energy of the arm, zero at the base origin"},
     {"energy_contact", "J", "elastic energy of the contact; 0 when the wall does not act on the arm"},
     {"work_actuators", "J", "work of the applied torques since the start"},
-    {"work_wall", "J", "work of the wall's drive on the arm since the start; 0 when the wall does not act on the arm"},
+    {"work_wall", "J", "work of the wall's drive on the arm since the start, 0 when the wall does not act on the arm; and of a push"},
     {"energy_dissipated", "J", "energy lost to friction, damping and contact since the start"},
     {"energy_residual", "J",
      "change of the energies, minus the works, plus the dissipated energy: the error of the run"},

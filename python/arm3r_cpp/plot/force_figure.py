@@ -226,9 +226,10 @@ def draw_stiffness(run: ForceRun, ax: Axes, room: float) -> None:
     """Where it is identifiable."""
     estimate = run.run["stiffness_estimate"]
     known = run.column("identifiable")
-    ax.plot(
-        run.run.t, estimate if known is None else np.where(known > 0, estimate, np.nan), color=BLUE, label="estimated"
-    )
+    if known is not None:
+        estimate = np.where(known > 0, estimate, np.nan)
+    has_estimate = not np.all(np.isnan(estimate))
+    ax.plot(run.run.t, estimate, color=BLUE, label="estimated" if has_estimate else "never identifiable")
     if run.scenario and "wall.contact.stiffness" in run.scenario:
         ax.axhline(run.scenario["wall.contact.stiffness"], color=BLACK, ls="--", lw=1.1, label="the wall's")
     finish(ax, run.run, "stiffness, N/m", room)

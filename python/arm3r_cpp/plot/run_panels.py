@@ -53,7 +53,7 @@ OVERVIEW = ("angles", "tip", "depth", "path_error", "joint_error", "torques", "r
 BELOW = ("first_contact", "face")
 ENERGIES = {  # colour, dashes, width and label of a term of the energy balance
     "work_actuators": (AMBER, "-", 3.2, "work of actuators"),
-    "work_wall": (PINK, "-", 2.4, "work of the wall"),
+    "work_wall": (PINK, "-", 2.4, "external work"),
     "energy_kinetic": (BLUE, "-", 1.4, "kinetic"),
     "energy_potential": (RED, "--", 1.4, "Δ potential"),
     "energy_contact": (GREEN, "-.", 1.4, "contact"),
