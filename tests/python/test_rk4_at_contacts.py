@@ -83,5 +83,5 @@ def test_steps_that_end_at_contacts_keep_their_order(law: str, contact: str, siz
 
 
 def test_only_rk4_has_steps_of_one_length() -> None:
-    with pytest.raises(arm3r.ScenarioError, match="solver.events"):
+    with pytest.raises(arm3r.ScenarioError, match=r"solver\.events"):
         run_of(COMPENSATES, SPRING, LARGE, "method: dopri5, events: located")
