@@ -40,7 +40,7 @@ HOSTILE = {
         "raises ValueError in line 2",
     ),
     "gravity_constant.yaml": ("format: 1\ntime: {stop: 1e9, log_every: 1e-9}\n", ""),
-    "moon.yaml": ("&a [*a, *a]\n", "no valid scenario"),
+    "moon.yaml": ("&a [*a, *a]\n", "not a valid scenario"),
     "wall_force.py": (
         "import subprocess\ndef wall_force(x, x_E):\n"
         "    subprocess.Popen(['sleep', 'SECONDS'], start_new_session=True)\n"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._messages import did_you_mean
 
-_ONE_ARM = "arm3r is one arm with three joints; verify.Chain.from_urdf and from_dh describe chains for formulas"
+_ONE_ARM = "arm3r simulates one arm with three joints; verify.Chain.from_urdf and from_dh describe chains for formulas"
 
 # By the class or module: names, parted by blanks, and what to write instead.
 _TABLE: dict[str, dict[str, str]] = {

@@ -43,7 +43,7 @@ def said(sentence: str, known: Known) -> Floats | None:
     """The values that a formula has if a sentence about it is true; None where the sentence is about single entries.
 
     Raises:
-        AssertionError: nobody knows what the sentence means.
+        AssertionError: the sentence is not known here.
     """
     text = sentence[:1].lower() + sentence[1:].rstrip(".")
     if _OF_ENTRIES.match(sentence) or _NOT_CHECKED.match(text):
