@@ -57,7 +57,7 @@ def calls_with(ending: str) -> list[list[str]]:
     return calls
 
 
-@pytest.mark.sample(12)
+@pytest.mark.sample(6)
 @pytest.mark.parametrize(("call"), [call for ending in OTHER_ENDINGS for call in calls_with(ending)], ids=" ".join)
 def test_an_ending_that_is_not_written_is_refused_before_the_work(scripts: Path, folder: Path, call: list[str]) -> None:
     before = {path.name for path in folder.iterdir()}
@@ -376,7 +376,7 @@ def test_no_help_points_to_a_file_that_is_not_installed(scripts: Path, tmp_path:
         assert ".md" not in (thing.__doc__ or "")
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("use", "is_said"),
     [

@@ -92,6 +92,7 @@ def assert_near(values: Any, truth: Any, what: str) -> None:
     assert np.abs(values - truth).max() < 1e-9 * scale, f"{what}: {values}, the library says {truth}"
 
 
+@pytest.mark.gate
 def test_the_page_is_what_the_script_writes(derivation: ModuleType) -> None:
     assert derivation.PAGE.read_text() == derivation.page(), "`python docs/derivation.py` writes the page"
 

@@ -13,6 +13,7 @@ HERE = Path(__file__).parent
 INCLUDE = HERE.parent.parent / "cpp" / "include"
 LEVELS = ("-O0", "-O2", "-O3", "-O3 -march=native")  # the last has fma, and must not use it
 mpmath.mp.dps = 60
+pytestmark = pytest.mark.sample(7)  # tests of this file
 
 
 @pytest.fixture(scope="module")

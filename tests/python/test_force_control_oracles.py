@@ -30,7 +30,7 @@ from force_control_oracles import (
     wall_of,
 )
 
-pytestmark = pytest.mark.sample(30)  # they hold the oracles, not arm3r
+pytestmark = pytest.mark.sample(15)  # they hold the oracles, not arm3r
 
 X = np.array([1.0, 0.0, 0.0])
 M_N = 0.5535415113

@@ -432,6 +432,7 @@ def test_what_cannot_be_drawn_is_said(fall: arm3r.Run, hybrid: arm3r.Run) -> Non
 # ---- as a reader sees it --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("width", [6.3, 3.4])
 @pytest.mark.parametrize("which", ["hybrid", "bounce", "proportional", "pushed"])
 def test_nothing_is_cut_off_or_hidden(which: str, width: float, request: pytest.FixtureRequest) -> None:

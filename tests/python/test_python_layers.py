@@ -127,7 +127,7 @@ def test_no_modules_import_each_other() -> None:
     assert len(list(TopologicalSorter(graph).static_order())) >= len(graph)  # CycleError names a circle
 
 
-@pytest.mark.sample(25)
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("module", [name for name in KNOWN if name != "__init__"])
 def test_every_module_can_be_the_first(python: Any, module: str) -> None:
     done = python(f"import sys, arm3r_cpp.{module} as m; assert m is sys.modules['arm3r_cpp.{module}']")

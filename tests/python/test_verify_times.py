@@ -45,6 +45,7 @@ def test_a_verdict_on_a_formula_of_seven_joints(tmp_path: Path) -> None:
     assert once_within(3, lambda: computed(command), tries=3)
 
 
+@pytest.mark.gate
 def test_a_class_of_sixty_with_three_files_each(tmp_path: Path) -> None:
     show = [Path(sys.executable).parent / "arm3r", "exercise", "show", "--given"]
     given = {task: subprocess.check_output([*show, task]) for task in ("first_joint", "half_link", "minus_row")}
