@@ -48,8 +48,10 @@ class ContactWatch {
 public:
     using Mask = typename Lanes<T>::Mask;
 
-    // touching: by an elastic law; `held`: where contact ends when the depth falls to zero; duration: s, between samples.
-    ContactWatch(const Wall<T>& wall, const Mask& free, const Mask& touching, const Mask& held, const T& duration)
+    // touching: whose force is looked at; `held`: where contact ends when the depth falls to zero; duration: s, between
+    // samples.
+    ARM3R_INLINE ContactWatch(const Wall<T>& wall, const Mask& free, const Mask& touching, const Mask& held,
+                              const T& duration)
         : wall_(wall), free_(free), touching_(touching), held_(held), duration_(duration) {}
 
     // `most`: the depth, m, of the largest force so far.

@@ -19,7 +19,7 @@ struct Tolerance {
     ARM3R_INLINE T of(const T& size) const { return atol + rtol * size; }
 };
 
-// What the error of a step is judged by, besides the tolerance: for every method, of every lane.
+// What the error of a step is judged by, in every lane: the tolerance, and the work of the wall.
 template <class T, std::size_t N>
 class StepError {
 public:
@@ -81,20 +81,20 @@ private:
     T most_work_{0.0};  // J, of the wall, either way
 };
 
+// The derivative with which a step of an explicit method starts, and its count of evaluations.
 template <class T, std::size_t N>
-class ExplicitSteps {
+class StepStart {
 public:
     using Mask = typename Lanes<T>::Mask;
     using Y = State<T, N>;
 
-    static constexpr bool chooses_length = true;
-
     // Adds to `evaluations` whenever it evaluates f.
-    ExplicitSteps(const Setup&, const Plant<T>& plant, RightHandSide<T, T>& rhs, T& evaluations)
-        : rhs_(rhs), evaluations_(evaluations), judge_(plant, rhs) {}
-
-    void load_lane(int lane, const Solver& solver) { judge_.load_lane(lane, solver); }
-    const Tolerance<T>& tolerance() const { return judge_.tolerance; }
+    StepStart(RightHandSide<T, T>& rhs, T& evaluations) : rhs_(rhs), evaluations_(evaluations) {}
+    // Of an equal run: what it refers to stays.
+    StepStart& operator=(const StepStart& other) {
+        f0_ = other.f0_;
+        return *this;
+    }
 
     // Evaluates f at (t, y), where the next step starts, `here`.
     ARM3R_INLINE void set_start(const Mask& here, const T& t, const Y& y) {
@@ -110,14 +110,48 @@ public:
         outlined<T>(rhs_)(t, y, dy);
     }
 
+protected:
+    ARM3R_INLINE void count(const Mask& here, double more) {
+        evaluations_ = evaluations_ + select(here, T(more), T(0.0));
+    }
+    ARM3R_INLINE static Mask is_finite(const Y& y, const Y& f) {
+        Mask is_finite = true;
+        for (std::size_t i = 0; i < N; ++i) is_finite = is_finite && y[i] * 0.0 == T(0.0) && f[i] * 0.0 == T(0.0);
+        return is_finite;
+    }
+    // The next step starts at (t, y): where it `continues`, with the derivative f1 that is known there.
+    ARM3R_INLINE void start_next(const Mask& moved, const Mask& continues, const T& t, const Y& y, const Y& f1) {
+        for (std::size_t i = 0; i < N; ++i) f0_[i] = select(continues, f1[i], f0_[i]);
+        set_start(moved && !continues, t, y);
+    }
+
+    RightHandSide<T, T>& rhs_;
+    T& evaluations_;
+    Y f0_{};
+};
+
+template <class T, std::size_t N>
+class ExplicitSteps : public StepStart<T, N> {
+    using Start = StepStart<T, N>;
+
+public:
+    using typename Start::Mask, typename Start::Y;
+    static constexpr bool chooses_length = true;
+
+    ExplicitSteps(const Setup&, const Plant<T>& plant, RightHandSide<T, T>& rhs, T& evaluations)
+        : Start(rhs, evaluations), judge_(plant, rhs) {}
+
+    void load_lane(int lane, const Solver& solver) { judge_.load_lane(lane, solver); }
+    const Tolerance<T>& tolerance() const { return judge_.tolerance; }
+
     // Tries a step `here`. Returns the error in units of its tolerance, infinite where the step fails.
     ARM3R_INLINE T attempt(const Mask& here, const T& t, const Y& y, const T& h) {
-        count(here, 6);
-        step_.step(outlined<T>(rhs_), t, y, f0_, h);
+        this->count(here, 6);
+        step_.step(outlined<T>(this->rhs_), t, y, this->f0_, h);
         const Tolerance<T>& tolerance = judge_.tolerance;
         const T error = step_.error(y, h, tolerance.rtol, tolerance.atol, judge_.has_contact_heat());
         const auto error_of = [&](std::size_t i) ARM3R_INLINE_LAMBDA { return step_.error_of(i, h); };
-        return select(has_end(), judge_.with_work_of_wall(error, y, step_.y1, error_of), T(infinite));
+        return select(Start::is_finite(step_.y1, step_.f1), judge_.with_work_of_wall(error, y, step_.y1, error_of), T(infinite));
     }
     ARM3R_INLINE const Y& end() const { return step_.y1; }
     ARM3R_INLINE Interpolant<T, N> dense_output(const T& t, const Y& y, const T& h) const {
@@ -129,26 +163,12 @@ public:
     // Accepts the step to (t, y) where `moved`; where it `continues`, the next step starts there without a restart.
     ARM3R_INLINE void accept(const Mask& moved, const Mask& continues, const T& t, const Y& y, const T&) {
         judge_.include(y);
-        for (std::size_t i = 0; i < N; ++i) f0_[i] = select(continues, step_.f1[i], f0_[i]);
-        set_start(moved && !continues, t, y);
+        this->start_next(moved, continues, t, y, step_.f1);
     }
 
 private:
-    ARM3R_INLINE void count(const Mask& here, double more) {
-        evaluations_ = evaluations_ + select(here, T(more), T(0.0));
-    }
-    ARM3R_INLINE Mask has_end() const {
-        Mask is_finite = true;
-        for (std::size_t i = 0; i < N; ++i)
-            is_finite = is_finite && step_.y1[i] * 0.0 == T(0.0) && step_.f1[i] * 0.0 == T(0.0);
-        return is_finite;
-    }
-
-    RightHandSide<T, T>& rhs_;
-    T& evaluations_;
     StepError<T, N> judge_;
     Dopri5<T, N, motion_size, quadrature_count, quadrature_parts> step_;
-    Y f0_{};
 };
 
 }  // namespace arm3r

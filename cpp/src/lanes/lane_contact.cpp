@@ -24,7 +24,6 @@ void LaneContact<T>::set_mode(int lane, ContactMode mode) {
     Lanes<T>::mark(separated_, lane, mode == ContactMode::separated);
     any_touching_ = std::ranges::count(mode_, ContactMode::contact) > 0;
     any_embedded_ = std::ranges::count(mode_, ContactMode::embedded) > 0;
-    any_separated_ = std::ranges::count(mode_, ContactMode::separated) > 0;
 }
 
 template <class T>

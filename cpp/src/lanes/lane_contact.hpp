@@ -55,7 +55,6 @@ public:
     ARM3R_INLINE const Mask& touching() const { return touching_; }
     ARM3R_INLINE const Mask& embedded() const { return embedded_; }
     ARM3R_INLINE const Mask& separated() const { return separated_; }
-    ARM3R_INLINE bool any_separated() const { return any_separated_; }
     ARM3R_INLINE bool any_touching() const { return any_touching_; }
     ARM3R_INLINE bool any_embedded() const { return any_embedded_; }
     // Whether the first contact of a lane is transient, and until when, s; infinite in the others.
@@ -153,7 +152,7 @@ private:
     bool is_elastic_;
     std::array<ContactMode, lanes> mode_{};
     Mask touching_ = false, embedded_ = false, separated_ = false;  // touching_: in the mode `contact`
-    bool any_touching_ = false, any_embedded_ = false, any_separated_ = false;
+    bool any_touching_ = false, any_embedded_ = false;
     T max_depth_{0.0}, depth_time_{0.0};  // m, m s: where depths are summed
     T peak_{0.0}, impulse_{0.0};          // N, N s: where forces are
     T peak_time_{0.0};                    // s

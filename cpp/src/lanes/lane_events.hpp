@@ -1,7 +1,7 @@
 #pragma once
 // Runs in lanes by steps that end at events: each lane has its own step, which ends at the next sample of its controller,
-// where a formula of time changes, and where its contact changes. Method: its steps, with their error and dense output,
-// of a length that the error chooses (5.2), (5.6), (5.7) or of one length (5.1).
+// where a formula of time changes, and where its contact changes. Method: its steps, with their error and dense output, of
+// a length that the error chooses (5.2), (5.6), (5.7) or of one length (5.1).
 
 #include "contact/contact_search.hpp"
 #include "contact/contact_watch.hpp"
@@ -24,6 +24,7 @@ public:
           holds_samples_(any_lane.digital.sampling.on),
           has_constant_samples_(holds_samples_ && !tracked_quantities(any_lane).motion()) {
         this->needs_derivative_ = false;
+        for (int lane = 0; lane < Base::lanes; ++lane) load_steps(lane);
     }
     // A copy of a single run, which continues as `other` would; `setup` is a copy of its setup.
     void continue_as(const LaneEvents& other, const Setup& setup) {
@@ -33,18 +34,11 @@ public:
 
     void load_lane(int lane, const Setup& setup) {
         Base::load_lane(lane, setup);
-        method_.load_lane(lane, setup.solver);
-        const auto set = [lane](T& x, double value) { Lanes<T>::set(x, lane, value); };
-        set(this->slack_, setup.clock_rounding());
-        const Plant<double>& plant = setup.plant;
-        set(max_step_, std::min(setup.solver.max_step, plant.has_wall ? max_wall_step(plant.wall) : infinite));
-        set(max_turn_, std::min(0.25 * std::numbers::pi, fifth_root(1e5 * setup.solver.rtol)));
-        set(next_h_, infinite);
-        set(start_, setup.start), set(step_, Method::chooses_length ? infinite : setup.solver.step);
-        set(whole_steps_, 0.0);
-        Lanes<T>::mark(was_refused_, lane, false);
-        Lanes<T>::mark(had_finite_end_, lane, true);
-        set_knots(lane, setup.start);
+        load_steps(lane);
+    }
+    void clear_lane(int lane) {
+        Base::clear_lane(lane);
+        load_steps(lane);
     }
 
     static constexpr int together = 1;  // lane runs that a group steps together
@@ -128,7 +122,7 @@ public:
         this->balance_.update_where(moved_, Energies<T>{this->kinetic_, this->potential_, this->stored(this->in_)},
                                     this->y_);
         if constexpr (Method::chooses_length) choose_next_length();
-        else whole_steps_ = whole_steps_ + select(this->t_ >= next_on_grid() - this->slack_, T(1.0), T(0.0));
+        else whole_steps_ = whole_steps_ + select(moved_ && this->t_ >= next_on_grid() - this->slack_, T(1.0), T(0.0));
         if (in_any_lane(moved_ && this->t_ >= knot_)) pass_knots();
     }
 
@@ -143,8 +137,6 @@ public:
     bool stands_at_sample() const { return any(this->sampled_.next_sample() <= this->t_ + this->slack_); }
     // Whether a formula of time may jump, or the torque, at the end of the last step that was accepted.
     bool may_jump_at_end() const { return any(may_jump_); }
-    // Whether the last step was refused because it had no finite end.
-    bool lacks_end(int lane) const { return !Lanes<T>::is(had_finite_end_, lane); }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
     const Method& method() const { return method_; }
     // The dense output of the last step that was accepted.
@@ -157,6 +149,23 @@ public:
 
 private:
     LaneEvents& operator=(const LaneEvents&) = default;
+
+    // The numbers of a lane's steps, from the setup that it has.
+    void load_steps(int lane) {
+        const Setup& setup = this->setup(lane);
+        const auto set = [lane](T& x, double value) { Lanes<T>::set(x, lane, value); };
+        method_.load_lane(lane, setup.solver);
+        set(this->slack_, setup.clock_rounding());
+        const Plant<double>& plant = setup.plant;
+        set(max_step_, std::min(setup.solver.max_step, plant.has_wall ? max_wall_step(plant.wall) : infinite));
+        set(max_turn_, std::min(0.25 * std::numbers::pi, fifth_root(1e5 * setup.solver.rtol)));
+        set(next_h_, infinite);
+        set(start_, setup.start), set(step_, Method::chooses_length ? infinite : setup.solver.step);
+        set(whole_steps_, 0.0);
+        Lanes<T>::mark(was_refused_, lane, false);
+        Lanes<T>::mark(had_finite_end_, lane, true);
+        set_knots(lane, setup.start);
+    }
 
     // ---- the length of a step
 
@@ -340,16 +349,16 @@ private:
         if (in_any_lane(ill)) this->stop_lanes(ill, ARM3R_RUN_ILL_CONDITIONED);
     }
 
-    // The state at the crossing is that of the dense output. Where this is not accurate enough, a second step ends there:
-    // that of RODAS4 gives the works (5.6), that of one length all.
+    // The state at the crossing is that of the dense output, so that the tip lies on the face there. Where this has one
+    // order less than the end of a step, it is not accurate enough for the works: these come from a second step, which ends
+    // at the crossing (5.6).
     ARM3R_INLINE void stop_at_crossing(Y& y1) {
         for (std::size_t i = 0; i < N; ++i) y1[i] = select(crosses_, dense_.component(i, theta_), y1[i]);
         if (!method_.repeats_to_event()) return;
         const T h = select(crosses_, T(theta_ * this->h_), this->h_);
         const Mask ends = method_.attempt(crosses_, t0_, this->y_, h) < T(infinite);
-        constexpr std::size_t first = Method::chooses_length ? std::size_t{motion_size} : 0;
-        constexpr std::size_t last = Method::chooses_length ? state_size : N;
-        for (std::size_t i = first; i < last; ++i) y1[i] = select(crosses_ && ends, method_.end()[i], y1[i]);
+        for (std::size_t i = motion_size; i < state_size; ++i)
+            y1[i] = select(crosses_ && ends, method_.end()[i], y1[i]);
     }
 
     // Takes the samples of the lanes that are due. Returns where the torque may be new.

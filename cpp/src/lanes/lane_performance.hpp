@@ -1,6 +1,6 @@
 #pragma once
 // The metrics of a controller's performance in every lane (8.10). A segment of a step is sampled on the number type; a
-// lane in which it must be refined, and a step in which the contact changes, is handled alone in doubles.
+// lane in which it must be refined, or in which steps of one length have a change of contact, is handled alone in doubles.
 
 #include "arm3r/numbers/widths.hpp"
 #include "run/performance.hpp"

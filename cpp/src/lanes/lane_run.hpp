@@ -386,8 +386,8 @@ protected:
     void fail_lanes(const Mask& bad);
 
     Plant<T>
-        // its contact is the one that acts on the motion: without stiffness in embedded lanes, and, if
-        // only_contact_is_felt_, in free ones
+        // its contact is the one that acts on the motion, unless the contact mode says where that acts: without stiffness
+        // in embedded lanes, and, where only contact is felt, in free ones
         plant_;
     RightHandSide<T, T> rhs_;
     bool has_common_terms_;

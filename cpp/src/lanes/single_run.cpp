@@ -34,9 +34,10 @@ public:
 
     Run run() {
         lane_run_.start_lanes();
+        record_contact_at_start();
         record_start();
         while (goes_on()) {
-            has_dense_output_ = false;
+            forget_dense_output();
             advance(lane_run_, next_row());  // several steps, as far as nothing happens in them
             record_step();
             update_row_context();
@@ -52,13 +53,17 @@ protected:
           loaded_(other.loaded_),
           lane_run_(loaded_),
           theta_(other.theta_),
-          has_dense_output_(other.has_dense_output_) {
+          has_dense_output_(other.has_dense_output_),
+          steps_at_last_poll_(other.steps_at_last_poll_) {
         lane_run_.continue_as(other.lane_run_, loaded_);
         observe_changes();
     }
 
-    void record_start() {
+    void record_contact_at_start() {
         start_contact(lane_run_.mode(0));
+        inputs_ = lane_run_.inputs(0);
+    }
+    void record_start() {
         update_row_context();
         start_rows(lane_run_.y(0), initial_derivative(lane_run_.y(0)), lane_run_.energy_at_start(0));
     }
@@ -72,9 +77,14 @@ protected:
 
     // What the last step leaves in the records; its dense output is computed only if rows or events lie in it.
     void record_step() {
+        const std::int64_t accepted_before = run_.steps.accepted;
+        run_.steps = lane_run_.steps(0);
+        if (run_.steps.accepted == accepted_before) {
+            has_dense_output_ = had_dense_output_;  // of the step before
+            return;
+        }
         theta_ = lane_run_.theta(0);
         run_.t_end = lane_run_.t(0);
-        run_.steps = lane_run_.steps(0);
         const double until = lane_run_.may_jump_at_end() ? run_.t_end - setup_.clock_rounding() : run_.t_end;
         if (is_row_due(until) && !is_out_of_range(lane_run_.y(0))) {
             update_dense_output();
@@ -103,7 +113,7 @@ protected:
 
     Integrator& lane_run() { return lane_run_; }
     const Integrator& lane_run() const { return lane_run_; }
-    void forget_dense_output() { has_dense_output_ = false; }
+    void forget_dense_output() { had_dense_output_ = std::exchange(has_dense_output_, false); }
 
 private:
     void observe_changes() {
@@ -147,14 +157,14 @@ private:
     }
     std::string divergence_reason(double t) const {
         if constexpr (StandsAtSamples<Integrator>)
-            if (lane_run_.lacks_end(0)) return divergence_message({}, {}, t);
+            if (!is_out_of_range(lane_run_.y(0))) return divergence_message({}, {}, t);  // no step had a finite end
         return divergence_message(run_.q, run_.qd, t);
     }
 
     const Setup loaded_;  // while setup_ follows the torque that is held
     Integrator lane_run_;
     double theta_ = 0;
-    bool has_dense_output_ = true;
+    bool has_dense_output_ = true, had_dense_output_ = true;  // whether dense_ is that of the last step, and was before
     std::int64_t steps_at_last_poll_ = -1;
 };
 
@@ -166,6 +176,7 @@ class StandingRun : public InteractiveRun, SingleRun<Integrator> {
 public:
     StandingRun(const Setup& setup, const RunOptions& options) : Base(setup, options) {
         this->lane_run().place_lanes();
+        this->record_contact_at_start();
     }
     StandingRun(const StandingRun&) = default;
 
@@ -187,8 +198,7 @@ public:
                 stands_ = true;
                 return;
             }
-            if (has_moved) finish_step();
-            this->lane_run().check_budget();
+            has_moved ? finish_step() : this->lane_run().check_budget();
         }
     }
 
@@ -205,6 +215,7 @@ private:
     }
     void finish_step() {
         this->lane_run().finish_step_outlined();
+        this->lane_run().check_budget();
         this->update_row_context();
     }
 

@@ -248,7 +248,7 @@ template <std::size_t n, class T, class M>
 ARM3R_INLINE M add_path(const TrackedQuantities& tracked, const Rule<n>& rule, const M& moved,
                         const Segment<T>& segment, PerformanceSums<T>& sums) {
     const auto square = [](const PerformanceSample<T>& s) ARM3R_INLINE_LAMBDA { return s.path_error_2; };
-    sums.path_2 = sums.path_2 + select(moved, segment.duration, T(0.0)) * mean_of(rule, segment, square);
+    sums.path_2 = sums.path_2 + select(moved, T(segment.duration * mean_of(rule, segment, square)), T(0.0));
     if (!tracked.path_maximum) return false;
     sums.max_path_2 = max_where(moved, sums.max_path_2, max_of<n>(segment, square));
     return moved && peak_bound(rule, segment, square) > sums.max_path_2;

@@ -93,7 +93,7 @@ double Setup::clock_rounding() const {
 }
 
 void set_jumps_on_clock(Setup& setup) {
-    const bool has_grid = setup.solver.method == SolverMethod::rk4, has_samples = setup.digital.sampling.on;
+    const bool has_grid = setup.solver.is_on_grid(), has_samples = setup.digital.sampling.on;
     // An adaptive step ends at every jump; within a fixed one a row must find it.
     const double between_rows = has_grid ? setup.log_every : infinite;
     const double period = has_grid ? setup.solver.step : has_samples ? setup.digital.sampling.period : infinite;
