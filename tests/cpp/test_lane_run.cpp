@@ -2,6 +2,7 @@
 
 #include "check.hpp"
 #include "fixtures.hpp"
+#include "run/performance.hpp"
 
 namespace arm3r {
 
@@ -139,5 +140,23 @@ TEST_CASE(the_log_changes_nothing_but_the_rows) {
 }
 
 TEST_SUITE_END()
+
+// While other lanes move, a lane whose step is refused may have samples that are no numbers.
+TEST_CASE(a_step_that_is_refused_leaves_nothing_in_the_sums) {
+    TrackedQuantities all;
+    all.force = all.path = all.limits = all.shortfall = all.overshoot = all.settling = all.path_maximum = true;
+    const double nan = std::nan("");
+    Segment<double> segment{0, 1, true, {}};
+    segment.samples.fill({nan, nan, nan, nan});
+    PerformanceSums<double> sums;
+    add_segment(all, boole, false, segment, sums);
+    double largest = 0;
+    each_sum(
+        [&](double& sum) { largest = sum > -infinite ? std::max(largest, std::abs(sum))
+                                     : sum == sum    ? largest
+                                                     : nan; },
+        sums);
+    CHECK(largest <= 0);
+}
 
 }  // namespace arm3r

@@ -82,6 +82,17 @@ def test_steps_that_end_at_contacts_keep_their_order(law: str, contact: str, siz
     assert order(law, contact, size, "located", 6) > (2.2 if contact == HUNT_CROSSLEY else 2.9)
 
 
+def test_a_contact_just_before_a_step_would_end_is_one_contact() -> None:
+    for before in 10.0 ** np.arange(-12, -4):
+        for steps in (2, 3, 5, 8):
+            met = run_of(COMPENSATES, SPRING, LARGE, "method: dopri5").events[0].t
+            for _ in range(5):  # where it is met depends on the step
+                solver = f"method: rk4, step: {(met + before) / steps:.17g}, events: located"
+                run = run_of(COMPENSATES, SPRING, LARGE, solver)
+                met = run.events[0].t
+            assert [event.type for event in run.events] == ["make", "break"], (before, steps)
+
+
 def test_only_rk4_has_steps_of_one_length() -> None:
     with pytest.raises(arm3r.ScenarioError, match=r"solver\.events"):
         run_of(COMPENSATES, SPRING, LARGE, "method: dopri5, events: located")

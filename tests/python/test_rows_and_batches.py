@@ -231,6 +231,33 @@ def wrong_in_steps(keys: Keys, rng: np.random.Generator) -> list[str]:
     return found
 
 
+def ended(run: Callable[[], arm3r.Run]) -> arm3r.Run:
+    """A run, also where it does not come to its end."""
+    try:
+        return run()
+    except arm3r.Arm3rError as error:
+        assert error.run is not None
+        return error.run
+
+
+def stepped(scenario: arm3r.Scenario) -> arm3r.Run:
+    simulation = arm3r.Simulation(scenario)
+    while not simulation.is_over:
+        simulation.step(law(simulation.t, simulation.state))
+    return simulation.run
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4", "auto"])
+def test_a_budget_ends_a_run_step_by_step_where_it_ends_it_in_one_stride(method: str) -> None:
+    own = {"format": 1, "controller": {"type": "user"}, "sampling": {"rate": 500}, "time": {"stop": 0.02}}
+    for most in range(1, 30):
+        scenario = arm3r.Scenario(yaml_of({**own, "solver": {**LOOSE[method], "max_steps": most}}))
+        whole = ended(lambda scenario=scenario: scenario.run(controller=law))
+        run = ended(lambda scenario=scenario: stepped(scenario))
+        told = [(one.outcome, one.t[-1], one.summary["solver"]) for one in (whole, run)]
+        assert told[0] == told[1], most
+
+
 def taken_up_again(simulation: arm3r.Simulation) -> arm3r.Simulation:
     """A copy that has gone astray and come back."""
     other = simulation.copy()
