@@ -139,8 +139,6 @@ TEST_CASE(the_log_changes_nothing_but_the_rows) {
     }
 }
 
-TEST_SUITE_END()
-
 // While other lanes move, a lane whose step is refused may have samples that are no numbers.
 TEST_CASE(a_step_that_is_refused_leaves_nothing_in_the_sums) {
     TrackedQuantities all;
@@ -158,5 +156,7 @@ TEST_CASE(a_step_that_is_refused_leaves_nothing_in_the_sums) {
         sums);
     CHECK(largest <= 0);
 }
+
+TEST_SUITE_END()
 
 }  // namespace arm3r
