@@ -145,7 +145,7 @@ TEST_CASE(a_step_that_is_refused_leaves_nothing_in_the_sums) {
     all.force = all.path = all.limits = all.shortfall = all.overshoot = all.settling = all.path_maximum = true;
     const double nan = std::nan("");
     Segment<double> segment{0, 1, true, {}};
-    segment.samples.fill({nan, nan, nan, nan});
+    segment.samples.fill({nan, nan, nan, 1});  // the last is a choice, and always a number
     PerformanceSums<double> sums;
     add_segment(all, boole, false, segment, sums);
     double largest = 0;
