@@ -34,6 +34,12 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(plugin)
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """No process waits at the end for one that runs a long test: these come first."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
 def scenario_files() -> list[Path]:
     """Every scenario of the repository; sweeps are files of another kind."""
     return sorted(path for path in (ROOT / "scenarios").rglob("*.yaml") if path.parent.name != "sweeps")

@@ -94,6 +94,7 @@ def test_some_mistakes_of_understanding(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.long
 @pytest.mark.random
 def test_four_hundred_mistakes_of_understanding(tmp_path: Path) -> None:
     right = (Mutant("", path, path.read_text()) for path in FILES)
