@@ -43,7 +43,7 @@ class Simulation:
             rate: the rate of the samples, Hz; None: the scenario's sampling.rate, by default 1000.
 
         Raises:
-            ScenarioError: the scenario is not valid, or its solver.method is taylor, or rk4 on its grid.
+            ScenarioError: the scenario is not valid.
         """
         mine = scenario._for_law(rate)
         mine._warn_of_scenario()

@@ -210,9 +210,7 @@ def wrong_in_steps(keys: Keys, rng: np.random.Generator) -> list[str]:
     """Methods by which a run made sample by sample, left and taken up again, is not the run in one stride."""
     found = []
     own = {key: value for key, value in keys.items() if key != "reference"} | {"controller": {"type": "user"}}
-    for method, solver in {**LOOSE, "rk4 to events": TO_EVENTS}.items():
-        if method == "taylor":
-            continue  # it does not stand at samples
+    for method, solver in solvers_of(own):
         scenario = arm3r.Scenario(yaml_of({**own, "solver": solver}))
         whole = scenario.run(controller=law)
         simulation = arm3r.Simulation(scenario)

@@ -142,16 +142,6 @@ std::unique_ptr<arm3r_simulation> copied(const arm3r_simulation& from) {
     return copy;
 }
 
-void refuse_other_methods(const Setup& setup) {
-    if (setup.solver.stands_at_samples()) return;
-    throw Error(ARM3R_E_SCENARIO,
-                {{.code = "scenario.other_choice",
-                  .path = "solver.method",
-                  .message = "a simulation stands at its samples only by a method whose steps end there",
-                  .got = setup.solver.method == SolverMethod::rk4 ? "rk4" : "taylor",
-                  .allowed = "dopri5, rodas4, auto, or rk4 with solver.events: located"}});
-}
-
 }  // namespace
 
 int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation** simulation) {
@@ -164,7 +154,6 @@ int32_t arm3r_simulation_create(const arm3r_scenario* scenario, arm3r_simulation
         with_locations(scenario->scenario, [&] {
             refuse_other_controllers(handle->resolved->params);
             const Setup& setup = handle->resolved->setup;
-            refuse_other_methods(setup);
             handle->view = std::make_shared<LawView>(setup);
             handle->run = start_interactive_run(setup, {.kept = columns_in(handle->resolved->checks)});
         });

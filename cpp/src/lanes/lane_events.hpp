@@ -26,12 +26,6 @@ public:
         this->needs_derivative_ = false;
         for (int lane = 0; lane < Base::lanes; ++lane) load_steps(lane);
     }
-    // A copy of a single run, which continues as `other` would; `setup` is a copy of its setup.
-    void continue_as(const LaneEvents& other, const Setup& setup) {
-        *this = other;
-        this->set_setup(setup);
-    }
-
     void load_lane(int lane, const Setup& setup) {
         Base::load_lane(lane, setup);
         load_steps(lane);
@@ -44,12 +38,10 @@ public:
     static constexpr int together = 1;  // lane runs that a group steps together
 
     ARM3R_INLINE void start_lanes() {
-        place_lanes();
+        this->place_lanes();
         if constexpr (Base::lanes == 1) start_steps_outlined();
         else start_steps();
     }
-    // The lanes that were loaded stand at their start, before the first sample.
-    ARM3R_INLINE void place_lanes() { this->place_new_lanes(); }
     // The first sample, and the first step of these lanes.
     ARM3R_INLINE void start_steps() {
         Mask fresh = false;
@@ -66,14 +58,12 @@ public:
 
     ARM3R_INLINE void step() {
         if (take_step()) finish_step();
-        check_budget();
     }
     // step() and its parts as function calls: of a single run each is compiled once.
     void step_outlined()
         requires(Base::lanes == 1)
     {
         if (take_step_outlined()) finish_step_outlined();
-        check_budget();
     }
     [[gnu::noinline]] void start_steps_outlined()
         requires(Base::lanes == 1)
@@ -93,6 +83,11 @@ public:
 
     // Tries a step of every lane, and returns whether one of them has moved; finish_step() completes it.
     ARM3R_INLINE bool take_step() {
+        const bool moves = try_step();
+        if (!moves) check_budget();
+        return moves;
+    }
+    ARM3R_INLINE bool try_step() {
         t0_ = this->t_;
         const StepEnd end = step_end();
         choose_length(end);
@@ -124,17 +119,9 @@ public:
         if constexpr (Method::chooses_length) choose_next_length();
         else whole_steps_ = whole_steps_ + select(moved_ && this->t_ >= next_on_grid() - this->slack_, T(1.0), T(0.0));
         if (in_any_lane(moved_ && this->t_ >= knot_)) pass_knots();
+        check_budget();
     }
 
-    // Lanes that may take no further step are stopped.
-    ARM3R_INLINE void check_budget() {
-        const Mask used_up =
-            this->active_ && this->accepted_ + this->rejected_ >= this->max_steps_ && this->t_ < this->stop_;
-        if (in_any_lane(used_up)) this->stop_lanes(used_up, ARM3R_RUN_BUDGET);
-    }
-
-    // Of a single run: whether it stands at a sample that has not been taken.
-    bool stands_at_sample() const { return any(this->sampled_.next_sample() <= this->t_ + this->slack_); }
     // Whether a formula of time may jump, or the torque, at the end of the last step that was accepted.
     bool may_jump_at_end() const { return any(may_jump_); }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
@@ -148,7 +135,12 @@ public:
     }
 
 private:
-    LaneEvents& operator=(const LaneEvents&) = default;
+    // Stops the lanes that may take no further step.
+    ARM3R_INLINE void check_budget() {
+        const Mask used_up =
+            this->active_ && this->accepted_ + this->rejected_ >= this->max_steps_ && this->t_ < this->stop_;
+        if (in_any_lane(used_up)) this->stop_lanes(used_up, ARM3R_RUN_BUDGET);
+    }
 
     // The numbers of a lane's steps, from the setup that it has.
     void load_steps(int lane) {
@@ -327,18 +319,10 @@ private:
         ends_at_jump_ = reached && end.is_jump;
         may_jump_ = reached && (end.is_jump || end.is_due);
         this->accept(moved_, t1, y1);
-        locate();
+        this->locate_tip();
+        this->compute_energies();
         check_motion();
         if (in_any_lane(crosses_)) apply_changes();
-    }
-
-    // Pose, wall, indentation and energies of the present state.
-    ARM3R_INLINE void locate() {
-        const Vec3<T> qd(this->y_[3], this->y_[4], this->y_[5]);
-        this->p_ = pose(Vec3<T>(this->y_[0], this->y_[1], this->y_[2]));
-        if (this->plant_.has_wall) this->template locate_wall<Terms::any>(qd);
-        this->kinetic_ = kinetic_energy(this->plant_.arm, this->p_, qd);
-        this->potential_ = potential_energy_of_pose(this->plant_.arm, this->p_);
     }
 
     ARM3R_INLINE void check_motion() {

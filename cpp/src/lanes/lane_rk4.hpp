@@ -36,8 +36,7 @@ public:
 
     ARM3R_INLINE void start_lanes() {
         Base::start_lanes();
-        count_whole_steps();
-        is_whole_ = false;
+        begin_counting();
     }
     // A whole step is not the last one of any lane.
     ARM3R_INLINE bool any_ended() const { return is_whole_ ? this->has_failed() : Base::any_ended(); }
@@ -48,7 +47,7 @@ public:
 
     // A step of `count` lane runs with the same batch key, stage by stage.
     ARM3R_INLINE static void step_together(LaneRk4* const* runs, int count) {
-        if (N == state_size && runs[0]->has_common_terms_) step_of<Terms::common>(runs, count);
+        if (runs[0]->has_common_step()) step_of<Terms::common>(runs, count);
         else step_of<Terms::any>(runs, count);
     }
     ARM3R_INLINE void step() {
@@ -60,6 +59,23 @@ public:
         requires(Base::lanes == 1)
     {
         step();
+    }
+    // Its parts, before and after the sample at its end.
+    bool take_step_outlined()
+        requires(Base::lanes == 1)
+    {
+        begin_step();
+        moved_ = has_common_step() ? move<Terms::common>() : move<Terms::any>();
+        return true;
+    }
+    void finish_step_outlined()
+        requires(Base::lanes == 1)
+    {
+        has_common_step() ? complete_step<Terms::common>(moved_) : complete_step<Terms::any>(moved_);
+    }
+    void start_steps_outlined() {
+        this->start_steps();
+        begin_counting();
     }
     // The start of the last step, and the derivatives at both ends: a single run needs them for its dense output.
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
@@ -147,6 +163,13 @@ protected:
     int whole_steps_ = 0;
 
 private:
+    ARM3R_INLINE bool has_common_step() const { return N == state_size && this->has_common_terms_; }
+
+    void begin_counting() {
+        count_whole_steps();
+        is_whole_ = false;
+    }
+
     template <Terms terms>
     ARM3R_INLINE static void step_of(LaneRk4* const* runs, int count) {
         for (int i = 0; i < count; ++i) runs[i]->begin_step();
@@ -155,7 +178,7 @@ private:
             for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 1>();
             for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 2>();
         }
-        for (int i = 0; i < count; ++i) runs[i]->template end_step<terms>();
+        for (int i = 0; i < count; ++i) runs[i]->template complete_step<terms>(runs[i]->template move<terms>());
     }
 
     ARM3R_INLINE void begin_step() {
@@ -224,8 +247,9 @@ private:
         else if (this->rhs_.does_work()) return end.template operator()<common_moving>();
         else return end.template operator()<motion_size>();
     }
+    // Moves to the end of the step, before the sample there. Returns the lanes that have moved.
     template <Terms terms>
-    ARM3R_INLINE void end_step() {
+    ARM3R_INLINE Mask move() {
         Y y1;
         if constexpr (together > 1) y1 = stepped<terms>();
         else y1 = stepped_alone<terms>(t0_, this->y_, this->f_, this->h_, work_);
@@ -240,7 +264,14 @@ private:
         this->evaluations_ = this->evaluations_ + 4.0;
         if (Base::lanes == 1 || this->performance_.samples()) store_end();
         if (has_jump_) this->rhs_.latest = T(infinite);
-        this->template observe<terms>();
+        this->template locate_tip<terms>();
+        return moved;
+    }
+
+    // The sample, and what the step means for contact and metrics.
+    template <Terms terms>
+    ARM3R_INLINE void complete_step(const Mask& moved) {
+        this->template sample_and_derive<terms>();
         if (this->performance_.samples() && may_jump_at_end())
             Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { derive_before_jump(jumps_); });
         eventful_ = false;
@@ -448,6 +479,7 @@ private:
         this->performance_.sample(1, {t, p, wall, in, tau});
     }
 
+    Mask moved_ = false;     // in the last step, of a single run in parts
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
     T t0_{0.0}, t1_{0.0}, next_jump_{infinite};
@@ -465,5 +497,9 @@ private:
 
 extern template void LaneRk4<double, state_size>::step_outlined();
 extern template void LaneRk4<double, full_size>::step_outlined();
+extern template bool LaneRk4<double, state_size>::take_step_outlined();
+extern template bool LaneRk4<double, full_size>::take_step_outlined();
+extern template void LaneRk4<double, state_size>::finish_step_outlined();
+extern template void LaneRk4<double, full_size>::finish_step_outlined();
 
 }  // namespace arm3r

@@ -72,11 +72,28 @@ public:
     // last call of start_lanes() start with the next one.
     void load_lane(int lane, const Setup& setup);
     ARM3R_INLINE void start_lanes() {
-        place_new_lanes();
+        place_lanes();
+        start_steps();
+    }
+    // The lanes that were loaded stand at their start, before the first sample: contact, energy and memory.
+    ARM3R_INLINE void place_lanes() {
+        observe_outlined();
+        for (int lane = 0; lane < lanes; ++lane)
+            if (is_new_[lane]) start_lane(lane);
+        if (N == full_size) start_memory();
+    }
+    // Their first sample, and the derivative with it.
+    ARM3R_INLINE void start_steps() {
         started_ = active_;
         if (is_controlled_ || N == full_size || contact_.any_embedded()) observe_outlined();
         is_new_.fill(false);
     }
+    // A single run that was assigned to this one continues here as it would there, with a copy of its setup, once its
+    // observer is set.
+    void set_setup(const Setup& setup) { setups_[0] = &setup; }
+    // Of a single run: whether it stands at a sample that has not been taken, and continues without it.
+    bool stands_at_sample() const { return any(sampled_.next_sample() <= t_ + slack_); }
+    void skip_sample() { started_ = false; }
 
     // Called before each change of contact of a lane.
     void set_observer(std::function<void(int lane, const ContactChange&)> changes) { on_change_ = std::move(changes); }
@@ -130,17 +147,7 @@ public:
     arm3r_outcome outcome(int lane) const { return outcome_[lane]; }
 
 protected:
-    // The lanes that were loaded since the last start, at their start: contact, energy and memory.
-    ARM3R_INLINE void place_new_lanes() {
-        observe_outlined();
-        for (int lane = 0; lane < lanes; ++lane)
-            if (is_new_[lane]) start_lane(lane);
-        if (N == full_size) start_memory();
-    }
-
-    // A copy of a single run continues as it would; the setup is to be set next, and what observes it.
     LaneRun& operator=(const LaneRun&) = default;
-    void set_setup(const Setup& setup) { setups_[0] = &setup; }
 
     // The lanes whose run goes on.
     ARM3R_INLINE Mask goes_on() const {
@@ -167,21 +174,33 @@ protected:
     // Evaluates pose, wall, indentation, derivative and energies at the present state.
     template <Terms terms = Terms::any>
     ARM3R_INLINE void observe() {
+        locate_tip<terms>();
+        sample_and_derive<terms>();
+    }
+    void observe_outlined();
+
+    // The part of it before the sample that is due.
+    template <Terms terms = Terms::any>
+    ARM3R_INLINE void locate_tip() {
         if (needs_derivative_) {
             rhs_.begin_step(y_);
             p_ = rhs_.pose_near(y_);
         } else {
             p_ = pose(Vec3<T>(y_[0], y_[1], y_[2]));
         }
-        const Vec3<T> qd(y_[3], y_[4], y_[5]);
-        if (plant_.has_wall) locate_wall<terms>(qd);
+        if (plant_.has_wall) locate_wall<terms>(Vec3<T>(y_[3], y_[4], y_[5]));
+    }
+    template <Terms terms = Terms::any>
+    ARM3R_INLINE void sample_and_derive() {
         if (is_controlled_ && in_any_lane(is_due())) update_controller(is_due());
         if (needs_derivative_) derive<terms>();
         else if (performance_.is_on()) tau_ = torque_without_memory(plant_, Vec3<T>(y_[0], y_[1], y_[2]), p_);
-        kinetic_ = kinetic_energy(plant_.arm, p_, qd);
+        compute_energies();
+    }
+    ARM3R_INLINE void compute_energies() {
+        kinetic_ = kinetic_energy(plant_.arm, p_, Vec3<T>(y_[3], y_[4], y_[5]));
         potential_ = potential_energy_of_pose(plant_.arm, p_);
     }
-    void observe_outlined();
 
     // With common terms nothing else of wall and indentation is needed.
     template <Terms terms>

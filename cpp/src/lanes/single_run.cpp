@@ -13,12 +13,16 @@
 namespace arm3r {
 namespace {
 
-// Whether the method tells a step from the sample at its end, so that a caller can stand between them.
+// Whether a step is complete, with its contact and metrics, before the sample at its end.
 template <class Integrator>
-concept StandsAtSamples = requires(Integrator run) { run.take_step_outlined(); };
+constexpr bool completes_before_sample = requires(Integrator run) { run.method(); };
 
-template <std::size_t N>
-using LocatedRk4 = LaneEvents<double, N, FixedSteps<double, N>>;
+template <class T, std::size_t N>
+using ByError = LaneEvents<T, N>;
+template <class T, std::size_t N>
+using LocatedRk4 = LaneEvents<T, N, FixedSteps<T, N>>;
+template <class T, std::size_t N>
+using GridRk4 = std::conditional_t<N == state_size, SingleRk4, LaneRk4<T, N>>;
 
 FullState initial_derivative(const FullState& y) { return {y[3], y[4], y[5]}; }
 
@@ -48,14 +52,14 @@ public:
 protected:
     // A copy continues as `other` would.
     SingleRun(const SingleRun& other)
-        requires StandsAtSamples<Integrator>
         : RunRecorder(other),
           loaded_(other.loaded_),
           lane_run_(loaded_),
           theta_(other.theta_),
           has_dense_output_(other.has_dense_output_),
           steps_at_last_poll_(other.steps_at_last_poll_) {
-        lane_run_.continue_as(other.lane_run_, loaded_);
+        lane_run_ = other.lane_run_;
+        lane_run_.set_setup(loaded_);
         observe_changes();
     }
 
@@ -156,7 +160,7 @@ private:
         }
     }
     std::string divergence_reason(double t) const {
-        if constexpr (StandsAtSamples<Integrator>)
+        if constexpr (completes_before_sample<Integrator>)
             if (!is_out_of_range(lane_run_.y(0))) return divergence_message({}, {}, t);  // no step had a finite end
         return divergence_message(run_.q, run_.qd, t);
     }
@@ -168,8 +172,8 @@ private:
     std::int64_t steps_at_last_poll_ = -1;
 };
 
-// Between a step and the sample at its end it stands.
-template <StandsAtSamples Integrator>
+// It stands where a step has reached a sample.
+template <class Integrator>
 class StandingRun : public InteractiveRun, SingleRun<Integrator> {
     using Base = SingleRun<Integrator>;
 
@@ -192,17 +196,21 @@ public:
         while (this->goes_on()) {
             this->forget_dense_output();
             const bool has_moved = this->lane_run().take_step_outlined();
-            this->record_step();
-            if (has_moved && this->is_running() && !this->lane_run().has_failed() &&
-                this->lane_run().stands_at_sample()) {
-                stands_ = true;
-                return;
-            }
-            has_moved ? finish_step() : this->lane_run().check_budget();
+            if constexpr (completes_before_sample<Integrator>) this->record_step();
+            else this->run_.t_end = this->lane_run().t(0);
+            stands_ = has_moved && this->is_running() && !this->lane_run().has_failed() &&
+                      this->lane_run().stands_at_sample();
+            if (stands_) return;
+            if (has_moved) finish_step();
         }
     }
 
     Run conclude() override {
+        if constexpr (!completes_before_sample<Integrator>)
+            if (stands_ && has_started_) {
+                this->lane_run().skip_sample();
+                finish_step();
+            }
         if (!is_over()) this->end(ARM3R_RUN_STOPPED, "the simulation stands" + at_time(this->run_.t_end));
         return this->record_end();
     }
@@ -215,7 +223,7 @@ private:
     }
     void finish_step() {
         this->lane_run().finish_step_outlined();
-        this->lane_run().check_budget();
+        if constexpr (!completes_before_sample<Integrator>) this->record_step();
         this->update_row_context();
     }
 
@@ -226,32 +234,39 @@ private:
 
 template void LaneRk4<double, state_size>::step_outlined();
 template void LaneRk4<double, full_size>::step_outlined();
+template bool LaneRk4<double, state_size>::take_step_outlined();
+template bool LaneRk4<double, full_size>::take_step_outlined();
+template void LaneRk4<double, state_size>::finish_step_outlined();
+template void LaneRk4<double, full_size>::finish_step_outlined();
 template void LaneTaylor<double>::step_outlined();
+template bool LaneTaylor<double>::take_step_outlined();
+template void LaneTaylor<double>::finish_step_outlined();
+
+namespace {
+
+// Calls a template with the integrator of the setup's method.
+template <class Visit>
+auto with_integrator(const Setup& setup, Visit visit) {
+    const auto by_memory = [&]<template <class, std::size_t> class Of>() {
+        return has_memory(setup.plant) ? visit.template operator()<Of<double, full_size>>()
+                                       : visit.template operator()<Of<double, state_size>>();
+    };
+    if (setup.solver.method == SolverMethod::taylor) return visit.template operator()<LaneTaylor<double>>();
+    if (setup.solver.method != SolverMethod::rk4) return by_memory.template operator()<ByError>();
+    if (setup.solver.events == StepEvents::located) return by_memory.template operator()<LocatedRk4>();
+    return by_memory.template operator()<GridRk4>();
+}
+
+}  // namespace
 
 Run run_alone(const Setup& setup, const RunOptions& options) {
-    const bool remembers = has_memory(setup.plant);
-    switch (setup.solver.method) {
-        case SolverMethod::taylor: return SingleRun<LaneTaylor<double>>(setup, options).run();
-        case SolverMethod::rk4:
-            if (setup.solver.events == StepEvents::located)
-                return remembers ? SingleRun<LocatedRk4<full_size>>(setup, options).run()
-                                 : SingleRun<LocatedRk4<state_size>>(setup, options).run();
-            return remembers ? SingleRun<LaneRk4<double, full_size>>(setup, options).run()
-                             : SingleRun<SingleRk4>(setup, options).run();
-        default:
-            return remembers ? SingleRun<LaneEvents<double, full_size>>(setup, options).run()
-                             : SingleRun<LaneEvents<double, state_size>>(setup, options).run();
-    }
+    return with_integrator(setup, [&]<class Integrator>() { return SingleRun<Integrator>(setup, options).run(); });
 }
 
 std::unique_ptr<InteractiveRun> start_interactive_run(const Setup& setup, const RunOptions& options) {
-    const bool remembers = has_memory(setup.plant);
-    if (setup.solver.method == SolverMethod::rk4) {
-        if (remembers) return std::make_unique<StandingRun<LocatedRk4<full_size>>>(setup, options);
-        return std::make_unique<StandingRun<LocatedRk4<state_size>>>(setup, options);
-    }
-    if (remembers) return std::make_unique<StandingRun<LaneEvents<double, full_size>>>(setup, options);
-    return std::make_unique<StandingRun<LaneEvents<double, state_size>>>(setup, options);
+    return with_integrator(setup, [&]<class Integrator>() -> std::unique_ptr<InteractiveRun> {
+        return std::make_unique<StandingRun<Integrator>>(setup, options);
+    });
 }
 
 }  // namespace arm3r

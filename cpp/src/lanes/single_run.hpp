@@ -8,7 +8,6 @@ namespace arm3r {
 
 Run run_alone(const Setup& setup, const RunOptions& options);
 
-// By a method whose steps end at samples.
 std::unique_ptr<InteractiveRun> start_interactive_run(const Setup& setup, const RunOptions& options);
 
 }  // namespace arm3r

@@ -23,11 +23,10 @@ struct Solver {
 
     // Whether all steps have one length, wherever contact or a formula of time changes.
     bool is_on_grid() const { return method == SolverMethod::rk4 && events == StepEvents::grid; }
-    // Whether a batch has runs by this method side by side, and whether a run can stand at the samples of a controller.
+    // Whether a batch has runs by this method side by side.
     bool runs_in_lanes() const {
         return method == SolverMethod::dopri5 || method == SolverMethod::taylor || is_on_grid();
     }
-    bool stands_at_samples() const { return method != SolverMethod::taylor && !is_on_grid(); }
 };
 
 struct Setup {
