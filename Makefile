@@ -14,8 +14,8 @@ export ARM3R_NEED := $(NEED)
 endif
 
 SOURCES := pyproject.toml CMakeLists.txt LICENSE README.md CHANGELOG.md $(wildcard docs/*.md docs/*.schema.json build/page/live.html) \
-           $(shell find cpp cmake python scenarios -type f -not -path '*/__pycache__/*')
-CODE    := $(shell find cpp tests benchmarks -name '*.[ch]pp')
+           $(shell find cpp cmake tools python scenarios -type f -not -path '*/__pycache__/*')
+CODE    := $(shell find cpp tests benchmarks examples -name '*.[ch]pp')
 # Python compiles what it imports; pip would compile every module of every package, half of the time of an installation.
 PIP     := $(BIN)/python -m pip --disable-pip-version-check install --no-compile --quiet
 # Each worker has one core; threads of numpy's linear algebra would take turns with those of the other workers.
@@ -54,13 +54,13 @@ seeds: $(VENV)/test
 
 # The live page, into build/page: needs node with npm.
 page: build/page/arm3r.wasm
-	$(BIN)/python cmake/core_licenses.py wasm build/yaml_cpp/yaml-cpp > build/page/core_licenses.txt
-	npm --prefix docs/live ci --no-audit --no-fund
-	node docs/live/build.mjs
+	$(BIN)/python tools/core_licenses.py wasm build/yaml_cpp/yaml-cpp > build/page/core_licenses.txt
+	npm --prefix web/page ci --no-audit --no-fund
+	node web/page/build.mjs
 
 # The core in WebAssembly, by the clang of the Python package ziglang.
-build/page/arm3r.wasm: $(shell find cpp cmake -type f) CMakeLists.txt docs/live/core/core.js $(VENV)/wasm
-	$(BIN)/python cmake/yaml_cpp_source.py build/yaml_cpp
+build/page/arm3r.wasm: $(shell find cpp cmake tools -type f) CMakeLists.txt web/core/core.js $(VENV)/wasm
+	$(BIN)/python tools/yaml_cpp_source.py build/yaml_cpp
 	$(BIN)/cmake -S . -B build/wasm -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/wasm_toolchain.cmake \
 	  -DARM3R_ZIG=$$($(BIN)/python -c "import ziglang; print(ziglang.__path__[0])")/zig \
 	  -DARM3R_YAML_SOURCE=$(abspath build/yaml_cpp/yaml-cpp) \
@@ -77,13 +77,13 @@ docs: $(VENV)/docs
 wheels: build/wheels/built
 
 build/wheels/built: $(SOURCES) $(VENV)/wheels
-	$(BIN)/python cmake/wheels.py
+	$(BIN)/python tools/wheels.py
 	@touch $@
 
 # What a release publishes, into dist/: docs/releasing.md.
 dist: page docs
 	$(MAKE) wheels
-	$(BIN)/python cmake/dist.py build/wheels/*.whl
+	$(BIN)/python tools/dist.py build/wheels/*.whl
 
 bench: $(VENV)/test $(VENV)/bench
 	$(BIN)/cmake -S . -B $(BUILD) -DARM3R_BENCHMARKS=ON > /dev/null
@@ -104,8 +104,8 @@ format: $(VENV)/dev
 	$(BIN)/clang-format -i $(CODE)
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
-	$(BIN)/python cmake/wrap_markdown.py README.md CONTRIBUTING.md docs/*.md $$(find cpp -name README.md)
-	$(BIN)/python cmake/strip_notebooks.py docs/notebooks/*.ipynb
+	$(BIN)/python tools/wrap_markdown.py README.md CONTRIBUTING.md docs/*.md $$(find cpp -name README.md)
+	$(BIN)/python tools/strip_notebooks.py docs/notebooks/*.ipynb
 
 lint: $(VENV)/dev
 	$(BIN)/clang-format --dry-run -Werror $(CODE)
@@ -118,13 +118,13 @@ clean:
 
 # The package, built in the tree that the C++ tests are built in too, so that nothing is compiled twice.
 $(VENV)/installed: $(SOURCES) | $(VENV)/tools
-	@SKBUILD_BUILD_DIR=$(BUILD) $(BIN)/python cmake/install_package.py
+	@SKBUILD_BUILD_DIR=$(BUILD) $(BIN)/python tools/install_package.py
 	@touch $@
 
 $(VENV)/tools: pyproject.toml
 	@echo "Fetching the build's tools (cmake, ninja, Eigen, yaml-cpp) into $(VENV): about a minute."
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) $$($(BIN)/python cmake/build_requires.py)
+	$(PIP) $$($(BIN)/python tools/build_requires.py)
 	@touch $@
 
 # An extra of the installed package.
@@ -136,7 +136,7 @@ page: $(VENV)/page # node and npm come with it
 
 # What the C++ tests are compiled with.
 $(VENV)/boost: pyproject.toml | $(VENV)/installed
-	$(PIP) $$($(BIN)/python cmake/build_requires.py cmeel-boost)
+	$(PIP) $$($(BIN)/python tools/build_requires.py cmeel-boost)
 	@touch $@
 
 $(VENV)/test: | $(VENV)/boost # two at once would write the same files

@@ -12,7 +12,7 @@ if(Eigen3_VERSION VERSION_LESS 3.4)
   message(FATAL_ERROR "Eigen 3.4 or later is needed, found ${Eigen3_VERSION} in ${Eigen3_DIR}")
 endif()
 
-set(ARM3R_YAML_SOURCE "" CACHE PATH "Sources of yaml-cpp, compiled into the library (cmake/yaml_cpp_source.py fetches them)")
+set(ARM3R_YAML_SOURCE "" CACHE PATH "Sources of yaml-cpp, compiled into the library (tools/yaml_cpp_source.py fetches them)")
 if(ARM3R_YAML_SOURCE)
   file(GLOB _sources CONFIGURE_DEPENDS ${ARM3R_YAML_SOURCE}/src/*.cpp)
   if(NOT _sources)

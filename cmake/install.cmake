@@ -18,7 +18,7 @@ install(FILES ${_pages} DESTINATION ${_data}/docs)
 install(FILES README.md CHANGELOG.md DESTINATION ${_data})
 # The live page, where `make page` has built it.
 install(DIRECTORY build/page/ DESTINATION ${_data}/live OPTIONAL)
-set(ARM3R_LICENSES "" CACHE FILEPATH "The licences of what is compiled in, as cmake/core_licenses.py prints them")
+set(ARM3R_LICENSES "" CACHE FILEPATH "The licences of what is compiled in, as tools/core_licenses.py prints them")
 install(FILES ${ARM3R_LICENSES} DESTINATION ${_data})
 install(DIRECTORY cpp/include/arm3r DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} PATTERN README.md EXCLUDE)
 install(FILES ${ARM3R_YAML_LIBRARY} DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -10,7 +10,7 @@ else() # the Python of this machine writes the module; that of the other system 
 endif()
 
 set(_header ${CMAKE_CURRENT_SOURCE_DIR}/cpp/include/arm3r/arm3r.h)
-set(_generator ${CMAKE_CURRENT_SOURCE_DIR}/cmake/gen_cffi.py)
+set(_generator ${CMAKE_CURRENT_SOURCE_DIR}/tools/gen_cffi.py)
 separate_arguments(_words UNIX_COMMAND "${CMAKE_C_COMPILER_ARG1}") # of a compiler that is called by several words
 add_custom_command(
   OUTPUT arm3r_cdef.h

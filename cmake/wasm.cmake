@@ -1,4 +1,4 @@
-# arm3r.wasm: the library for browsers and node. docs/live/core/core.js calls it.
+# arm3r.wasm: the library for browsers and node. web/core/core.js calls it.
 
 get_filename_component(_zig ${ARM3R_ZIG} DIRECTORY)
 set(_zig ${_zig}/lib)
@@ -30,7 +30,7 @@ endforeach()
 set_source_files_properties(${ARM3R_TEMPLATE_SOURCES} PROPERTIES COMPILE_OPTIONS -O2)
 
 # ---- the module: what core.js calls, and what that needs
-set(_binding ${PROJECT_SOURCE_DIR}/docs/live/core/core.js)
+set(_binding ${PROJECT_SOURCE_DIR}/web/core/core.js)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_binding})
 file(READ ${_binding} _calls)
 string(REGEX MATCHALL "\"(arm3r_[a-z_]+|malloc|free)\"" _calls "${_calls}")

@@ -25,8 +25,8 @@ quantity over time, dashed where it is a reference.
 
 
 def scenario_index() -> ModuleType:
-    """docs/scenario_index.py, which knows topics, first sentences and pictures."""
-    spec = importlib.util.spec_from_file_location("scenario_index", DOCS / "scenario_index.py")
+    """tools/scenario_index.py, which knows topics, first sentences and pictures."""
+    spec = importlib.util.spec_from_file_location("scenario_index", DOCS.parent / "tools" / "scenario_index.py")
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -34,7 +34,7 @@ def scenario_index() -> ModuleType:
 
 
 def live_link(live: str, text: str) -> str:
-    """The address of the live page with a scenario in it, in the form that docs/live/src/scenario/link.js reads."""
+    """The address of the live page with a scenario in it, in the form that web/page/src/scenario/link.js reads."""
     code = base64.urlsafe_b64encode(zlib.compress(text.encode(), 9)).decode().rstrip("=")
     return f"{live}#s={code}"
 

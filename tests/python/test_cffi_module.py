@@ -50,7 +50,7 @@ def folder(root: Path, package: Path, tmp_path: Path) -> Path:
     cdef = tmp_path / "cdef.h"
     header = copy / "include/arm3r/arm3r.h"
     subprocess.run(["cc", "-E", "-P", "-xc", "-DARM3R_CDEF", "-DARM3R_API=", header, "-o", cdef], check=True)
-    generate = [sys.executable, root / "cmake/gen_cffi.py", cdef, copy / "_arm3r.py", "lib/libarm3r.so"]
+    generate = [sys.executable, root / "tools/gen_cffi.py", cdef, copy / "_arm3r.py", "lib/libarm3r.so"]
     subprocess.run(generate, check=True, capture_output=True)
     return tmp_path
 

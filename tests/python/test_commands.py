@@ -246,7 +246,7 @@ def test_a_bar_waits_a_second(capsys: pytest.CaptureFixture[str], monkeypatch: p
 
 
 def test_the_build_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    module = script("cmake/install_package.py")
+    module = script("tools/install_package.py")
     monkeypatch.setenv("CMAKE_BUILD_PARALLEL_LEVEL", "2")
     printed = [
         "Processing .\n",
@@ -258,12 +258,12 @@ def test_the_build_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     lines = list(module.reported(printed, output))
     assert lines[0].startswith(f"Compiling arm3r: about {module.CPU_MINUTES // 2} min the first time, 2 jobs at once")
     assert lines[1:] == ["[1/136] a.dir/b.cpp.o", "[2/136] Linking CXX x"] and output == printed
-    assert "cmake/install_package.py" in (ROOT / "Makefile").read_text()
+    assert "tools/install_package.py" in (ROOT / "Makefile").read_text()
 
 
 def test_the_package_is_installed_by_any_pip_of_python_3_10(monkeypatch: pytest.MonkeyPatch) -> None:
     """pip 22.0, of Ubuntu 22.04, knows neither -C nor --config-settings."""
-    module = script("cmake/install_package.py")
+    module = script("tools/install_package.py")
     called: dict[str, Any] = {}
 
     def popen(command: list[str], **options: Any) -> Any:

@@ -41,8 +41,8 @@ def test_there_are_five_and_each_leads_to_another() -> None:
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=is_shown)
 def test_a_notebook_is_stored_without_outputs(path: Path) -> None:
-    strip_notebooks = script("cmake/strip_notebooks.py")
-    assert path.read_text() == strip_notebooks.stripped(path.read_text()), f"python cmake/strip_notebooks.py {path}"
+    strip_notebooks = script("tools/strip_notebooks.py")
+    assert path.read_text() == strip_notebooks.stripped(path.read_text()), f"python tools/strip_notebooks.py {path}"
 
 
 @pytest.mark.sample(2)

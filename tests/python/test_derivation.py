@@ -18,8 +18,8 @@ ARMS = 20
 
 @pytest.fixture(scope="module")
 def derivation() -> ModuleType:
-    """docs/derivation.py"""
-    return script("docs/derivation.py")
+    """tools/derivation.py"""
+    return script("tools/derivation.py")
 
 
 def random_numbers(rng: np.random.Generator) -> dict[str, float]:
@@ -94,7 +94,7 @@ def assert_near(values: Any, truth: Any, what: str) -> None:
 
 @pytest.mark.gate
 def test_the_page_is_what_the_script_writes(derivation: ModuleType) -> None:
-    assert derivation.PAGE.read_text() == derivation.page(), "`python docs/derivation.py` writes the page"
+    assert derivation.PAGE.read_text() == derivation.page(), "`python tools/derivation.py` writes the page"
 
 
 @pytest.mark.parametrize("convention", ["simscape", "slide"])

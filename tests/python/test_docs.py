@@ -68,8 +68,8 @@ def test_texts_use_the_words_of_the_field(root: Path) -> None:
 
 
 def test_prose_is_wrapped(root: Path) -> None:
-    """`python cmake/wrap_markdown.py FILE...` wraps it."""
-    wrap_markdown = script("cmake/wrap_markdown.py")
+    """`python tools/wrap_markdown.py FILE...` wraps it."""
+    wrap_markdown = script("tools/wrap_markdown.py")
     pages = [*root.glob("*.md"), *root.glob("docs/*.md"), *root.glob("cpp/**/*.md")]
     found = {page.name: wrap_markdown.too_long(page.read_text()) for page in pages if page.name != "CHANGELOG.md"}
     assert {name: lines for name, lines in found.items() if lines} == {}

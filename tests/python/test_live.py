@@ -295,7 +295,7 @@ def test_ctrl_c_is_what_it_was_when_the_server_has_ended() -> None:
 
 
 def stops(root: Path) -> list[dict[str, Any]]:
-    return json.loads((root / "docs/live/src/parts/stops.json").read_text())
+    return json.loads((root / "web/page/src/parts/stops.json").read_text())
 
 
 def test_every_guided_stop_shows_what_it_says(root: Path) -> None:

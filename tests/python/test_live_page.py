@@ -396,7 +396,7 @@ def test_a_band_is_simulated_once(browser: Any, address: str) -> None:
 
 @pytest.mark.parametrize("size", ["laptop", pytest.param("phone", marks=pytest.mark.gate)])
 def test_every_guided_stop_can_be_reached(browser: Any, address: str, size: str) -> None:
-    stops = json.loads((ROOT / "docs/live/src/parts/stops.json").read_text())
+    stops = json.loads((ROOT / "web/page/src/parts/stops.json").read_text())
     with Visitor(browser, size) as visitor:
         visitor.open(address)
         visitor.page.click("#tour-start")
@@ -482,7 +482,7 @@ def test_a_recorded_run_is_shown_as_it_is(browser: Any, address: str, tmp_path: 
 
 def test_the_licences_of_what_is_bundled_are_there() -> None:
     text = (PAGE / "licenses.txt").read_text()
-    bundled = json.loads((ROOT / "docs/live/package.json").read_text())["dependencies"]
+    bundled = json.loads((ROOT / "web/page/package.json").read_text())["dependencies"]
     assert [name for name in bundled if f"{name} {bundled[name]}" not in text] == []
     assert [name for name in ("yaml-cpp", "Eigen", "libc++") if f"\n{name}" not in text] == []
 

@@ -133,14 +133,14 @@ def test_every_peak_has_the_instant_of_the_summary(bounce: arm3r.Run) -> None:
 
 
 def test_a_colour_means_the_same_in_figures_and_on_the_page(root: Path) -> None:
-    text = (root / "docs" / "live" / "src" / "app" / "colours.js").read_text()
+    text = (root / "web" / "page" / "src" / "app" / "colours.js").read_text()
     page = dict(re.findall(r"^export const (\w+) = (\"#\w+\"|[A-Z]+);", text, re.M))
     ours = {name: getattr(style, name) for name in page}
     assert {"ARM", "TIP", "WALL", "ON_WALL", "ON_TIP", "REFERENCE", "MEASURED"} < set(page)
     assert {name: page.get(value, value).strip('"') for name, value in page.items()} == ours
     assert re.search(r"JOINTS = \[(.*)\]", text)[1].split(", ") == ["BLUE", "RED", "GREEN"]  # type: ignore[index]
     assert [look["color"] for look in style.TRIPLE] == [style.BLUE, style.RED, style.GREEN]
-    others = [path for path in (root / "docs" / "live").glob("s*/**/*.*s*") if path.name != "colours.js"]
+    others = [path for path in (root / "web" / "page").glob("s*/**/*.*s*") if path.name != "colours.js"]
     forces = re.compile(f"{style.WALL}|{style.ON_WALL}|{style.ON_TIP}", re.I)
     assert [path.name for path in others if forces.search(path.read_text())] == []
 

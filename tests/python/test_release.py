@@ -21,8 +21,8 @@ TARGETS = set(re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.
 
 @pytest.fixture(scope="module")
 def dist() -> ModuleType:
-    """cmake/dist.py"""
-    return script("cmake/dist.py")
+    """tools/dist.py"""
+    return script("tools/dist.py")
 
 
 # ---- workflows ------------------------------------------------------------------------------------------------------
@@ -96,15 +96,15 @@ def test_an_archive_and_its_sums_depend_on_the_contents_alone(dist: ModuleType, 
 
 
 def test_wheels_that_are_published_are_not_those_of_this_processor_alone() -> None:
-    wheels = script("cmake/wheels.py")
+    wheels = script("tools/wheels.py")
     for platform in wheels.PLATFORMS:
         settings = wheels.settings(platform)
         assert settings["cmake.define.ARM3R_LANES"] == "all" and "build/ctest" not in settings["build-dir"]
     own = {name: value for name, value in os.environ.items() if name != "MAKEFLAGS"}  # of the make that runs the tests
     command = ["make", "--dry-run", "dist"]
     recipe = subprocess.run(command, cwd=ROOT, env=own, capture_output=True, text=True, check=True).stdout
-    [line] = [line for line in recipe.splitlines() if "cmake/dist.py" in line]
-    assert line.endswith(" cmake/dist.py build/wheels/*.whl")
+    [line] = [line for line in recipe.splitlines() if "tools/dist.py" in line]
+    assert line.endswith(" tools/dist.py build/wheels/*.whl")
 
 
 def packages(clone: Path) -> dict[str, str]:

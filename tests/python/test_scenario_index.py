@@ -16,15 +16,15 @@ MOST_BYTES = 10_000
 
 @pytest.fixture(scope="module")
 def index() -> ModuleType:
-    """docs/scenario_index.py"""
-    return script("docs/scenario_index.py")
+    """tools/scenario_index.py"""
+    return script("tools/scenario_index.py")
 
 
 def test_the_page_has_every_scenario_and_sweep_and_no_other(index: ModuleType) -> None:
     """The page as the script would write it now."""
     text, now = index.PAGE.read_text(), index.page()
     named, there = (set(re.findall(r"^\[`(\S+)`\]", page, re.MULTILINE)) for page in (text, now))
-    hint = "`python docs/scenario_index.py` writes the page"
+    hint = "`python tools/scenario_index.py` writes the page"
     assert there == {path.relative_to(index.SCENARIOS).as_posix() for path in index.SCENARIOS.rglob("*.yaml")}
     assert named == there, f"missing: {there - named}, not there: {named - there}; {hint}"
     assert text == now, hint
@@ -33,7 +33,7 @@ def test_the_page_has_every_scenario_and_sweep_and_no_other(index: ModuleType) -
 def test_every_scenario_has_a_small_picture_and_no_picture_is_left_over(index: ModuleType) -> None:
     wanted = {index.picture_of(path).name for path in scenario_files()}
     there = {path.name for path in index.PICTURES.iterdir()}
-    assert there == wanted, f"missing: {wanted - there}, left over: {there - wanted}; run docs/scenario_index.py"
+    assert there == wanted, f"missing: {wanted - there}, left over: {there - wanted}; run tools/scenario_index.py"
     for path in index.PICTURES.iterdir():
         assert path.read_bytes().startswith(b"\x89PNG") and path.stat().st_size < MOST_BYTES, path
 

@@ -115,7 +115,7 @@ def test_the_example_of_the_page_runs(tmp_path: Path) -> None:
         globalThis.fetch = async () => ({{ arrayBuffer: async () => readFileSync({json.dumps(str(WASM))}) }});
     """
     script = tmp_path / "page.mjs"
-    script.write_text(served + block.replace("./core.js", str(ROOT / "docs/live/core/core.js")))
+    script.write_text(served + block.replace("./core.js", str(ROOT / "web/core/core.js")))
     done = subprocess.run(["node", str(script)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert "PASS  it meets the wall" in done.stdout

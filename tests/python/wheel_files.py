@@ -13,7 +13,7 @@ import pytest
 from conftest import script
 from parts import AARCH64_LIBRARIES, WHEELS
 
-wheels = script("cmake/wheels.py")
+wheels = script("tools/wheels.py")
 PLATFORMS = {platform.name: platform for platform in wheels.PLATFORMS}
 RUNNERS = {  # of the programs of a platform; macOS has none here
     "linux-x86_64": [],

@@ -4,7 +4,7 @@
 //     node bits.mjs arm3r.wasm [--batch RUNS] SCENARIO.yaml...
 
 import { readFileSync } from "node:fs";
-import { load } from "../../docs/live/core/core.js";
+import { load } from "../../web/core/core.js";
 
 // The numbers that vary in a batch; of a relative one a fraction of its value is random.
 const VARIED = [

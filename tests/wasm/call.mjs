@@ -6,7 +6,7 @@
 // arrays of numbers as {doubles: bytes in base64}. `more` has methods beside the core's own.
 
 import { readFileSync } from "node:fs";
-import { load } from "../../docs/live/core/core.js";
+import { load } from "../../web/core/core.js";
 
 const module_ = await WebAssembly.compile(readFileSync(process.argv[2]));
 let exports;

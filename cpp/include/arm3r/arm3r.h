@@ -315,7 +315,6 @@ ARM3R_API int32_t arm3r_scenario_control(const arm3r_scenario *scenario, arm3r_l
 /* ---- text: a run that you step yourself ---------------------------------------------------------------------------------
  * A simulation of a scenario with controller.type: user waits at a sample, until it is over: at time.stop, whose sample is
  * the last one, or where the run ended before. Given the same torques, it is bit for bit the run of arm3r_scenario_control.
- * The methods are those with steps of their own choice: dopri5, rodas4 and auto.
  */
 
 typedef struct arm3r_simulation arm3r_simulation;

@@ -1,12 +1,11 @@
 // The executable. It knows the library only by its C interface.
 
 #include <algorithm>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "arm3r/arm3r.h"
+#include "arm3r/arm3r.hpp"
 #include "cli/arguments.hpp"
 #include "cli/installation.hpp"
 #include "cli/terminal.hpp"
@@ -19,8 +18,10 @@ namespace platform = arm3r::platform;
 
 namespace {
 
-using ScenarioHandle = std::unique_ptr<arm3r_scenario, decltype(&arm3r_scenario_free)>;
-using RunHandle = std::unique_ptr<arm3r_run, decltype(&arm3r_run_free)>;
+using arm3r::api::check;
+using arm3r::api::Error;
+using arm3r::api::Run;
+using arm3r::api::Scenario;
 
 int exit_code(int32_t status) {
     switch (status) {
@@ -45,51 +46,30 @@ int exit_code_of_outcome(int32_t outcome) {
     return outcome == ARM3R_RUN_BUDGET || outcome == ARM3R_RUN_STOPPED ? exit_budget : exit_numeric;
 }
 
-void require(int32_t status) {
-    if (status != ARM3R_OK) throw Exit{exit_code(status), arm3r_error_message()};
-}
-
 // ---- scenarios
 
-ScenarioHandle load(const std::string& path) {
-    arm3r_scenario* scenario = nullptr;
-    require(arm3r_scenario_load(path.data(), path.size(), &scenario));
-    return {scenario, arm3r_scenario_free};
-}
-
-void edit(const ScenarioHandle& scenario, const std::string& at, const std::string& value, const std::string& origin) {
-    require(arm3r_scenario_set_from(scenario.get(), at.data(), at.size(), value.data(), value.size(), origin.data(),
-                                    origin.size()));
-}
-
-ScenarioHandle load(const std::string& path, const Arguments& arguments) {
-    ScenarioHandle scenario = load(path);
-    for (const auto& [at, value] : arguments.edits) edit(scenario, at, value, "--set");
-    if (arguments.no_checks) edit(scenario, "checks", "[]", "--no-checks");
-    require(arm3r_scenario_validate(scenario.get()));
+Scenario load(const std::string& path, const Arguments& arguments) {
+    Scenario scenario = Scenario::load(path);
+    for (const auto& [at, value] : arguments.edits) scenario.set(at, value, "--set");
+    if (arguments.no_checks) scenario.set("checks", "[]", "--no-checks");
+    scenario.validate();
     return scenario;
 }
 
 // All scenarios, or the problems of all of them.
-std::vector<ScenarioHandle> load_all(const Arguments& arguments) {
-    std::vector<ScenarioHandle> scenarios;
+std::vector<Scenario> load_all(const Arguments& arguments) {
+    std::vector<Scenario> scenarios;
     Exit failed{exit_ok, ""};
     for (const std::string& file : arguments.files) {
         try {
             scenarios.push_back(load(file, arguments));
-        } catch (const Exit& exit) {
-            if (failed.code == exit_ok) failed.code = exit.code;
-            failed.message += (failed.message.empty() ? "" : "\n") + exit.message;
+        } catch (const Error& error) {
+            if (failed.code == exit_ok) failed.code = exit_code(error.status());
+            failed.message += (failed.message.empty() ? "" : "\n") + std::string(error.what());
         }
     }
     if (failed.code != exit_ok) throw failed;
     return scenarios;
-}
-
-std::string name_of(const ScenarioHandle& scenario) {
-    const char* name = nullptr;
-    require(arm3r_scenario_name(scenario.get(), &name));
-    return name;
 }
 
 // ---- output files
@@ -130,12 +110,12 @@ void spare_scenarios(const std::vector<std::string>& files, const std::string& p
 
 std::string summary_beside(const std::string& path) {
     const char* summary = nullptr;
-    require(arm3r_output_summary(path.data(), path.size(), &summary));
+    check(arm3r_output_summary(path.data(), path.size(), &summary));
     return summary;
 }
 
 // A file for each scenario, checked before the first run; "-" is standard output, "" nowhere.
-std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vector<ScenarioHandle>& scenarios) {
+std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vector<Scenario>& scenarios) {
     const std::string& output = arguments.output;
     if (output.empty() || output == "-") {
         if (output == "-" && scenarios.size() > 1)
@@ -149,12 +129,12 @@ std::vector<std::string> plan_outputs(const Arguments& arguments, const std::vec
     std::set<std::string> seen;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         const std::string path =
-            directory ? output + (ends_with_separator(output) ? "" : "/") + name_of(scenarios[i]) + ".csv" : output;
+            directory ? output + (ends_with_separator(output) ? "" : "/") + scenarios[i].name() + ".csv" : output;
         if (!seen.insert(path).second)
             throw Exit{exit_usage, path + ": error[usage]: two scenarios would write this file; give them names"};
         spare_scenarios(arguments.files, path);
         spare_scenarios(arguments.files, summary_beside(path));
-        require(arm3r_output_probe(path.data(), path.size()));
+        check(arm3r_output_probe(path.data(), path.size()));
         paths.push_back(path);
     }
     return paths;
@@ -170,22 +150,22 @@ int32_t print_piece(void* failure, const char* data, size_t size) {
     }
 }
 
-void print_csv(const arm3r_run* run) {
+void print_csv(const Run& run) {
     Exit failure{exit_ok, ""};
-    const int32_t status = arm3r_run_csv(run, print_piece, &failure);
+    const int32_t status = arm3r_run_csv(run.get(), print_piece, &failure);
     if (failure.code != exit_ok) throw failure;
-    require(status);
+    check(status);
 }
 
-void write_results(const arm3r_run* run, const std::string& path) {
+void write_results(const Run& run, const std::string& path) {
     if (path == "-") print_csv(run);
-    else if (!path.empty()) require(arm3r_run_save(run, path.data(), path.size()));
+    else if (!path.empty()) run.save(path);
 }
 
 // ---- calls
 
-RunHandle simulate(const ScenarioHandle& scenario, const Arguments& arguments) {
-    Progress progress(name_of(scenario));
+Run simulate(const Scenario& scenario, const Arguments& arguments) {
+    Progress progress(scenario.name());
     arm3r_run_options options{};
     options.struct_size = sizeof options;
     options.stop = stop_flag();
@@ -193,30 +173,19 @@ RunHandle simulate(const ScenarioHandle& scenario, const Arguments& arguments) {
     options.user = &progress;
     options.time_limit = arguments.time_limit;
     options.trust = arguments.trust;
-    arm3r_run* run = nullptr;
-    require(arm3r_scenario_run(scenario.get(), &options, &run));
-    return {run, arm3r_run_free};
+    return scenario.run(&options);
 }
 
-int code_of(const arm3r_run* run) {
-    int32_t outcome = 0;
-    std::size_t checks = 0, failed = 0;
-    require(arm3r_run_outcome(run, &outcome));
-    require(arm3r_run_checks(run, &checks, &failed));
-    return outcome != ARM3R_RUN_OK ? exit_code_of_outcome(outcome) : failed ? exit_check : exit_ok;
-}
-
-std::string summary_of(const arm3r_run* run, bool json) {
-    const char* text = nullptr;
-    require(json ? arm3r_run_summary(run, &text) : arm3r_run_report(run, &text));
-    return text;
+int code_of(const Run& run) {
+    if (run.outcome() != ARM3R_RUN_OK) return exit_code_of_outcome(run.outcome());
+    return run.checks().failed ? exit_check : exit_ok;
 }
 
 // The codes of runs are in order of severity, but for ok.
 int worse(int a, int b) { return a == exit_ok ? b : b == exit_ok ? a : std::min(a, b); }
 
 int call_run(const Arguments& arguments) {
-    const std::vector<ScenarioHandle> scenarios = load_all(arguments);
+    const std::vector<Scenario> scenarios = load_all(arguments);
     catch_signals();
     const std::vector<std::string> outputs = plan_outputs(arguments, scenarios);
     const bool several = scenarios.size() > 1;
@@ -224,14 +193,14 @@ int call_run(const Arguments& arguments) {
     int code = exit_ok;
     std::size_t not_ok = 0;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
-        const RunHandle run = simulate(scenarios[i], arguments);
+        const Run run = simulate(scenarios[i], arguments);
         if (stop_requested()) return exit_ok;
-        write_results(run.get(), outputs[i]);
-        const int this_code = code_of(run.get());
+        write_results(run, outputs[i]);
+        const int this_code = code_of(run);
         code = worse(code, this_code);
         not_ok += this_code != exit_ok;
         if (several) say(arguments.json ? i ? ",\n" : "[\n" : i ? "\n" : "");
-        say(summary_of(run.get(), arguments.json));
+        say(arguments.json ? run.summary() : run.report());
     }
     if (several && arguments.json) say("]\n");
     if (several && !arguments.json)
@@ -240,12 +209,9 @@ int call_run(const Arguments& arguments) {
 }
 
 int call_check(const Arguments& arguments) {
-    const ScenarioHandle scenario = load(arguments.files[0], arguments);
-    const char *warnings = nullptr, *yaml = nullptr;
-    require(arm3r_scenario_warnings(scenario.get(), &warnings));
-    require(arm3r_scenario_yaml(scenario.get(), 1, &yaml));
-    complain(warnings);
-    print(yaml);
+    const Scenario scenario = load(arguments.files[0], arguments);
+    complain(scenario.warnings());
+    print(scenario.yaml(true));
     return exit_ok;
 }
 
@@ -328,6 +294,9 @@ int main(int count, char** words) {
     } catch (const cli::Exit& exit) {
         cli::complain(exit.message + "\n");
         code = exit.code;
+    } catch (const arm3r::api::Error& error) {
+        cli::complain(std::string(error.what()) + "\n");
+        code = cli::exit_code(error.status());
     } catch (const std::bad_alloc&) {
         cli::complain("arm3r: error[memory]: there is not enough memory\n");
         code = cli::exit_budget;

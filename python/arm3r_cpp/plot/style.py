@@ -1,6 +1,6 @@
 """How every figure looks: one palette, axes with units, legends outside the data, contact shaded, events marked.
 
-The colours and what they mean are those of films and of the live page (docs/live/src/app/colours.js), too.
+The colours and what they mean are those of films and of the live page (web/page/src/app/colours.js), too.
 """
 
 from __future__ import annotations

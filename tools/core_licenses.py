@@ -1,6 +1,6 @@
 """Print the licences of what is compiled into arm3r.wasm, or into the wheels, beside arm3r itself.
 
-    python cmake/core_licenses.py wasm|wheels YAML_SOURCE
+    python tools/core_licenses.py wasm|wheels YAML_SOURCE
 
 YAML_SOURCE: the folder with the sources of yaml-cpp. Eigen and the C and C++ libraries come from the packages
 cmeel-eigen and ziglang of this Python."""

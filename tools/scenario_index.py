@@ -1,7 +1,7 @@
 """Writes docs/scenarios.md and its pictures: every scenario of the repository in a line, with its motion and a curve.
 
-    python docs/scenario_index.py              all of them; the package must be installed
-    python docs/scenario_index.py plate_edge   the page, and the pictures of these scenarios only
+    python tools/scenario_index.py              all of them; the package must be installed
+    python tools/scenario_index.py plate_edge   the page, and the pictures of these scenarios only
 
 The line is the first sentence of the comment at the head of a file. The left part of a picture shows the arm and the
 wall from the side, darker is later; the right part shows what the scenario is about.
@@ -21,7 +21,7 @@ from arm3r_cpp.examples import summary
 from arm3r_cpp.plot.strobe import flash_rows
 from arm3r_cpp.plot.style import ARM, BLACK, MEASURED, ON_WALL, REFERENCE, TRIPLE, WALL, angle_unit, style
 
-DOCS = Path(__file__).parent
+DOCS = Path(__file__).parents[1] / "docs"
 SCENARIOS = DOCS.parent / "scenarios"
 PAGE = DOCS / "scenarios.md"
 PICTURES = DOCS / "images" / "scenarios"
@@ -47,7 +47,7 @@ the left part shows the arm and the wall from the side, darker at later times; t
 quantities over time, with references dashed. The comment at the head of a file says more: where its
 numbers come from, and which equation of [the model](model.md) it shows.
 
-This page and its pictures are written by `docs/scenario_index.py`.
+This page and its pictures are written by `tools/scenario_index.py`.
 """
 TIP_ERROR = {"tip_x - tip_ref_x": "tip error x, m"}
 JOINT_ERRORS = {f"q{i} - q_ref{i}": "joint errors, rad" for i in (1, 2, 3)}

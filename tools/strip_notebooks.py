@@ -1,6 +1,6 @@
 """Bring notebooks into the form in which they are stored: text and code, no outputs, no traces of an editor.
 
-python cmake/strip_notebooks.py FILE..."""
+python tools/strip_notebooks.py FILE..."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Writes docs/derivation.md: kinematics and dynamics of the arm, derived from its frames by sympy, in both conventions.
 
-    python docs/derivation.py
+    python tools/derivation.py
 
 The page is a chain of formulas: each knows the joint angles, the numbers of the arm and the formulas above it, so that
 it can be evaluated from top to bottom, as `evaluate` does. `chain` has them as sympy expressions, `page` as text.
@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import sympy as sp
 
-PAGE = Path(__file__).parent / "derivation.md"
+PAGE = Path(__file__).parents[1] / "docs" / "derivation.md"
 TURNS = {"simscape": -1, "slide": 1}
 """Sign of the right angle by which the frame of joint 2 is turned about x, by convention."""
 
@@ -255,7 +255,7 @@ HEAD = r"""
 From the frames of the arm to $`J`$, $`M`$, $`C`$ and $`\tau_g`$, to compare with your own.
 Every formula is computed by sympy from the ones above it, in both conventions of
 [the model](model.md) (1.1), and compared with the library at random arms and states. This page is
-written by `docs/derivation.py`. [`arm3r verify`](verify.md) compares your program.
+written by `tools/derivation.py`. [`arm3r verify`](verify.md) compares your program.
 
 Symbols are those of the model: lengths $`a_2, a_3`$, distances $`l_2, l_3`$ from the joint to the
 centre of mass, height $`d_1`$ of joint 2, masses $`m_i`$, inertias $`I_{xi}, I_{yi}, I_{zi}`$ about

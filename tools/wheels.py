@@ -1,4 +1,4 @@
-"""python cmake/wheels.py [PLATFORM...]: wheels for every platform, or for those that are named, into build/wheels.
+"""python tools/wheels.py [PLATFORM...]: wheels for every platform, or for those that are named, into build/wheels.
 
 zig's clang, of the Python package ziglang (extra `wheels`), compiles them on Linux. The wheel of Linux on x86-64 has a
 compiled extension for all versions of Python. The others have a module that loads the library, because Python's headers

@@ -5,7 +5,7 @@
  *      { kind: "run" | "band" | "choose" | "csv", id, text, name, ... }.
  * Out: { kind: "loaded", module, version, schema }, then the answers, each with the id of its question.
  */
-import { load } from "../../core/core.js";
+import { load } from "../../../core/core.js";
 import { changed, removing, setting } from "../scenario/edit.js";
 
 const ALL_COLUMNS = { "time.log_columns": "null" }; // what is drawn, whatever the log is to have

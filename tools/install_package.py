@@ -1,6 +1,6 @@
 """Install the package into this Python, and say meanwhile how far the compiler is.
 
-    python cmake/install_package.py [FOLDER]
+    python tools/install_package.py [FOLDER]
 
 pip itself is silent while it builds, which takes minutes the first time. Its output is shown where it fails."""
 

@@ -1,4 +1,4 @@
-"""Fetch the sources of yaml-cpp from the package index: python cmake/yaml_cpp_source.py FOLDER
+"""Fetch the sources of yaml-cpp from the package index: python tools/yaml_cpp_source.py FOLDER
 
 They lie in the source distribution of the wheel that the ordinary build uses. pip builds it once before it hands the
 archive over, which takes a minute. Prints the folder for -DARM3R_YAML_SOURCE."""

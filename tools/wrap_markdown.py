@@ -1,6 +1,6 @@
 """Wrap the prose of Markdown files at 100 columns.
 
-    python cmake/wrap_markdown.py FILE...
+    python tools/wrap_markdown.py FILE...
 
 Tables, code, headings and comments stay as they are, and so does every paragraph without a line that is too long. A
 line is broken at a blank outside of code, formulas and links."""

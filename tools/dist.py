@@ -1,4 +1,4 @@
-"""python cmake/dist.py WHEEL...: what a release publishes, into dist/, with SHA256SUMS.
+"""python tools/dist.py WHEEL...: what a release publishes, into dist/, with SHA256SUMS.
 
 dist/python is what the package index gets: the source package, and the wheels that are named. Beside it lie the site
 and the live page, as far as they are built. Times come from the last commit, so that

@@ -1,6 +1,6 @@
 """Print what the build needs from the package index, one requirement a line: pyproject.toml's own list.
 
-python cmake/build_requires.py [PACKAGE]: or what the tests ask of one package of theirs.
+python tools/build_requires.py [PACKAGE]: or what the tests ask of one package of theirs.
 """
 
 import sys
