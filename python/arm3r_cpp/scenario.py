@@ -396,8 +396,7 @@ class Scenario(metaclass=Answering):
             rate: of the samples of these laws, Hz, as in `run`.
             columns: of the rows that are wanted beside the summaries, at the instants that the scenario logs, whatever
                 time.log_columns chooses: names, or names of three such as "q". They are `batch.rows`, and take 8 bytes
-                for each run, column and row. None: no rows. With rows each run takes as long as it does alone, on its
-                thread.
+                for each run, column and row. None: no rows.
             metrics: the names of the summaries that are wanted, such as ["peak_force", "settling_time"]; `outcome` is
                 always one. Metrics of a controller's performance that are not among them are not computed, which
                 saves up to 0.4 of the time of a batch by rk4. None: all.

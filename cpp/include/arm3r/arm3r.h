@@ -244,7 +244,7 @@ typedef struct arm3r_batch_options {
     void *user;                     /* Nullable: handed to progress */
     int32_t threads;                /* 0: as many as the CPUs that this process may use */
     int32_t lanes;                  /* runs that a thread computes in parallel, at most: 1, 2, 4 or 8; 0: as is fastest. Never changes a result */
-    const arm3r_batch_rows *rows;   /* Nullable: no rows. With them each run is computed by itself, not in lanes */
+    const arm3r_batch_rows *rows;   /* Nullable: no rows */
     const size_t *summary;          /* Nullable: all. Else `results` has these columns alone, of arm3r_summary_column; a metric
                                        of the controller's performance that is not among them is not computed */
     size_t summary_size;            /* how many; not read where summary is null */

@@ -132,7 +132,7 @@ public:
     RightHandSide& operator=(const RightHandSide& other) {
         force_mode = other.force_mode, touching = other.touching, separated = other.separated;
         contact = other.contact, force_phase = other.force_phase, latest = other.latest;
-        cached_q_ = other.cached_q_, cached_pose_ = other.cached_pose_;
+        cached_q_ = other.cached_q_, cached_pose_ = other.cached_pose_, common_ = other.common_;
         return *this;
     }
 

@@ -7,6 +7,7 @@
 
 #include "arm3r/numbers/widths.hpp"
 #include "batch/lane_group.hpp"
+#include "lanes/lane_record.hpp"
 
 namespace arm3r {
 
@@ -16,27 +17,29 @@ class LaneGroup {
 public:
     LaneGroup(BatchWorker& worker, const Setup& first, std::size_t run)
         : worker_(worker), batch_key_(batch_key_of(first)) {
-        for (Part& part : parts_) part.lane_run.emplace(first);
-        parts_[0].lane_run->load_lane(0, first);
+        for (Part& part : parts_) prepare(part, first);
         parts_[0].run[0] = run;
+        load(parts_[0], 0, first);
         for (Part& part : parts_)
             for (int lane = &part == &parts_[0] ? 1 : 0; lane < Integrator::lanes; ++lane) fill(part, lane);
     }
 
     ARM3R_INLINE void run() {
-        for (Part& part : parts_) part.lane_run->start_lanes();
+        for (Part& part : parts_) start(part);
         while (true) {
             Integrator* running[Integrator::together];
             int count = 0;
             for (Part& part : parts_) {
                 Integrator& lane_run = *part.lane_run;
-                while ((lane_run.any_ended() || worker_.is_stopped()) && refill(part)) lane_run.start_lanes();
+                while ((lane_run.any_ended() || worker_.is_stopped()) && refill(part)) start(part);
                 if (lane_run.any_running()) running[count++] = &lane_run;
             }
             if (count == 0) return;
-            if constexpr (Integrator::lanes == 1) advance(*running[0], infinite);
+            if (worker_.records()) forget_dense_outputs();
+            if constexpr (Integrator::lanes == 1) advance(*running[0], next_row());
             else if constexpr (Integrator::together == 1) running[0]->step();
             else Integrator::step_together(running, count);
+            if (worker_.records()) record_step();
         }
     }
 
@@ -46,12 +49,68 @@ private:
         std::optional<Integrator> lane_run;
         std::array<std::size_t, Integrator::lanes> run{};
         std::array<std::optional<Setup>, Integrator::lanes> setup;
+        std::array<std::optional<LaneRecord<Integrator>>, Integrator::lanes> record;  // where rows are wanted
+        std::array<bool, Integrator::lanes> is_new{};                                 // loaded since the last start
     };
+
+    void prepare(Part& part, const Setup& first) {
+        Integrator& lane_run = part.lane_run.emplace(first);
+        if (!worker_.records()) return;
+        lane_run.keep_dense_output();
+        lane_run.set_observer(
+            [&part](int lane, const ContactChange& change) { part.record[lane]->record_change(change); });
+    }
 
     bool fill(Part& part, int lane) {
         if (!worker_.next(batch_key_, part.run[lane], part.setup[lane])) return false;
-        part.lane_run->load_lane(lane, *part.setup[lane]);
+        load(part, lane, *part.setup[lane]);
         return true;
+    }
+    void load(Part& part, int lane, const Setup& setup) {
+        part.lane_run->load_lane(lane, setup);
+        if (!worker_.records()) return;
+        part.record[lane].emplace(worker_.with_rows(setup, part.run[lane]), worker_.record_options(), *part.lane_run,
+                                  lane);
+        part.is_new[lane] = true;
+    }
+
+    ARM3R_INLINE void start(Part& part) {
+        part.lane_run->start_lanes();
+        if (worker_.records()) start_records(part);
+    }
+
+    // ---- the records of the lanes
+
+    template <class Visit>
+    void each_record(Visit visit) {
+        for (Part& part : parts_)
+            for (int lane = 0; lane < Integrator::lanes; ++lane)
+                if (part.lane_run->is_running(lane)) visit(part, lane, *part.record[lane]);
+    }
+
+    [[gnu::noinline]] void start_records(Part& part) {
+        for (int lane = 0; lane < Integrator::lanes; ++lane) {
+            if (!std::exchange(part.is_new[lane], false)) continue;
+            part.record[lane]->record_contact_at_start();
+            part.record[lane]->record_start();
+        }
+    }
+    [[gnu::noinline]] void forget_dense_outputs() {
+        each_record([](Part&, int, LaneRecord<Integrator>& record) { record.forget_dense_output(); });
+    }
+    // A row that is not a finite number ends its run.
+    [[gnu::noinline]] void record_step() {
+        each_record([](Part& part, int lane, LaneRecord<Integrator>& record) {
+            record.record_step();
+            record.update_row_context();
+            if (!record.is_running()) part.lane_run->stop_lane(lane, record.outcome());
+        });
+    }
+    double next_row() { return worker_.records() ? parts_[0].record[0]->next_row() : infinite; }
+
+    void store(Part& part, int lane) {
+        if (!worker_.records()) return worker_.store(part.run[lane], part.lane_run->metrics(lane));
+        worker_.store_with_rows(part.run[lane], part.record[lane]->record_end());
     }
 
     // Runs that have ended are stored and their lanes refilled; returns whether there are new runs.
@@ -63,7 +122,7 @@ private:
             if (!lane_run.is_running(lane)) continue;
             if (worker_.is_stopped() && !lane_run.has_ended(lane)) lane_run.stop_lane(lane, ARM3R_RUN_STOPPED);
             if (!lane_run.has_ended(lane)) continue;
-            worker_.store(part.run[lane], lane_run.metrics(lane));
+            store(part, lane);
             if (fill(part, lane)) any_new = true;
             else lane_run.clear_lane(lane);
         }

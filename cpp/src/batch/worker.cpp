@@ -13,7 +13,7 @@
 namespace arm3r {
 namespace {
 
-constexpr std::size_t runs_at_a_time = 256, runs_with_rows = 4, max_deferred = 1024;
+constexpr std::size_t runs_at_a_time = 256, runs_with_rows = 16, max_deferred = 1024;
 
 std::size_t fetched_at_once(const BatchJob& job) {
     if (job.law.function) return 1;
@@ -54,7 +54,7 @@ void BatchWorker::run() {
 void BatchWorker::run_group(const Setup& first, std::size_t run) {
     if (job_.law.function) {
         run_with_law(first, run);
-    } else if (job_.rows || !first.solver.runs_in_lanes()) {
+    } else if (!first.solver.runs_in_lanes()) {
         run_alone(first, {}, run);
     } else {
         lane_group_of(first)(job_.lanes, *this, first, run);
@@ -78,10 +78,20 @@ void BatchWorker::run_with_law(const Setup& setup, std::size_t run) {
 
 void BatchWorker::run_alone(const Setup& setup, RunOptions options, std::size_t run) {
     options.should_stop = &job_.stop;
-    options.rows = job_.rows.has_value();
+    options.rows = records();
     options.judges = false;
-    const Run done = simulate(job_.rows ? job_.rows->with_columns(setup, run) : setup, options);
-    if (job_.rows) job_.rows->store(run, done);
+    const Run done = simulate(records() ? with_rows(setup, run) : setup, options);
+    records() ? store_with_rows(run, done) : store(run, done);
+}
+
+RunOptions BatchWorker::record_options() const {
+    RunOptions options;
+    options.should_stop = &job_.stop;
+    options.judges = false;
+    return options;
+}
+void BatchWorker::store_with_rows(std::size_t run, const Run& done) {
+    job_.rows->store(run, done);
     store(run, done);
 }
 

@@ -39,6 +39,12 @@ public:
     // there is one. Runs with other keys are deferred.
     bool next(const BatchKey& batch_key, std::size_t& run, std::optional<Setup>& setup);
     void store(std::size_t run, const Metrics& metrics);
+
+    // Whether rows are wanted: then the setup and the options of a run's record, and its end.
+    bool records() const { return job_.rows.has_value(); }
+    Setup with_rows(const Setup& setup, std::size_t run) const { return job_.rows->with_columns(setup, run); }
+    RunOptions record_options() const;
+    void store_with_rows(std::size_t run, const Run& done);
     bool is_stopped() const { return job_.stop.load(std::memory_order_relaxed); }
 
 private:

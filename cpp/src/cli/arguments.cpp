@@ -93,8 +93,8 @@ bool is_typing_error(std::string_view typed, std::string_view meant) {
     return typed.size() <= 2 && meant.size() <= 2;
 }
 
-template <class QuinticTable>
-std::string did_you_mean(std::string_view typed, const QuinticTable& table) {
+template <class Table>
+std::string did_you_mean(std::string_view typed, const Table& table) {
     for (const auto& entry : table)
         if (is_typing_error(typed, entry.name) || (typed.size() > 2 && entry.name.starts_with(typed)))
             return "; did you mean " + std::string(entry.name) + "?";

@@ -57,6 +57,28 @@ struct ControllerState {
     T assumed_stiffness{0.0};  // N/m, for a law that asks the estimator
 };
 
+// The state of the controller in one lane.
+template <class T>
+ControllerState<double> lane_of(const ControllerState<T>& state, int lane) {
+    const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
+    const auto three = [&](const Vec3<T>& v) { return Vec3<double>(get(v[0]), get(v[1]), get(v[2])); };
+    ControllerState<double> one{three(state.q),
+                                three(state.qd),
+                                three(state.f_on_tip),
+                                three(state.residual),
+                                get(state.contact),
+                                get(state.force_phase),
+                                get(state.collision),
+                                {},
+                                get(state.stiffness),
+                                get(state.stiffness_sigma),
+                                get(state.wall_speed),
+                                get(state.identifiable),
+                                get(state.assumed_stiffness)};
+    for (std::size_t i = 0; i < law_memory; ++i) one.memory[i] = get(state.memory[i]);
+    return one;
+}
+
 template <class T>
 class SampledController {
 public:
@@ -290,7 +312,7 @@ private:
 
     // Integrates the memory by Euler's rule; an integral of the force error is limited at the end of the step (7.5). A
     // reserve is updated by update_reserve() instead. Unused memory has rate zero. There are no branches or loops
-    // because of g++ 12 (pack.hpp).
+    // (numbers/README.md, g++ 2).
     ARM3R_INLINE void integrate_memory(const Mask& due, const Command<T>& command, const T& limit) {
         const auto next = [&](std::size_t i) ARM3R_INLINE_LAMBDA {
             return T(state_.memory[i] + select(due, T(digital_.sampling.period * command.rates[i]), T(0.0)));

@@ -123,7 +123,7 @@ public:
     }
 
     // Whether a formula of time may jump, or the torque, at the end of the last step that was accepted.
-    bool may_jump_at_end() const { return any(may_jump_); }
+    bool may_jump_at_end(int lane) const { return Lanes<T>::is(may_jump_, lane); }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
     const Method& method() const { return method_; }
     // The dense output of the last step that was accepted.

@@ -3,6 +3,8 @@
 // afterwards on the cubic through the depths and their rates at both ends of the step. If a formula of time jumps at
 // the end of a step, the step uses the values before the jump (5.8).
 
+#include <utility>
+
 #include "lanes/lane_run.hpp"
 
 namespace arm3r {
@@ -88,12 +90,14 @@ public:
     }
     double theta(int) const { return 1; }  // its end
     // Whether a formula may have jumped at the end of the last step, and the derivative there before the jump.
-    bool may_jump_at_end() const { return has_jump_ || any_was_due_; }
-    FullState f1()
-        requires std::same_as<T, double>
-    {
-        if (!may_jump_at_end()) return Base::state_of(this->f_, 0);
-        return Base::state_of(evaluated_before_jump(), 0);
+    bool may_jump_at_end(int lane) const {
+        return (has_jump_ && Lanes<T>::is(jumps_, lane)) || (any_was_due_ && Lanes<T>::is(was_due_, lane));
+    }
+    FullState f1(int lane) {
+        if (!may_jump_at_end(lane)) return Base::state_of(this->f_, lane);
+        if (!std::exchange(has_evaluated_before_jump_, true))
+            Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { f1_evaluated_ = evaluated_before_jump(); });
+        return Base::state_of(f1_evaluated_, lane);
     }
 
 protected:
@@ -183,7 +187,8 @@ private:
 
     ARM3R_INLINE void begin_step() {
         t0_ = this->t_;
-        if (Base::lanes == 1 || this->performance_.samples()) {
+        has_evaluated_before_jump_ = false;
+        if (keeps_ends()) {
             y0_ = this->y_;
             f0_ = this->f_;
         }
@@ -262,7 +267,7 @@ private:
         if (all_finite) this->accept_all(t1_, y1);
         else this->accept(moved, t1_, y1), stop_diverged_lanes(finite);
         this->evaluations_ = this->evaluations_ + 4.0;
-        if (Base::lanes == 1 || this->performance_.samples()) store_end();
+        if (keeps_ends()) store_end();
         if (has_jump_) this->rhs_.latest = T(infinite);
         this->template locate_tip<terms>();
         return moved;
@@ -272,7 +277,7 @@ private:
     template <Terms terms>
     ARM3R_INLINE void complete_step(const Mask& moved) {
         this->template sample_and_derive<terms>();
-        if (this->performance_.samples() && may_jump_at_end())
+        if (this->performance_.samples() && any_jumps_at_end())
             Outlined<T>::run([this]() ARM3R_INLINE_LAMBDA { derive_before_jump(jumps_); });
         eventful_ = false;
         if (this->plant_.has_wall) detect_contact<terms>(moved);
@@ -328,7 +333,9 @@ private:
         const Y before = evaluated_before_jump();
         for (std::size_t i = 0; i < N; ++i) f1_before_[i] = select(jumps, before[i], f1_before_[i]);
     }
-    ARM3R_INLINE const Y& derivative_at_end() const { return may_jump_at_end() ? f1_before_ : this->f_; }
+    ARM3R_INLINE const Y& derivative_at_end() const { return any_jumps_at_end() ? f1_before_ : this->f_; }
+    bool any_jumps_at_end() const { return has_jump_ || any_was_due_; }
+    bool keeps_ends() const { return Base::lanes == 1 || this->keeps_dense_output_ || this->performance_.samples(); }
 
     [[gnu::noinline]] void stop_diverged_lanes(const Mask& finite) {
         for (int lane = 0; lane < Base::lanes; ++lane)
@@ -489,7 +496,8 @@ private:
     std::array<Y, 3> stages_{};  // the derivatives of the second, third and fourth
     Mask was_due_ = false;
     bool any_was_due_ = false;
-    Y y0_{}, f0_{}, f1_before_{};
+    Y y0_{}, f0_{}, f1_before_{}, f1_evaluated_{};
+    bool has_evaluated_before_jump_ = false;
     Vec3<T> torque_before_, work_;  // N m; J, of each torque in the step
     T assumed_before_{0.0}, latest_before_{infinite};
     Indentation<T> before_{};

@@ -95,12 +95,15 @@ public:
     bool stands_at_sample() const { return any(sampled_.next_sample() <= t_ + slack_); }
     void skip_sample() { started_ = false; }
 
+    // Keeps what the dense output of a step needs, for rows.
+    void keep_dense_output() { keeps_dense_output_ = true; }
+
     // Called before each change of contact of a lane.
     void set_observer(std::function<void(int lane, const ContactChange&)> changes) { on_change_ = std::move(changes); }
     // A user's law, for a run with a single lane.
     void set_user_law(const UserLaw& law) { sampled_.user = law; }
     std::string error_message() const { return sampled_.error_message(); }
-    const ControllerState<T>& controller_state() const { return sampled_.controller_state(); }
+    ControllerState<double> controller_state(int lane) const { return lane_of(sampled_.controller_state(), lane); }
     // Calls a law as the present sample would, without an effect on the run.
     void preview(const UserLaw& law) const {
         SampledController<T> rehearsal = sampled_;
@@ -412,6 +415,7 @@ protected:
     bool has_common_terms_;
     ContactFelt felt_;
     bool needs_derivative_ = true, may_be_ill_conditioned_;
+    bool keeps_dense_output_ = false;
 
     bool is_controlled_;
     SampledController<T> sampled_;

@@ -60,7 +60,7 @@ public:
     }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
     // Whether a sample may have changed the torque at the end of the last step.
-    bool may_jump_at_end() const { return this->is_controlled_ && in_any_lane(is_last_); }
+    bool may_jump_at_end(int lane) const { return this->is_controlled_ && Lanes<T>::is(is_last_, lane); }
 
 private:
     // The lanes that a step moves, and by how many seconds.

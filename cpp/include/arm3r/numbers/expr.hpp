@@ -80,7 +80,7 @@ public:
 
     // The node's index: that of an equal earlier one where there is one.
     int record(const TapeNode& node) {
-        const auto [place, is_new] = controller_state_.try_emplace(node, static_cast<int>(nodes_.size()));
+        const auto [place, is_new] = places_.try_emplace(node, static_cast<int>(nodes_.size()));
         if (is_new) nodes_.push_back(node);
         return place->second;
     }
@@ -97,7 +97,7 @@ private:
 
     std::vector<TapeNode> nodes_;
     std::vector<int> inputs_, outputs_;
-    std::unordered_map<TapeNode, int, Hash> controller_state_;
+    std::unordered_map<TapeNode, int, Hash> places_;
 };
 
 // The common part of Expr and its truth values: a node of a tape, or a constant that needs no node yet.

@@ -11,9 +11,7 @@ namespace arm3r {
 template <class Element, int N>
 struct Register {
     typedef Element type __attribute__((vector_size(sizeof(Element) * N)));
-    // Written out for the widths of registers, because g++ 12 takes three times as long for a loop over the lanes. Eight
-    // written out it would set one by one, with masks: where the function is defined it knows no register for them; and
-    // two made into eight would go through memory, and wait for it.
+    // Written out for the widths of registers (README, g++ 1).
     ARM3R_INLINE static void set_all(type& v, Element x) {
         if constexpr (N == 2) v = type{x, x};
         else if constexpr (N == 4) v = type{x, x, x, x};
@@ -28,8 +26,8 @@ struct Register {
     }
 };
 
-// One truth value per lane: all bits set, or none. g++ 12 breaks off with an internal error where one of 8 lanes goes into
-// a loop of unknown length from outside: such loops are to be written out.
+// One truth value per lane: all bits set, or none. No loop of unknown length may take one of 8 lanes from outside (README,
+// g++ 2).
 template <int N>
 struct PackMask {
     using Vector = typename Register<std::int64_t, N>::type;
@@ -66,7 +64,7 @@ struct PackMask {
         if constexpr (N == 2) {
             return (a.v[0] | a.v[1]) != 0;
         } else if constexpr (N == 8) {
-            // Ones that g++ 12 cannot see: it takes the conversion of a comparison's result apart.
+            // Ones that the compiler cannot see (README, g++ 3).
             std::int64_t ones = -1;
             asm("" : "+r"(ones));
             typename Register<std::int8_t, 8>::type narrow = __builtin_convertvector(a.v & ones, decltype(narrow));
@@ -83,8 +81,7 @@ struct PackMask {
 };
 
 // The copy constructor is written out so that a Pack travels by address wherever a call is not inlined: then callers
-// and callees built for different instruction sets agree. Each operator fills its result in place: a constructor would
-// be one more call to inline for every operation of every formula, and g++ would take twice as long.
+// and callees built for different instruction sets agree. Each operator fills its result in place (README, g++ 4).
 template <int N>
 struct Pack {
     using Vector = typename Register<double, N>::type;
@@ -185,7 +182,7 @@ struct Pack {
     ARM3R_INLINE friend Pack copysign(const Pack& magnitude, const Pack& sign) {
         return Pack((Vector)(((BitVector)magnitude.v & ~sign_bit) | ((BitVector)sign.v & sign_bit)));
     }
-    // g++ has no function for the roots of a vector, but takes them side by side in a loop that is marked for it.
+    // Where there is no function for the roots of a vector, a marked loop takes them side by side (README, g++ 5).
     ARM3R_INLINE friend Pack sqrt(const Pack& x) {
 #if __has_builtin(__builtin_elementwise_sqrt)
         return Pack(__builtin_elementwise_sqrt(x.v));
@@ -203,7 +200,7 @@ struct Pack {
 private:
     static constexpr std::int64_t sign_bit = INT64_MIN;
 
-    // g++ 12 takes a bare comparison of packs of 8 apart into scalars, but not a choice between numbers.
+    // A choice between numbers, and no bare comparison (README, g++ 3).
     template <class Comparison>
     ARM3R_INLINE static Mask where(const Comparison& holds) {
         if constexpr (N < 8) return Mask(holds);
@@ -216,7 +213,7 @@ static_assert(Real<Pack<2>> && Real<Pack<8>>);
 
 ARM3R_INLINE Pack<2> side_by_side(double first, double second) { return Pack<2>(Pack<2>::Vector{first, second}); }
 
-// g++ 12 may put four numbers together in memory, and wait for them.
+// Two halves, which are put together in registers (README, g++ 1).
 ARM3R_INLINE Pack<4> side_by_side(double first, double second, double third, double fourth) {
 #if __has_builtin(__builtin_shufflevector)
     const Pack<2>::Vector low{first, second}, high{third, fourth};

@@ -24,7 +24,7 @@ concept Real = requires(const T a, const T b, const SinCos<T> s) {
 
 static_assert(Real<double>);
 
-// The greater of both where `mask`, else x. Written as select(mask, max(x, y), x), g++ 12 takes packs of 8 apart.
+// The greater of both where `mask`, else x: not select(mask, max(x, y), x) (README, g++ 3).
 template <class M, class T>
 ARM3R_INLINE T max_where(const M& mask, const T& x, const T& y) {
     return max(x, T(select(mask, y, x)));

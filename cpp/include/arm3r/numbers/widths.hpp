@@ -167,8 +167,8 @@ ARM3R_INLINE OutlinedFunction<T, F> outlined(const F& f) {
     return {f};
 }
 
-// Whether a mask holds in any lane or in all, as any() and all() say: by the one instruction for it, which g++ 12 does not
-// find (it takes eight or ten), and so in functions alone that are compiled for the registers of the mask (Outlined).
+// Whether a mask holds in any lane or in all, as any() and all() say: by the one instruction for it (README, g++ 6), and so in
+// functions alone that are compiled for the registers of the mask (Outlined).
 ARM3R_INLINE bool in_any_lane(bool mask) { return mask; }
 ARM3R_INLINE bool in_all_lanes(bool mask) { return mask; }
 
