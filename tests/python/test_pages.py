@@ -17,7 +17,7 @@ from conftest import ROOT
 from page_runner import MARK, blocks_of
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
-# Changes of the sources ("diff", "cpp") are made by test_adding_a_controller.py.
+# Changes of the sources ("diff", "cpp") are made by test_adding_laws.py.
 LANGUAGES = {"python", "sh", "console", "yaml", "csv", "c", "matlab", "octave", "diff", "cpp"}
 RUN_BY_NODE = {"docs/webassembly.md": "js"}  # by test_wasm.py
 NEEDS_A_CLONE = re.compile(r"\b(make|cmake|g\+\+|gcc|git|apt|sudo|clang-format)\b|(benchmarks|tests|cpp)/")

@@ -70,7 +70,7 @@ bool has_memory(const Plant<P>& plant) {
 // Whether the contact itself dissipates energy: by damping, or when springs along the plate are released.
 template <class P>
 bool dissipates_in_contact(const Plant<P>& plant) {
-    return plant.acts_on_arm && (is_damped(plant.contact.law) || plant.contact.law == ContactLaw::diagonal);
+    return plant.acts_on_arm && !is_spring(plant.contact.law);
 }
 
 template <class P>

@@ -51,7 +51,7 @@ struct ContactSignals {
 
 // Whether contact depends on where on the plate the tip is.
 inline bool depends_on_place(const Plant<double>& plant) {
-    return plant.wall.has_outline || plant.contact.law == ContactLaw::diagonal;
+    return plant.wall.has_outline || acts_along_plate(plant.contact.law);
 }
 
 template <class T>

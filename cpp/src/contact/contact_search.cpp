@@ -123,7 +123,7 @@ void ContactSearch::include_peak(const DenseOutput& dense, double end, Peak& pea
 }
 
 double ContactSearch::impulse(const DenseOutput& dense, double a, double b) const {
-    if (plant_.contact.law != ContactLaw::hunt_crossley) return impulse_by_gauss(plant_, plant_.contact, dense, a, b);
+    if (is_linear(plant_.contact.law)) return impulse_by_gauss(plant_, plant_.contact, dense, a, b);
     constexpr double negligible = 1e-4;  // a depth, as a share of the largest: less than 1e-8 of the impulse lies below
     const double depth_a = depth(dense, a), depth_b = depth(dense, b);
     const double largest = std::max({depth_a, depth(dense, 0.5 * (a + b)), depth_b});

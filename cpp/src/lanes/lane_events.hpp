@@ -412,7 +412,7 @@ private:
 
     ARM3R_INLINE void add_impulse() {
         const Mask here = moved_ && this->contact_.touching();
-        if (this->plant_.contact.law == ContactLaw::hunt_crossley) return add_impulses(here);
+        if (!is_linear(this->plant_.contact.law)) return add_impulses(here);
         const T impulse = impulse_by_gauss(this->plant_, this->contact_.law(), dense_, T(0.0), theta_);
         this->contact_.add_impulse(select(here, impulse, T(0.0)));
     }

@@ -93,7 +93,7 @@ private:
         const Plant<double>& plant = view_.setup.plant;
         const double of_position = 4 * std::numeric_limits<double>::epsilon() * reach(plant.arm);
         if (quantity.needed.path) return of_position * (2 * std::sqrt(sampled(quantity, j)) + of_position);
-        return plant.contact.law == ContactLaw::hunt_crossley ? 0 : of_position * plant.contact.stiffness[0];
+        return !is_linear(plant.contact.law) ? 0 : of_position * plant.contact.stiffness[0];
     }
 
     // Around node j.

@@ -31,11 +31,11 @@ template <>
 inline constexpr std::array choice_words<Rotation> = std::to_array<ChoiceWord<Rotation>>(
     {{Rotation::none, "none"}, {Rotation::constant, "constant"}, {Rotation::sinusoid, "sinusoid"}});
 template <>
-inline constexpr std::array choice_words<ContactLaw> =
-    std::to_array<ChoiceWord<ContactLaw>>({{ContactLaw::spring, "spring"},
-                                           {ContactLaw::diagonal, "diagonal"},
-                                           {ContactLaw::kelvin_voigt, "kelvin_voigt"},
-                                           {ContactLaw::hunt_crossley, "hunt_crossley"}});
+inline constexpr std::array choice_words<ContactLaw> = [] {
+    std::array<ChoiceWord<ContactLaw>, contact_law_table.size()> words;
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = {contact_law_table[i].law, contact_law_table[i].word};
+    return words;
+}();
 template <>
 inline constexpr std::array choice_words<ControllerType> = [] {
     std::array<ChoiceWord<ControllerType>, law_table.size()> words;

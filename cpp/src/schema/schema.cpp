@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "arm3r/model/contact.hpp"
 #include "schema/key_builders.hpp"
 #include "schema/keys.hpp"
 #include "schema/stiffness_presets.hpp"
@@ -16,8 +17,8 @@ namespace {
 
 // Laws with three stiffnesses, or with another unit, have no default.
 double default_stiffness(std::span<const double> params, double otherwise) {
-    const std::string& law = choice_of(params, "wall.contact.law");
-    if (law == "diagonal" || law == "hunt_crossley") return unset;
+    const ContactLawTraits& law = contact_law_table[static_cast<std::size_t>(param(params, "wall.contact.law"))];
+    if (law.acts_along_plate || !law.is_linear) return unset;
     const auto preset = static_cast<std::size_t>(param(params, "wall.contact.preset"));
     return preset == 0 ? otherwise : stiffness_presets[preset - 1].stiffness;
 }

@@ -76,8 +76,8 @@ Estimation<double> make_estimation(std::span<const double> params, const Contact
     estimation.forgetting = at<"estimator.forgetting">(params);
     estimation.max_condition = at<"estimator.largest_condition">(params);
     estimation.assumed = at<"controller.assumed_stiffness">(params);
-    estimation.damping = contact.law == ContactLaw::kelvin_voigt ? contact.damping : 0;
-    estimation.dissipation = contact.law == ContactLaw::hunt_crossley ? contact.dissipation : 0;
+    estimation.damping = contact.damping;
+    estimation.dissipation = contact.dissipation;
     return estimation;
 }
 

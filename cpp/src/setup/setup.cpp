@@ -171,7 +171,7 @@ Contact<double> make_contact(std::span<const double> params, double mass) {
     const Vec3<double> k = vector_at<"wall.contact.stiffness">(params);
     Contact<double> contact{};
     contact.law = choice_at<"wall.contact.law", ContactLaw>(params);
-    contact.stiffness = contact.law == ContactLaw::diagonal ? k : Vec3<double>(k[0], 0, 0);
+    contact.stiffness = acts_along_plate(contact.law) ? k : Vec3<double>(k[0], 0, 0);
     if (contact.law == ContactLaw::kelvin_voigt) contact.damping = damping_of(params, k[0], mass);
     if (contact.law == ContactLaw::hunt_crossley) {
         contact.exponent = at<"wall.contact.exponent">(params);

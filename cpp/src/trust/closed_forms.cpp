@@ -129,7 +129,7 @@ void add_force_of_replay(const Setup& setup, const Run& run, double tolerance, s
     const Meeting start = meeting_at(setup.plant, setup.start, setup.q, setup.qd);
     const double time = run.t_end - setup.start, k = setup.plant.contact.stiffness[0];
     const std::optional<Approach> all_the_way = approach(setup, start, {time, 0});
-    if (!all_the_way || run.events.back().type != Event::make || setup.plant.contact.law != ContactLaw::spring) return;
+    if (!all_the_way || run.events.back().type != Event::make || !is_spring(setup.plant.contact.law)) return;
     const double depth = start.in.depth + (start.in.rate + all_the_way->g * time / 2) * time;
     const double allowed = all_the_way->departure * time * time / 2;
     if (allowed < depth)
@@ -139,9 +139,8 @@ void add_force_of_replay(const Setup& setup, const Run& run, double tolerance, s
 // ---- the contacts (9.1), (9.3)
 
 bool is_linear(const Contact<double>& contact) {
-    const bool is_diagonal = contact.law == ContactLaw::diagonal;
-    const bool holds_sideways = is_diagonal && (contact.stiffness[1] > 0 || contact.stiffness[2] > 0);
-    return contact.law != ContactLaw::hunt_crossley && !holds_sideways && !contact.has_friction;
+    const bool holds_sideways = contact.stiffness[1] > 0 || contact.stiffness[2] > 0;
+    return is_linear(contact.law) && !holds_sideways && !contact.has_friction;
 }
 
 // The span is guessed from the impact, and enlarged until the bounds keep within it.
@@ -179,7 +178,7 @@ bool add_contact(const Setup& setup, const Event& event, Sums& sums) {
     const Meeting at = meeting_at(setup, event);
     const Contact<double>& contact = setup.plant.contact;
     const double m = effective_mass(setup.plant.arm, pose(at.q), at.n), k = contact.stiffness[0];
-    const double c = contact.law == ContactLaw::kelvin_voigt ? contact.damping : 0;
+    const double c = contact.damping;
     const LinearImpact impact{m, k, c, at.in.rate, approach(setup, at).g};
     if (event.t <= setup.start || !(impact.v > 0) || !(c < 2 * std::sqrt(k * m))) return false;
     const std::optional<ImpactNumbers> numbers = numbers_of(impact);

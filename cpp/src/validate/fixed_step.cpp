@@ -36,14 +36,11 @@ void add_joints(const Setup& setup, std::vector<Rate>& rates) {
 
 void add_contact(const Setup& setup, std::vector<Rate>& rates) {
     const Contact<double>& contact = setup.plant.contact;
-    if (!setup.plant.has_wall || !setup.plant.acts_on_arm || contact.law == ContactLaw::hunt_crossley) return;
+    if (!setup.plant.has_wall || !setup.plant.acts_on_arm || !is_linear(contact.law)) return;
     const double m_n = effective_mass(setup.plant.arm, pose(setup.q), setup.plant.wall.n);
-    const double stiffest = contact.law == ContactLaw::diagonal
-                                ? std::max({contact.stiffness[0], contact.stiffness[1], contact.stiffness[2]})
-                                : contact.stiffness[0];
+    const double stiffest = std::max({contact.stiffness[0], contact.stiffness[1], contact.stiffness[2]});
     rates.push_back({"wall.contact.stiffness, as sqrt(K_E/m_n),", std::sqrt(stiffest / m_n)});
-    if (contact.law == ContactLaw::kelvin_voigt)
-        rates.push_back({"wall.contact.damping, as c/m_n,", contact.damping / m_n});
+    if (contact.damping > 0) rates.push_back({"wall.contact.damping, as c/m_n,", contact.damping / m_n});
 }
 
 void add_controller(const Setup& setup, std::vector<Rate>& rates) {

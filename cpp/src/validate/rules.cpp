@@ -177,7 +177,7 @@ std::optional<NoSeries> without_series(const Plant<double>& plant) {
         return NoSeries{"wall.rotation.type", "a wall that turns", "none with solver.method: taylor"};
     if (is_damped(plant.contact.law))
         return NoSeries{"wall.contact.law", "a damped contact", "spring or diagonal with solver.method: taylor"};
-    if (plant.acts_on_arm && plant.contact.law == ContactLaw::diagonal)
+    if (plant.acts_on_arm && acts_along_plate(plant.contact.law))
         return NoSeries{"wall.contact.law", "springs along the plate", "spring where the wall acts on the arm"};
     if (plant.acts_on_arm && plant.contact.has_friction)
         return NoSeries{"wall.contact.friction.coefficient", "friction on the wall",

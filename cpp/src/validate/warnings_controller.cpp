@@ -137,8 +137,7 @@ void warn_of_contact(const Setup& setup, Warnings& warnings) {
 // Where a formula has the limit of a gain.
 void warn_of_contact_loop(const Setup& setup, Warnings& warnings) {
     const Plant<double>& plant = setup.plant;
-    const bool is_spring = plant.contact.law == ContactLaw::spring || plant.contact.law == ContactLaw::diagonal;
-    if (!plant.has_wall || !plant.acts_on_arm || !is_spring) return;
+    if (!plant.has_wall || !plant.acts_on_arm || is_damped(plant.contact.law)) return;
     const Loop loop = loop_on_wall(setup);
     warn_of_force_loop(setup.controller(), loop, warnings);
     warn_of_admittance(setup.controller(), loop, warnings);

@@ -2,25 +2,48 @@
 // The force of the wall on a point that presses on it; docs/model.md, section 4. The contact law depends on an
 // indentation, not on the arm.
 
+#include <array>
+
 #include "arm3r/model/wall.hpp"
 
 namespace arm3r {
 
 enum class ContactLaw { spring, diagonal, kelvin_voigt, hunt_crossley };
 
+// What a contact law is, for all that does not compute its force.
+struct ContactLawTraits {
+    ContactLaw law;
+    const char* word;
+    bool is_linear;  // the normal force, in the depth and its rate; of any other law `exponent` says how it grows
+    // It pushes less while it is unloaded than while it is loaded, so that the force may end before the depth is zero. A law
+    // that is not linear counts as damped: its contact is followed by its force, and not by its depth.
+    bool is_damped;
+    bool acts_along_plate;  // it has springs along the plate, too
+};
+
+inline constexpr std::array contact_law_table = std::to_array<ContactLawTraits>({
+    {ContactLaw::spring, "spring", true, false, false},
+    {ContactLaw::diagonal, "diagonal", true, false, true},
+    {ContactLaw::kelvin_voigt, "kelvin_voigt", true, true, false},
+    {ContactLaw::hunt_crossley, "hunt_crossley", false, true, false},
+});
+
+constexpr const ContactLawTraits& traits(ContactLaw law) { return contact_law_table[static_cast<std::size_t>(law)]; }
+constexpr bool is_linear(ContactLaw law) { return traits(law).is_linear; }
+constexpr bool is_damped(ContactLaw law) { return traits(law).is_damped; }
+constexpr bool acts_along_plate(ContactLaw law) { return traits(law).acts_along_plate; }
+// Whether it is a spring along the normal, and nothing else.
+constexpr bool is_spring(ContactLaw law) { return is_linear(law) && !is_damped(law) && !acts_along_plate(law); }
+
 template <class P>
 struct Contact {
     ContactLaw law = ContactLaw::spring;
     Vec3<P> stiffness;        // N/m along n, e1, e2; only diagonal uses all; N/m^p for hunt_crossley
-    P damping;                // N s/m, of kelvin_voigt
-    P exponent, dissipation;  // 1 and s/m, of hunt_crossley
+    P damping;                // N s/m, of kelvin_voigt; 0 of other laws
+    P exponent, dissipation;  // 1 and s/m, of hunt_crossley; 0 of other laws
     bool has_friction = false;
     P friction, slip_velocity;  // 1 and m/s
 };
-
-// Whether the contact pushes less while it is unloaded than while it is loaded. The force may then end before the depth
-// is zero.
-inline bool is_damped(ContactLaw law) { return law == ContactLaw::kelvin_voigt || law == ContactLaw::hunt_crossley; }
 
 // The contact law along the normal, smoothly continued to where it would pull and to depths below zero (4.5).
 template <class T>
@@ -53,7 +76,7 @@ ARM3R_INLINE T normal_force(const Contact<P>& contact, const Indentation<T>& in)
 // J: the energy of the springs along the plate, which hold the tip to the centre of the plate (4.7).
 template <class P, class T>
 ARM3R_INLINE T stored_tangential(const Contact<P>& contact, const Indentation<T>& in) {
-    if (contact.law != ContactLaw::diagonal) return T(0.0);
+    if (!acts_along_plate(contact.law)) return T(0.0);
     return 0.5 * (contact.stiffness[1] * in.across1 * in.across1 + contact.stiffness[2] * in.across2 * in.across2);
 }
 
@@ -80,7 +103,7 @@ ARM3R_INLINE ContactForce<T> along_normal(const V& n, const T& normal, const T& 
 // A plain spring along a normal that does not turn needs the depth only.
 template <class P>
 bool is_plain_spring(const Wall<P>& wall, const Contact<P>& contact) {
-    return contact.law == ContactLaw::spring && !contact.has_friction && wall.rotation == Rotation::none;
+    return is_spring(contact.law) && !contact.has_friction && wall.rotation == Rotation::none;
 }
 
 template <class P, class T>
@@ -106,7 +129,7 @@ ARM3R_INLINE ContactForce<T> contact_force(const Wall<P>& wall, const WallState<
     const auto tangential = [&](const T& f1, const T& f2) ARM3R_INLINE_LAMBDA {
         for (int i = 0; i < 3; ++i) force.on_tip[i] = force.on_tip[i] + f1 * axis.e1[i] + f2 * axis.e2[i];
     };
-    if (contact.law == ContactLaw::diagonal) {
+    if (acts_along_plate(contact.law)) {
         tangential(-contact.stiffness[1] * in.across1, -contact.stiffness[2] * in.across2);
         force.stored = force.stored + stored_tangential(contact, in);
     }

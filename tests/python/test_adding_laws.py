@@ -1,4 +1,4 @@
-"""The page docs/adding_a_controller.md, applied as it stands: its changes fit the sources and give a law that runs."""
+"""The pages about adding laws, applied as they stand: their changes fit the sources and give laws that run."""
 
 from __future__ import annotations
 
@@ -12,12 +12,22 @@ from pathlib import Path
 
 import pytest
 
-SCENARIO = """\
+DAMPED = """\
 format: 1
 arm: {convention: slide, link2: {length: 0.9}, link3: {length: 1.2}}
 initial: {q: [0.2, 0.7, -1.1], qd: [0.4, -0.3, 0.9]}
 controller: {type: tip_damper, damping: 60}
 time: {stop: 2, log_every: 0.5}
+"""
+HERTZ = """\
+format: 1
+wall:
+  point: [1.8, 0, 0]
+  motion: {type: constant, velocity: 0.4}
+  contact: {law: hertz, stiffness: 40000}
+  acts_on_arm: true
+controller: {type: gravity_compensation}
+time: {stop: 0.6}
 """
 
 
@@ -57,14 +67,16 @@ def tree(root: Path, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_changes_fit_and_touch_at_most_five_files(root: Path, tree: Path) -> None:
-    files = apply(tree, (root / "docs/adding_a_controller.md").read_text())
-    assert len(files) == 4  # and docs/controllers.md
+def test_the_changes_fit_and_touch_few_files(root: Path, tree: Path) -> None:
+    """Beside them stand the pages that describe the laws."""
+    assert len(apply(tree, (root / "docs/adding_a_controller.md").read_text())) == 4
+    assert len(apply(tree, (root / "docs/adding_a_contact_law.md").read_text())) == 3
 
 
 @pytest.mark.gate
-def test_the_new_law_runs(root: Path, tree: Path, scripts: Path) -> None:
-    apply(tree, (root / "docs/adding_a_controller.md").read_text())
+def test_the_new_laws_run(root: Path, tree: Path, scripts: Path) -> None:
+    for page in ("adding_a_controller", "adding_a_contact_law"):
+        apply(tree, (root / f"docs/{page}.md").read_text())
     environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
     options = ["-DCMAKE_CXX_FLAGS_RELEASE=-O0", "-DCMAKE_BUILD_TYPE=Release", "-DARM3R_LANES=1", "-DARM3R_PCH=OFF"]
     options += ["-DARM3R_PYTHON=OFF", f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}"]
@@ -74,10 +86,18 @@ def test_the_new_law_runs(root: Path, tree: Path, scripts: Path) -> None:
         ["cmake", "--build", str(build), "--target", "arm3r_cli", "--parallel", "2"],
     ):
         subprocess.run(command, check=True, env=environment, capture_output=True)
-    scenario = tree / "scenario.yaml"
-    scenario.write_text(SCENARIO)
-    done = subprocess.run([build / "arm3r", "run", scenario, "--json"], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    metrics = json.loads(done.stdout)["metrics"]
-    assert max(abs(metrics[name]) for name in ("qd1", "qd2", "qd3")) < 1e-3  # the tip has come to rest, and stays up
-    assert metrics["tip_z"] > -1
+
+    def metrics_of(text: str) -> dict[str, float]:
+        (tree / "scenario.yaml").write_text(text)
+        done = subprocess.run([build / "arm3r", "run", tree / "scenario.yaml", "--json"], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)["metrics"]
+
+    damped = metrics_of(DAMPED)
+    assert max(abs(damped[name]) for name in ("qd1", "qd2", "qd3")) < 1e-3  # the tip has come to rest, and stays up
+    assert damped["tip_z"] > -1
+    # The contact of Hunt and Crossley without dissipation is the same law.
+    new, known = metrics_of(HERTZ), metrics_of(HERTZ.replace("hertz", "hunt_crossley, dissipation: 0"))
+    assert new["contacts"] == 1 and new["first_release"] > 0 and new["ledger_residual"] < 1e-6
+    for name in ("peak_force", "impulse", "first_release", "q2"):
+        assert new[name] == pytest.approx(known[name], rel=1e-6)
