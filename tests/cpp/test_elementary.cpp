@@ -8,7 +8,7 @@
 
 namespace arm3r {
 
-// Accuracy over the whole range is measured by tests/python/test_elementary_ulp.py.
+// Accuracy over the whole range is measured by tests/python/model/test_elementary_ulp.py.
 TEST_SUITE(elementary)
 
 static bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }

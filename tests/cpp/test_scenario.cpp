@@ -1,5 +1,5 @@
 // The parts of the text face that live in the core: numbers, suggestions, messages. The reader as a whole is judged
-// by tests/python/test_attacks_scenario.py, through the executable and the library.
+// by tests/python/attacks/test_attacks_scenario.py, through the executable and the library.
 
 #include <bit>
 #include <cfloat>

@@ -19,7 +19,7 @@ import pytest
 from arm3r_cpp.commands import exercise
 from arm3r_cpp.system.patience import Patience, TooSlow, Waits
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 BUSY = "import os\nparent = os.getppid()\nwhile os.getppid() == parent: pass"  # until its parent ends
 linux = pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell what a process computes")
 COMPUTES = """

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from arm3r_cpp import _native
 
-COMPARE = Path(__file__).parents[1] / "c" / "compare_bits.py"
+COMPARE = Path(__file__).parents[2] / "c" / "compare_bits.py"
 SCENARIO = """
 format: 1
 name: {name}

@@ -22,7 +22,7 @@ from arm3r_cpp.exercises.tasks import TASKS
 from arm3r_cpp.verify.kinds import KINDS
 from arm3r_cpp.verify.truth.three_r import ThreeR
 
-SUBMISSIONS = Path(__file__).parent / "submissions"
+SUBMISSIONS = Path(__file__).parents[1] / "submissions"
 SOLUTIONS = sorted(path for path in SUBMISSIONS.rglob("*.*") if path.suffix != ".pyc")
 FUNCTIONS = [task for task in TASKS.values() if isinstance(task, FunctionTask)]
 SCENARIOS = [task for task in TASKS.values() if isinstance(task, ScenarioTask)]

@@ -16,7 +16,7 @@ from formulas.mutants import matlab_mutants
 from formulas.programs import PROGRAMS
 
 OCTAVE = shutil.which("octave-cli")
-STUDENTS = Path(__file__).parent / "formulas" / "students"
+STUDENTS = Path(__file__).parents[1] / "formulas" / "students"
 FILES = {path.name: path.read_text() for path in sorted(STUDENTS.glob("*/*.m"))}
 LISTINGS = {one.name: one.text for one in PROGRAMS if one.language == "matlab"}
 STATES = np.random.default_rng(3).uniform(-2.5, 2.5, (4, 9))

@@ -21,7 +21,7 @@ from random_scenarios import sample_seed
 
 HEAD = "format: 1\n"
 SHORT = HEAD + "time: {stop: 0.02}\n"
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 OTHER_ENDINGS = (".mat", ".parquet", ".xlsx", ".html", ".bag", ".mcap", ".json", ".CSVV", ".csv.gz", "")
 ROBOT_KEYS = ("arm.link4", "arm.joints", "arm.link2.offset", "arm.link3.alpha", "dof", "urdf", "arm.urdf", "arm.dh",
               "joints", "links", "arm.n_joints", "arm.d4", "arm.a1", "robot", "arm.link2.d",

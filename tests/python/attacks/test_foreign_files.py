@@ -12,26 +12,10 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp.commands import verify
+from mutations import NUMBERS, mutated
 
 SEED = int(os.environ.get("ARM3R_SEED", random.randrange(10**6)))
 EXITS = {0, 2, 3, 11, 12}
-NUMBERS = [
-    "nan",
-    "inf",
-    "-inf",
-    "1e999",
-    "-1e300",
-    "1e-320",
-    "",
-    "0",
-    "-1",
-    "..",
-    "1.2.3",
-    "pi/0",
-    "9" * 400,
-    "1_0",
-    "\0",
-]
 
 CHAIN = "standard\ntype,a,alpha,d,theta,mass,cx\nR,0,pi/2,0.4,0,1,0\nR,0.5,0,0,0,1,-0.2\nR,0.3,0,0,90 deg,1,0\n"
 URDF = """<robot name="c"><link name="a"/>
@@ -100,33 +84,6 @@ def logs() -> list[str]:
         "\0",
         "",
     ]
-
-
-def mutated(data: bytes, chance: random.Random) -> bytes:
-    """With some of: bytes flipped, a part cut or doubled, lines swapped, numbers replaced, another encoding."""
-    for _ in range(chance.randint(1, 4)):
-        data = mutated_once(data, chance)[:300_000]
-    return data
-
-
-def mutated_once(data: bytes, chance: random.Random) -> bytes:
-    at, to = sorted(chance.randrange(len(data) + 1) for _ in range(2))
-    lines = data.split(b"\n")
-    digits = [i for i, c in enumerate(data) if chr(c).isdigit()]
-    place = chance.choice(digits) if digits else 0
-    match chance.randrange(6):
-        case 0:
-            return data[:at] + bytes([chance.randrange(256)]) + data[at + 1 :]
-        case 1:
-            return data[:at] + data[to:]
-        case 2:
-            return data[:to] + data[at:to] * chance.randint(1, 50) + data[to:]
-        case 3:
-            return b"\n".join(chance.sample(lines, len(lines)))
-        case 4:
-            return data[:place] + chance.choice(NUMBERS).encode() + data[place + 1 :]
-        case _:
-            return data.decode("latin-1").encode(chance.choice(["utf-16", "utf-8", "utf-8-sig", "utf-32"]))
 
 
 def formula_call(folder: Path, ending: str, data: bytes) -> list[str]:

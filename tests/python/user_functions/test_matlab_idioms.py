@@ -14,7 +14,7 @@ from arm3r_cpp.user_functions.matlab.functions import FUNCTIONS
 from arm3r_cpp.user_functions.matlab.program import MatlabProgram
 from arm3r_cpp.user_functions.programs import ProgramError, Unread
 
-IDIOMS = {path.stem: path.read_text() for path in sorted((Path(__file__).parent / "formulas/idioms").glob("*.m"))}
+IDIOMS = {path.stem: path.read_text() for path in sorted((Path(__file__).parents[1] / "formulas/idioms").glob("*.m"))}
 PLAIN = IDIOMS["no_ends"].partition("function y")[0]
 
 

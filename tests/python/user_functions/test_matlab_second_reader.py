@@ -117,7 +117,7 @@ def assert_the_same(text: str) -> None:
     assert one == other, {"only ours": sorted(one - other), "only theirs": sorted(other - one)}
 
 
-FILES = sorted((Path(__file__).parent / "formulas").rglob("*.m"))
+FILES = sorted((Path(__file__).parents[1] / "formulas").rglob("*.m"))
 
 
 @pytest.mark.parametrize("path", FILES, ids=[path.stem for path in FILES])

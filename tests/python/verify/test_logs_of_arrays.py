@@ -11,8 +11,8 @@ import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.errors import UnjudgedError, UsageError
 from arm3r_cpp.logs.mat_file import MatFile
+from mutations import mutated
 from random_scenarios import sample_seed
-from test_foreign_files import mutated
 
 ROWS = 40
 

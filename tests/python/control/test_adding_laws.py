@@ -89,7 +89,9 @@ def test_the_new_laws_run(root: Path, tree: Path, scripts: Path) -> None:
 
     def metrics_of(text: str) -> dict[str, float]:
         (tree / "scenario.yaml").write_text(text)
-        done = subprocess.run([build / "arm3r", "run", tree / "scenario.yaml", "--json"], capture_output=True, text=True)
+        done = subprocess.run(
+            [build / "arm3r", "run", tree / "scenario.yaml", "--json"], capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)["metrics"]
 

@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 INCLUDE = HERE.parent.parent / "cpp" / "include"
 LEVELS = ("-O0", "-O2", "-O3", "-O3 -march=native")  # the last has fma, and must not use it
 mpmath.mp.dps = 60

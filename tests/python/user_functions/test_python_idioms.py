@@ -11,7 +11,7 @@ from arm3r_cpp import verify
 from arm3r_cpp.blocks.block import Block
 from arm3r_cpp.errors import UnjudgedError, UsageError
 
-FILES = {path.stem: path.read_text() for path in (Path(__file__).parent / "formulas/python_idioms").glob("*.py")}
+FILES = {path.stem: path.read_text() for path in (Path(__file__).parents[1] / "formulas/python_idioms").glob("*.py")}
 ROBOT = FILES["jacobian_method"].replace("l2=1.0, l3=1.0", "l2, l3")
 FILES["jacobian_object"] = f"{ROBOT}robot = Robot(l2=1.0, l3=1.0)\n"
 LINEAR = "np.cross(T[:3, 2], p - T[:3, 3])"

@@ -19,7 +19,7 @@ from arm3r_cpp.exercises.mark import WORDS
 from arm3r_cpp.exercises.tasks import TASKS
 from arm3r_cpp.user_functions.start import COPIES
 
-SUBMISSIONS = Path(__file__).parent / "submissions"
+SUBMISSIONS = Path(__file__).parents[1] / "submissions"
 SECONDS = str(10_000_000 + os.getpid())  # of this process: another one may run the same test
 
 # For each task a file that does what no submission should, and what the table says of it.

@@ -26,7 +26,7 @@ from formulas import octave_ways_out as ways_out
 from test_sandbox import USERS, become
 
 octave = pytest.mark.needs("octave")
-STUDENTS = Path(__file__).parent / "formulas" / "students"
+STUDENTS = Path(__file__).parents[1] / "formulas" / "students"
 FILES = {path.name: path for path in sorted(STUDENTS.glob("*/*.m"))}
 JACOBIAN = """function J = jacobian(q)
   a2 = 1;
@@ -338,8 +338,9 @@ def open_ways(paths: tuple[str, ...]) -> list[str]:
 @pytest.mark.parametrize("user", USERS)
 def test_no_way_out(user: str, paths: tuple[str, ...]) -> None:
     words = json.dumps([USERS[user], paths])
-    one_thread = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # no other process can enter a user namespace
-    done = subprocess.run([sys.executable, __file__, words], capture_output=True, text=True, env=one_thread)
+    # No other process can enter a user namespace: one thread.
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, __file__, words], capture_output=True, text=True, env=environment)
     if done.returncode == NO_NAMESPACES:
         pytest.skip("this system has no user namespaces to try it in")
     assert done.returncode == 0, done.stderr[-2000:]

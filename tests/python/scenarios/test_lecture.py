@@ -14,7 +14,7 @@ from conftest import scenario_files
 from force_scenarios import D, mirrored
 from numpy.typing import NDArray
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
+SCENARIOS = Path(__file__).parents[3] / "scenarios"
 NAMES = sorted(str(path.relative_to(SCENARIOS)) for path in scenario_files())
 LECTURE = [name for name in NAMES if name.startswith("lecture/")]
 BESIDE_THE_PLATE = {"contact/plate_edge.yaml"}  # the tip is deeper than the face, and nothing touches it

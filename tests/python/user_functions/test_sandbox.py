@@ -90,8 +90,9 @@ def without_namespaces() -> None:
 
 def tried(user: int, has_namespaces: bool, names: tuple[str, ...]) -> list[str]:
     words = json.dumps([user, has_namespaces, names])
-    one_thread = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # no other process can enter a user namespace
-    done = subprocess.run([sys.executable, __file__, words], capture_output=True, text=True, env=one_thread)
+    # No other process can enter a user namespace: one thread.
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, __file__, words], capture_output=True, text=True, env=environment)
     if done.returncode == 77:
         pytest.skip("this system has no user namespaces to try it in")
     assert done.returncode == 0, done.stderr[-2000:]

@@ -28,7 +28,7 @@ from arm3r_cpp.exercises.tasks import TASKS, task_with
 from arm3r_cpp.exercises.tasks.scenarios.force_on_arm import contact_time
 from arm3r_cpp.exercises.tasks.scenarios.moon import height
 
-SUBMISSIONS = Path(__file__).parent / "submissions"
+SUBMISSIONS = Path(__file__).parents[1] / "submissions"
 STUDENTS = [Numbers(seed, student) for seed in range(5) for student in ("anna", "ben", "zoë")]
 EVERYONES = ("gravity_constant", "observer")  # tasks without a number that could be another one
 

@@ -32,7 +32,7 @@ def pytest_with(request: pytest.FixtureRequest, tmp_path: Path):
     (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = sample")
 
     def call(seed: str | None, *arguments: str) -> str:
-        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
         environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
         environment.pop("ARM3R_SAMPLE", None)
         if seed:

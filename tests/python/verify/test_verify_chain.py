@@ -19,7 +19,7 @@ from formulas.draws import draws
 from formulas.mutants import mutants
 from numpy.typing import NDArray
 
-ROBOTS = Path(__file__).parent / "robots"
+ROBOTS = Path(__file__).parents[1] / "robots"
 TABLES = ("ur5", "puma560", "panda", "rpp")
 Floats = NDArray[np.float64]
 
