@@ -117,6 +117,7 @@ FILES = [
 ]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("ending", [".m", ".dh", ".urdf", ".csv"])
 def test_a_broken_file_is_one_line(ending: str, ends_well: Callable[[str, bytes], int]) -> None:
     for one, text in FILES:

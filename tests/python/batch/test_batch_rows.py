@@ -57,6 +57,7 @@ def same_tables(one: arm3r.Batch, other: arm3r.Batch) -> bool:
     return all(np.array_equal(one[name], other[name], equal_nan=True) for name in one)
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("law", LAWS)
 def test_rows_have_the_bits_of_the_runs_alone(law: str) -> None:
     """Random scenarios, continuous and sampled, by every method, on one thread and on three."""

@@ -166,6 +166,7 @@ def test_a_figure_names_its_table(table: Any, tmp_path: Path) -> None:
 # ---- the command ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_the_command_writes_a_file(table: Any, tmp_path: Path, scripts: Path, suffix: str) -> None:
     folder, out = table(STIFFNESS).folder, tmp_path / f"figure.{suffix}"

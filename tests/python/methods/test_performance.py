@@ -240,6 +240,7 @@ def wrong_numbers(run: arm3r.Run, rel: float) -> dict[str, float]:
     return {key: value for key, value in off.items() if not value <= rel}
 
 
+@pytest.mark.sample(14)
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", SCORED)
 def test_a_dense_log_has_the_numbers_of_the_summary(name: str, method: str) -> None:

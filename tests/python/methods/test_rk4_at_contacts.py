@@ -72,6 +72,7 @@ def test_rk4_warns_where_a_contact_costs_it_its_order(law: str, contact: str, si
     assert (found < 1.5) == bool(jumps), found
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("contact", [SPRING, DAMPED, HUNT_CROSSLEY])
 @pytest.mark.parametrize("size", [LARGE, SMALL])
 @pytest.mark.parametrize("law", [COMPENSATES, "type: hybrid"])

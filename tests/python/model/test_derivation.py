@@ -93,6 +93,7 @@ def assert_near(values: Any, truth: Any, what: str) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.gate
 def test_the_page_is_what_the_script_writes(derivation: ModuleType) -> None:
     assert derivation.PAGE.read_text() == derivation.page(), "`python tools/derivation.py` writes the page"
 
@@ -116,6 +117,7 @@ def test_every_formula_is_the_librarys(derivation: ModuleType, convention: str) 
             assert_near(np.cross(frame[:, 2], frame[:, 0]), frame[:, 1], "a right-handed frame")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("convention", ["simscape", "slide"])
 def test_payload_and_rotors_are_the_librarys(derivation: ModuleType, convention: str) -> None:
     """The primed numbers in the place of those without."""

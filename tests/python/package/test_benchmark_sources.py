@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["bench", "contenders", "ours"])
 def test_it_compiles(root: Path, name: str) -> None:
     eigen = Path(sysconfig.get_path("purelib")) / "cmeel.prefix" / "include" / "eigen3"

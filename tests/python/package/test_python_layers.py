@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -69,11 +70,12 @@ def room(module: str) -> str:
     return module.split(".")[0]
 
 
-def imports(module: str, known: dict[str, Path]) -> list[Import]:
+@cache
+def imports(module: str) -> list[Import]:
     """What a module imports from the package, also inside functions and for type checkers only."""
-    tree = ast.parse(known[module].read_text())
+    tree = ast.parse(KNOWN[module].read_text())
     later = {id(inner) for node in ast.walk(tree) if is_later(node) for inner in ast.walk(node)}
-    folder = module.split(".") if known[module].stem == "__init__" else module.split(".")[:-1]
+    folder = module.split(".") if KNOWN[module].stem == "__init__" else module.split(".")[:-1]
     folder = [] if module == "__init__" else folder
     found = []
     for node in ast.walk(tree):
@@ -82,7 +84,7 @@ def imports(module: str, known: dict[str, Path]) -> list[Import]:
             base = [part for part in base if part]
             for alias in node.names:
                 whole = ".".join([*base, alias.name])
-                found.append(Import(whole if whole in known else ".".join(base), id(node) not in later))
+                found.append(Import(whole if whole in KNOWN else ".".join(base), id(node) not in later))
     return found
 
 
@@ -92,19 +94,23 @@ def is_later(node: ast.AST) -> bool:
 
 
 KNOWN = modules()
-IMPORTS = [(module, found) for module in KNOWN for found in imports(module, KNOWN)]
+
+
+def every_import() -> list[tuple[str, Import]]:
+    return [(module, found) for module in KNOWN for found in imports(module)]
 
 
 def test_every_import_is_read() -> None:
     """The reading of the sources by the tests below finds what Python does."""
-    assert ("scenario", Import("_native", True)) in IMPORTS
-    assert ("sweeps.runner", Import("_native", True)) in IMPORTS
-    assert ("plot.force_figure", Import("plot.style", True)) in IMPORTS
-    assert ("plot", Import("animation.animate", False)) in IMPORTS
-    assert ("plot.strobe", Import("scenario", False)) in IMPORTS
-    assert ("_api", Import("sweeps.runner", False)) in IMPORTS
+    every = every_import()
+    assert ("scenario", Import("_native", True)) in every
+    assert ("sweeps.runner", Import("_native", True)) in every
+    assert ("plot.force_figure", Import("plot.style", True)) in every
+    assert ("plot", Import("animation.animate", False)) in every
+    assert ("plot.strobe", Import("scenario", False)) in every
+    assert ("_api", Import("sweeps.runner", False)) in every
     known = {*KNOWN, "_arm3r"}
-    assert {found.module for _, found in IMPORTS} <= known
+    assert {found.module for _, found in every} <= known
 
 
 def test_every_room_has_its_place() -> None:
@@ -113,7 +119,7 @@ def test_every_room_has_its_place() -> None:
 
 @pytest.mark.parametrize("module", KNOWN)
 def test_imports_point_down(module: str) -> None:
-    for found in (found for name, found in IMPORTS if name == module):
+    for found in imports(module):
         here, there = room(module), room(found.module)
         is_later = (here, there) in LATER and not found.at_once
         assert LEVEL[there] <= LEVEL[here] or is_later, f"{module} imports {found.module}, which is above it"
@@ -121,7 +127,7 @@ def test_imports_point_down(module: str) -> None:
 
 def test_no_modules_import_each_other() -> None:
     graph: dict[str, set[str]] = {module: set() for module in KNOWN}
-    for module, found in IMPORTS:
+    for module, found in every_import():
         if (room(module), room(found.module)) not in LATER:
             graph[module].add(found.module)
     assert len(list(TopologicalSorter(graph).static_order())) >= len(graph)  # CycleError names a circle

@@ -470,6 +470,7 @@ end
 """
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("kind", "right", "wrong", "output"),
     [
@@ -548,6 +549,7 @@ def test_an_arm_that_slides_in_its_plane_lies_on_paper_too(written: Any) -> None
     assert verdict.ok, str(verdict)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(("wave", "along"), [("cos", "[0, -1, 0]"), ("sin", "[1, 0, 0]"), ("-sin", "[-1, 0, 0]")])
 def test_an_arm_that_lies_across_gravity_may_hang_or_stand_on_paper(wave: str, along: str, written: Any) -> None:
     """Its file says nothing of gravity: what the formula means is said first, and so is g."""
