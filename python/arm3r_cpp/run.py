@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _native
-from ._files import check_ending, replacing
+from ._files import check_ending
 from ._messages import no_column
 from ._native import Floats, lib
 from .answers.meant_names import Answering, no_attribute
 from .errors import ColumnError, UsageError
 from .rows.names import columns_of, completions, three_of
-from .run_file import read, with_numbers
+from .run_file import RunData, read, with_numbers, write_npz
 
 if TYPE_CHECKING:
     import pandas
@@ -272,15 +272,7 @@ class Run(metaclass=Answering):
             UsageError: the name has another ending.
         """
         check_ending(path, [".npz"], hint="to_csv writes .csv, to_html .html")
-        with replacing(Path(path)) as part, part.open("wb") as file:
-            np.savez(
-                file,
-                columns=self.columns,
-                units=list(self.units.values()),
-                data=np.stack(list(self._columns.values())),
-                summary=json.dumps(self.summary),
-                report=self._text() or "",
-            )
+        write_npz(Path(path), RunData(self._columns, self.units, self.summary, self._text()))
 
     def to_pandas(self) -> pandas.DataFrame:
         """The columns as a pandas.DataFrame with the time as its index; `attrs["units"]` has their units.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
@@ -10,11 +11,13 @@ from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 
-from ._files import regular
+from ._files import regular, replacing
 from ._hash import fnv1a64
 from ._messages import place
 from ._native import Floats
 from .errors import UsageError
+
+_SUMMARY, _REPORT = "summary.json", "report.txt"  # beside the arrays of the columns
 
 
 class RunData(NamedTuple):
@@ -73,13 +76,29 @@ def _numbers(path: Path, file: TextIO, names: Sequence[str]) -> Iterator[float]:
                 raise _unreadable(place(path, number), f"{name}: a number is needed, got {field.strip()!r}") from None
 
 
+def write_npz(path: Path, run: RunData) -> None:
+    """One file that `numpy.load` reads, whole or not at all: that of `arm3r run -o`, and the report."""
+    with replacing(path) as part, zipfile.ZipFile(part, "w") as file:
+        for name, column in run.columns.items():
+            with file.open(_member(f"{name}.npy"), "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, column, allow_pickle=False)
+        file.writestr(_member(_SUMMARY), json.dumps(run.summary))
+        if run.report:
+            file.writestr(_member(_REPORT), run.report)
+
+
+def _member(name: str) -> zipfile.ZipInfo:
+    """Of a time that is always the same, as the bytes of the file are."""
+    return zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+
+
 def _read_npz(path: Path) -> RunData:
     try:
         with path.open("rb") as stream, np.load(stream) as file:
-            if "summary.json" in file:
-                text, report = file["summary.json"].decode(), ""
-                columns = {name: file[name] for name in file.files if name != "summary.json"}
-            else:  # as to_npz wrote it before, and still writes a run that was loaded
+            if _SUMMARY in file:
+                text, report = file[_SUMMARY].decode(), file[_REPORT].decode() if _REPORT in file else ""
+                columns = {name: file[name] for name in file.files if name not in (_SUMMARY, _REPORT)}
+            else:  # as to_npz wrote it before
                 names, text, report = (file[key].tolist() for key in ("columns", "summary", "report"))
                 columns = dict(zip(names, np.require(file["data"], np.float64, ["C"]), strict=True))
     except OSError:

@@ -1,7 +1,6 @@
 // The text half of the C interface: scenarios, results, reference.
 
 #include <algorithm>
-#include <future>
 #include <memory>
 
 #include "api/c_api.hpp"
@@ -10,12 +9,10 @@
 #include "base/text.hpp"
 #include "batch/simulation.hpp"
 #include "files/input_file.hpp"
-#include "files/output_file.hpp"
 #include "files/yaml_json.hpp"
-#include "platform/threads.hpp"
 #include "results/csv.hpp"
-#include "results/npz.hpp"
 #include "results/report.hpp"
+#include "results/run_file.hpp"
 #include "scenario/json_schema.hpp"
 #include "scenario/reference_docs.hpp"
 #include "schema/columns.hpp"
@@ -47,27 +44,6 @@ arm3r_scenario* new_scenario(Scenario scenario) {
 
 const char* summary_of(const arm3r_run& run) {
     return run.texts.get("summary", [&] { return summary_json(results_of(run)); });
-}
-
-// Below this many numbers their hash is computed sooner than a thread is started.
-constexpr std::size_t worth_a_thread = 1 << 15;
-
-// The hash of the summary takes about as long as the rows: another thread computes it, if there can be one.
-void save(const arm3r_run& run, const std::string& path) {
-    check_run_path(path);
-    OutputFile rows(path), summary(summary_path(path));
-    const bool is_long = run.run.rows * run.run.columns.size() > worth_a_thread;
-    const auto policy =
-        platform::has_threads && is_long ? std::launch::async | std::launch::deferred : std::launch::deferred;
-    std::future<const char*> summary_text = std::async(policy, [&] { return summary_of(run); });
-    if (path.ends_with(npz_ending))
-        write_npz(run.run, [&] { return summary_text.get(); }, [&](std::string_view piece) { rows.write(piece); });
-    else write_csv(run.run, [&](std::string_view piece) { return rows.write(piece), true; });
-    summary.write(summary_of(run));
-    rows.close();
-    summary.close();
-    rows.publish();
-    summary.publish();
 }
 
 void set(arm3r_scenario* scenario, const std::string& path, const std::string& value, const std::string& origin) {
@@ -329,12 +305,12 @@ int32_t arm3r_run_csv(const arm3r_run* run, arm3r_sink sink, void* user) {
 int32_t arm3r_run_save(const arm3r_run* run, const char* path, size_t path_size) {
     return guard([&] {
         need(run, "run");
-        save(*run, text_in(path, path_size, "path"));
+        save_run(run->run, [run] { return summary_of(*run); }, text_in(path, path_size, "path"));
     });
 }
 
 int32_t arm3r_output_probe(const char* path, size_t path_size) {
-    return guard([&] { probe_output(text_in(path, path_size, "path")); });
+    return guard([&] { probe_run_file(text_in(path, path_size, "path")); });
 }
 
 int32_t arm3r_output_summary(const char* path, size_t path_size, const char** summary) {

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
 #include "platform/files.hpp"
 #include "platform/program.hpp"
 
@@ -20,15 +19,6 @@ namespace {
 
 std::string directory_of(const std::string& path) { return path.substr(0, platform::last_separator(path) + 1); }
 
-void check_target(const std::string& path) {
-    using platform::FileKind;
-    if (path.empty()) refuse_output(path, "the file name is empty");
-    if (platform::last_separator(path) == path.size() - 1) refuse_output(path, std::strerror(EISDIR), "name a file");
-    const FileKind kind = platform::own_kind_of(path);
-    if (kind == FileKind::directory) refuse_output(path, std::strerror(EISDIR), "name a file");
-    if (kind == FileKind::other) refuse_output(path, "not a regular file", "`-o -` writes to standard output");
-}
-
 int create_beside(const std::string& path, std::string& temporary) {
     for (int attempt = 0;; ++attempt) {
         temporary = directory_of(path) + ".arm3r-" + std::to_string(platform::process_id()) + "-" +
@@ -39,6 +29,15 @@ int create_beside(const std::string& path, std::string& temporary) {
 }
 
 }  // namespace
+
+void check_target(const std::string& path) {
+    using platform::FileKind;
+    if (path.empty()) refuse_output(path, "the file name is empty");
+    if (platform::last_separator(path) == path.size() - 1) refuse_output(path, std::strerror(EISDIR), "name a file");
+    const FileKind kind = platform::own_kind_of(path);
+    if (kind == FileKind::directory) refuse_output(path, std::strerror(EISDIR), "name a file");
+    if (kind == FileKind::other) refuse_output(path, "not a regular file", "`-o -` writes to standard output");
+}
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
     check_target(path_);
@@ -73,30 +72,6 @@ void OutputFile::publish() {
 std::string ending_of(std::string_view path) {
     const std::size_t name = platform::last_separator(path) + 1, dot = path.rfind('.');
     return std::string(dot == path.npos || dot <= name ? "" : path.substr(dot));
-}
-
-void check_run_path(const std::string& path) {
-    check_target(path);
-    const std::vector<std::string> written = {csv_ending, npz_ending};
-    const std::string ending = ending_of(path);
-    if (is_in(written, ending)) return;
-    throw Error(ARM3R_E_VALUE, {{.code = "usage",
-                                 .message = ending.empty() ? "a run is written by the ending of its file's name"
-                                                           : "a run is not written as " + visible(ending),
-                                 .got = ending.empty() ? "no ending" : "",
-                                 .allowed = listed(written),
-                                 .hint = "`-o -` prints CSV, and a name that ends in / is a directory",
-                                 .file = path}});
-}
-
-std::string summary_path(const std::string& path) {
-    return path.substr(0, path.size() - ending_of(path).size()) + ".json";
-}
-
-void probe_output(const std::string& path) {
-    check_run_path(path);
-    OutputFile{path};
-    OutputFile{summary_path(path)};
 }
 
 }  // namespace arm3r

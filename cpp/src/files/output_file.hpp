@@ -23,18 +23,9 @@ private:
     int descriptor_ = -1;
 };
 
-inline constexpr const char *csv_ending = ".csv", *npz_ending = ".npz";  // those of a run's file
-
 std::string ending_of(std::string_view path);  // ".csv"; "" where there is none
 
-// "out/run.csv" -> "out/run.json"
-std::string summary_path(const std::string& path);
-
-// Throws Error ARM3R_E_OUTPUT where PATH can be no file, and ARM3R_E_VALUE where its ending is none that a run is written
-// with: the file would not be what its name says.
-void check_run_path(const std::string& path);
-
-// Throws as check_run_path, and Error ARM3R_E_OUTPUT where PATH and its summary could not be written.
-void probe_output(const std::string& path);
+// Throws Error ARM3R_E_OUTPUT where PATH can be no file.
+void check_target(const std::string& path);
 
 }  // namespace arm3r
