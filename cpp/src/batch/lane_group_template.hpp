@@ -56,7 +56,7 @@ private:
     void prepare(Part& part, const Setup& first) {
         Integrator& lane_run = part.lane_run.emplace(first);
         if (!worker_.records()) return;
-        lane_run.keep_dense_output();
+        lane_run.keep_for_rows();
         lane_run.set_observer(
             [&part](int lane, const ContactChange& change) { part.record[lane]->record_change(change); });
     }

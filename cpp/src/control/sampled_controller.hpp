@@ -107,6 +107,8 @@ public:
     }
 
     const ControllerState<T>& controller_state() const { return state_; }
+    // Of several lanes its state has what they have measured only where it is asked for, for rows.
+    void keep_measurements() { keeps_measurements_ = true; }
     bool is_on() const { return digital_.sampling.on; }
     bool estimates() const { return estimation_.on; }
     const Controller<T>& controller() const { return digital_.controller; }
@@ -154,9 +156,10 @@ private:
         if (sensors.has_analog_filter) sensed.f_on_tip = f_filtered;
         measure_force(due, arm, sensed.f_on_tip);
         if (!digital_.controller.ideal_cancellation) sensed.f_cancelled = sensed.f_on_tip;
-        if (Lanes<T>::count == 1 || estimates_rate)
+        const bool keeps = Lanes<T>::count == 1 || keeps_measurements_;
+        if (keeps || estimates_rate)
             assign_where(due, sensed.q, state_.q), assign_where(due, sensed.qd, state_.qd);
-        if (Lanes<T>::count == 1) assign_where(due, sensed.f_on_tip, state_.f_on_tip);
+        if (keeps) assign_where(due, sensed.f_on_tip, state_.f_on_tip);
     }
 
     ARM3R_INLINE static void assign_where(const Mask& due, const Vec3<T>& now, Vec3<T>& kept) {
@@ -379,6 +382,7 @@ private:
     T count_{0.0}, outputs_done_{0.0};  // number of samples, and of torques that have begun to act
     T next_sample_{never}, next_output_{never}, next_estimate_{never};
     ControllerState<T> state_;
+    bool keeps_measurements_ = false;
     GroundTruth truth_;  // for a law of the user's own
     ContactSamples<T> contact_samples_;
     Estimation<T> estimation_;

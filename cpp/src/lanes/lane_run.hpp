@@ -95,8 +95,11 @@ public:
     bool stands_at_sample() const { return any(sampled_.next_sample() <= t_ + slack_); }
     void skip_sample() { started_ = false; }
 
-    // Keeps what the dense output of a step needs, for rows.
-    void keep_dense_output() { keeps_dense_output_ = true; }
+    // Keeps what rows need: the dense output of a step, and what the controller has measured.
+    void keep_for_rows() {
+        keeps_dense_output_ = true;
+        sampled_.keep_measurements();
+    }
 
     // Called before each change of contact of a lane.
     void set_observer(std::function<void(int lane, const ContactChange&)> changes) { on_change_ = std::move(changes); }

@@ -68,6 +68,16 @@ def answer_of(head: dict[str, Any], body: bytes, rows: int) -> Answer:
     return Answer(np.frombuffer(body).reshape(shape), seconds)
 
 
+def calls_of(head: dict[str, Any]) -> int:
+    """How many functions an evaluation called.
+
+    Raises:
+        BrokenAnswer: the head does not say it.
+    """
+    calls: Any = head.get("calls")
+    return int(_checked(calls, type(calls) is int and calls >= 0))
+
+
 def arguments_of(head: dict[str, Any]) -> tuple[list[str], list[str]]:
     """The names of arguments, and of those of them that have a default.
 

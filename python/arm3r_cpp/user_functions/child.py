@@ -14,7 +14,7 @@ import numpy as np
 from ..system.confinement import confine, end_with_parent
 from ..system.limits import limit_resources
 from .octave.program import OctaveProgram
-from .programs import Call, Edit, Given, ProgramError, Unread
+from .programs import Call, Edit, Given, ProgramError, Unread, calls_in
 from .python_program import PythonProgram
 
 HEAD = struct.Struct("<II")  # lengths of the JSON and of the numbers that follow
@@ -86,7 +86,7 @@ def answer(program: PythonProgram | OctaveProgram, requests: IO[bytes], answers:
 
 
 def _result(program: PythonProgram | OctaveProgram, head: dict[str, Any], body: bytes) -> tuple[dict[str, Any], bytes]:
-    """The names of arguments, for a request without rows; or the values at the states of the body."""
+    """The names of arguments, for a request without rows; or the values at the states of the body, or their calls."""
     if head["rows"] is None:
         return {"arguments": program.arguments()}, b""
     table = np.frombuffer(body).reshape(head["rows"], -1) if head["rows"] else np.zeros((0, 1))
@@ -95,6 +95,8 @@ def _result(program: PythonProgram | OctaveProgram, head: dict[str, Any], body: 
         for one in head["slots"]
     )
     call = Call(slots, head["lifted"], head["output"], head["outside"], head["as_columns"])
+    if head["counted"]:
+        return {"calls": calls_in(lambda: program.evaluate(call, table))}, b""
     values = program.evaluate(call, table, Edit(*head["edit"]) if head["edit"] else None)
     return {"shape": values.shape}, np.ascontiguousarray(values).tobytes()
 

@@ -15,7 +15,7 @@ from ..system.limits import PROCESSOR_TIME
 from ..system.patience import Patience, TooSlow, Waits
 from ..system.processes import end_with_descendants, processor_time
 from ..system.timed_pipe import PumpedPipe, SelectedPipe
-from .answers import BROKEN, BrokenAnswer, answer_of, arguments_of, head_of, unbarred_of
+from .answers import BROKEN, BrokenAnswer, answer_of, arguments_of, calls_of, head_of, unbarred_of
 from .child import HEAD, send
 from .programs import Call, Edit, Given, ProcessEnded, ProgramError, Unjudged
 from .start import STARTING_TIME, Process, start
@@ -58,6 +58,26 @@ class PythonProcess:
         """
         if edit and self._ends > _MOST_ENDS:
             raise ProgramError("too many edits ended its process")
+        head, body = self._asked(call, table, edit=edit)
+        answer = self._understood(lambda: answer_of(head, body, len(table)))
+        self._ends, self._seconds[-1] = self._stops, answer.seconds
+        if answer.values is None:
+            raise answer.failure()
+        return answer.values
+
+    def calls(self, call: Call, table: Floats) -> int:
+        """How many functions an evaluation calls, as the process says.
+
+        Raises:
+            ProgramError, Unjudged: as `evaluate`.
+        """
+        head, _ = self._asked(call, table, counted=True)
+        return self._understood(lambda: calls_of(head))
+
+    def _asked(
+        self, call: Call, table: Floats, *, edit: Edit | None = None, counted: bool = False
+    ) -> tuple[Any, bytes]:
+        """The answer to a request for an evaluation."""
         if self._process is None:
             self._start()
         head = {
@@ -68,14 +88,10 @@ class PythonProcess:
             "output": call.output,
             "as_columns": call.as_columns,
             "edit": edit and list(edit),
+            "counted": counted,
         }
         self._send(head, np.ascontiguousarray(table).tobytes())
-        head, body = self._receive(EDIT_TIME if edit else ANSWER_TIME)
-        answer = self._understood(lambda: answer_of(head, body, len(table)))
-        self._ends, self._seconds[-1] = self._stops, answer.seconds
-        if answer.values is None:
-            raise answer.failure()
-        return answer.values
+        return self._receive(EDIT_TIME if edit else ANSWER_TIME)
 
     def arguments(self) -> tuple[list[str], list[str]]:
         """The names of the arguments of what the text makes a function of, and those that have a default.

@@ -77,6 +77,10 @@ class Comparison:
         except UsageError as error:
             raise ProgramError(str(error)) from None
 
+    def calls(self) -> int:
+        """How many functions the formula calls at the first samples."""
+        return self.formula.calls(self.call, self.first, self.known)
+
     def first_values(self, edit: Edit) -> Floats:
         """What the formula returns at the first samples with an edit, which is evaluated once.
 

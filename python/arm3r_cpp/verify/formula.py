@@ -23,7 +23,7 @@ from ..user_functions.matlab.program import MatlabProgram
 from ..user_functions.octave.installation import installed
 from ..user_functions.octave.process import OctaveProcess
 from ..user_functions.octave.source import constants_of, headers_of
-from ..user_functions.programs import Call, Constant, Edit, Given, ProgramError, numbers_of
+from ..user_functions.programs import Call, Constant, Edit, Given, ProgramError, calls_in, numbers_of
 from ..user_functions.python_functions import needed_by, objects_of
 from ..user_functions.python_in_memory import PythonInMemory
 from ..user_functions.python_nodes import PythonText
@@ -182,6 +182,13 @@ class Formula:
         values = self.program.evaluate(call, samples.table(known), edit)
         return values[:, self.order] if self.order and values.ndim == 2 else values
 
+    def calls(self, call: Call, samples: Samples, known: list[str]) -> int:
+        """How many functions an evaluation calls, where the formula runs."""
+        table = samples.table(known)
+        if isinstance(self.program, PythonProcess):
+            return self.program.calls(call, table)
+        return calls_in(lambda: self.program.evaluate(call, table))
+
 
 def _is_state(name: str, kind: Kind) -> bool:
     slot = slot_of(name)
@@ -262,22 +269,22 @@ def _code_in(file: str) -> str:
         raise UsageError(f"{file}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
-def by_octave(path: str | os.PathLike[str], refusal: UnreadError) -> Formula:
-    """A function of a MATLAB file that this package does not read, evaluated by GNU Octave.
+def by_octave(path: str | os.PathLike[str], refusal: UnreadError) -> Formula | None:
+    """A function of a MATLAB file that this package does not read, evaluated by GNU Octave; None where it is none.
 
     Its text is not edited, as no part of it is understood but its constants.
 
     Raises:
-        UnreadError: the refusal, as it is no such function, or as there is no Octave.
+        UnreadError: there is no Octave.
     """
     file, function = split_name(os.fspath(path))
     if not file.endswith(MATLAB):
-        raise refusal
+        return None
     text = _code_in(file)
     headers = headers_of(text)
     name = function or next(iter(headers), "")
     if name not in headers or not headers[name].outputs:
-        raise refusal
+        return None
     if (octave := installed()) is None:
         remedy = "GNU Octave, where it is installed, evaluates such a file"
         raise UnreadError(f"{refusal}; {remedy}", line=refusal.line, reason=refusal.reason)

@@ -124,12 +124,14 @@ def _verdict_of(
     try:
         return verdict_on(from_file(f, kind=kind, sandbox=PythonProcess))
     except UnreadError as refusal:
-        formula, unread = by_octave(f, refusal), refusal
+        formula = by_octave(f, refusal)
+        if formula is None:
+            raise
+        why = f"{f' in line {refusal.line}' if refusal.line else ''} {refusal.reason}"
     try:
         return verdict_on(formula)
     except UnjudgedError as error:
-        where = f" in line {unread.line}" if unread.line else ""
-        raise UnjudgedError(f"{error}; Octave was asked because{where} {unread.reason}") from None
+        raise UnjudgedError(f"{error}; Octave was asked because{why}") from None
 
 
 def _of_kind(

@@ -18,7 +18,7 @@ from ..user_functions.programs import ProgramError, Unjudged
 from .comparison import TOLERANCE, Comparison
 from .coverage import seen_by_tests
 from .doubts import few, leave_open, look_at_others
-from .explain.budget import Budget
+from .explain.budget import SECONDS_AN_EDIT, Budget, affordable
 from .explain.causes import explain
 from .explain.constants import judge_constants
 from .explain.differences import only_structured
@@ -54,7 +54,8 @@ def judge(
         truth = assumed(formula, kind, truth)
         cases = meant(formula, kind, truth)
         _require_numbers(cases[0])
-        verdicts = _explained(cases, Budget(formula.program, REPAIR_EDITS), progress)
+        edits = affordable(REPAIR_EDITS, cases[0].calls())
+        verdicts = _explained(cases, Budget(formula.program, edits, SECONDS_AN_EDIT * REPAIR_EDITS), progress)
     except Unjudged as error:
         raise UnjudgedError(f"{formula.file}: cannot be judged: it {error}") from None
     except ProgramError as error:

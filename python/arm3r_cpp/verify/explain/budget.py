@@ -1,12 +1,19 @@
-"""How many edits are tried: a number of them, so that every machine, however busy, finds the same."""
+"""How many edits are tried: a number of them, by how much the formula computes. So every machine finds the same."""
 
 from __future__ import annotations
 
 import time
 from typing import Any
 
-SECONDS_AN_EDIT = 0.001
-"""Of computing, about twice what most formulas take: a formula that is slower has fewer edits tried."""
+CALLS_AN_EDIT = 2000
+"""Of functions: a formula that calls more of them has fewer edits tried."""
+SECONDS_AN_EDIT = 0.004
+"""Of computing, several times what an edit of so many calls takes: the end of a formula whose calls are very slow."""
+
+
+def affordable(edits: int, calls: int) -> int:
+    """So many edits, or fewer of a formula that calls more functions than most."""
+    return edits * CALLS_AN_EDIT // max(CALLS_AN_EDIT, calls)
 
 
 class Budget:
