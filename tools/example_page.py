@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -55,7 +56,7 @@ def page(printed: Mapping[Path, str]) -> str:
         text += f"\n## {language}\n"
         for program in (one for one in programs() if one.parent.name == folder):
             shows, code = parts(program)
-            text += f"\n### {program.name}\n\n{shows}\n\n```{folder}\n{code}```\n\nIt prints:\n\n"
+            text += f"\n### {program.name}\n\n{textwrap.fill(shows, 100)}\n\n```{folder}\n{code}```\n\nIt prints:\n\n"
             text += f"```text\n{printed[program]}```\n"
     return text
 

@@ -118,7 +118,7 @@ public:
     Matrix mass_matrix(const Vector& q) const { return of<Matrix>(arm3r_arm_mass_matrix, q); }    // kg m^2
     Vector gravity_torque(const Vector& q) const {
         return of<Vector>(arm3r_arm_gravity_torque, q);
-    }                                                                   // N m: holds the arm
+    }  // N m: holds the arm
     Vector velocity_product(const Vector& q, const Vector& qd) const {  // N m: C qd
         return of<Vector>(arm3r_arm_velocity_product, q, qd);
     }

@@ -157,8 +157,7 @@ private:
         measure_force(due, arm, sensed.f_on_tip);
         if (!digital_.controller.ideal_cancellation) sensed.f_cancelled = sensed.f_on_tip;
         const bool keeps = Lanes<T>::count == 1 || keeps_measurements_;
-        if (keeps || estimates_rate)
-            assign_where(due, sensed.q, state_.q), assign_where(due, sensed.qd, state_.qd);
+        if (keeps || estimates_rate) assign_where(due, sensed.q, state_.q), assign_where(due, sensed.qd, state_.qd);
         if (keeps) assign_where(due, sensed.f_on_tip, state_.f_on_tip);
     }
 

@@ -151,7 +151,8 @@ public:
         const Tolerance<T>& tolerance = judge_.tolerance;
         const T error = step_.error(y, h, tolerance.rtol, tolerance.atol, judge_.has_contact_heat());
         const auto error_of = [&](std::size_t i) ARM3R_INLINE_LAMBDA { return step_.error_of(i, h); };
-        return select(Start::is_finite(step_.y1, step_.f1), judge_.with_work_of_wall(error, y, step_.y1, error_of), T(infinite));
+        return select(Start::is_finite(step_.y1, step_.f1), judge_.with_work_of_wall(error, y, step_.y1, error_of),
+                      T(infinite));
     }
     ARM3R_INLINE const Y& end() const { return step_.y1; }
     ARM3R_INLINE Interpolant<T, N> dense_output(const T& t, const Y& y, const T& h) const {

@@ -36,8 +36,7 @@ const char* what_jumps(const Setup& setup, const Event& event) {
         return "the law switches, and sees this only at the end of the step";
     const Plant<double>& plant = setup.plant;
     if (!plant.acts_on_arm) return nullptr;
-    if (plant.contact.damping > 0)
-        return "the wall's damping makes the force jump";
+    if (plant.contact.damping > 0) return "the wall's damping makes the force jump";
     const Vec3<double> tip(event.tip[0], event.tip[1], event.tip[2]);
     const Indentation<double> in = indentation(plant.wall, wall_at(plant.wall, event.t), tip, {0, 0, 0});
     const bool at_edge = std::abs(inside_outline(plant.wall, in)) < std::abs(in.depth);

@@ -181,8 +181,9 @@ def count_outcomes(lines: Iterable[Mapping[str, Any]]) -> dict[str, int]:
 
 
 def refusals_in(lines: Iterable[Mapping[str, Any]]) -> list[Refusal]:
-    """Why runs are invalid, by the lines of a ledger."""
-    return merged([Refusal(*one) for one in line.get("refusals", [])] for line in lines)
+    """Why runs are invalid, by the lines of a ledger, in the order of the runs: shards are finished in any."""
+    in_order = sorted(lines, key=lambda line: line["first"])
+    return merged([Refusal(*one) for one in line.get("refusals", [])] for line in in_order)
 
 
 def publish(path: Path, data: bytes) -> None:

@@ -240,7 +240,9 @@ def test_the_executable_knows_only_the_c_interface(root: Path) -> None:
             if path.suffix != ".md"
             else []
         )
-        assert own in ([], ["arm3r/arm3r.h"]), path.name
+        assert own in ([], ["arm3r/arm3r.hpp"]), path.name
+    around = [name for kind, name in _includes(root / "cpp/include/arm3r/arm3r.hpp") if kind == '"']
+    assert around == ["arm3r/arm3r.h"]
 
 
 KIND = r"(?:struct|class|enum class|enum)"

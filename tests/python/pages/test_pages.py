@@ -16,7 +16,8 @@ import pytest
 from conftest import ROOT
 from page_runner import MARK, blocks_of
 
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
+PROGRAMS = ROOT / "docs" / "examples.md"  # test_examples.py runs what it shows
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted({*ROOT.glob("docs/*.md")} - {PROGRAMS})]
 # Changes of the sources ("diff", "cpp") are made by test_adding_laws.py.
 LANGUAGES = {"python", "sh", "console", "yaml", "csv", "c", "matlab", "octave", "diff", "cpp"}
 RUN_BY_NODE = {"docs/webassembly.md": "js"}  # by test_wasm.py

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+import time_box
 from formulas.concepts import INERTIAL, Mutant, mutants, style
 from formulas.mistakes import pairs, wrong_text
 from formulas.outcomes import FILES, FOLDER, kind_of, outcome, own_convention
@@ -97,11 +98,20 @@ def test_some_mistakes_of_understanding(tmp_path: Path) -> None:
 @pytest.mark.long
 @pytest.mark.random
 def test_four_hundred_mistakes_of_understanding(tmp_path: Path) -> None:
+    if time_box.VARIABLE in os.environ:
+        return forty_mistakes(tmp_path)
     right = (Mutant("", path, path.read_text()) for path in FILES)
     found = counted(400, tmp_path, itertools.chain(right, drawn()))
     paths = {one.path for one in found.mutants}
     assert len(paths) >= 40 and len(set(map(style, paths))) >= 15
     assert found.located >= 0.99 and found.named >= 0.97
+    assert not found.outcomes["false"] and not found.outcomes["alarm"]
+
+
+def forty_mistakes(folder: Path) -> None:
+    """What fits in a box of time: too few for the rates, enough for what must never be."""
+    found = counted(40, folder, drawn())
+    assert found.outcomes["missed"] <= 2 and found.outcomes["unexplained"] <= 5
     assert not found.outcomes["false"] and not found.outcomes["alarm"]
 
 
