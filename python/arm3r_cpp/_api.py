@@ -5,10 +5,14 @@ from __future__ import annotations
 from importlib import import_module
 
 from ._native import version as __version__
-from .arm import Arm
-from .batch import Batch
 from .control.law import NativeLaw, law_state_index
 from .control.law_state import LawState
+from .core.arm import Arm
+from .core.batch import Batch
+from .core.params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
+from .core.run import ClosedForm, Event, Run, Trust
+from .core.scenario import Scenario
+from .core.simulation import Simulation, Snapshot
 from .errors import (
     Arm3rError,
     BudgetError,
@@ -23,10 +27,6 @@ from .errors import (
     UnjudgedError,
     UsageError,
 )
-from .params import ParamKey, param_count, param_defaults, param_index, param_key, param_name
-from .run import ClosedForm, Event, Run, Trust
-from .scenario import Scenario
-from .simulation import Simulation, Snapshot
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
-from arm3r_cpp.scenario import flow
+from arm3r_cpp.core.scenario import flow
 
 Keys = dict[str, Any]
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from .._messages import in_columns
 from .._native import ffi, lib
-from ..run import Run
-from ..scenario import Scenario
+from ..core.run import Run
+from ..core.scenario import Scenario
 
 LEVELS = 4
 ORDERS = {"rk4": 4, "dopri5": 5, "rodas4": 4}

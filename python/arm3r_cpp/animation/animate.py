@@ -6,8 +6,8 @@ import math
 import os
 from pathlib import Path
 
+from ..core.run import Run
 from ..errors import UsageError
-from ..run import Run
 from .files import Film, Progress, check_target, write
 
 MAX_RATE = 120.0  # frames a second
@@ -40,8 +40,8 @@ def animate(
             is no scenario or no ffmpeg.
         OutputError: it cannot be written; then nothing is.
     """
+    from ..core.scenario import Scenario
     from ..plot.run_part import part_of
-    from ..scenario import Scenario
     from .frames import frame_times, frames_of
     from .scene import Scene, palette
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from .._native import Floats
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..errors import UsageError
 from ..plot.force_run import pressing_force
 from ..plot.style import contact_spans
 from ..plot.wall_frame import half_sides, wall_frame
-from ..run import Run
-from ..scenario import Scenario
 
 MOST = 3000  # frames
 INFINITE = 0.6  # of the arm's reach: half the side of an infinite wall as it is drawn

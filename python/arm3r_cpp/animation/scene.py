@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from .._native import Floats
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..plot.force_run import pressing_force
 from ..plot.style import ARM, BLACK, ON_WALL, REFERENCE, TIP, WALL, contact_spans, style
-from ..run import Run
-from ..scenario import Scenario
 from .frames import Frames
 
 SIZE, DPI = (6.4, 4.8), 100  # inches, pixels an inch

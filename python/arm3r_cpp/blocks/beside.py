@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from .. import _native
 from ..control.law import Law, name_of
+from ..core.run import Run
 from ..errors import Arm3rError
-from ..run import Run
 from .block import Block
 from .comparison import Comparison
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
 GRAVITY = "gravity_compensation"
 WITHOUT_GRAVITY = ("none", "constant", "user")

@@ -21,7 +21,7 @@ from .inputs import Input, check_numbers, input_of, is_angle, numbers_of_arm
 from .law import BlockLaw, Place, failure
 
 if TYPE_CHECKING:
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
 
 class Block:

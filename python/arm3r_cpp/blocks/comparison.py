@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.run import Run
 from ..errors import Arm3rError
-from ..run import Run
 
 
 class Difference(NamedTuple):

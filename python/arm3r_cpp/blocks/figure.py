@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core.scenario import Scenario
 from ..plot.layout import Panel, Size, lay_out
 from ..plot.run_figure import origin_of, stamp_height
 from ..plot.run_part import part_of
 from ..plot.style import BLACK, BLUE, JOINTS, RED, TRIPLE, WIDTH, Unit, angle_unit, finish, style
-from ..scenario import Scenario
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..run import Run
+    from ..core.run import Run
     from .comparison import Comparison
 
 SMALL = 1.0

@@ -9,7 +9,7 @@ import numpy as np
 from .._messages import in_columns, shown
 
 if TYPE_CHECKING:
-    from ..run import Run
+    from ..core.run import Run
     from .comparison import Comparison
 
 UNITS = {"q": ("rad", "joint angles"), "tip": ("m", "tip"), "tau": ("N m", "torque"), "force": ("N", "contact force")}
@@ -61,7 +61,7 @@ def is_opposite(yours: Run, true: Run) -> bool:
 
 
 def convention_of(run: Run) -> str:
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
     return str(Scenario(run.summary["scenario"])["arm.convention"])
 

@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
 
 def converge(options: argparse.Namespace) -> None:
     from ..accuracy.convergence import converge as converged
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
     scenario = Scenario.load(options.scenario)
     for edit in options.set:

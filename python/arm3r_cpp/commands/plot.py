@@ -21,7 +21,7 @@ from .run_source import add_part, add_set, read, scenario_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..run import Run
+    from ..core.run import Run
 
 MIN_WIDTH, MAX_WIDTH = 3.0, 12.0  # inches
 MIN_HEIGHT, MAX_HEIGHT = 1.0, 30.0  # inches

@@ -21,7 +21,7 @@ from .exit_codes import FAILED_CHECK, attempt, exit_code, print_line
 if TYPE_CHECKING:
     from ..blocks.beside import Beside
     from ..blocks.block import Block
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
 PROGRAM = "arm3r"
 
@@ -96,7 +96,7 @@ def load_all(options: argparse.Namespace) -> list[Scenario]:
 
 
 def loaded(file: str, options: argparse.Namespace) -> Scenario:
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
     scenario = Scenario.load(file)
     for edit in options.set:

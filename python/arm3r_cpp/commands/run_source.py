@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from ..errors import Arm3rError, UsageError
 
 if TYPE_CHECKING:
-    from ..run import Run
-    from ..scenario import Scenario
+    from ..core.run import Run
+    from ..core.scenario import Scenario
 
 SCENARIOS = (".yaml", ".yml")
 
@@ -31,7 +31,7 @@ def add_part(parser: argparse.ArgumentParser) -> None:
 
 def read(path: Path, edits: Sequence[str] = ()) -> tuple[Run, Arm3rError | None]:
     """The run, of a scenario with these edits; and why it is only a partial one, if it is."""
-    from ..run import Run
+    from ..core.run import Run
 
     if path.suffix not in SCENARIOS:
         if edits:
@@ -51,7 +51,7 @@ def scenario_of(path: Path, edits: Sequence[str]) -> Scenario:
     Raises:
         UsageError: the file is none, or cannot be read.
     """
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
     if path.suffix not in SCENARIOS:
         raise UsageError(f"{path}: a scenario's .yaml is needed", code="usage")

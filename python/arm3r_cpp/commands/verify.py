@@ -190,7 +190,7 @@ def arm_of(options: argparse.Namespace) -> Any:
     Raises:
         UsageError: an option does not go with the arm.
     """
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
     from ..verify.functions import Chain, truth_of
 
     given = {"payload": options.payload, "gravity": options.gravity}

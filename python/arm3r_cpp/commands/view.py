@@ -30,8 +30,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def view(options: argparse.Namespace) -> None:
+    from ..core.run import Run
     from ..live import page, page_data
-    from ..run import Run
 
     page.check()
     open_page(options, page_data.of_run(Run.load(options.run)))

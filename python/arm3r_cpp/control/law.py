@@ -6,13 +6,12 @@ import ctypes
 import math
 from collections.abc import Callable
 from contextlib import nullcontext
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from .. import _native
 from ..errors import BudgetError, ControllerError, UsageError
-from ..run import Run
 from .law_state import OVER, LawState
 from .time_limit import TimeLimit, TimeLimitReached
 
@@ -81,14 +80,34 @@ class _SingleLaw(LawAdapter):
         super().__init__(law, self.memory.state)
 
 
+class Ended(Protocol):
+    """What is asked of a run."""
+
+    @property
+    def outcome(self) -> str: ...
+
+
+AnyRun = TypeVar("AnyRun", bound=Ended)
+
+
 def run_with_law(
-    handle: Any, controller: Law | NativeLaw, file: str, *, progress: _native.Progress | None, time_limit: float | None
-) -> Run:
-    """Run a scenario's handle with a law. ControllerError, BudgetError: as Scenario.run says."""
+    handle: Any,
+    controller: Law | NativeLaw,
+    file: str,
+    run_of: Callable[[Any], AnyRun],
+    *,
+    progress: _native.Progress | None,
+    time_limit: float | None,
+) -> AnyRun:
+    """Run a scenario's handle with a law. ControllerError, BudgetError: as Scenario.run says.
+
+    Args:
+        run_of: makes the run of its handle.
+    """
     if isinstance(controller, NativeLaw):
         check_native(controller)
         run, _ = _native.control(handle, controller, progress=progress, time_limit=time_limit)
-        return Run._of(run)
+        return run_of(run)
     if not callable(controller):
         raise UsageError(f"controller: a function of (t, state) is needed, got {controller!r}", code="usage")
     limit = None if time_limit is None else TimeLimit(controller, time_limit)
@@ -97,7 +116,7 @@ def run_with_law(
         run, raised = _native.control(handle, adapter, progress=progress, time_limit=time_limit)
     if raised is not None and not isinstance(raised, (Exception, TimeLimitReached)):
         raise raised
-    ended = Run._of(run)
+    ended = run_of(run)
     if raised is None and ended.outcome != "controller":
         return ended
     raise _failure(adapter, controller, raised, ended, file, time_limit) from cause_of(raised)
@@ -108,7 +127,7 @@ def cause_of(raised: BaseException | None) -> BaseException | None:
 
 
 def _failure(
-    adapter: LawAdapter, controller: Law, raised: BaseException | None, run: Run, file: str, time_limit: float | None
+    adapter: LawAdapter, controller: Law, raised: BaseException | None, run: Ended, file: str, time_limit: float | None
 ) -> BudgetError | ControllerError:
     tick = adapter.tick
     place = f"at tick {tick}, t = {adapter.t:.12g} s"

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from .._native import Floats
-from ..arm import Arm
-from ..scenario import Scenario
+from ..core.arm import Arm
+from ..core.scenario import Scenario
 from .numbers import LAB, Numbers, steps
 
 G = 9.80665

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from .._native import Floats
+from ..core.scenario import Scenario
 from ..errors import BudgetError, ControllerError, UsageError
-from ..scenario import Scenario
 from ..user_functions.programs import Call, ProgramError, Unjudged, Unread
 from ..user_functions.python_process import PythonProcess
 from ..verify.comparison import scales

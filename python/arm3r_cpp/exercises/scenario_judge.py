@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..errors import BudgetError, NumericalError, ScenarioError
-from ..run import Run
-from ..scenario import Scenario
 from .mark import RIGHT, UNCLEAR, WRONG, Mark, one_line, two_digits, word_of, worst
 from .task import Condition, ScenarioTask
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from .._native import Floats
-from ..run import Run
+from ..core.run import Run
 from .loop import Loop
 from .numbers import LAB, Numbers
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from .. import _native
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..errors import UsageError
-from ..run import Run
-from ..scenario import Scenario
 
 
 def of_text(text: str, name: str) -> dict[str, Any]:

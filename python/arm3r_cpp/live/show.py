@@ -9,9 +9,9 @@ from html import escape
 from pathlib import Path
 
 from .._files import check_ending, check_folder, replacing
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..errors import UsageError
-from ..run import Run
-from ..scenario import Scenario
 from . import page, page_data
 
 HEIGHT = 760  # px of a notebook's cell

@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._native import version
+from ..core.scenario import Scenario
 from ..errors import UsageError
 from ..plot.layout import Panel, Size, chosen, lay_out
 from ..plot.run_figure import Origin, origin_of, stamp_height
 from ..plot.run_part import part_of
 from ..plot.style import BLACK, TRIPLE, WIDTH, Unit, angle_unit, finish, legend_above, plain_ticks, style, widen_if_flat
-from ..scenario import Scenario
 from .reader import Measurement, measurement
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..run import Run
+    from ..core.run import Run
 
 MOST_RUNS = 4
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 2, 1, 2)))

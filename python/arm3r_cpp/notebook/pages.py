@@ -10,9 +10,9 @@ from ..errors import Arm3rError
 from . import html, small_figure
 
 if TYPE_CHECKING:
-    from ..batch import Batch
-    from ..run import Run
-    from ..scenario import Scenario
+    from ..core.batch import Batch
+    from ..core.run import Run
+    from ..core.scenario import Scenario
 
 DRAWN = ("force_error_rms", "peak_force", "tip_path_error_rms", "first_contact", "energy_dissipated", "tip_z")
 SHOWN = ("t_end", "contacts", "contact_time", "peak_force", "final_force", "force_error_rms", "tip_path_error_rms")

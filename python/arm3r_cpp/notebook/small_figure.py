@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core.scenario import Scenario
 from ..plot.style import ARM, ON_WALL, TIP, TRIPLE, WALL, angle_unit, style
 from ..plot.wall_frame import half_sides, wall_frame
-from ..scenario import Scenario
 
 if TYPE_CHECKING:
-    from ..batch import Batch
-    from ..run import Run
+    from ..core.batch import Batch
+    from ..core.run import Run
 
 WIDTH, HEIGHT = 6.3, 1.9  # inches on the page
 DOTS = 160  # per inch: sharp on screens with two dots a pixel

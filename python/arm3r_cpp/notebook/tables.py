@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import NDArray
 
-    from ..batch import Batch
-    from ..run import Run
+    from ..core.batch import Batch
+    from ..core.run import Run
 
 
 def _library(name: str) -> Any:

@@ -11,7 +11,7 @@ from .style import WIDTH, style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..run import Run
+    from ..core.run import Run
     from .force_run import ForceRun
     from .layout import Size
     from .run_figure import RunFigure

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._native import Floats
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..errors import UsageError
-from ..run import Run
-from ..scenario import Scenario
 from .style import angle_unit, contact_spans
 from .wall_frame import WallFrame, half_sides, wall_frame
 

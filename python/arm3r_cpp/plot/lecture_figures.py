@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .._native import Floats
-    from ..run import Run
+    from ..core.run import Run
     from .run_figure import RunFigure
 
 NEEDLE = 0.1  # of the run: a contact shorter than this gets a time axis of its own

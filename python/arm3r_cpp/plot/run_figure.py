@@ -14,9 +14,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..answers import unseen_figures
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..errors import UsageError
-from ..run import Run
-from ..scenario import Scenario
 from .style import style
 
 STAMP: Any = {"fontsize": 6, "color": "#666666"}

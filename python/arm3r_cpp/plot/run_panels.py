@@ -43,7 +43,7 @@ from .style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..run import Run
+    from ..core.run import Run
     from .force_run import ForceRun
     from .run_figure import RunFigure
 

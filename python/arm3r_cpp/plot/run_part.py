@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..core.run import Run
 from ..errors import UsageError
-from ..run import Run
 
 OF_FIRST_CONTACT = ("settling_time",)
 PEAKS = ("peak_force", "first_contact_peak")

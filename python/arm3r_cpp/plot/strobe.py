@@ -13,7 +13,7 @@ from .wall_frame import half_sides, wall_frame
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ..run import Run
+    from ..core.run import Run
     from .run_figure import RunFigure
 
 FLASHES = 7
@@ -21,7 +21,7 @@ PATH_IN_REACHES = 3.0  # the strobe stops when the tip has come this far: a swin
 
 
 def strobe(run: Run, _: float) -> RunFigure:
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
     from .run_figure import RunFigure
 
     scenario = Scenario(run.summary["scenario"])

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..run import Run
-    from ..scenario import Scenario
+    from ..core.run import Run
+    from ..core.scenario import Scenario
 
 BLACK, BLUE, RED, GREEN, AMBER, SKY, PINK = "#222222", "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7"
 ARM, TIP, WALL = "#8A94A3", BLUE, AMBER

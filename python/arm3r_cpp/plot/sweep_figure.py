@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.scenario import Scenario
 from ..errors import UsageError
-from ..scenario import Scenario
 from .style import BLACK, LOOKS, style
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._native import Floats
-from ..scenario import Scenario
+from ..core.scenario import Scenario
 
 
 class WallFrame(NamedTuple):

@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 from .._messages import did_you_mean
-from ..batch import same_places
-from ..params import param_key, places
+from ..core.batch import same_places
+from ..core.params import param_key, places
 from .axes import DISTRIBUTIONS, SPACES, SweepAxis
 from .yaml_reader import Node, Reader, below, flow
 

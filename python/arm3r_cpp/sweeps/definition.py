@@ -11,11 +11,11 @@ from typing import Any
 
 from .. import _native
 from .._files import regular
-from ..batch import AXIS_ERRORS, axis_of
+from ..core.batch import AXIS_ERRORS, axis_of
+from ..core.params import param_key, places
+from ..core.scenario import Scenario
+from ..core.scenario import flow as flow_of
 from ..errors import Arm3rError, IncompatibleError, ScenarioError, UsageError
-from ..params import param_key, places
-from ..scenario import Scenario
-from ..scenario import flow as flow_of
 from .axes import MODES, SweepAxis, values_of
 from .axis_reader import MAX_RUNS, read_axes
 from .shard import STATISTICS, Statistic

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from .. import _native
-from ..params import param_key, places
+from ..core.params import param_key, places
 from .axes import MODES, SPACES
 from .axis_reader import RULES
 from .definition import DEFAULT_SEED, DEFAULT_SHARD, FORMAT, KEYS, MAX_SHARD

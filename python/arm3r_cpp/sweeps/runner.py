@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from .. import _native
 from .._files import folder_named, replacing
-from ..batch import AXIS_ERRORS, axis_of
+from ..core.advice import Advice
+from ..core.batch import AXIS_ERRORS, axis_of
 from ..errors import Arm3rError, ScenarioWarning, UsageError
 from ..system.cpus import usable_cpus
-from .advice import Advice
 from .definition import Sweep
 from .folder import SweepFolder, sha256
 from .shard import ShardJob, ShardResult, columns_of, run_shard
@@ -26,7 +26,7 @@ from .table_io import merge, pyarrow
 
 if TYPE_CHECKING:
     from ..blocks.block import Block
-    from ..scenario import Scenario
+    from ..core.scenario import Scenario
 
 Submit = Callable[[ShardJob], "Future[ShardResult]"]
 UnderWay = dict[int, int]

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from .. import _native
 from .._native import Floats
 from ..answers.refusals import Refusal
-from ..batch import Batch, run_batch
+from ..core.batch import Batch, run_batch
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..errors import Arm3rError, BudgetError, IncompatibleError
-from ..run import Run
-from ..scenario import Scenario
 from .table_io import encode
 
 if TYPE_CHECKING:

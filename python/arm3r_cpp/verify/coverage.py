@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._native import Floats
-from ..run import Run
-from ..scenario import Scenario
+from ..core.run import Run
+from ..core.scenario import Scenario
 from ..user_functions.programs import ProgramError
 from .comparison import Comparison
 from .explain.constants import stated_numbers

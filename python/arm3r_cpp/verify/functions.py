@@ -6,9 +6,9 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypedDict
 
-from ..arm import Arm
+from ..core.arm import Arm
+from ..core.scenario import Scenario
 from ..errors import UnjudgedError, UnreadError, UsageError
-from ..scenario import Scenario
 from ..user_functions.python_process import PythonProcess
 from .explain.repair import Progress
 from .formula import Formula, by_octave, from_callable, from_file, kind_of

@@ -94,7 +94,7 @@ _SOCKETS = {
     "bare socket": "call(41, 2, 1, 0)", "bare connect": "call(42, 3, bytes(16), 16)", "received": "call(47, 3, None, 0)",
 }  # fmt: skip
 _TRUTH = {
-    "import": "import arm3r_cpp", "import anew": "[sys.modules.pop(m) for m in list(sys.modules) if m.startswith('arm3r')]; import arm3r_cpp.arm", "its extension": "sys.modules.pop('arm3r_cpp', None); sys.path.insert(0, package); import _arm3r",
+    "import": "import arm3r_cpp", "import anew": "[sys.modules.pop(m) for m in list(sys.modules) if m.startswith('arm3r')]; import arm3r_cpp.core.arm", "its extension": "sys.modules.pop('arm3r_cpp', None); sys.path.insert(0, package); import _arm3r",
     "from its parent": "sys.modules.pop('arm3r_cpp', None); sys.path.insert(0, os.path.dirname(package)); import arm3r_cpp", "in a found module": "next(m for m in list(sys.modules.values()) if 'arm3r_cpp' in str(getattr(m, '__package__', ''))).Arm",
     "among objects": "[o for o in gc.get_objects() if type(o).__name__ in ('Arm', 'ThreeR', 'FunctionTask', 'Scenario')] or open('')", "loader": "import importlib.machinery as m; m.SourceFileLoader('x', package + '/__init__.py').load_module()", "library": "ctypes.CDLL(library)",
     "library by name": "ctypes.CDLL('libarm3r.so')", "read library": "open(library, 'rb')", "read truth": "open(os.path.join(package, 'exercises', 'arms.py'))", "callers": "[f for f in sys._current_frames().values() if 'truth' in f.f_globals or 'TASKS' in f.f_globals] or open('')", "preload": "os.environ['LD_PRELOAD'] = library; ctypes.CDLL(library)",

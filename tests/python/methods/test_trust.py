@@ -11,7 +11,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from arm3r_cpp.scenario import flow
+from arm3r_cpp.core.scenario import flow
 from conftest import Cli
 from exact_fall import exact_angles
 from random_scenarios import sample_seed, yaml_of

@@ -8,7 +8,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from arm3r_cpp.scenario import Scenario
+from arm3r_cpp.core.scenario import Scenario
 from conftest import scenario_files
 from force_scenarios import D
 from random_scenarios import random_scenario, sample_seed, yaml_of

@@ -842,6 +842,6 @@ def test_errors_are_pickled() -> None:
 
 def test_sources_that_are_not_built_say_so(python: Any, root: Path, tmp_path: Path) -> None:
     shutil.copytree(root / "python" / "arm3r_cpp", tmp_path / "arm3r_cpp", ignore=shutil.ignore_patterns("*.so"))
-    for modules in ("arm3r_cpp.run", "arm3r_cpp; arm3r_cpp.Run", "arm3r_cpp.commands.plot, arm3r_cpp.arm"):
+    for modules in ("arm3r_cpp.core.run", "arm3r_cpp; arm3r_cpp.Run", "arm3r_cpp.commands.plot, arm3r_cpp.core.arm"):
         done = python(f"import {modules}", PYTHONPATH=str(tmp_path))
         assert "not built; `pip install .`" in done.stderr.splitlines()[-1] and "circular" not in done.stderr

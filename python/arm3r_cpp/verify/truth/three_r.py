@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from ..._native import Floats
-from ...arm import Arm
+from ...core.arm import Arm
+from ...core.params import param_index
+from ...core.scenario import Scenario
 from ...errors import UnjudgedError, UsageError
-from ...params import param_index
-from ...scenario import Scenario
 from ..kinds import KINDS, SPATIAL, Kind, Rows
 
 CONVENTIONS = ("simscape", "slide")

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from ...._native import Floats
-from ....run import Run
-from ....scenario import Scenario
+from ....core.run import Run
+from ....core.scenario import Scenario
 from ...arms import LAB_ARM
 from ...loop import RATE, Function, Goal, Loop, at_one_state
 from ...numbers import Numbers, steps

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...._native import Floats
-from ....scenario import Scenario
+from ....core.scenario import Scenario
 from ...arms import LAB_ARM
 from ...loop import Function, Goal, Loop
 from ...numbers import Numbers

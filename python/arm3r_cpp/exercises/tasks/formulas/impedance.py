@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...._native import Floats
-from ....scenario import Scenario
+from ....core.scenario import Scenario
 from ...arms import G, SlenderArm, arm_of, times, transposed
 from ...loop import RATE, Function, Goal, Loop
 from ...numbers import Numbers, steps

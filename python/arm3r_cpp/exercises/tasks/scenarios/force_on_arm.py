@@ -3,8 +3,8 @@
 import math
 from functools import cache
 
-from ....run import Run
-from ....scenario import Scenario
+from ....core.run import Run
+from ....core.scenario import Scenario
 from ...numbers import Numbers, steps
 from ...task import Condition, ScenarioTask
 

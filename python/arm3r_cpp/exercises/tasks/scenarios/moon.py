@@ -4,8 +4,8 @@ from functools import cache
 
 import numpy as np
 
-from ....run import Run
-from ....scenario import Scenario
+from ....core.run import Run
+from ....core.scenario import Scenario
 from ...numbers import Numbers
 from ...task import Condition, ScenarioTask
 

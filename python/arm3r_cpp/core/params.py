@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import _native
-from ._native import Floats, ffi, lib
+from .. import _native
+from .._native import Floats, ffi, lib
 
 
 def param_count() -> int:

@@ -11,11 +11,11 @@ from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 
-from ._files import regular, replacing
-from ._hash import fnv1a64
-from ._messages import place
-from ._native import Floats
-from .errors import UsageError
+from .._files import regular, replacing
+from .._hash import fnv1a64
+from .._messages import place
+from .._native import Floats
+from ..errors import UsageError
 
 _SUMMARY, _REPORT = "summary.json", "report.txt"  # beside the arrays of the columns
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _native
-from ._native import Floats, ffi, lib
-from .answers.meant_names import Answering, no_attribute
+from .. import _native
+from .._native import Floats, ffi, lib
+from ..answers.meant_names import Answering, no_attribute
 from .params import param_defaults
 
 

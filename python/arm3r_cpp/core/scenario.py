@@ -11,22 +11,22 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from . import _native
-from ._messages import describe, warn_user
-from ._native import BatchProgress, Floats, Progress, lib
-from ._progress_bar import shown
-from .answers.meant_names import Answering, no_attribute
+from .. import _native
+from .._messages import describe, warn_user
+from .._native import BatchProgress, Floats, Progress, lib
+from .._progress_bar import shown
+from ..answers.meant_names import Answering, no_attribute
+from ..control.law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
+from ..errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, class_of_outcome
+from ..examples import FOLDER, is_sweep, path_of
 from .arm import Arm
-from .control.law import Law, NativeLaw, check_rate, check_time_limit, run_with_law
-from .errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, class_of_outcome
-from .examples import FOLDER, is_sweep, path_of
 from .params import param_count, places
 from .run import Run
 
 if TYPE_CHECKING:
+    from ..blocks.beside import Beside
+    from ..control.batch_law import MakeLaw
     from .batch import Batch
-    from .blocks.beside import Beside
-    from .control.batch_law import MakeLaw
 
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
 
@@ -237,7 +237,7 @@ class Scenario(metaclass=Answering):
         return self
 
     def _repr_html_(self) -> str:
-        from .notebook import pages
+        from ..notebook import pages
 
         return pages.of_scenario(self)
 
@@ -305,7 +305,7 @@ class Scenario(metaclass=Answering):
         if trust and controller is not None:
             raise UsageError("trust: it takes more runs, and a law of your own may have a memory", code="usage")
         if isinstance(controller, (str, os.PathLike)):
-            from .blocks.block import Block  # it stands above this module
+            from ..blocks.block import Block  # it stands above this module
 
             controller = Block.read(controller).law(self)
         if controller is None and rate is not None:
@@ -316,7 +316,8 @@ class Scenario(metaclass=Answering):
             options: Any = {"progress": progress, "time_limit": time_limit, "trust": bool(trust)}
             run = Run._of(_native.start(lib.arm3r_scenario_run, mine._handle, **options))
         else:
-            run = run_with_law(mine._handle, controller, mine._file, progress=progress, time_limit=time_limit)
+            limits: Any = {"progress": progress, "time_limit": time_limit}
+            run = run_with_law(mine._handle, controller, mine._file, Run._of, **limits)
         mine._warn(_native.text(lib.arm3r_run_warnings, run._handle).splitlines())
         if run.outcome != "ok":
             raise class_of_outcome(run.outcome)(
@@ -343,7 +344,7 @@ class Scenario(metaclass=Answering):
 
         Args, Raises: as `run`. What ends your run early is in `beside.failure` and is not raised.
         """
-        from .blocks.beside import run_beside  # it stands above this module
+        from ..blocks.beside import run_beside  # it stands above this module
 
         return run_beside(self, controller, rate=rate, progress=progress, time_limit=time_limit)
 

@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 
-from ..batch import run_batch
 from ..errors import Arm3rError
-from ..scenario import Scenario
+from .batch import run_batch
+from .scenario import Scenario
 
 SLOW = ("rodas4", "auto", "dopri5")  # the first two compute one run after the other
 IN_LANES = ("rk4", "taylor", "dopri5")  # several runs at once

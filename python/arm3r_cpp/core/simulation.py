@@ -5,11 +5,11 @@ from __future__ import annotations
 from sys import getrefcount
 from typing import Any
 
-from . import _native
-from ._native import lib
-from .control.law import TORQUE
-from .control.law_state import LawState, state_of
-from .errors import ControllerError, class_of_outcome
+from .. import _native
+from .._native import lib
+from ..control.law import TORQUE
+from ..control.law_state import LawState, state_of
+from ..errors import ControllerError, class_of_outcome
 from .run import Run
 from .scenario import Scenario
 

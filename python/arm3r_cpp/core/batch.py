@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
-from ._messages import no_column
-from ._native import BatchProgress, Floats, Progress, lib
-from .answers.refusals import Refusal, lines_of, refusals_of
-from .control.batch_law import BatchLaw, MakeLaw
-from .control.law import Law, NativeLaw
-from .errors import BudgetError, ColumnError, ScenarioError, UsageError
+from .. import _native
+from .._messages import no_column
+from .._native import BatchProgress, Floats, Progress, lib
+from ..answers.refusals import Refusal, lines_of, refusals_of
+from ..control.batch_law import BatchLaw, MakeLaw
+from ..control.law import Law, NativeLaw
+from ..errors import BudgetError, ColumnError, ScenarioError, UsageError
+from ..rows.batch_rows import BatchRows
+from ..rows.names import columns_asked_for, metrics_asked_for
 from .params import param_index, param_key, param_name, places
-from .rows.batch_rows import BatchRows
-from .rows.names import columns_asked_for, metrics_asked_for
 from .run import Run
 from .scenario import Scenario
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from .blocks.block import Block
-    from .sweeps.advice import Advice
+    from ..blocks.block import Block
+    from .advice import Advice
 
 Index = int | tuple[int, ...]
 
@@ -135,7 +135,7 @@ class Batch:
         return f"<Batch of {len(self)} runs over {over}: {np.count_nonzero(self.ok)} ok>"
 
     def _repr_html_(self) -> str:
-        from .notebook import pages
+        from ..notebook import pages
 
         return pages.of_batch(self)
 
@@ -147,7 +147,7 @@ class Batch:
         Raises:
             UsageError: pandas is not installed; it is the extra `pandas`.
         """
-        from .notebook import tables
+        from ..notebook import tables
 
         return tables.batch_to_pandas(self)
 
@@ -160,7 +160,7 @@ class Batch:
         Raises:
             UsageError: xarray is not installed; it is the extra `xarray`.
         """
-        from .notebook import tables
+        from ..notebook import tables
 
         return tables.batch_to_xarray(self)
 
@@ -304,7 +304,7 @@ def run_batch(
 
 
 def _advice(base: Scenario) -> Advice:
-    from .sweeps.advice import Advice  # it stands above this module
+    from .advice import Advice  # it stands above this module
 
     return Advice(base)
 
@@ -324,7 +324,7 @@ def _block_of(controller: Any) -> Block | None:
     """The function in a file that is given as a law; None: it is a law already, or nothing that can be one."""
     if controller is None or callable(controller) or isinstance(controller, NativeLaw):
         return None
-    from .blocks.block import Block  # it stands above this module
+    from ..blocks.block import Block  # it stands above this module
 
     block = Block.read(controller) if isinstance(controller, (str, os.PathLike)) else controller
     return block if isinstance(block, Block) else None

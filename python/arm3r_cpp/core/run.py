@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from . import _native
-from ._files import check_ending
-from ._messages import no_column
-from ._native import Floats, lib
-from .answers.meant_names import Answering, no_attribute
-from .errors import ColumnError, UsageError
-from .rows.names import columns_of, completions, three_of
+from .. import _native
+from .._files import check_ending
+from .._messages import no_column
+from .._native import Floats, lib
+from ..answers.meant_names import Answering, no_attribute
+from ..errors import ColumnError, UsageError
+from ..rows.names import columns_of, completions, three_of
 from .run_file import RunData, read, with_numbers, write_npz
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ class Run(metaclass=Answering):
         return f"<Run {self.summary['name']}: {self.outcome}{checks}, {len(self)} rows to t = {self.t[-1]:g} s>"
 
     def _repr_html_(self) -> str:
-        from .notebook import pages
+        from ..notebook import pages
 
         return pages.of_run(self)
 
@@ -280,7 +280,7 @@ class Run(metaclass=Answering):
         Raises:
             UsageError: pandas is not installed; it is the extra `pandas`.
         """
-        from .notebook import tables
+        from ..notebook import tables
 
         return tables.run_to_pandas(self)
 
@@ -290,7 +290,7 @@ class Run(metaclass=Answering):
         Raises:
             UsageError: xarray is not installed; it is the extra `xarray`.
         """
-        from .notebook import tables
+        from ..notebook import tables
 
         return tables.run_to_xarray(self)
 
@@ -302,7 +302,7 @@ class Run(metaclass=Answering):
             UsageError: the name has another ending than .html, the installation has no page, or the run's summary holds
                 no scenario.
         """
-        from .live import show
+        from ..live import show
 
         show.write(self, path)
 
