@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import Arm3rError
-from .batch import run_batch
-from .scenario import Scenario
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
 
 SLOW = ("rodas4", "auto", "dopri5")  # the first two compute one run after the other
 IN_LANES = ("rk4", "taylor", "dopri5")  # several runs at once
@@ -83,7 +85,7 @@ def _seconds(scenario: Scenario, method: str, span: float) -> float:
     try:
         trial = trial_of(scenario, method, span)
         again = {"initial.q[0]": np.full(RUNS, trial["initial.q[0]"])}
-        batch = run_batch(trial, again, threads=1, progress=lambda *_: time.perf_counter() - start > LONGEST)
+        batch = trial.batch(again, threads=1, progress=lambda *_: time.perf_counter() - start > LONGEST)
     except Arm3rError:
         return 0.0
     return time.perf_counter() - start if batch.ok.all() else 0.0

@@ -20,16 +20,16 @@ from ..control.law import Law, NativeLaw
 from ..errors import BudgetError, ColumnError, ScenarioError, UsageError
 from ..rows.batch_rows import BatchRows
 from ..rows.names import columns_asked_for, metrics_asked_for
+from .advice import Advice
 from .params import param_index, param_key, param_name, places
 from .run import Run
-from .scenario import Scenario
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
     from ..blocks.block import Block
-    from .advice import Advice
+    from .scenario import Scenario
 
 Index = int | tuple[int, ...]
 
@@ -268,7 +268,7 @@ def run_batch(
         for group in (law.groups(_groups(axes, shape)) if law else _groups(axes, shape))
     ]
     memory = _room_for_rows(runs, asked, _most_rows(groups, varied, asked) or _rows_of(base, asked))
-    advice = None if law or base._warned is None else _advice(base)
+    advice = None if law or base._warned is None else Advice(base)
     done = 0
 
     def report(runs_done: int, _: int) -> Any:
@@ -301,12 +301,6 @@ def run_batch(
     if base._warned is not None and runs and (batch["outcome"] == lib.ARM3R_RUN_INVALID).all():
         base._warn([f"no run of this batch is valid: {'; '.join(lines_of(batch.refusals(), runs))}"])
     return batch
-
-
-def _advice(base: Scenario) -> Advice:
-    from .advice import Advice  # it stands above this module
-
-    return Advice(base)
 
 
 class _Group(NamedTuple):

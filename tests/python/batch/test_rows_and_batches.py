@@ -81,7 +81,7 @@ def in_lanes(
     table = np.empty((lib.arm3r_summary_count(), numbers.shape[1]))
     block = np.empty((numbers.shape[1], len(columns), room))
     if columns:
-        memory, _kept = _native._batch_rows(columns, block)
+        memory, _kept = _native.batch_rows(columns, block)
         options.rows = memory
     params, places = scenario.params, ffi.new("size_t[]", varied)
     arrays = _native.readable(params), params.size, places, len(varied), _native.readable(numbers), numbers.shape[1]
