@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "arm3r/model/restitution.hpp"
+#include "base/spline.hpp"
 #include "schema/param_access.hpp"
 #include "setup/make_controller.hpp"
 #include "setup/make_reference.hpp"
@@ -107,6 +108,10 @@ QuinticTable<double> table_of(std::span<const double> params) {
         table.a[i] = at<"wall.motion.a">(params, item);
         if (!std::isnan(table.t[i])) table.knots = i + 1;
     }
+    const auto count = static_cast<std::size_t>(table.knots);
+    if (count > 0 && std::isnan(table.v[0]))
+        minimum_jerk_through({table.t.data(), count}, {table.s.data(), count}, {table.v.data(), count},
+                             {table.a.data(), count});
     return table;
 }
 

@@ -197,6 +197,14 @@ void check_series(const Setup& setup, ProblemList& problem_list) {
         });
 }
 
+void check_motion_table(std::span<const double> params, ProblemList& problem_list) {
+    const bool is_derived = length_of<"wall.motion.v">(params) == 0 && length_of<"wall.motion.a">(params) == 0;
+    if (is_derived)
+        return check_table<"wall.motion.t", "wall.motion.s">(params, "give a position at every instant", problem_list);
+    check_table<"wall.motion.t", "wall.motion.s", "wall.motion.v", "wall.motion.a">(
+        params, "give position, velocity and acceleration at every instant, or the position alone", problem_list);
+}
+
 }  // namespace
 
 WorstPose min_M11(const Lumped<double>& l) {  // (3.10)
@@ -222,9 +230,7 @@ void check_setup(std::span<const double> params, std::optional<Setup>& setup, Pr
     check_direction<"wall.normal">(params, problem_list);
     check_direction<"wall.motion.direction">(params, problem_list);
     check_direction<"wall.rotation.axis">(params, problem_list);
-    if (is<"wall.motion.type", "table">(params))
-        check_table<"wall.motion.t", "wall.motion.s", "wall.motion.v", "wall.motion.a">(
-            params, "give position, velocity and acceleration at every instant", problem_list);
+    if (is<"wall.motion.type", "table">(params)) check_motion_table(params, problem_list);
     check_controller_keys(params, problem_list);
     check_sampling_keys(params, problem_list);
     if (at<"wall">(params) != 0) check_law(params, problem_list);

@@ -57,7 +57,8 @@ def _function(text: str) -> Any:
 def _python(program: Program, text: str, numbers: dict[str, float], q: Floats) -> Floats:
     function = _function(text)
     arguments = function.__code__.co_varnames[: function.__code__.co_argcount]
-    every = {"q": q, "q1": q[0], "q2": q[1], "q3": q[2], **numbers, **INERTIA}
+    q1, q2, q3 = map(float, q)  # as a program gets them: a division by zero of these raises
+    every = {"q": q, "q1": q1, "q2": q2, "q3": q3, **numbers, **INERTIA}
     result = np.array(function(*(every[name] for name in arguments)), float)
     return result[::-1] if arguments[0] == "q3" and result.shape == (3,) else result
 

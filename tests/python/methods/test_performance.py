@@ -190,10 +190,8 @@ def numbers_of(run: arm3r.Run) -> dict[str, float]:
     if "force_ref" in run:
         quantities["excess"] = run["force"] - run["force_ref"]
         quantities["miss_2"] = quantities["excess"] ** 2
-    if "tip_ref" in run or "q_ref" in run:
-        quantities["path_2"] = path_error_2(run, scenario)
-    jumps = jumps_of(scenario, float(run.t[-1])) + (turns_of_force(run) if "force" in run else [])
-    log = DenseLog(run, quantities, jumps, samples_of(scenario, float(run.t[-1])))
+    jumps, samples = jumps_of(scenario, float(run.t[-1])), samples_of(scenario, float(run.t[-1]))
+    log = DenseLog(run, quantities, jumps + (turns_of_force(run) if "force" in run else []), samples)
     if "sampling" in scenario:  # a torque that is held from row to row
         held = np.sum(run["tau"][:-1] * np.diff(run["q"], axis=0), axis=0)
         numbers = {f"work_{i + 1}": float(held[i]) for i in range(3)}
@@ -207,9 +205,10 @@ def numbers_of(run: arm3r.Run) -> dict[str, float]:
             miss_2 = log.integral("miss_2", in_contact=True) / numbers["contact_time"]
             numbers["force_error_rms"] = np.sqrt(max(0.0, miss_2))
             numbers["overshoot"] = log.peak("excess", in_contact=True)[0]
-    if "path_2" in quantities:
-        numbers["tip_path_error_rms"] = np.sqrt(max(0.0, log.integral("path_2") / (run.t[-1] - run.t[0])))
-        numbers["tip_path_error_max"] = np.sqrt(log.peak("path_2")[0])
+    if "tip_ref" in run or "q_ref" in run:
+        path = DenseLog(run, {"path_2": path_error_2(run, scenario)}, jumps, samples)
+        numbers["tip_path_error_rms"] = np.sqrt(max(0.0, path.integral("path_2") / (run.t[-1] - run.t[0])))
+        numbers["tip_path_error_max"] = np.sqrt(path.peak("path_2")[0])
     return numbers
 
 

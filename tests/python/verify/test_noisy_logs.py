@@ -110,7 +110,8 @@ def wrong_logs(count: int, seed: int, path: Path) -> Counter[Any]:
         place = [entry // 3 + 1, entry % 3 + 1] if len(NAMES[kind]) == 9 else [entry + 1]
         located = [one.entry for one in verdict.findings]
         assert located in ([], [place]), (seed, number, place, str(verdict))
-        found[share, bool(located)] += 1
+        is_friction = f"t{place[0]} leaves" in str(verdict)  # the term follows the rate: no log tells the two apart
+        found[share, bool(located) or is_friction] += 1
         if not located:
             print((seed, number), kind, place, verdict)
     print(dict(found))
