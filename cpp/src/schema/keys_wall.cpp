@@ -34,12 +34,12 @@ void append_paths(std::vector<Key>& keys) {
             2, max_knots,
             number("wall.motion.s", {}, Source::ours, {-1e3, 1e3}, "m",
                    "Position of the wall along its direction at the instants wall.motion.t; quintics in between.")))));
-    keys.push_back(where(
-        type, {"table"},
-        derived("smoothest", list_of(2, max_knots,
-                                     number("wall.motion.v", {}, Source::ours, {-1e4, 1e4}, "m/s",
-                                            "Velocity of the wall at the instants wall.motion.t; without v and a "
-                                            "the wall moves through s with minimum jerk, from rest to rest.")))));
+    keys.push_back(
+        where(type, {"table"},
+              derived("smoothest", list_of(2, max_knots,
+                                           number("wall.motion.v", {}, Source::ours, {-1e4, 1e4}, "m/s",
+                                                  "Velocity of the wall at the instants wall.motion.t; without v and a "
+                                                  "the wall moves through s with minimum jerk, from rest to rest.")))));
     keys.push_back(
         where(type, {"table"},
               derived("smoothest", list_of(2, max_knots,

@@ -14,8 +14,8 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp.commands import plot as plot_cli
-from arm3r_cpp.core.params import param_key, places
 from arm3r_cpp.core import advice
+from arm3r_cpp.core.params import param_key, places
 from arm3r_cpp.sweeps.table import SweepTable
 from random_scenarios import sample_seed
 
