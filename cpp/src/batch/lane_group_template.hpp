@@ -49,8 +49,8 @@ private:
         std::optional<Integrator> lane_run;
         std::array<std::size_t, Integrator::lanes> run{};
         std::array<std::optional<Setup>, Integrator::lanes> setup;
-        std::array<std::optional<LaneRecord<Integrator>>, Integrator::lanes> record;  // where rows are wanted
-        std::array<bool, Integrator::lanes> is_new{};                                 // loaded since the last start
+        std::array<std::unique_ptr<LaneRecord<Integrator>>, Integrator::lanes> record;  // where rows are wanted
+        std::array<bool, Integrator::lanes> is_new{};                                   // loaded since the last start
     };
 
     void prepare(Part& part, const Setup& first) {
@@ -69,8 +69,8 @@ private:
     void load(Part& part, int lane, const Setup& setup) {
         part.lane_run->load_lane(lane, setup);
         if (!worker_.records()) return;
-        part.record[lane].emplace(worker_.with_rows(setup, part.run[lane]), worker_.record_options(), *part.lane_run,
-                                  lane);
+        part.record[lane] = std::make_unique<LaneRecord<Integrator>>(worker_.with_rows(setup, part.run[lane]),
+                                                                     worker_.record_options(), *part.lane_run, lane);
         part.is_new[lane] = true;
     }
 

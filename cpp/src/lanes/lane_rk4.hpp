@@ -182,7 +182,10 @@ private:
             for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 1>();
             for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 2>();
         }
-        for (int i = 0; i < count; ++i) runs[i]->template complete_step<terms>(runs[i]->template move<terms>());
+        for (int i = 0; i < count; ++i) {
+            const Mask moved = runs[i]->template move<terms>();
+            runs[i]->template complete_step<terms>(moved);
+        }
     }
 
     ARM3R_INLINE void begin_step() {
@@ -486,7 +489,6 @@ private:
         this->performance_.sample(1, {t, p, wall, in, tau});
     }
 
-    Mask moved_ = false;     // in the last step, of a single run in parts
     Mask eventful_ = false;  // lanes whose contact may have changed in the step
 
     T t0_{0.0}, t1_{0.0}, next_jump_{infinite};
@@ -496,11 +498,13 @@ private:
     std::array<Y, 3> stages_{};  // the derivatives of the second, third and fourth
     Mask was_due_ = false;
     bool any_was_due_ = false;
-    Y y0_{}, f0_{}, f1_before_{}, f1_evaluated_{};
-    bool has_evaluated_before_jump_ = false;
+    Y y0_{}, f0_{}, f1_before_{};
     Vec3<T> torque_before_, work_;  // N m; J, of each torque in the step
     T assumed_before_{0.0}, latest_before_{infinite};
     Indentation<T> before_{};
+    Mask moved_ = false;  // in the last step, of a single run in parts
+    Y f1_evaluated_{};
+    bool has_evaluated_before_jump_ = false;
 };
 
 extern template void LaneRk4<double, state_size>::step_outlined();

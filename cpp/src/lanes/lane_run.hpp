@@ -334,6 +334,7 @@ protected:
         if (!plant_.acts_on_arm) return T(0.0);
         const Contact<T>& law = contact_.law();
         const Mask pressed = (contact_.touching() || contact_.separated()) && in.depth > T(0.0);
+        if (is_spring(law.law)) return select(pressed, T(0.5 * law.stiffness[0] * in.depth * in.depth), T(0.0));
         return select(pressed, T(normal_force_law(law, in).stored + stored_tangential(law, in)), T(0.0));
     }
 

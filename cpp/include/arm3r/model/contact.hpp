@@ -28,12 +28,24 @@ inline constexpr std::array contact_law_table = std::to_array<ContactLawTraits>(
     {ContactLaw::hunt_crossley, "hunt_crossley", false, true, false},
 });
 
-constexpr const ContactLawTraits& traits(ContactLaw law) { return contact_law_table[static_cast<std::size_t>(law)]; }
-constexpr bool is_linear(ContactLaw law) { return traits(law).is_linear; }
-constexpr bool is_damped(ContactLaw law) { return traits(law).is_damped; }
-constexpr bool acts_along_plate(ContactLaw law) { return traits(law).acts_along_plate; }
+// The laws with a property, a bit each: a look into the table would stop the inner loops.
+constexpr unsigned laws_that(bool ContactLawTraits::* property) {
+    unsigned laws = 0;
+    for (const ContactLawTraits& one : contact_law_table)
+        if (one.*property) laws |= 1u << static_cast<unsigned>(one.law);
+    return laws;
+}
+inline constexpr unsigned linear_laws = laws_that(&ContactLawTraits::is_linear),
+                          damped_laws = laws_that(&ContactLawTraits::is_damped),
+                          laws_along_plate = laws_that(&ContactLawTraits::acts_along_plate),
+                          spring_laws = linear_laws & ~damped_laws & ~laws_along_plate;
+
+constexpr bool is_among(unsigned laws, ContactLaw law) { return (laws >> static_cast<unsigned>(law) & 1u) != 0; }
+constexpr bool is_linear(ContactLaw law) { return is_among(linear_laws, law); }
+constexpr bool is_damped(ContactLaw law) { return is_among(damped_laws, law); }
+constexpr bool acts_along_plate(ContactLaw law) { return is_among(laws_along_plate, law); }
 // Whether it is a spring along the normal, and nothing else.
-constexpr bool is_spring(ContactLaw law) { return is_linear(law) && !is_damped(law) && !acts_along_plate(law); }
+constexpr bool is_spring(ContactLaw law) { return is_among(spring_laws, law); }
 
 template <class P>
 struct Contact {
