@@ -21,6 +21,8 @@ namespace arm3r {
 namespace {
 
 constexpr std::size_t min_runs_per_thread = 64, min_runs_with_rows = 4;
+// Of the runs that a worker fetches at once: so few that all workers end at about the same time.
+constexpr std::size_t fetches_per_thread = 8, most_at_once = 256, most_with_rows = 16;
 constexpr std::chrono::milliseconds poll_interval{5}, report_interval{20};
 using Clock = std::chrono::steady_clock;
 
@@ -72,6 +74,9 @@ private:
                                             : options_.rows       ? min_runs_with_rows
                                                                   : min_runs_per_thread;
         const std::size_t count = std::clamp<std::size_t>(runs / runs_per_thread, 1, wanted);
+        if (!options_.law.function)
+            job_.at_once = std::clamp<std::size_t>(runs / (fetches_per_thread * count), 1,
+                                                   options_.rows ? most_with_rows : most_at_once);
         std::vector<std::jthread> threads;
         const StopGuard stop_guard{job_.stop};
         threads.reserve(count);

@@ -70,7 +70,7 @@ private:
         part.lane_run->load_lane(lane, setup);
         if (!worker_.records()) return;
         part.record[lane] = std::make_unique<LaneRecord<Integrator>>(worker_.with_rows(setup, part.run[lane]),
-                                                                     worker_.record_options(), *part.lane_run, lane);
+                                                                     worker_.run_options(), *part.lane_run, lane);
         part.is_new[lane] = true;
     }
 

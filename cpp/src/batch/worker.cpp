@@ -13,12 +13,7 @@
 namespace arm3r {
 namespace {
 
-constexpr std::size_t runs_at_a_time = 256, runs_with_rows = 16, max_deferred = 1024;
-
-std::size_t fetched_at_once(const BatchJob& job) {
-    if (job.law.function) return 1;
-    return job.rows ? runs_with_rows : runs_at_a_time;
-}
+constexpr std::size_t max_deferred = 1024;
 
 MetricGroups groups_of(const std::vector<std::size_t>& summary) {
     MetricGroups groups;
@@ -55,7 +50,7 @@ void BatchWorker::run_group(const Setup& first, std::size_t run) {
     if (job_.law.function) {
         run_with_law(first, run);
     } else if (!first.solver.runs_in_lanes()) {
-        run_alone(first, {}, run);
+        run_alone(first, run_options(), run);
     } else {
         lane_group_of(first)(job_.lanes, *this, first, run);
         retry_.insert(retry_.end(), deferred_.begin(), deferred_.end());
@@ -70,26 +65,20 @@ void BatchWorker::run_with_law(const Setup& setup, std::size_t run) {
     const auto first_user = reinterpret_cast<std::uintptr_t>(job_.law.user);
     void* const user = reinterpret_cast<void*>(first_user + run * job_.law.user_stride);
     LawAdapter law(job_.law.function, user, setup);
-    RunOptions options{.user_law = law.user_law()};
+    RunOptions options = run_options();
+    options.user_law = law.user_law();
     if (job_.poll) options.progress = poll_during_run, options.user = &job_;
     run_alone(setup, options, run);
     if (job_.poll) job_.poll();
 }
 
-void BatchWorker::run_alone(const Setup& setup, RunOptions options, std::size_t run) {
-    options.should_stop = &job_.stop;
-    options.rows = records();
-    options.judges = false;
+RunOptions BatchWorker::run_options() const { return {.should_stop = &job_.stop, .rows = records(), .judges = false}; }
+
+void BatchWorker::run_alone(const Setup& setup, const RunOptions& options, std::size_t run) {
     const Run done = simulate(records() ? with_rows(setup, run) : setup, options);
     records() ? store_with_rows(run, done) : store(run, done);
 }
 
-RunOptions BatchWorker::record_options() const {
-    RunOptions options;
-    options.should_stop = &job_.stop;
-    options.judges = false;
-    return options;
-}
 void BatchWorker::store_with_rows(std::size_t run, const Run& done) {
     job_.rows->store(run, done);
     store(run, done);
@@ -108,9 +97,8 @@ bool BatchWorker::fetch(std::size_t& run) {
     if (is_stopped()) return refuse_rest(), false;
     if (first_ == last_ && retry_.empty()) {
         const std::size_t runs = job_.variation.runs;
-        const std::size_t count = fetched_at_once(job_);
-        first_ = std::min(runs, job_.next.fetch_add(count));
-        last_ = std::min(runs, first_ + count);
+        first_ = std::min(runs, job_.next.fetch_add(job_.at_once));
+        last_ = std::min(runs, first_ + job_.at_once);
     }
     if (first_ < last_) {
         run = first_++;

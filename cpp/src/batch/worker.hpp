@@ -24,6 +24,7 @@ struct BatchJob {
     const std::optional<BatchRows>& rows;
     const BatchLaw& law;
     const std::function<void()> poll;  // empty, or what the calling thread does during a run and after it
+    std::size_t at_once = 1;           // runs that a worker fetches from the common supply
     std::atomic<std::size_t> next = 0, done = 0;
     std::atomic<bool> failed = false, stop = false;
 };
@@ -40,10 +41,10 @@ public:
     bool next(const BatchKey& batch_key, std::size_t& run, std::optional<Setup>& setup);
     void store(std::size_t run, const Metrics& metrics);
 
-    // Whether rows are wanted: then the setup and the options of a run's record, and its end.
+    RunOptions run_options() const;
+    // Whether rows are wanted: then a run has a setup with their columns, and its record is stored.
     bool records() const { return job_.rows.has_value(); }
     Setup with_rows(const Setup& setup, std::size_t run) const { return job_.rows->with_columns(setup, run); }
-    RunOptions record_options() const;
     void store_with_rows(std::size_t run, const Run& done);
     bool is_stopped() const { return job_.stop.load(std::memory_order_relaxed); }
 
@@ -53,7 +54,7 @@ private:
     bool prepare(std::size_t run, std::optional<Setup>& setup);
     void run_group(const Setup& first, std::size_t run);
     void run_with_law(const Setup& setup, std::size_t run);
-    void run_alone(const Setup& setup, RunOptions options, std::size_t run);
+    void run_alone(const Setup& setup, const RunOptions& options, std::size_t run);
     // The runs first to last - 1 were not started: their rows have no number but the outcome.
     void refuse(std::size_t first, std::size_t last, arm3r_outcome why);
     void refuse_rest();  // all runs that no worker has started

@@ -36,6 +36,7 @@ public:
     }
 
     static constexpr int together = 1;  // lane runs that a group steps together
+    static constexpr bool completes_before_sample = true;
 
     ARM3R_INLINE void start_lanes() {
         this->place_lanes();

@@ -9,10 +9,6 @@
 
 namespace arm3r {
 
-// Whether a step is complete, with its contact and metrics, before the sample at its end.
-template <class Integrator>
-constexpr bool completes_before_sample = requires(Integrator run) { run.method(); };
-
 template <class Integrator>
 class LaneRecord : public RunRecorder {
 public:
@@ -126,7 +122,7 @@ private:
         }
     }
     std::string divergence_reason(double t) const {
-        if constexpr (completes_before_sample<Integrator>)
+        if constexpr (Integrator::completes_before_sample)
             if (!is_out_of_range(lane_run_->y(lane_)))
                 return divergence_message({}, {}, t);  // no step had a finite end
         return divergence_message(run_.q, run_.qd, t);

@@ -64,6 +64,7 @@ public:
     using Mask = typename Lanes<T>::Mask;
     using Y = State<T, N>;
     static constexpr int lanes = Lanes<T>::count;
+    static constexpr bool completes_before_sample = false;  // a step, with its contact and metrics
 
     explicit LaneRun(const Setup& any_lane, ContactFelt felt = ContactFelt::inside);
     LaneRun(const LaneRun&) = delete;  // an empty lane points to rest_

@@ -49,7 +49,7 @@ private:
         lane_run_.set_observer([this](int, const ContactChange& change) { record_.record_change(change); });
     }
 
-    const Setup loaded_;
+    const Setup loaded_;  // while that of the record follows the torque that is held
 
 protected:
     Integrator lane_run_;
@@ -81,7 +81,7 @@ public:
         while (record_.goes_on()) {
             record_.forget_dense_output();
             const bool has_moved = lane_run_.take_step_outlined();
-            if constexpr (completes_before_sample<Integrator>) record_.record_step();
+            if constexpr (Integrator::completes_before_sample) record_.record_step();
             else record_.stand_at_end();
             stands_ = has_moved && record_.is_running() && !lane_run_.has_failed() && lane_run_.stands_at_sample();
             if (stands_) return;
@@ -90,7 +90,7 @@ public:
     }
 
     Run conclude() override {
-        if constexpr (!completes_before_sample<Integrator>)
+        if constexpr (!Integrator::completes_before_sample)
             if (stands_ && has_started_) {
                 lane_run_.skip_sample();
                 finish_step();
@@ -107,7 +107,7 @@ private:
     }
     void finish_step() {
         lane_run_.finish_step_outlined();
-        if constexpr (!completes_before_sample<Integrator>) record_.record_step();
+        if constexpr (!Integrator::completes_before_sample) record_.record_step();
         record_.update_row_context();
     }
 

@@ -11,19 +11,19 @@ import numpy as np
 from .arrays import readable, writable
 from .calls import call
 from .library import Floats, ffi, lib, string
-from .progress import BatchProgress, InProgress, called_by_the_library, here, interpreter
+from .progress import BatchProgress, InProgress, called_by_the_library, interpreter, this_thread
 from .runs import column_places
 
 
 @called_by_the_library("arm3r_batch_progress")
 def arm3r_python_batch_progress(user: Any, runs_done: int, runs: int) -> int:
-    progress = here.call.progress
+    progress = this_thread.call.progress
     return int(progress is not None and bool(progress(runs_done, runs)))
 
 
 @called_by_the_library("arm3r_law")
 def arm3r_python_batch_law(user: Any, state: Any, tau: Any) -> int:
-    call = here.call
+    call = this_thread.call
     call.stop[0] |= interpreter.stop[0]
     return call.law(int(ffi.cast("uintptr_t", user)), state, tau)
 
@@ -49,22 +49,22 @@ def batch(
     wanted = [known.index(name) for name in (known if metrics is None else metrics)]
     results = np.empty((len(wanted), values.shape[1]))
     given = _variation(params, varied, values)
-    here = InProgress(progress, law)
+    running = InProgress(progress, law)
     options = ffi.new("arm3r_batch_options *")
     options.struct_size = ffi.sizeof("arm3r_batch_options")
-    options.stop = here.stop if callable(law) else interpreter.stop_flag()
+    options.stop = running.stop if callable(law) else interpreter.stop_flag()
     options.progress = arm3r_python_batch_progress
     options.threads = threads or 0
     memory, _kept = batch_rows(*rows) if rows else (ffi.NULL, None)
     options.rows = memory
     summary = ffi.new("size_t[]", wanted or 1)
     options.summary, options.summary_size = summary, len(wanted)
-    with here:
+    with running:
         if law is None:
             call(lib.arm3r_batch_run, *given, options, writable(results))
         else:
             call(lib.arm3r_batch_control, *given, _batch_law(law), options, writable(results))
-    return results, here.raised
+    return results, running.raised
 
 
 def batch_row_count(params: Floats, varied: list[int], values: Floats, columns: Sequence[str]) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 
 from .calls import call, create
 from .library import Floats, ffi, lib
-from .progress import InProgress, Progress, here, keep
+from .progress import InProgress, Progress, keep, this_thread
 from .runs import run_options
 
 _ndarray, _float64 = np.ndarray, np.dtype(np.float64)  # found faster
@@ -90,7 +90,7 @@ class LawMemory:
 
 
 def arm3r_python_tick(t: float) -> int:
-    law = here.call.law
+    law = this_thread.call.law
     put_torque(law.answer(t), law.memory.torque)
     return 0
 
@@ -124,10 +124,10 @@ def control(
     native = hasattr(law, "address")
     given = ffi.cast("arm3r_law", int(law.address)) if native else _python_law
     user = ffi.cast("void *", int(law.user)) if native else law.memory.user
-    here = InProgress(progress, law)
-    with here:
+    running = InProgress(progress, law)
+    with running:
         run = create("run", lib.arm3r_scenario_control, scenario, given, user, run_options(time_limit))
-    return run, here.raised
+    return run, running.raised
 
 
 class SimulationView:

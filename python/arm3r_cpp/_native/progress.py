@@ -69,22 +69,22 @@ class InProgress:
         self.stop = ffi.new("int32_t *")
 
     def __enter__(self) -> None:
-        self._outer, here.call = getattr(here, "call", None), self
+        self._outer, this_thread.call = getattr(this_thread, "call", None), self
         interpreter.enter(self)
 
     def __exit__(self, kind: Any, raised: BaseException | None, traceback: Any) -> None:
-        here.call = self._outer
+        this_thread.call = self._outer
         interpreter.leave(self)
         if self.raised is not None and isinstance(raised, Arm3rError):
             raise self.raised from None
 
 
-here = threading.local()  # .call: this thread's run in progress
+this_thread = threading.local()  # .call: its run in progress
 
 
 def keep(kind: type[BaseException], raised: BaseException, traceback: Any) -> None:
-    here.call.raised = raised.with_traceback(traceback)
-    here.call.stop[0] = 1
+    this_thread.call.raised = raised.with_traceback(traceback)
+    this_thread.call.stop[0] = 1
 
 
 def called_by_the_library(kind: str) -> Callable[[Callable[..., int]], Any]:

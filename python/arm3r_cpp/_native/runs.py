@@ -10,13 +10,13 @@ import numpy as np
 
 from .calls import call, create
 from .library import Floats, ffi, lib, string
-from .progress import InProgress, Progress, called_by_the_library, here, interpreter
+from .progress import InProgress, Progress, called_by_the_library, interpreter, this_thread
 
 
 @called_by_the_library("arm3r_progress")
 def arm3r_python_progress(user: Any, t: float, stop: float, steps: int) -> int:
     # Entering a Python function is what lets signal handlers run: this is how Ctrl-C ends a run.
-    progress = here.call.progress
+    progress = this_thread.call.progress
     return int(progress is not None and bool(progress(t, stop, steps)))
 
 

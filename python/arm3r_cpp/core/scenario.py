@@ -20,13 +20,13 @@ from ..control.law import Law, NativeLaw, check_rate, check_time_limit, run_with
 from ..errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, class_of_outcome
 from ..examples import FOLDER, is_sweep, path_of
 from .arm import Arm
+from .batch import Batch, run_batch
 from .params import param_count, places
 from .run import Run
 
 if TYPE_CHECKING:
     from ..blocks.beside import Beside
     from ..control.batch_law import MakeLaw
-    from .batch import Batch
 
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
 
@@ -413,8 +413,6 @@ class Scenario(metaclass=Answering):
             ScenarioError: the scenario itself is not valid, a word is none of its key's, or no run has one of the
                 columns.
         """
-        from .batch import run_batch  # it stands above this module
-
         with shown(progress, "batch", "runs") as report:
             return run_batch(
                 self,

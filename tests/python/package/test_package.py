@@ -88,7 +88,7 @@ def build(scripts: Path) -> Any:
     return run
 
 
-def test_c_program_builds_through_find_package(root: Path, package: Path, build: Any, tmp_path: Path) -> None:
+def test_programs_build_through_find_package(root: Path, package: Path, build: Any, tmp_path: Path) -> None:
     def run(*command: object) -> str:
         done = build(*command)
         assert done.returncode == 0, done.stdout + done.stderr
@@ -97,6 +97,7 @@ def test_c_program_builds_through_find_package(root: Path, package: Path, build:
     run("cmake", "-S", root / "tests" / "c", "-B", tmp_path, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={package}")
     run("cmake", "--build", tmp_path)
     assert "-ffp-contract=off" in run(tmp_path / "bits", root / "scenarios" / "moving_wall.yaml")
+    assert run(tmp_path / "objects") == ""
 
 
 def test_fast_math_is_refused(root: Path, build: Any, tmp_path: Path) -> None:

@@ -38,8 +38,9 @@ def installed() -> Installation | None:
         return None
     named = os.environ.get(PROGRAM)
     names = _PROGRAMS if named is None else (named,) if named else ()
-    programs = [os.path.realpath(found) for name in names if (found := shutil.which(name))]
-    for prefix in dict.fromkeys(Path(one).parent.parent for one in programs):
+    programs = [Path(found).resolve() for name in names if (found := shutil.which(name))]
+    # Beside any program of the system the library may lie: the program itself must be an Octave.
+    for prefix in dict.fromkeys(one.parent.parent for one in programs if one.name.startswith("octave")):
         libraries = [path for place in _PLACES for path in sorted(prefix.glob(f"{place}/{_LIBRARY}"))]
         if libraries:
             return Installation(str(libraries[0].resolve()), [f"{prefix}/share/octave", f"{prefix}/lib"])

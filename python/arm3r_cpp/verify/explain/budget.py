@@ -1,4 +1,5 @@
-"""How many edits are tried: a number of them, by how much the formula computes. So every machine finds the same."""
+"""How many edits are tried: a number of them, by how much the formula computes. So every machine finds the same, unless
+the calls of a formula are so slow that the processor's time ends the search."""
 
 from __future__ import annotations
 
