@@ -60,7 +60,7 @@ def write_licenses() -> Path:
     """The licences of what is compiled into the library, beside arm3r's own."""
     licenses = SOURCES / "licenses.txt"
     with licenses.open("w") as file:
-        script = ROOT / "cmake" / "core_licenses.py"
+        script = ROOT / "tools" / "core_licenses.py"
         subprocess.run([sys.executable, script, "wheels", SOURCES / "yaml-cpp"], check=True, cwd=ROOT, stdout=file)
     return licenses
 
@@ -104,7 +104,7 @@ def main(names: list[str]) -> int:
     time = subprocess.run(["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
     os.environ.setdefault("SOURCE_DATE_EPOCH", time or "315532800")
     FOLDER.mkdir(parents=True, exist_ok=True)
-    run(sys.executable, ROOT / "cmake" / "yaml_cpp_source.py", SOURCES)
+    run(sys.executable, ROOT / "tools" / "yaml_cpp_source.py", SOURCES)
     write_licenses()
     for target in PLATFORMS:
         if not names or target.name in names:

@@ -68,3 +68,27 @@ def test_no_module_hides_a_public_name_of_its_package() -> None:
     """The import of plot/force.py would put the module in the place of the function plot.force."""
     assert not {f"plot.{name}" for name in arm3r.plot.__all__} & set(KNOWN)
     assert not set(dir(arm3r)) - {"plot", "verify"} & set(KNOWN)
+
+
+def _named_path(node: ast.AST) -> list[str] | None:
+    """The parts of ROOT / "a" / "b", or None."""
+    if isinstance(node, ast.Name):
+        return [] if node.id == "ROOT" else None
+    if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div) and isinstance(node.right, ast.Constant)):
+        return None
+    before = _named_path(node.left)
+    return None if before is None else [*before, str(node.right.value)]
+
+
+def test_a_tool_finds_the_files_that_it_names(root: Path) -> None:
+    """What is built (build, dist, out) need not be there yet."""
+    sources = [*(root / "tools").glob("*.py"), *(root / "benchmarks").glob("*.py"), *(root / "docs").rglob("*.py")]
+    named = {
+        Path(*parts)
+        for source in sources
+        for node in ast.walk(ast.parse(source.read_text()))
+        if (parts := _named_path(node))
+    }
+    kept = {path for path in named if path.parts[0] not in ("build", "dist", "out")}
+    assert len(kept) >= 5
+    assert [path for path in sorted(kept) if not (root / path).exists()] == []
