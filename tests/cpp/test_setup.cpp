@@ -234,7 +234,7 @@ TEST_CASE(a_table_says_as_much_of_each_instant_and_they_increase) {
     table.set("wall.motion.t", {0, 1, 3}).set("wall.motion.s", {0, 0.1, 0.2});
     table.set("wall.motion.v", {0, 0.1, 0}).set("wall.motion.a", {0, 0, 0});
     CHECK(problems_of(table).empty());
-    CHECK(make_setup(table).plant.wall.table->knots == 3);
+    CHECK(make_setup(table).plant.wall.table->knots() == 3);
     check_refusal(Params(table).set("wall.motion.a[3]", 0), "scenario.table", "wall.motion.a");
     check_refusal(Params(table).set("wall.motion.s[2]", std::nan("")), "scenario.table", "wall.motion.s");
     check_refusal(Params(table).set("wall.motion.v[1]", std::nan("")), "scenario.missing_key", "wall.motion.v");

@@ -259,6 +259,10 @@ def _motion(draw: Draw, unit: np.ndarray, stop: float) -> Keys:
 
 
 def _quintics(draw: Draw, stop: float) -> Keys:
+    if draw.chance(0.2):  # more points than keys have places for
+        t = np.linspace(0, draw.number(0.3, 1) * stop, draw.one_of([17, 25, 40]))
+        s = draw.number(0.01, 0.03) * np.sin(draw.number(1, 6) * t) + draw.number(-0.02, 0.05) * t
+        return {"t": [float(f"{at:.6g}") for at in t], "s": [float(f"{at:.6g}") for at in s]}
     count = draw.one_of([2, 3, 4])
     t = sorted({draw.instant(0, stop) for _ in range(count)})
     if len(t) < 2 or min(np.diff(t)) < 0.05:

@@ -335,7 +335,10 @@ export class Core {
     // ---- many runs
 
     #params(scenario) {
-        const count = this.#call("arm3r_param_count");
+        const count = this.#withMemory(4, (out) => {
+            this.#check(this.#call("arm3r_scenario_param_count", scenario, out));
+            return new Uint32Array(this.#buffer(), out, 1)[0];
+        });
         return this.#withMemory(8 * count, (at) => {
             this.#check(this.#call("arm3r_scenario_params", scenario, at, count));
             return this.#doubles(at, count);

@@ -91,14 +91,16 @@ ARM3R_API int32_t arm3r_nearest_word(const char *word, const char *const *words,
 /* ---- numbers: parameters ------------------------------------------------------------------------------------------
  * A scenario is a flat array of arm3r_param_count() doubles. A key of the scenario file with one number has the key's
  * path as its name, "wall.contact.stiffness"; one with several has "initial.q[0]", "initial.q[1]", ... A choice is stored as
- * the index of its word, a column as its place in arm3r_columns_text, a flag as 0 or 1, and NaN means "not given": the value then follows from others.
+ * the index of its word, a column as its place in arm3r_columns_text, a flag as 0 or 1, and NaN means "not given": the value
+ * then follows from others. A table whose lists are longer than its keys have places (arm3r_scenario_param_count) has each of
+ * them behind the array: the index of its key's first number, its length, its numbers; those of the key are NaN then.
  */
 
 ARM3R_API size_t arm3r_param_count(void);
 ARM3R_API int32_t arm3r_param_index(const char *name, size_t name_size, size_t *index);
 ARM3R_API int32_t arm3r_param_name(size_t index, const char **name);
-/* The key that a number belongs to; what it is: "number", "angle", "integer", "flag", "choice", "section" or "column"; its unit,
- * "" for none. */
+/* The key that a number belongs to; what it is: "number", "angle", "integer", "flag", "choice", "section", "column" or "file"; its
+ * unit, "" for none. */
 ARM3R_API int32_t arm3r_param_key(size_t index, const char **key, const char **kind, const char **unit);
 ARM3R_API int32_t arm3r_param_defaults(double *params, size_t count); /* the lecture's arm, at rest, no wall, no control */
 
@@ -305,6 +307,8 @@ ARM3R_API int32_t arm3r_scenario_name(const arm3r_scenario *scenario, const char
 ARM3R_API int32_t arm3r_scenario_yaml(const arm3r_scenario *scenario, int32_t annotate, const char **yaml);
 /* Warnings of what is allowed but probably a mistake, one a line: "FILE: warning: SENTENCE"; "" if there are none. */
 ARM3R_API int32_t arm3r_scenario_warnings(const arm3r_scenario *scenario, const char **text);
+/* How many numbers it has: arm3r_param_count(), and more for tables of more than 16 points. */
+ARM3R_API int32_t arm3r_scenario_param_count(const arm3r_scenario *scenario, size_t *count);
 ARM3R_API int32_t arm3r_scenario_params(const arm3r_scenario *scenario, double *params, size_t count);
 ARM3R_API int32_t arm3r_scenario_run(const arm3r_scenario *scenario, const arm3r_run_options *options /* Nullable */, arm3r_run **run);
 

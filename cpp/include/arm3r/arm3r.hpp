@@ -109,7 +109,7 @@ using Matrix = std::array<double, 9>;  // row-major
 
 class Arm {
 public:
-    // params: arm3r_param_count() numbers, as Scenario::params() has them.
+    // params: as Scenario::params() has them.
     explicit Arm(std::span<const double> params)
         : arm_([&](arm3r_arm** arm) { return arm3r_arm_create(params.data(), params.size(), arm); }) {}
 
@@ -265,7 +265,9 @@ public:
         return yaml;
     }
     std::vector<double> params() const {
-        std::vector<double> params(arm3r_param_count());
+        std::size_t count;
+        check(arm3r_scenario_param_count(get(), &count));
+        std::vector<double> params(count);
         check(arm3r_scenario_params(get(), params.data(), params.size()));
         return params;
     }

@@ -1,6 +1,8 @@
 #pragma once
 // Lists of the numbers of a plant, so that plants of different number types can be filled from each other.
 
+#include <algorithm>
+
 #include "arm3r/plant.hpp"
 
 namespace arm3r {
@@ -28,7 +30,8 @@ ARM3R_INLINE void each_arm_number(F f, Arms&... a) {
 
 template <class F, class... Tables>
 void each_table_number(F f, Tables&... tables) {
-    for (int i = 0; i < max_knots; ++i) f(tables.t[i]...), f(tables.s[i]...), f(tables.v[i]...), f(tables.a[i]...);
+    const std::size_t knots = std::min({tables.t.size()...});
+    for (std::size_t i = 0; i < knots; ++i) f(tables.t[i]...), f(tables.s[i]...), f(tables.v[i]...), f(tables.a[i]...);
 }
 
 // Calls f for each of the gains and the numbers of the reference of controllers.
@@ -116,7 +119,7 @@ void copy_controller_choices(const Controller<A>& from, Controller<B>& to) {
     if (!to.reference.table)
         to.reference.table =
             std::make_shared<std::array<QuinticTable<B>, 3>>();  // otherwise other lanes use it already
-    for (QuinticTable<B>& along : *to.reference.table) along.knots = from.reference.knots;
+    for (std::size_t i = 0; i < 3; ++i) (*to.reference.table)[i].set_knots((*from.reference.table)[i].t.size());
 }
 
 template <class A, class B>
@@ -126,7 +129,7 @@ void copy_choices(const Plant<A>& from, Plant<B>& to) {
     to.wall.rotation = from.wall.rotation;
     if (from.wall.table) {
         to.wall.table = std::make_shared<QuinticTable<B>>();
-        to.wall.table->knots = from.wall.table->knots;
+        to.wall.table->set_knots(from.wall.table->t.size());
     }
     to.wall.has_outline = from.wall.has_outline;
     to.contact.law = from.contact.law;

@@ -125,9 +125,9 @@ void check_index(std::size_t index, std::size_t count, const char* what) {
 
 std::span<const double> params_in(const double* params, std::size_t count) {
     need(params, "params");
-    if (count != param_count())
+    if (!is_param_count(count))
         throw Error(ARM3R_E_SIZE, "params has " + std::to_string(count) + " numbers; a scenario has " +
-                                      std::to_string(param_count()));
+                                      std::to_string(param_count()) + ", and more for long tables alone");
     return {params, count};
 }
 

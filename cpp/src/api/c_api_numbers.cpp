@@ -251,7 +251,9 @@ int32_t arm3r_param_key(size_t index, const char** key, const char** kind, const
 
 int32_t arm3r_param_defaults(double* params, size_t count) {
     return guard([&] {
-        params_in(params, count);
+        if (params_in(params, count).size() != param_count())
+            throw Error(ARM3R_E_SIZE, "params has " + std::to_string(count) + " numbers; there are " +
+                                          std::to_string(param_count()) + " defaults");
         const std::vector<double> defaults = param_defaults();
         std::copy(defaults.begin(), defaults.end(), params);
     });

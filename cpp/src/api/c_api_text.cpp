@@ -118,7 +118,7 @@ int32_t arm3r_scenario_load(const char* path, size_t path_size, arm3r_scenario**
     return guard([&] {
         need(scenario, "scenario");
         const std::string file = text_in(path, path_size, "path");
-        *scenario = new_scenario(read_scenario(read_input(file), file == "-" ? "<stdin>" : file));
+        *scenario = new_scenario(read_scenario(read_input(file, enough), file == "-" ? "<stdin>" : file));
     });
 }
 
@@ -200,14 +200,22 @@ int32_t arm3r_scenario_warnings(const arm3r_scenario* scenario, const char** tex
     });
 }
 
+int32_t arm3r_scenario_param_count(const arm3r_scenario* scenario, size_t* count) {
+    return guard([&] {
+        need(scenario, "scenario");
+        need(count, "count");
+        *count = scenario->resolved().params.size();
+    });
+}
+
 int32_t arm3r_scenario_params(const arm3r_scenario* scenario, double* params, size_t count) {
     return guard([&] {
         need(scenario, "scenario");
         need(params, "params");
-        if (count != param_count())
-            throw Error(ARM3R_E_SIZE, "`count` is " + std::to_string(count) + ", there are " +
-                                          std::to_string(param_count()) + " parameters");
         const Resolved& resolved = scenario->resolved();
+        if (count != resolved.params.size())
+            throw Error(ARM3R_E_SIZE, "`count` is " + std::to_string(count) + ", there are " +
+                                          std::to_string(resolved.params.size()) + " parameters");
         std::copy(resolved.params.begin(), resolved.params.end(), params);
     });
 }

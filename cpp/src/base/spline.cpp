@@ -1,9 +1,6 @@
 #include "base/spline.hpp"
 
-#include <algorithm>
-#include <array>
-
-#include "arm3r/model/scalar_motion.hpp"
+#include <vector>
 
 namespace arm3r {
 namespace {
@@ -54,8 +51,8 @@ Pair asked(double l, double before, double r, double after) {
 void minimum_jerk_through(std::span<const double> t, std::span<const double> s, std::span<double> v,
                           std::span<double> a) {
     const std::size_t last = t.size() - 1;
-    std::array<Block, max_knots> inverses;
-    std::array<Pair, max_knots> rest;
+    std::vector<Block> inverses(last);
+    std::vector<Pair> rest(last);
     for (std::size_t i = 1; i < last; ++i) {
         const double l = t[i] - t[i - 1], r = t[i + 1] - t[i];
         Block diagonal = own(l, r);
@@ -74,6 +71,11 @@ void minimum_jerk_through(std::span<const double> t, std::span<const double> s, 
         next = times(inverses[i], minus(rest[i], times(transposed(of_before(r)), next)));
         v[i] = next.v, a[i] = next.a;
     }
+}
+
+void move_with_minimum_jerk(QuinticTable<double>& table) {
+    table.set_knots(table.t.size());
+    minimum_jerk_through(table.t, table.s, table.v, table.a);
 }
 
 }  // namespace arm3r

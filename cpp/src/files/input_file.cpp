@@ -12,7 +12,6 @@ namespace arm3r {
 namespace {
 
 constexpr int standard_input = 0;
-constexpr std::size_t enough = (1 << 20) + 1;  // one byte more than a scenario may have
 
 [[noreturn]] void refuse(const std::string& path, std::string code, std::string message, std::string hint = {}) {
     throw Error(ARM3R_E_FILE,
@@ -33,7 +32,7 @@ private:
     int descriptor_;
 };
 
-std::string read_up_to(int descriptor, const std::string& path) {
+std::string read_up_to(int descriptor, const std::string& path, std::size_t enough) {
     std::string text;
     constexpr std::size_t at_a_time = 65536;
     while (text.size() < enough) {
@@ -49,16 +48,16 @@ std::string read_up_to(int descriptor, const std::string& path) {
 
 }  // namespace
 
-std::string read_input(const std::string& path) {
+std::string read_input(const std::string& path, std::size_t enough) {
     if (path.empty()) refuse(path, "file.name", "the file name is empty");
-    if (path == "-") return read_up_to(standard_input, "standard input");
+    if (path == "-") return read_up_to(standard_input, "standard input", enough);
     const File file(platform::open_to_read(path));
     if (file.descriptor() < 0) refuse(path, "file.open", std::strerror(errno));
     const platform::FileKind kind = platform::kind_of(file.descriptor());
     if (kind == platform::FileKind::directory) refuse(path, "file.kind", std::strerror(EISDIR));
     if (kind != platform::FileKind::regular)
         refuse(path, "file.kind", "not a regular file", "`-` reads standard input");
-    return read_up_to(file.descriptor(), path);
+    return read_up_to(file.descriptor(), path, enough);
 }
 
 }  // namespace arm3r

@@ -32,7 +32,7 @@ BatchKey batch_key_of(const Setup& setup) {
             plant.wall.has_outline,
             may_be_ill_conditioned(arm),
             plant.wall.motion,
-            plant.wall.table ? plant.wall.table->knots : 0,
+            plant.wall.table ? plant.wall.table->knots() : 0,
             plant.wall.rotation,
             plant.contact.law,
             plant.contact.has_friction,

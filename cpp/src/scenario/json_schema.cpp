@@ -57,13 +57,15 @@ std::string number_schema(const Key& key) {
 
 std::string list_schema(const Key& key, const std::string& number) {
     const std::size_t fewest = key.form == Form::list ? key.min_size : key.size;
+    const std::size_t most = key.any_length ? max_table_numbers / 2 : key.size;
     return object({member("type", json_string("array")), member("items", number),
-                   member("minItems", std::to_string(fewest)), member("maxItems", std::to_string(key.size))});
+                   member("minItems", std::to_string(fewest)), member("maxItems", std::to_string(most))});
 }
 
 // For the choices made in `params`.
 std::string value_schema(const Key& key, const Params& params) {
     if (key.kind == Kind::flag) return R"({"type": "boolean"})";
+    if (key.kind == Kind::file) return R"({"type": "string", "minLength": 1})";
     if (key.kind == Kind::choice) return object({member("enum", json_words(key.choices))});
     if (key.kind == Kind::column)
         return R"({"type": "array", "items": {"$ref": "#/definitions/column of a run"}, "minItems": 1, )"

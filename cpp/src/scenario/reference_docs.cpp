@@ -47,6 +47,7 @@ std::string range_text(const Key& key) {
     if (key.kind == Kind::flag) return "true, false";
     if (key.kind == Kind::section) return "a map";
     if (key.kind == Kind::column) return "[columns](columns.md)";
+    if (key.kind == Kind::file) return "a name";
     std::string out = (key.bounds.open_low ? "> " : "") + yaml_number(key.bounds.low) + " to " +
                       (key.bounds.open_high ? "< " : "") + yaml_number(key.bounds.high);
     if (key.allow_infinity) out += ", inf";
@@ -88,13 +89,15 @@ std::string default_text(const Key& key) {
     return key.unset.empty() ? out : out + " for explicit, else " + key.unset;
 }
 
+bool has_numbers(Kind kind) {
+    return kind == Kind::number || kind == Kind::angle || kind == Kind::integer || kind == Kind::column;
+}
+
 std::string numbers_text(const Key& key) {
     switch (key.form) {
         case Form::number_or_vector: return "1 or " + std::to_string(key.size);
         case Form::by_choice: return "1, or " + std::to_string(key.size) + " for " + key.word;
-        default:
-            return key.kind == Kind::choice || key.kind == Kind::section || key.kind == Kind::flag ? ""
-                                                                                                   : list_sizes(key);
+        default: return has_numbers(key.kind) ? list_sizes(key) : "";
     }
 }
 
@@ -143,7 +146,11 @@ explicit only; any other shape gives its own.
 hunt_crossley a number in N/m^p. Law kelvin_voigt takes either `damping` or `restitution`,
 hunt_crossley either `dissipation` or `restitution` with `impact_speed`.
 
-The four lists of a wall's table are equally long.
+The lists of a table are equally long, and have 40 000 numbers together at most. They may stand in a
+CSV file that `file` names: columns named t, s and so on in its first line, in any order and among
+others, or numbers alone in that order; parted by commas, semicolons, tabs or blanks; lines with #
+are remarks. Where the scenario is written out (`arm3r check`), it has the lists themselves. A batch
+can vary single numbers of lists of up to 16.
 
 At the start the tip may stand in the wall, which counts as the event `make` at that instant, but
 not deeper than 0.1 m.

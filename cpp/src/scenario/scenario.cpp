@@ -11,6 +11,7 @@
 #include "platform/files.hpp"
 #include "scenario/meant_key.hpp"
 #include "scenario/meant_word.hpp"
+#include "scenario/table_file.hpp"
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
 #include "validate/size_limits.hpp"
@@ -37,6 +38,7 @@ std::string expected(const Key& key, std::span<const double> params) {
         case Kind::choice: return "one of " + listed(key.choices);
         case Kind::section: return "a map";
         case Kind::integer: return "a whole number" + unit;
+        case Kind::file: return "the name of a file";
         case Kind::column: return "a list of 1 to " + std::to_string(key.size) + " names of columns";
         default: break;
     }
@@ -68,8 +70,8 @@ class Resolver {
 public:
     explicit Resolver(const Scenario& scenario)
         : scenario_(scenario),
-          root_(scenario.document.root),
           problems_(scenario.document.problems),
+          root_(with_table_files(scenario.document.root, scenario.file, problems_)),
           origin_(schema().size()) {}
 
     Resolved resolve() {
@@ -259,6 +261,7 @@ private:
         if (!key_exists(key, result_.params)) return refuse_other_choice(key, node);
         if (key.kind == Kind::choice) return;
         if (key.kind == Kind::flag) return read_flag(key, node);
+        if (key.kind == Kind::file) return node.type == Node::scalar ? void() : wrong_shape(key, node);
         if (is_number_here(key, node)) return read_single(key, node);
         if (key.form == Form::vector_or_word && node.type == Node::scalar && node.text == key.word) {
             std::fill_n(at(key), key.size, infinite);
@@ -266,7 +269,7 @@ private:
         }
         const std::size_t min_size = key.form == Form::list ? key.min_size : key.size;
         if (is_list_here(key) && node.type == Node::list && node.children.size() >= min_size &&
-            node.children.size() <= key.size)
+            node.children.size() <= (key.any_length ? max_table_numbers / 2 : key.size))
             return read_list(key, node);
         wrong_shape(key, node);
     }
@@ -348,10 +351,18 @@ private:
 
     void read_list(const Key& key, const Node& node) {
         if (key.form == Form::list) std::fill_n(at(key), key.size, unset);
+        if (node.children.size() > key.size) return read_long_list(key, node);
         for (std::size_t i = 0; i < node.children.size(); ++i)
             if (key.kind == Kind::column) read_column(key, node, i);
             else if (node.children[i].type != Node::unset)
                 read_number_into(key, node.children[i], item(key.path, i), at(key)[static_cast<long>(i)]);
+        set_origin(key, node);
+    }
+
+    void read_long_list(const Key& key, const Node& node) {
+        const std::span<double> numbers = append_list(result_.params, key, node.children.size());
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+            read_number_into(key, node.children[i], item(key.path, i), numbers[i]);
         set_origin(key, node);
     }
 
@@ -431,11 +442,19 @@ private:
         return in_order(is_known ? possible_columns(result_.setup) : ColumnSet().set());
     }
 
+    // Whether `path` is that of a section or list, or stands in it.
+    static bool is_within(std::string_view path, std::string_view section) {
+        return !section.empty() && path.starts_with(section) &&
+               (path.size() == section.size() || path[section.size()] == '.' || path[section.size()] == '[');
+    }
+
     bool already_refused(std::string_view path) const {
-        return std::any_of(problems_.begin(), problems_.end(), [&](const Problem& known) {
-            return !known.path.empty() && path.starts_with(known.path) &&
-                   (path.size() == known.path.size() || path[known.path.size()] == '.' ||
-                    path[known.path.size()] == '[');
+        return std::any_of(problems_.begin(), problems_.end(), [&](const Problem& problem) {
+            const Key* key = find_key(problem.path);
+            const bool is_file = key && key->kind == Kind::file;  // its lists stand in the same section
+            const std::string known = is_file ? problem.path.substr(0, problem.path.rfind('.')) : problem.path;
+            const bool is_item = is_within(known, path) && known.size() > path.size() && known[path.size()] == '[';
+            return is_within(path, known) || is_item;
         });
     }
 
@@ -466,6 +485,7 @@ private:
             if (section.kind == Kind::section && key.path.starts_with(section.path + ".") && *at(section) == 0)
                 return false;
         if (key.kind == Kind::section) return *at(key) != 0;
+        if (key.kind == Kind::file) return false;  // its lists are there
         return key_exists(key, result_.params) && !(std::isnan(*at(key)) && is_copy_of_nothing(key));
     }
 
@@ -511,19 +531,21 @@ private:
     }
 
     Node value_of(const Key& key) {
-        const auto number = [&](std::size_t i) { return leaf("", text_of(key, at(key)[static_cast<long>(i)]), ""); };
-        Node node = number(0);
+        const auto number = [&](double value) { return leaf("", text_of(key, value), ""); };
+        const std::span<const double> numbers =
+            key.form == Form::list ? list_at(result_.params, key) : std::span<const double>(&*at(key), key.size);
+        Node node = number(*at(key));
         node.key = last_name(key.path);
         node.note = origin(key).empty() ? source_name(static_cast<int>(key.source)) : origin(key);
-        if (std::isnan(*at(key))) {
+        if (numbers.empty() || std::isnan(numbers[0])) {
             node.type = Node::nothing;
             node.note = key.unset;
         } else if (key.form == Form::vector_or_word && std::isinf(*at(key))) {
             node.text = key.word;
-        } else if (key.form == Form::list || (key.size > 1 && !std::isnan(at(key)[1]))) {
+        } else if (key.form == Form::list || (key.size > 1 && !std::isnan(numbers[1]))) {
             node.type = Node::list;
-            for (std::size_t i = 0; i < key.size && !std::isnan(at(key)[static_cast<long>(i)]); ++i)
-                node.children.push_back(number(i));
+            for (std::size_t i = 0; i < numbers.size() && !std::isnan(numbers[i]); ++i)
+                node.children.push_back(number(numbers[i]));
         }
         return node;
     }
@@ -536,8 +558,8 @@ private:
     }
 
     const Scenario& scenario_;
-    const Node& root_;
     std::vector<Problem> problems_;
+    const Node root_;
     std::vector<std::string> origin_;
     std::set<std::string> unknown_choices_;
     bool keeps_rules_ = false;

@@ -48,6 +48,18 @@ Key list_of(std::size_t min_size, std::size_t most, Key key) {
     return key;
 }
 
+Key table_column(std::string missing, Key key) {
+    constexpr std::size_t places = 16;  // of a table of which single numbers can be varied
+    key = derived(std::move(missing), list_of(2, places, std::move(key)));
+    key.any_length = true;
+    return key;
+}
+
+Key table_file(std::string path, std::string doc) {
+    return derived("the lists given here",
+                   of_kind(Kind::file, number(std::move(path), {unset}, Source::ours, no_bounds, "", std::move(doc))));
+}
+
 Key where(std::string when_key, Words when, Key key) {
     key.when_key = std::move(when_key);
     key.when = std::move(when);

@@ -30,6 +30,8 @@ Key flag(std::string path, bool fallback, std::string doc);
 Key of_kind(Kind kind, Key key);
 Key with_form(Form form, Key key, std::string word = {});
 Key list_of(std::size_t min_size, std::size_t most, Key key);
+Key table_column(std::string missing, Key key);     // of a table with two points or more, where it may come from a file
+Key table_file(std::string path, std::string doc);  // the file with the columns of the table in its section
 Key where(std::string when_key, Words when, Key key);  // exists where the choice at when_key is one of these words
 Key needed(Key key);                                   // must be given
 Key derived(std::string unset_means, Key key);         // what it means where it is not given

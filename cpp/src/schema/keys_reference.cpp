@@ -54,8 +54,11 @@ std::vector<Key> reference_keys() {
     keys.push_back(in({"sinusoid"}, number("reference.frequency", {0.5}, Source::ours, {0, 1e4}, "Hz",
                                            "Frequency of the sinusoid.")));
     const auto column = [&](const char* path, Bounds bounds, const char* unit, const char* doc) {
-        keys.push_back(in({"table"}, needed(list_of(2, max_knots, number(path, {}, Source::ours, bounds, unit, doc)))));
+        keys.push_back(in({"table"}, table_column(of_the_file, number(path, {}, Source::ours, bounds, unit, doc))));
     };
+    keys.push_back(in({"table"}, table_file("reference.file",
+                                            "A CSV file with columns t, x, y and z in place of these lists, s and m; a "
+                                            "relative name counts from the folder of the scenario.")));
     column("reference.t", an_instant, "s",
            "Instants of the table, increasing; before the first and after the last one the reference is at rest.");
     column("reference.x", any_position, "m",

@@ -2,7 +2,6 @@
 
 #include "schema/keys.hpp"
 
-#include "arm3r/model/scalar_motion.hpp"
 #include "schema/choice_words.hpp"
 #include "schema/key_builders.hpp"
 #include "schema/stiffness_presets.hpp"
@@ -23,28 +22,24 @@ void append_paths(std::vector<Key>& keys) {
               needed(number(
                   "wall.motion.duration", {unset}, Source::ours, {1e-6, 1e9}, "s",
                   "How long the ramp takes: a quintic without a jump of acceleration; the wall stays at its end."))));
-    keys.push_back(where(type, {"table"},
-                         needed(list_of(2, max_knots,
-                                        number("wall.motion.t", {}, Source::ours, an_instant, "s",
-                                               "Instants of the table, increasing; before and after them the wall "
-                                               "stands still.")))));
-    keys.push_back(where(
-        type, {"table"},
-        needed(list_of(
-            2, max_knots,
-            number("wall.motion.s", {}, Source::ours, {-1e3, 1e3}, "m",
-                   "Position of the wall along its direction at the instants wall.motion.t; quintics in between.")))));
+    const auto column = [&](const char* path, const char* missing, Bounds bounds, const char* unit, const char* doc) {
+        keys.push_back(
+            where(type, {"table"}, table_column(missing, number(path, {}, Source::ours, bounds, unit, doc))));
+    };
     keys.push_back(
         where(type, {"table"},
-              derived("smoothest", list_of(2, max_knots,
-                                           number("wall.motion.v", {}, Source::ours, {-1e4, 1e4}, "m/s",
-                                                  "Velocity of the wall at the instants wall.motion.t; without v and a "
-                                                  "the wall moves through s with minimum jerk, from rest to rest.")))));
-    keys.push_back(
-        where(type, {"table"},
-              derived("smoothest", list_of(2, max_knots,
-                                           number("wall.motion.a", {}, Source::ours, {-1e6, 1e6}, "m/s^2",
-                                                  "Acceleration of the wall at the instants wall.motion.t.")))));
+              table_file("wall.motion.file",
+                         "A CSV file with columns t and s (s, m), and v and a where it has them, in place of "
+                         "these lists; a relative name counts from the folder of the scenario.")));
+    column("wall.motion.t", of_the_file, an_instant, "s",
+           "Instants of the table, increasing; before and after them the wall stands still.");
+    column("wall.motion.s", of_the_file, {-1e3, 1e3}, "m",
+           "Position of the wall along its direction at the instants wall.motion.t; quintics in between.");
+    column("wall.motion.v", "smoothest", {-1e4, 1e4}, "m/s",
+           "Velocity of the wall at the instants wall.motion.t; without v and a the wall moves through s with minimum "
+           "jerk, from rest to rest.");
+    column("wall.motion.a", "smoothest", {-1e6, 1e6}, "m/s^2",
+           "Acceleration of the wall at the instants wall.motion.t.");
     keys.push_back(where(
         type, {"sinusoid", "ramp", "table"},
         derived("the normal", number("wall.motion.direction", {unset, unset, unset}, Source::ours, any_position, "",

@@ -15,6 +15,12 @@ double at(std::span<const double> params, std::size_t item = 0) {
 }
 
 template <Name path>
+std::span<const double> list_at(std::span<const double> params) {
+    static const Key& key = known_key(path);
+    return list_at(params, key);
+}
+
+template <Name path>
 Vec3<double> vector_at(std::span<const double> params) {
     return {at<path>(params, 0), at<path>(params, 1), at<path>(params, 2)};
 }

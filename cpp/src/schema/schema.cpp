@@ -89,7 +89,7 @@ const Key& known_key(std::string_view path) {
 }
 
 const char* kind_name(Kind kind) {
-    constexpr const char* names[] = {"number", "angle", "integer", "flag", "choice", "section", "column"};
+    constexpr const char* names[] = {"number", "angle", "integer", "flag", "choice", "section", "column", "file"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -130,6 +130,7 @@ std::size_t param_index(std::string_view name) {
 }
 
 std::string list_sizes(const Key& key) {
+    if (key.any_length) return std::to_string(key.min_size) + " or more";
     return (key.form == Form::list ? std::to_string(key.min_size) + " to " : "") + std::to_string(key.size);
 }
 
@@ -161,6 +162,71 @@ std::vector<double> param_defaults() {
 
 double param(std::span<const double> params, std::string_view path, std::size_t item) {
     return params[known_key(path).offset + item];
+}
+
+namespace {
+
+constexpr std::size_t list_head = 2;  // offset of the key, number of numbers
+
+// Calls visit(offset, numbers) for each list behind the flat array until it returns true. False: what stands there are
+// not such lists.
+template <class Visit>
+bool each_list_behind(std::span<const double> params, Visit visit) {
+    std::span<const double> rest = params.subspan(param_count());
+    while (!rest.empty()) {
+        if (rest.size() < list_head || !(rest[1] >= 0) || rest[1] > double(rest.size() - list_head)) return false;
+        const auto n = static_cast<std::size_t>(rest[1]);
+        if (visit(rest[0], rest.subspan(list_head, n))) return true;
+        rest = rest.subspan(list_head + n);
+    }
+    return true;
+}
+
+}  // namespace
+
+std::span<const double> list_at(std::span<const double> params, const Key& key) {
+    std::span<const double> found;
+    each_list_behind(params, [&](double offset, std::span<const double> numbers) {
+        if (offset != double(key.offset)) return false;
+        found = numbers;
+        return true;
+    });
+    if (!found.empty()) return found;
+    const std::span<const double> places = params.subspan(key.offset, key.size);
+    const auto end = std::ranges::find_if(places, [](double x) { return std::isnan(x); });
+    return places.first(static_cast<std::size_t>(end - places.begin()));
+}
+
+std::span<double> append_list(std::vector<double>& params, const Key& key, std::size_t n) {
+    params.push_back(static_cast<double>(key.offset));
+    params.push_back(static_cast<double>(n));
+    params.resize(params.size() + n, unset);
+    return std::span(params).last(n);
+}
+
+bool is_param_count(std::size_t count) {
+    std::size_t fewest = max_table_numbers, most = 0;
+    for (const Key& key : schema())
+        if (key.any_length) {
+            fewest = std::min(fewest, list_head + key.size + 1);
+            most += list_head + max_table_numbers / 2;
+        }
+    return count == param_count() || (count >= param_count() + fewest && count <= param_count() + most);
+}
+
+bool has_whole_lists(std::span<const double> params) {
+    std::vector<double> seen;
+    bool fits = true;
+    const bool whole = each_list_behind(params, [&](double offset, std::span<const double> numbers) {
+        const auto key = std::ranges::find_if(
+            schema(), [&](const Key& one) { return one.any_length && double(one.offset) == offset; });
+        const bool is_new = std::ranges::find(seen, offset) == seen.end();
+        seen.push_back(offset);
+        fits = key != schema().end() && is_new && numbers.size() > key->size &&
+               numbers.size() <= max_table_numbers / 2 && std::isnan(params[key->offset]);
+        return !fits;
+    });
+    return whole && fits;
 }
 
 const std::string& choice_of(std::span<const double> params, const Key& key) {

@@ -21,9 +21,12 @@ enum class Kind {
     choice,   // one word of `choices`
     section,  // a map that may be absent; the parameter is 1 where it is present (only `wall`)
     column,   // the name of a column of a run; one word of `choices`
+    file,     // the name of a file with lists of the section; its number is NaN, the lists are those of the file
 };
 
 const char* kind_name(Kind kind);
+
+inline constexpr const char* of_the_file = "the file's";  // `unset` of a list that a table needs
 
 enum class Source { lecture, inferred, ours };  // where a default comes from
 
@@ -34,7 +37,7 @@ enum class Form {
     vector_or_word,    // a list of `size`, or `word`, which stores +inf in every place
     by_choice,         // stored like number_or_vector; the choice at when_key decides: `word` takes a list of 3, any
                        // other one number
-    list,              // a list of `min_size` to `size`, with NaN after its end
+    list,              // a list of `min_size` to `size`, with NaN after its end; may be longer if `any_length`
 };
 
 struct Bounds {
@@ -57,6 +60,7 @@ struct Key {
     std::map<std::string, std::vector<double>> fallback_for = {};  // by the choice at when_key, where it differs
     std::string word = {};               // for vector_or_word: "infinite"; for by_choice: that which takes a list
     std::size_t min_size = 0;            // for list
+    bool any_length = false;             // for list
     std::string when_key = {};           // the key exists only where the choice at this path ...
     std::vector<std::string> when = {};  // ... is one of these words
     bool required = false;               // must be given (where it exists at all)
@@ -83,6 +87,23 @@ std::vector<double> default_of(const Key& key, std::span<const double> params);
 
 double param(std::span<const double> params, std::string_view path, std::size_t item = 0);
 
+// ---- lists of any length
+//
+// A list that is longer than the `size` of its key stands behind the flat array: the offset of the key, the number of
+// numbers, the numbers; the places of the key hold NaN then.
+
+inline constexpr std::size_t max_table_numbers =
+    40'000;  // in all lists of a table: a scenario with them can be read again
+
+// The numbers of a list, wherever they stand.
+std::span<const double> list_at(std::span<const double> params, const Key& key);
+// Puts a list of n NaN behind the flat array.
+std::span<double> append_list(std::vector<double>& params, const Key& key, std::size_t n);
+// Whether there can be so many numbers: none behind the flat array, or enough for a list, and not too many.
+bool is_param_count(std::size_t count);
+// Whether what stands behind the flat array are such lists and nothing else.
+bool has_whole_lists(std::span<const double> params);
+
 // The word stored for a choice (one that is not given in controller.model is the plant's), the number that stands for a
 // word, and whether the key exists for the choices made in `params`.
 const std::string& choice_of(std::span<const double> params, const Key& key);
@@ -93,7 +114,7 @@ bool key_exists(const Key& key, std::span<const double> params);
 // Of a key that does not exist: itself, or the choice above it that does not exist because of the choice at its when_key.
 const Key& key_refused(const Key& key, std::span<const double> params);
 
-// How many numbers its list may have: "3", or "2 to 16" for a list of any length; and whether the choices made in
+// How many numbers its list may have: "3", "2 to 16", or "2 or more"; and whether the choices made in
 // `params` let a by_choice key take a list.
 std::string list_sizes(const Key& key);
 bool takes_list(const Key& key, std::span<const double> params);

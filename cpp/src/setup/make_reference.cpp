@@ -43,27 +43,20 @@ void set_sinusoid(std::span<const double> params, Reference<double>& reference) 
 }
 
 template <Name column>
-void set_curve(std::span<const double> params, int knots, QuinticTable<double>& curve) {
-    const auto count = static_cast<std::size_t>(knots);
-    for (std::size_t i = 0; i < count; ++i) {
-        curve.t[i] = at<"reference.t">(params, i);
-        curve.s[i] = at<column>(params, i);
-    }
-    curve.knots = knots;
-    minimum_jerk_through({curve.t.data(), count}, {curve.s.data(), count}, {curve.v.data(), count},
-                         {curve.a.data(), count});
+QuinticTable<double> curve_of(std::span<const double> params) {
+    const std::span<const double> t = list_at<"reference.t">(params), s = list_at<column>(params);
+    QuinticTable<double> curve{{t.begin(), t.end()}, {s.begin(), s.end()}, {}, {}};
+    move_with_minimum_jerk(curve);
+    return curve;
 }
 
 void set_table(std::span<const double> params, Reference<double>& reference) {
-    while (reference.knots < max_knots && !std::isnan(at<"reference.t">(params, std::size_t(reference.knots))))
-        ++reference.knots;
-    reference.table = std::make_shared<std::array<QuinticTable<double>, 3>>();
-    auto& [x, y, z] = *reference.table;
-    set_curve<"reference.x">(params, reference.knots, x);
-    set_curve<"reference.y">(params, reference.knots, y);
-    set_curve<"reference.z">(params, reference.knots, z);
-    reference.start = x.t[0];
-    reference.duration = x.t[std::size_t(reference.knots) - 1] - reference.start;
+    reference.table = std::make_shared<std::array<QuinticTable<double>, 3>>(
+        std::array{curve_of<"reference.x">(params), curve_of<"reference.y">(params), curve_of<"reference.z">(params)});
+    const AlignedVector<double>& t = (*reference.table)[0].t;
+    reference.knots = static_cast<int>(t.size());
+    reference.start = t.front();
+    reference.duration = t.back() - t.front();
 }
 
 void set_force_profile(std::span<const double> params, Reference<double>& reference) {

@@ -98,20 +98,16 @@ Sinusoid<double> sinusoid_of(std::span<const double> params) {
     return {at<section + ".amplitude">(params), at<section + ".frequency">(params), at<section + ".phase">(params)};
 }
 
+template <Name path>
+AlignedVector<double> numbers_of(std::span<const double> params) {
+    const std::span<const double> numbers = list_at<path>(params);
+    return {numbers.begin(), numbers.end()};
+}
+
 QuinticTable<double> table_of(std::span<const double> params) {
-    QuinticTable<double> table;
-    for (int i = 0; i < max_knots; ++i) {
-        const auto item = static_cast<std::size_t>(i);
-        table.t[i] = at<"wall.motion.t">(params, item);
-        table.s[i] = at<"wall.motion.s">(params, item);
-        table.v[i] = at<"wall.motion.v">(params, item);
-        table.a[i] = at<"wall.motion.a">(params, item);
-        if (!std::isnan(table.t[i])) table.knots = i + 1;
-    }
-    const auto count = static_cast<std::size_t>(table.knots);
-    if (count > 0 && std::isnan(table.v[0]))
-        minimum_jerk_through({table.t.data(), count}, {table.s.data(), count}, {table.v.data(), count},
-                             {table.a.data(), count});
+    QuinticTable<double> table{numbers_of<"wall.motion.t">(params), numbers_of<"wall.motion.s">(params),
+                               numbers_of<"wall.motion.v">(params), numbers_of<"wall.motion.a">(params)};
+    if (table.v.empty()) move_with_minimum_jerk(table);
     return table;
 }
 

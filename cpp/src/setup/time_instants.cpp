@@ -19,7 +19,7 @@ template <class W, class Visit>
 void each_jump_of_wall(W& wall, Visit visit) {
     if (wall.motion != Motion::table) return;
     QuinticTable<double>& table = *wall.table;
-    for (const int end : {0, table.knots - 1})
+    for (const int end : {std::size_t{0}, table.t.size() - 1})
         if (table.v[end] != 0) visit(table.t[end]);
 }
 
@@ -37,6 +37,12 @@ auto earliest_after(double t, double& next) {
     };
 }
 
+// Of instants that increase.
+double first_after(double t, std::span<const double> instants) {
+    const auto found = std::ranges::upper_bound(instants, t);
+    return found == instants.end() ? infinite : *found;
+}
+
 }  // namespace
 
 double next_knot(const Wall<double>& wall, double t) {
@@ -46,8 +52,7 @@ double next_knot(const Wall<double>& wall, double t) {
         consider(wall.ramp.start);
         consider(wall.ramp.start + wall.ramp.duration);
     }
-    if (wall.motion == Motion::table)
-        for (int i = 0; i < wall.table->knots; ++i) consider(wall.table->t[i]);
+    if (wall.motion == Motion::table) next = std::min(next, first_after(t, wall.table->t));
     return next;
 }
 
@@ -55,7 +60,7 @@ double next_knot(const Reference<double>& reference, double t) {
     double next = infinite;
     const auto consider = earliest_after(t, next);
     if (is_moving(reference.path)) consider(reference.start), consider(reference.end);
-    for (int i = 0; i < reference.knots; ++i) consider((*reference.table)[0].t[std::size_t(i)]);
+    if (reference.path == Path::table) next = std::min(next, first_after(t, (*reference.table)[0].t));
     if (reference.force_profile == ForceProfile::step || reference.force_profile == ForceProfile::ramp)
         consider(reference.force_start), consider(reference.force_start + reference.force_duration);
     return next;

@@ -198,9 +198,10 @@ void check_series(const Setup& setup, ProblemList& problem_list) {
 }
 
 void check_motion_table(std::span<const double> params, ProblemList& problem_list) {
-    const bool is_derived = length_of<"wall.motion.v">(params) == 0 && length_of<"wall.motion.a">(params) == 0;
+    const bool is_derived = list_at<"wall.motion.v">(params).empty() && list_at<"wall.motion.a">(params).empty();
     if (is_derived)
-        return check_table<"wall.motion.t", "wall.motion.s">(params, "give a position at every instant", problem_list);
+        return check_table<"wall.motion.t", "wall.motion.s">(
+            params, "give a position at every instant, or a file with both", problem_list);
     check_table<"wall.motion.t", "wall.motion.s", "wall.motion.v", "wall.motion.a">(
         params, "give position, velocity and acceleration at every instant, or the position alone", problem_list);
 }

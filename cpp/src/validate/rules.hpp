@@ -37,16 +37,9 @@ void check_direction(std::span<const double> params, ProblemList& problem_list) 
         });
 }
 
-template <Name path>
-std::size_t length_of(std::span<const double> params) {
-    std::size_t length = 0;
-    while (length < max_knots && !std::isnan(at<path>(params, length))) ++length;
-    return length;
-}
-
 template <Name column, Name t>
 void check_length(std::span<const double> params, const char* hint, ProblemList& problem_list) {
-    const std::size_t length = length_of<column>(params), knots = length_of<t>(params);
+    const std::size_t length = list_at<column>(params).size(), knots = list_at<t>(params).size();
     if (length != knots)
         problem_list.add([&] {
             return Problem{.code = "scenario.table",
@@ -61,18 +54,25 @@ void check_length(std::span<const double> params, const char* hint, ProblemList&
 // The lists of a table must have the same length, and its instants must increase.
 template <Name t, Name... columns>
 void check_table(std::span<const double> params, const char* hint, ProblemList& problem_list) {
+    const std::span<const double> instants = list_at<t>(params);
+    if (instants.empty())
+        return problem_list.add([&] {
+            return Problem{.code = "scenario.missing_key",
+                           .path = std::string(t),
+                           .message = "this must be given",
+                           .allowed = "a list of " + list_sizes(known_key(t)) + " numbers, s",
+                           .hint = hint};
+        });
     (check_length<columns, t>(params, hint, problem_list), ...);
-    for (std::size_t i = 1; i < length_of<t>(params); ++i) {
-        const double before = at<t>(params, i - 1), here = at<t>(params, i);
-        if (!(before < here))
+    for (std::size_t i = 1; i < instants.size(); ++i)
+        if (!(instants[i - 1] < instants[i]))
             problem_list.add([&] {
                 return Problem{.code = "scenario.table",
                                .path = std::string(t) + "[" + std::to_string(i) + "]",
                                .message = "the instants of a table must increase",
-                               .got = shortest(here) + " after " + shortest(before),
+                               .got = shortest(instants[i]) + " after " + shortest(instants[i - 1]),
                                .allowed = "more than the one before"};
             });
-    }
 }
 
 // Rules of the controller and its reference: those of the keys alone, and those of the Setup.

@@ -85,6 +85,12 @@ void check_number(const Key& key, double value, std::size_t item, std::size_t co
 }
 
 void check_numbers(const Key& key, std::span<const double> params, ProblemList& problem_list) {
+    if (key.any_length && params.size() > param_count())
+        if (const std::span<const double> numbers = list_at(params, key); numbers.size() > key.size) {
+            for (std::size_t i = 0; i < numbers.size(); ++i)
+                check_number(key, numbers[i], i, numbers.size(), problem_list);
+            return;
+        }
     const std::size_t count = expected_count(key, params);
     std::size_t absent = 0;
     for (std::size_t i = 0; i < count; ++i) absent += std::isnan(params[key.offset + i]);
@@ -166,12 +172,13 @@ bool is_choice(const Key& key) {
 }
 
 void check_choices(std::span<const double> params, ProblemList& problem_list) {
-    if (params.size() != param_count())
+    if (!is_param_count(params.size()) || !has_whole_lists(params))
         return problem_list.add([&] {
-            return Problem{.code = "argument.size",
-                           .message = "wrong number of parameters",
-                           .got = std::to_string(params.size()),
-                           .allowed = std::to_string(param_count())};
+            return Problem{
+                .code = "argument.size",
+                .message = "wrong number of parameters",
+                .got = std::to_string(params.size()),
+                .allowed = std::to_string(param_count()) + ", and lists that are longer than their keys behind"};
         });
     for (const Key& key : schema())
         if (is_choice(key)) check_choice(key, params, problem_list);

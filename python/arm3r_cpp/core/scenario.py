@@ -21,7 +21,7 @@ from ..errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, cla
 from ..examples import FOLDER, is_sweep, path_of
 from .arm import Arm
 from .batch import Batch, run_batch
-from .params import param_count, places
+from .params import places
 from .run import Run
 
 if TYPE_CHECKING:
@@ -251,8 +251,13 @@ class Scenario(metaclass=Answering):
 
     @property
     def params(self) -> Floats:
-        """All numbers of the scenario: shape (param_count(),), SI units and radians; see `param_index`."""
-        params = np.empty(param_count())
+        """All numbers of the scenario: shape (param_count(),), SI units and radians; see `param_index`.
+
+        Lists of a table with more than 16 points stand behind them: index of the key's first number, length, numbers.
+        """
+        count = _native.ffi.new("size_t *")
+        _native.call(lib.arm3r_scenario_param_count, self._handle, count)
+        params = np.empty(count[0])
         _native.call(lib.arm3r_scenario_params, self._handle, _native.writable(params), params.size)
         return params
 

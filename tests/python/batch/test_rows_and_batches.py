@@ -53,7 +53,8 @@ def leaves(scenario: Any, path: str = "") -> Iterator[tuple[str, float]]:
     items = scenario.items() if isinstance(scenario, dict) else enumerate(scenario)
     for key, value in items:
         place = f"{path}[{key}]" if isinstance(scenario, list) else f"{path}.{key}".strip(".")
-        if isinstance(value, (dict, list)):
+        is_long = isinstance(value, list) and len(value) > 16  # whose numbers cannot be varied one by one
+        if isinstance(value, (dict, list)) and not is_long:
             yield from leaves(value, place)
         elif isinstance(value, float):
             yield place, value

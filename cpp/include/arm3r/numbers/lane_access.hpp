@@ -1,5 +1,9 @@
 #pragma once
-// One lane of a number: of a double, which has one, or of a pack.
+// One lane of a number: of a double, which has one, or of a pack. And arrays of such numbers.
+
+#include <cstddef>
+#include <new>
+#include <vector>
 
 #include "arm3r/numbers/pack.hpp"
 
@@ -24,5 +28,23 @@ struct Lanes<Pack<N>> {
     static bool is(const Mask& mask, int lane) { return mask[lane]; }
     static void mark(Mask& mask, int lane, bool here) { mask.set(lane, here); }
 };
+
+// Arrays on the heap, at addresses that packs of eight can be read from (README, g++ 7).
+template <class T>
+struct CacheLineAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t alignment{64};
+
+    CacheLineAllocator() = default;
+    template <class U>
+    CacheLineAllocator(const CacheLineAllocator<U>&) {}
+
+    T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
+    void deallocate(T* block, std::size_t) { ::operator delete(block, alignment); }
+    bool operator==(const CacheLineAllocator&) const { return true; }
+};
+
+template <class T>
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
 }  // namespace arm3r
