@@ -228,5 +228,5 @@ def test_numbers_of_a_long_list_cannot_be_varied_one_by_one() -> None:
 def test_what_stands_behind_the_numbers_must_be_lists(behind: list[Any]) -> None:
     place = float(arm3r.param_index("wall.motion.t[0]"))
     numbers = [place if word == "t" else word for word in behind]
-    with pytest.raises(arm3r.Arm3rError, match="wrong number of parameters|more for long tables alone"):
+    with pytest.raises(arm3r.Arm3rError, match=r"wrong number of parameters|more for long tables alone"):
         arm3r.Arm(np.concatenate([arm3r.param_defaults(), numbers]))
