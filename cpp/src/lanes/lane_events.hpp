@@ -8,6 +8,7 @@
 #include "integrate/step_limits.hpp"
 #include "integrate/stepper.hpp"
 #include "lanes/lane_run.hpp"
+#include "run/singular_passage.hpp"
 
 namespace arm3r {
 
@@ -106,6 +107,11 @@ public:
         if (in_any_lane(refused)) refuse(refused);
         if (!in_any_lane(moved_)) return false;
         dense_ = method_.dense_output(t0_, this->y_, this->h_);
+        if (in_any_lane(moved_ && ends_at_poses_)) {
+            seek_singular_poses();
+            if (!in_any_lane(moved_)) return false;
+        }
+        to_pose_ = select(moved_, T(infinite), to_pose_);
         end_step(end);
         return true;
     }
@@ -152,7 +158,8 @@ private:
         const Plant<double>& plant = setup.plant;
         set(max_step_, std::min(setup.solver.max_step, plant.has_wall ? max_wall_step(plant.wall) : infinite));
         set(max_turn_, std::min(0.25 * std::numbers::pi, fifth_root(1e5 * setup.solver.rtol)));
-        set(next_h_, infinite);
+        set(next_h_, infinite), set(to_pose_, infinite);
+        Lanes<T>::mark(ends_at_poses_, lane, setup.ends_steps_at_singular_poses());
         set(start_, setup.start), set(step_, Method::chooses_length ? infinite : setup.solver.step);
         set(whole_steps_, 0.0);
         Lanes<T>::mark(was_refused_, lane, false);
@@ -186,19 +193,20 @@ private:
     ARM3R_INLINE void choose_length(const StepEnd& end) {
         const T rest = end.t - t0_;
         if constexpr (Method::chooses_length) {
-            const T wanted = min(next_h_, max_step());
+            const T wanted = min(min(next_h_, max_step()), to_pose_);
             was_last_ = wanted >= rest - this->slack_;
             const T half_rest = 0.5 * rest;  // avoids a very short last step
             this->h_ = select(was_last_, rest, select(rest < 2.0 * wanted, half_rest, wanted));
         } else {
-            was_last_ = true;
-            this->h_ = rest;
+            was_last_ = to_pose_ >= rest;
+            this->h_ = min(rest, to_pose_);
         }
+        was_cut_ = was_last_ || this->h_ == to_pose_;
     }
 
     ARM3R_INLINE void choose_next_length() {
         const T factor = method_.factor(error_);
-        const T whole = max(this->h_, select(was_last_, next_h_, T(0.0)));
+        const T whole = max(this->h_, select(was_cut_, next_h_, T(0.0)));
         next_h_ = select(moved_, T(whole * select(was_refused_, min(factor, T(1.0)), factor)), next_h_);
         was_refused_ = was_refused_ && !moved_;
         const Mask at_jump = moved_ && ends_at_jump_;
@@ -293,6 +301,28 @@ private:
     [[gnu::noinline]] void stop_collapsed(const Mask& here) {
         this->stop_lanes(here && had_finite_end_, ARM3R_RUN_STEP_COLLAPSE);
         this->stop_lanes(here && !had_finite_end_, ARM3R_RUN_DIVERGED);
+    }
+
+    // ---- singular poses
+
+    // A step that passes one ends just before it instead, in a second try.
+    ARM3R_INLINE void seek_singular_poses() {
+        const auto may_pass =
+            may_pass_singular_pose(this->plant_.controller.model, this->p_, this->y_, method_.end(), this->h_);
+        const Mask here = moved_ && ends_at_poses_ && may_pass;
+        if (in_any_lane(here)) search_poses(here);
+    }
+    [[gnu::noinline]] void search_poses(const Mask& here) {
+        constexpr double at_end = 1 - 1e-6;  // of the step
+        for (int lane = 0; lane < Base::lanes; ++lane) {
+            if (!Lanes<T>::is(here, lane)) continue;
+            const std::optional<double> close =
+                just_before_passage(this->setup(lane).plant.controller.model, this->dense_output(*this, lane));
+            if (!close || *close > at_end) continue;
+            Lanes<T>::set(to_pose_, lane, *close * this->h(lane));
+            Lanes<T>::set(this->rejected_, lane, Lanes<T>::get(this->rejected_, lane) + 1);
+            Lanes<T>::mark(moved_, lane, false);
+        }
     }
 
     // ---- the end of a step
@@ -514,12 +544,14 @@ private:
     T knot_{infinite}, last_knot_{infinite}, before_knot_{infinite}, jump_{infinite};  // s
 
     T next_h_{0.0}, error_{0.0};  // s; in units of the tolerance
+    T to_pose_{infinite};         // s, to a singular pose that the step tried before has passed
+    Mask ends_at_poses_ = false;
     Mask was_refused_ = false, had_finite_end_ = true;
 
     // Of the last step.
     T t0_{0.0}, theta_{1.0};  // theta_: its end within the dense output
     Interpolant<T, N> dense_{};
-    Mask moved_ = false, was_last_ = false, crosses_ = false;
+    Mask moved_ = false, was_last_ = false, was_cut_ = false, crosses_ = false;
     Mask continues_ = false, ends_at_jump_ = false, may_jump_ = false;
     std::array<ContactMode, Base::lanes> next_mode_{};
 };

@@ -154,9 +154,10 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
     if (is_running() && options_.judges && !setup_.digital.sampling.on)
         if (const std::optional<std::string> passed = singular_pose(setup_, run_, angles(y));
             passed && !known_cause(setup_))
-            run_.warnings.push_back(*passed +
-                                    "; steps may miss torques that last for microseconds there: compare with a "
-                                    "small solver.max_step");
+            run_.warnings.push_back(*passed + (setup_.ends_steps_at_singular_poses()
+                                                   ? ""
+                                                   : "; steps may miss torques that last for microseconds there: "
+                                                     "compare with a small solver.max_step"));
     if (options_.rows && options_.judges) run_.at_end = end_values(y, theta);
     if (is_running() && options_.judges) {
         for (const auto& warning : {missed_contact(setup_, run_, contacts_.contacts),

@@ -294,6 +294,12 @@ Setup::Setup(std::span<const double> params) : Setup() {
     set_jumps_on_clock(*this);
 }
 
+bool Setup::ends_steps_at_singular_poses() const {
+    const Vec3<double>& limit = plant.arm.torque_limit;
+    const bool is_limited = std::isfinite(limit[0]) && std::isfinite(limit[1]) && std::isfinite(limit[2]);
+    return inverts_jacobian(plant.controller) && is_limited && !solver.is_on_grid();
+}
+
 void Setup::set_start_and_contact(std::span<const double> params) {
     q = to_slide(params, vector_at<"initial.q">(params));
     qd = to_slide(params, vector_at<"initial.qd">(params));

@@ -44,6 +44,10 @@ struct Setup {
     bool observes() const { return digital.sampling.on ? digital.observer.on : plant.observer.on; }
     bool has_performance() const { return controller().type != ControllerType::none && metrics.want_performance(); }
 
+    // Whether steps end where the arm passes a singular pose: a continuous law that inverts the Jacobian has a peak of its
+    // torque there, of limited height, which may be shorter than a step (5.2).
+    bool ends_steps_at_singular_poses() const;
+
     // From parameters whose choices are in order; what their numbers must keep to is said by validate() (validate.hpp),
     // of which check_setup() is the last part.
     explicit Setup(std::span<const double> params);

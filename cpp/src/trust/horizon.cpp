@@ -101,11 +101,11 @@ std::string text_of(const SingularPassage& passage) {
            "tells";
 }
 
-// Torques that are held from sample to sample have no peak between them.
+// Torques that are held from sample to sample have no peak between them, and steps that end at singular poses see it.
 Comparable limit_of(const Setup& setup, const Run& own, std::span<const Run> others) {
     Comparable limit;
     const auto pass = [&](const Run& run) {
-        if (run.singular_passage && !setup.digital.sampling.on)
+        if (run.singular_passage && !setup.digital.sampling.on && !setup.ends_steps_at_singular_poses())
             limit.include(run.singular_passage->t, text_of(*run.singular_passage));
     };
     pass(own);

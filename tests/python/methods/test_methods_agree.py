@@ -80,14 +80,18 @@ def worst_gap(
 def disagreements(number: int, longest: float, methods: tuple[str, ...]) -> list[str]:
     """What is wrong in a scenario, one text for each method that leaves the band.
 
-    Behind a singular pose that a law inverts nothing compares: torques last for microseconds there, which steps of any
-    tolerance may pass over, as the run says. A contact that chatters adds up the errors of a thousand steps, and no
-    single disturbance tells how much that is: what a hundredth of the tolerance takes away is such an error.
+    Behind a singular pose that a law inverts, steps that do not end there may pass over torques of microseconds at any
+    tolerance, as the run says: those of rk4 on its grid, and all where the torques have no limit. A contact that
+    chatters adds up the errors of a thousand steps, and no single disturbance tells how much that is: what a hundredth
+    of the tolerance takes away is such an error.
     """
     scenario = random_scenario(np.random.default_rng([SEED, number]), longest=longest)
     band, found = band_of(scenario, number), []
-    if band and any("passed a singular pose" in line for line in band.run.warnings):
+    passed = [line for line in band.run.warnings if "passed a singular pose" in line] if band else []
+    if any("may miss" in line for line in passed):
         return []
+    if passed:
+        methods = tuple(method for method in methods if not method.startswith("rk4"))
     for method in methods if band and band.growth < UNSTABLE else []:
         gap = worst_gap(scenario, band, method)
         if gap and gap.ratio > 1:  # two disturbances, and three steps, may miss what others tell
