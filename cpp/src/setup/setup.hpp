@@ -24,9 +24,7 @@ struct Solver {
     // Whether all steps have one length, wherever contact or a formula of time changes.
     bool is_on_grid() const { return method == SolverMethod::rk4 && events == StepEvents::grid; }
     // Whether a batch has runs by this method side by side.
-    bool runs_in_lanes() const {
-        return method == SolverMethod::dopri5 || method == SolverMethod::taylor || is_on_grid();
-    }
+    bool runs_in_lanes() const { return method != SolverMethod::rodas4 && method != SolverMethod::automatic; }
 };
 
 struct Setup {

@@ -1,0 +1,15 @@
+#include "batch/lane_group.hpp"
+#include "batch/lane_group_template.hpp"
+#include "integrate/fixed_steps.hpp"
+#include "lanes/lane_events.hpp"
+
+namespace arm3r {
+
+template <class T>
+using ControlledLaneLocatedRk4 = LaneEvents<T, full_size, FixedSteps<T, full_size>>;
+
+void run_lanes_located_controlled(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
+    run_lane_groups<ControlledLaneLocatedRk4>(lanes, worker, first, run);
+}
+
+}  // namespace arm3r
