@@ -474,6 +474,7 @@ BIG = (
 SLOW = LONG.replace("600", "60000").replace("shard: 10\n", "shard: 2000\n")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.timed
 @pytest.mark.parametrize(("text", "seconds"), [(BIG, 2.5), (SLOW, 0.9)], ids=["while rows are written", "statistics"])
 def test_a_big_shard_does_not_hold_an_interrupt(long: Any, tmp_path: Path, text: str, seconds: float) -> None:

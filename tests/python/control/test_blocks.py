@@ -402,6 +402,7 @@ def test_the_command_obeys_all_options_of_run(command: Any, tmp_path: Path) -> N
     assert sorted(path.name for path in (tmp_path / "both").glob("*.csv")) == ["other.csv", "s.csv"]
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("words, code, message", [
     (["s.yaml", "--controller", "none.m"], 2, "none.m: this file cannot be read: No such file"),
     (["s.yaml", "--controller"], 2, "--controller needs a value"),

@@ -121,7 +121,7 @@ def simulated(setting: str, until: float | None) -> Run:
     return run_of(varied(known, stop=until or known["stop"]), rtol=1e-8 if loose else 1e-10, atol=atol)
 
 
-@pytest.mark.sample(15)
+@pytest.mark.sample(8)
 @in_both_conventions
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.setting)
 def test_the_whole_run_is_that_of_another_simulation(case: Case, convention: str) -> None:

@@ -40,6 +40,7 @@ def pictures(cells: list[tuple[str, int]]) -> tuple[list[int], list[str]]:
     return [sum("image/png" in part for part in outputs) for outputs in data], values
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("cells", [PLAIN, PYPLOT], ids=["without pyplot", "with pyplot"])
 def test_each_cell_shows_its_figures_once(cells: Any) -> None:
     counts, values = pictures(cells)

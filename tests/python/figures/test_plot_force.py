@@ -449,6 +449,7 @@ def test_nothing_is_cut_off_or_hidden_in_a_comparison(
     assert crowded(arm3r.plot.compare(runs, width=width)) == []
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("which", ["hybrid", "bounce", "pushed"])
 def test_in_a_column_no_legend_takes_half_a_panel(which: str, request: pytest.FixtureRequest) -> None:
     run = request.getfixturevalue(which)
@@ -708,6 +709,7 @@ def test_runs_of_one_name_are_called_as_their_files(files: Path) -> None:
     assert "<!-- other/hybrid -->" in drawn(files / "two.svg")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_the_same_run_is_the_same_bytes(files: Path, suffix: str) -> None:
     for name in ("one", "two"):

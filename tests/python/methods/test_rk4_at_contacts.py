@@ -49,6 +49,7 @@ def order(law: str, contact: str, size: str, events: str = "grid", runs: int = 2
     return float(np.log(error(1e-3) / error(1e-3 / 16)) / np.log(16))
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("law", "contact", "size", "jumps"),
     [

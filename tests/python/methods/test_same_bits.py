@@ -108,6 +108,7 @@ def test_python_gives_the_same(files: list[Path], expected: dict[str, str]) -> N
         assert summary["hash"] == expected[summary["name"]], file
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("hidden", ["-AVX512F,-AVX512VL", "-AVX2,-FMA,-AVX512F", "-AVX,-AVX2,-FMA,-AVX512F,-SSE4_2"])
 def test_hidden_processor_features_change_nothing(
     executable: Path, files: list[Path], expected: dict[str, str], hidden: str

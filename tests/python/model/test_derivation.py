@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
@@ -12,8 +13,10 @@ from conftest import script
 from page_runner import blocks_of
 from random_scenarios import sample_seed
 
-pytest.importorskip("sympy")
 ARMS = 20
+
+# Importing sympy takes seconds, in each process that collects tests.
+pytestmark = pytest.mark.skipif(find_spec("sympy") is None, reason="sympy is not installed")
 
 
 @pytest.fixture(scope="module")
@@ -98,6 +101,7 @@ def test_the_page_is_what_the_script_writes(derivation: ModuleType) -> None:
     assert derivation.PAGE.read_text() == derivation.page(), "`python tools/derivation.py` writes the page"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("convention", ["simscape", "slide"])
 def test_every_formula_is_the_librarys(derivation: ModuleType, convention: str) -> None:
     """Evaluated from the top of the page to its foot, at random arms and states."""

@@ -45,7 +45,7 @@ def test_a_notebook_is_stored_without_outputs(path: Path) -> None:
     assert path.read_text() == strip_notebooks.stripped(path.read_text()), f"python tools/strip_notebooks.py {path}"
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.needs("notebooks")
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=is_shown)
 def test_a_notebook_runs_and_prints_what_its_text_says(path: Path) -> None:

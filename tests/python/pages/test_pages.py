@@ -49,7 +49,7 @@ def run_page(page: Path, folder: Path, *options: str, **environment: str) -> Non
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("page", pages_with(marked=False), ids=is_shown)
 def test_a_page_runs_in_an_empty_folder(page: Path, tmp_path: Path) -> None:
     if page.name == "python.md":

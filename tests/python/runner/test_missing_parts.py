@@ -45,6 +45,7 @@ def test_a_part_that_is_named_must_be_there(pytest_with) -> None:
     assert "ARM3R_NEED names a part that is missing; get moon: `make moon`" in output
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("name", "hint"), [("mon", "did you mean moon?"), ("xxxx", "the parts are page, wasm,")])
 def test_an_unknown_name_is_an_error(pytest_with, name: str, hint: str) -> None:
     code, output = pytest_with(name)

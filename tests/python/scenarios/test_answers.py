@@ -302,6 +302,7 @@ def log(path: Path, time: str = "time", separator: str = ",", extra: str = "") -
     return path
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("time", "separator"), [("time", ","), ("t", ";"), ("Time [s]", "\t"), ("t (s)", ",")])
 def test_a_measurement_is_drawn_beside_a_run(
     folder: Path, time: str, separator: str, monkeypatch: pytest.MonkeyPatch
@@ -376,7 +377,7 @@ def test_no_help_points_to_a_file_that_is_not_installed(scripts: Path, tmp_path:
         assert ".md" not in (thing.__doc__ or "")
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("use", "is_said"),
     [

@@ -36,7 +36,7 @@ def judged(tmp_path: Path):
     return call
 
 
-@pytest.mark.sample(12)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("name", sorted(FILES))
 def test_a_right_program_is_right(name: str, judged) -> None:
     need(name)
@@ -44,7 +44,7 @@ def test_a_right_program_is_right(name: str, judged) -> None:
     assert verdict.ok, str(verdict)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", sorted(FILES))
 def test_a_mistake_in_it_is_found(name: str, judged) -> None:
     need(name)

@@ -94,6 +94,7 @@ def gravity_torque(q):
 """
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("link2", "link3"), [("a2 / 2", "1 / 3"), ("1 / 3", "a3 / 2"), ("a2 / 2", "1 / 4 * a2"), ("a2 / 2", "g / 2")]
 )
@@ -486,6 +487,7 @@ UNJUDGED = {
 }
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("body", UNJUDGED)
 def test_what_runs_out_is_no_verdict(written: Any, capsys: Any, body: str, monkeypatch: Any) -> None:
     monkeypatch.setattr("arm3r_cpp.user_functions.python_process.ANSWER_TIME", 1.0)
@@ -596,6 +598,7 @@ UNREAD = {
 }
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("line", UNREAD)
 def test_what_is_not_read_is_no_mistake(written: Any, command: Any, line: str) -> None:
     """Its language may take it: the line that is not read is named, and nothing is called wrong."""

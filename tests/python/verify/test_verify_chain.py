@@ -423,6 +423,7 @@ UPRIGHT = """<robot name="upright"><link name="base"/>
 """
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("g", ["9.80665", "9.81", "9.8", "10", "g", "9.7"])
 def test_what_the_file_does_not_say_of_gravity_is_found(g: str, written: Any, command: Any) -> None:
     """A number that people use is taken and said; another one is wrong, until it is given."""

@@ -67,7 +67,7 @@ def reason(error: str, zero: list[str]) -> set[frozenset[str]]:
     return set()
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("added", ADDED, ids=lambda added: f"{Path(added[0]).stem} + {added[3]}")
 def test_why_a_test_at_special_rates_misses_a_mistake(added: tuple[str, ...], tmp_path: Path) -> None:
     file, right, wrong, error = added

@@ -173,6 +173,7 @@ def test_no_edit_of_a_function_in_memory_runs_in_this_process(function: Any, mon
     assert state() == before
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("make", [PythonProcess, PythonInMemory])
 def test_edits_that_crash_the_interpreter_do_not_end_the_search(make: Any) -> None:
     """Some do, of a right interpreter; each costs a process and its seconds."""

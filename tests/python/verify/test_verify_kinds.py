@@ -72,7 +72,7 @@ MISTAKES = {
 }
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("function", MISTAKES)
 def test_dynamics_are_judged(function: str, written: Any) -> None:
     path = written("dynamics.py", DYNAMICS)
@@ -96,6 +96,7 @@ READ = {
 }
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("function", READ)
 def test_terms_of_the_dynamics_are_read(function: str, written: Any) -> None:
     old, new, words = READ[function]
@@ -390,6 +391,7 @@ def jacobian(q):
 """
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("rates", ["[1, 0, 0], [0, 1, 1], [0, 0, 0]", "[0, 0, 0], [0, 1, 1], [1, 0, 0]"])
 def test_an_analytical_jacobian_is_called_so(rates: str, written: Any) -> None:
     """The angular rows are the rates of yaw, q1, pitch, q2 + q3, and roll, which stays zero; in either order."""

@@ -51,7 +51,7 @@ def by_verify(program: MatlabProgram) -> Any:
     return np.swapaxes(values, 1, values.ndim - 1).reshape(len(STATES), -1)
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(4)
 @pytest.mark.needs("octave")
 @pytest.mark.parametrize("name", [*FILES, *LISTINGS])
 def test_octave_returns_the_same(name: str, tmp_path: Path) -> None:

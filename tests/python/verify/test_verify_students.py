@@ -49,6 +49,7 @@ def test_single_mistakes_of_students(tmp_path: Path) -> None:
     assert not outcomes["missed"] and not outcomes["false"] and not outcomes["alarm"]
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("file", "right", "wrong", "words"),
     [

@@ -42,7 +42,7 @@ RIGHT = {
 }
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", RIGHT)
 def test_values_that_are_said_are_used(name: str, tmp_path: Path, command: Any) -> None:
     file, text, values = RIGHT[name]
@@ -106,6 +106,7 @@ def test_what_is_said_of_a_log_or_of_no_text_is_refused(tmp_path: Path, command:
         arm3r.verify.gravity(max, args=["q"], given={"g": 9.81})
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("options", REFUSED, ids=" ".join)
 def test_what_cannot_be_meant_is_one_line(options: tuple[str, ...], tmp_path: Path, command: Any) -> None:
     path = tmp_path / "x.py"
