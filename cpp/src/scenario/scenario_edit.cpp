@@ -5,6 +5,7 @@
 #include "base/text.hpp"
 #include "files/paths.hpp"
 #include "scenario/scenario.hpp"
+#include "scenario/table_file.hpp"
 #include "schema/schema.hpp"
 
 namespace arm3r {
@@ -149,6 +150,11 @@ void drop_others(Node& root, const std::string& choice, const std::string& word)
     }
 }
 
+// Takes away the lists that the file of a table stands for.
+void drop_lists(Node& root, const Key& file) {
+    for (const Key* column : columns_of(file)) remove(root, parse_path(column->path));
+}
+
 void apply(Document& scenario, std::string_view path, const std::string& value,
            const std::shared_ptr<const Edit>& edit) {
     const std::vector<Step> steps = parse_path(path);
@@ -165,6 +171,7 @@ void apply(Document& scenario, std::string_view path, const std::string& value,
 
     const Key* key = find_key(path);
     if (key && key->kind == Kind::choice) drop_others(scenario.root, key->path, node.text);
+    if (key && key->kind == Kind::file) drop_lists(scenario.root, *key);
 }
 
 }  // namespace

@@ -57,15 +57,6 @@ std::vector<std::string> names_in(const std::vector<Cell>& cells) {
     return names;
 }
 
-// The lists of the section in which a key of a file stands.
-std::vector<const Key*> columns_of(const Key& file) {
-    const std::string section = file.path.substr(0, file.path.size() - last_name(file.path).size());
-    std::vector<const Key*> columns;
-    for (const Key& key : schema())
-        if (key.any_length && key.path == section + last_name(key.path)) columns.push_back(&key);
-    return columns;
-}
-
 // Reads one file into lists.
 class TableReader {
 public:
@@ -230,6 +221,14 @@ void refuse_lists_beside(const Key& key, Node& section, const std::string& scena
 }
 
 }  // namespace
+
+std::vector<const Key*> columns_of(const Key& file) {
+    const std::string section = file.path.substr(0, file.path.size() - last_name(file.path).size());
+    std::vector<const Key*> columns;
+    for (const Key& key : schema())
+        if (key.any_length && key.path == section + last_name(key.path)) columns.push_back(&key);
+    return columns;
+}
 
 Node with_table_files(Node root, const std::string& scenario_file, std::vector<Problem>& problems) {
     for (const Key& key : schema()) {

@@ -349,7 +349,7 @@ def axis_of(base: Scenario, key: str, value: Any) -> Axis:
         raise UsageError(f"{key}: its values do not have one shape: {error}", code="usage") from error
     if array.dtype.kind == "U" or (array.dtype.kind == "b" and kind == "flag"):
         return Axis(key, [], array[..., np.newaxis])
-    if kind in ("choice", "flag"):
+    if kind in _WORDS:
         raise UsageError(f"{key}: {_WORDS[kind]} are needed, got an array of {array.dtype}", code="usage")
     array = _native.reals(value, key)
     if np.isnan(array).any():
@@ -364,7 +364,7 @@ def axis_of(base: Scenario, key: str, value: Any) -> Axis:
     return Axis(key, indices, array + 0.0)
 
 
-_WORDS = {"choice": "words", "flag": "true or false"}
+_WORDS = {"choice": "words", "flag": "true or false", "file": "names of files"}
 
 
 def same_places(key: str, other: str) -> list[str]:

@@ -20,6 +20,7 @@ from ..user_functions.c_symbol import text_of
 from ..user_functions.documents import MATLAB, code_of
 from ..user_functions.expressions import Node
 from ..user_functions.matlab.program import MatlabProgram
+from ..user_functions.matlab.script import SymbolicScript, program_of
 from ..user_functions.octave.installation import installed
 from ..user_functions.octave.process import OctaveProcess
 from ..user_functions.octave.source import constants_of, headers_of
@@ -94,7 +95,8 @@ class Formula:
     output: int | None = None
     """Which of several results is meant, from 0; None: there is one."""
     engine: str = ""
-    """Which program evaluates it in the place of this package, and what this package does not read."""
+    """Which program evaluates it in the place of this package, and what this package does not read; or which variable
+    of a script it is."""
     as_columns: bool = False
     """Whether vectors are given with two axes, (n, 1)."""
     given: dict[str, Any] = field(default_factory=dict)
@@ -333,7 +335,7 @@ def from_text(
         UsageError: the text cannot be read, or has no such function.
     """
     if file.endswith(MATLAB):
-        return _of_matlab(MatlabProgram(text, file, function, folder))
+        return _of_matlab(program_of(text, file, function, folder, lambda names: _likely_variable(names, kind)))
     source = PythonText(text, file)
     name = _with_object(source, file, function or likely_function(source, file, kind))
     program = (sandbox or PythonInMemory)(text, name, file)
@@ -359,6 +361,12 @@ def from_text(
     )
 
 
+def _likely_variable(names: list[str], kind: str | None) -> str:
+    """The last variable of a script that is named as a formula is, of this kind if one is given; else the last one."""
+    named = [name for name in names if kind_of_name(name) and kind in (None, kind_of_name(name))]
+    return (named or names)[-1]
+
+
 def _of_matlab(program: MatlabProgram) -> Formula:
     return Formula(
         program.file,
@@ -374,6 +382,7 @@ def _of_matlab(program: MatlabProgram) -> Formula:
         program.comments(),
         program.outputs if len(program.outputs) > 1 else [],
         program.optional,
+        engine=f"its variable {program.function}" if isinstance(program, SymbolicScript) else "",
     )
 
 

@@ -230,3 +230,14 @@ def test_what_stands_behind_the_numbers_must_be_lists(behind: list[Any]) -> None
     numbers = [place if word == "t" else word for word in behind]
     with pytest.raises(arm3r.Arm3rError, match=r"wrong number of parameters|more for long tables alone"):
         arm3r.Arm(np.concatenate([arm3r.param_defaults(), numbers]))
+
+
+def test_a_batch_varies_the_file(tmp_path: Path) -> None:
+    for name, count in (("a", 20), ("b", 60)):
+        np.savetxt(tmp_path / f"{name}.csv", np.transpose(points(count)), delimiter=",", fmt="%.17g")
+    scenario = arm3r.Scenario(PRESSED % ("file: a.csv", METHODS[0]), file=str(tmp_path / "wall.yaml"))
+    for base in (scenario, arm3r.Scenario(scenario.to_yaml(), file=str(tmp_path / "wall.yaml"))):
+        peaks = base.batch({"wall.motion.file": ["a.csv", "b.csv"]})["peak_force"]
+        assert peaks.tolist() == [pressed(count).run().summary["peak_force"] for count in (20, 60)]
+    with pytest.raises(arm3r.UsageError, match=r"wall.motion.file: names of files are needed"):
+        scenario.batch({"wall.motion.file": [1.0, 2.0]})

@@ -248,7 +248,7 @@ def test_files_of_other_editors_are_read(encoding: str, end: str, tmp_path: Path
 REFUSED = {
     "q = [1 2 3];\nG = q*2;\n": ":1:1: this is a script: what is judged is a function of the joint angles",
     "classdef Arm\nmethods\nfunction G = gravity(o, q)\nend\nend\nend\n": "`classdef` is not read; write the method",
-    "function G = gravity(q)\nsyms a b\nG = q;\nend\n": "`syms` is not read; turn the expressions into a function",
+    "function G = gravity(q)\nsyms a b\nG = q;\nend\n": "`syms` is not read; write the symbols at the head of a script",
     "function G = gravity(q)\ng = 'open;\nG = q;\nend\n": ':2:5: "\'" begins a text that does not end in its line',
     "function G = gravity(q)\nfor i = 1:3\nG = q;\n": ":2:1: `for` is not closed by `end`: line 4 has",
     "function G = gravity(q)\narguments\n q\n": "the block `arguments` is not closed",

@@ -87,6 +87,9 @@ class MatlabProgram:
     a structure, `Structures`, `Pages` or a `Handle`.
     """
 
+    of_program: tuple[str, ...] = ("exist", "feval", "cellfun", "arrayfun")
+    """Functions that look at variables or call functions, each a method."""
+
     def __init__(
         self,
         text: str,
@@ -94,14 +97,17 @@ class MatlabProgram:
         function: str | None = None,
         folder: str | None = None,
         beside: dict[str, MatlabProgram | None] | None = None,
+        *,
+        functions: dict[str, Function] | None = None,
     ) -> None:
         """
         Args:
             folder: where functions in files of their own are looked for; None: nowhere.
             beside: those that are found there by their names, the same for all files of a folder.
+            functions: those of the text, where it has been read.
         """
         self.text, self.file, self.folder = text, file, folder
-        self.functions = read(text, file)
+        self.functions = read(text, file) if functions is None else functions
         if function is not None and function not in self.functions:
             raise UsageError(f"{file}: there is no function {function}; it has {', '.join(self.functions)}")
         self.function = function or next(iter(self.functions))
@@ -706,7 +712,7 @@ class MatlabProgram:
         name = node.word
         if name in variables:
             return self._step(variables[name], node, variables)
-        if not isinstance(node, Element) and name in _OF_PROGRAM:
+        if not isinstance(node, Element) and name in self.of_program:
             return getattr(self, f"_{name}")(node, variables)
         if not isinstance(node, Element) and (name in self.functions or name in FUNCTIONS):
             return self._result(name, self._values(node.parts, variables), variables)
@@ -864,9 +870,6 @@ class MatlabProgram:
         return stacked(found, 1 if is_column else 2) if found else _NOTHING
 
     _arrayfun = _cellfun
-
-
-_OF_PROGRAM = ("exist", "feval", "cellfun", "arrayfun")
 
 
 def _value_given(given: Any) -> Any:

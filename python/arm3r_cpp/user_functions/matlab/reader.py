@@ -47,11 +47,9 @@ from .tokens import KNOWN, Token, tokens_of
 _REMEDIES = {
     "classdef": "write the method as a function of the joint angles",
     "load": "write the numbers into the file",
-    "syms": "turn the expressions into a function by matlabFunction(..., 'File', 'name')",
+    "syms": "write the symbols at the head of a script, or make a function by matlabFunction(..., 'File', 'name')",
 }
-_REFUSED = frozenset(
-    ["parfor", "spmd", "classdef", "import", "load", "save", "eval", "evalin", "assignin", "syms", "sym"]
-)
+_REFUSED = frozenset(["parfor", "spmd", "classdef", "import", "load", "save", "eval", "evalin", "assignin", "syms"])
 _LEAVES = frozenset(["break", "continue", "return"])
 _BLOCKS = frozenset(["for", "while", "if", "switch", "try"])
 _STOPS = frozenset(["end", "else", "elseif", "case", "otherwise", "catch", "function"])
@@ -60,7 +58,9 @@ _KEYWORDS = _REFUSED | _LEAVES | _BLOCKS | _STOPS | {"persistent", "global"}
 _SHOWING = "disp display fprintf printf plot plot3 figure close hold grid axis legend title view drawnow fflush"
 _SETTING = "clc clear clearvars format more warning tic toc pause beep rng addpath rmpath pkg mlock"
 _CHECKING = "narginchk nargoutchk validateattributes"
-COMMANDS = frozenset(f"{_SHOWING} {_SETTING} {_CHECKING} xlabel ylabel zlabel".split())
+_OF_SYMBOLS = "pretty latex ccode fortran assume assumeAlso digits matlabFunction"
+COMMANDS = frozenset(f"{_SHOWING} {_SETTING} {_CHECKING} {_OF_SYMBOLS} xlabel ylabel zlabel".split())
+_ASSUMPTIONS = frozenset(["real", "positive", "integer", "rational", "clear"])
 MAX_CHARACTERS = 2_000_000
 MAX_DEPTH = 150
 
@@ -108,6 +108,10 @@ class _Reader:
         self.depth = 0
         self.has_ends = _functions_have_ends(self.tokens)
         self.found: dict[str, Function] = {}
+        self.symbols: list[str] | None = None
+        """Of a symbolic script, while it is read."""
+        self.written: set[str] = set()
+        """The variables that it writes into files by matlabFunction."""
 
     def peek(self, ahead: int = 0) -> Token:
         return self.tokens[min(self.at + ahead, len(self.tokens) - 1)]
@@ -153,11 +157,13 @@ class _Reader:
     def functions(self) -> dict[str, Function]:
         self.skip_separators()
         first = self.peek()
-        if first.text in _REFUSED:
+        if self.is_symbolic():
+            self.script()
+        elif first.text in _REFUSED:
             raise self.not_read(first)
         while self.peek().kind != "end" and not self.is_at_function():
             self.next()  # a script, which may stand before its functions
-        if first.kind != "end" and self.peek().kind == "end":
+        if first.kind != "end" and self.peek().kind == "end" and not self.found:
             raise self.refusal(
                 "this is a script: what is judged is a function of the joint angles, `function J = jacobian(q)`", first
             )
@@ -169,6 +175,52 @@ class _Reader:
         if not self.found:
             raise UnjudgedError(f"{self.file}:1: there is no function in this file")
         return self.found
+
+    def is_symbolic(self) -> bool:
+        """Whether a script declares symbols before the first function."""
+        for token in self.tokens:
+            if token.text == "function" and token.kind == "name":
+                return False
+            if token.kind == "name" and token.text in ("syms", "sym"):
+                return True
+        return False
+
+    def script(self) -> None:
+        """Each variable of it becomes a function of the symbols that it is made of."""
+        self.symbols = []
+        body = [statement for statement in self.statements() if not self.makes_symbol(statement)]
+        names = dict.fromkeys(name for statement in body for name in _given_in(statement))
+        for name in sorted(names, key=self.written.__contains__):  # what is written into a file last
+            needed = _needed_for(name, body)
+            line, _ = line_and_column(self.text, needed[-1].start)
+            inputs = _symbols_in(needed, self.symbols)
+            self.found[name] = Function(name, [name], inputs, line, needed, is_script=True)
+        self.symbols = None
+
+    def declare_symbols(self) -> None:
+        """`syms q1 q2 real`"""
+        assert self.symbols is not None
+        self.next()
+        while not self.is_at_end_of_statement():
+            token = self.next()
+            if token.kind != "name" or (self.peek().text in ("(", "[") and not self.peek().spaced):
+                raise self.refusal("a symbol that is a function or a matrix, such as q1(t), is not read; "
+                                   "declare q1 and its rate dq1 as symbols of their own", token)  # fmt: skip
+            if token.text not in _ASSUMPTIONS:
+                self.symbols.append(token.text)
+
+    def makes_symbol(self, statement: Statement) -> bool:
+        """`q1 = sym('q1')`"""
+        assert self.symbols is not None
+        if not isinstance(statement, Assignment) or len(statement.targets) != 1:
+            return False
+        value, target = statement.value, statement.targets[0]
+        if not (isinstance(value, FunctionCall) and value.word == "sym" and not target.way):
+            return False
+        is_own = bool(value.parts) and isinstance(value.parts[0], Text) and value.parts[0].word == target.name
+        if is_own:
+            self.symbols.append(target.name)
+        return is_own
 
     def is_at_function(self) -> bool:
         return self.peek().text == "function" and (self.at == 0 or self.tokens[self.at - 1].kind == "newline")
@@ -220,8 +272,10 @@ class _Reader:
         found = []
         self.skip_separators()
         while self.peek().kind != "end":
-            if self.peek().text == "function" and self.has_ends:
+            if self.peek().text == "function" and self.has_ends and self.symbols is None:
                 self.function(is_nested=True)
+            elif self.peek().text == "syms" and self.symbols is not None:
+                self.declare_symbols()
             elif self.peek().kind == "name" and self.peek().text in _STOPS:
                 break
             elif self.is_command():
@@ -245,6 +299,8 @@ class _Reader:
 
     def skip_command(self) -> None:
         """`hold on`, `disp(x)`: up to the end of the statement outside of brackets."""
+        if self.peek().text == "matlabFunction" and self.peek(1).text == "(":
+            self.written.add(self.peek(2).text)
         depth = 0
         while self.peek().kind != "end" and (depth > 0 or not self.is_at_end_of_statement()):
             token = self.next()
@@ -555,3 +611,37 @@ def _functions_have_ends(tokens: list[Token]) -> bool:
             blocks += token.text in _BLOCKS or (token.text == "arguments" and begins)
             ends += token.text == "end"
     return functions > 0 and ends == blocks + functions
+
+
+def _given_in(statement: Statement) -> list[str]:
+    """The names that a statement, or one in it, gives a value, a part or a field."""
+    assignments = [one for one in statement.walk() if isinstance(one, Assignment)]
+    return [target.name for one in assignments for target in one.targets if target.name]
+
+
+def _looked_at_in(statement: Statement) -> set[str]:
+    every = list(statement.walk())
+    roots = [one.value for one in every if one.value]
+    roots += [step for one in every if isinstance(one, Assignment) for target in one.targets for step in target.way]
+    return {node.word for root in roots for node in root.walk() if isinstance(node, (Name, FunctionCall))}
+
+
+def _needed_for(name: str, statements: list[Statement]) -> list[Statement]:
+    """The statements on which the last value of a variable depends."""
+    needed, names = [], {name}
+    for statement in reversed(statements):
+        if names.intersection(_given_in(statement)):
+            needed.append(statement)
+            names |= _looked_at_in(statement)
+    return needed[::-1]
+
+
+def _symbols_in(statements: list[Statement], symbols: list[str]) -> list[str]:
+    """The symbols that are looked at before they are given a value, in the order of their declaration."""
+    looked_at: set[str] = set()
+    given: set[str] = set()
+    for statement in statements:
+        looked_at |= _looked_at_in(statement) - given
+        is_whole = isinstance(statement, Assignment) and not any(target.way for target in statement.targets)
+        given |= set(_given_in(statement)) if is_whole else set()
+    return [name for name in dict.fromkeys(symbols) if name in looked_at]

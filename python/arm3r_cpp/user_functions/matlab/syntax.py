@@ -94,3 +94,5 @@ class Function:
     """Of inputs that a block `arguments` gives a value."""
     is_nested: bool = False
     """Whether it stands in another function, and uses its variables."""
+    is_script: bool = False
+    """Whether it is a variable of a symbolic script, as a function of its symbols."""
