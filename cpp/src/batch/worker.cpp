@@ -25,8 +25,7 @@ auto lane_group_of(const Setup& first) {
     const bool remembers = has_memory(first.plant);
     if (first.solver.method == SolverMethod::taylor) return run_lanes_taylor;
     if (first.solver.is_on_grid()) return remembers ? run_lanes_rk4_controlled : run_lanes_rk4;
-    if (first.solver.method == SolverMethod::rk4) return remembers ? run_lanes_located_controlled : run_lanes_located;
-    return remembers ? run_lanes_dopri5_controlled : run_lanes_dopri5;
+    return remembers ? run_lanes_to_events_controlled : run_lanes_to_events;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
-// Steps of Dormand and Prince with their error and their dense output, in every lane; docs/model.md (5.2).
+// Steps of explicit methods with their error and their dense output, in every lane: of Dormand and Prince, and of one
+// length by the classical method; docs/model.md (5.1), (5.2).
 
 #include "arm3r/numbers/lane_access.hpp"
 #include "arm3r/plant.hpp"
@@ -130,35 +131,50 @@ protected:
     Y f0_{};
 };
 
+// A step of one length by the classical method, kept as one of Dormand and Prince.
+template <class F, class T, class Step, class Y>
+ARM3R_INLINE void take_rk4_step(const F& f, const T& t, const Y& y, const Y& f0, const T& h, Step& step) {
+    step.y1 = rk4_step_in_a_loop(f, t, y, f0, h);
+    f(t + h, step.y1, step.f1);
+}
+
 template <class T, std::size_t N>
 class ExplicitSteps : public StepStart<T, N> {
     using Start = StepStart<T, N>;
 
 public:
     using typename Start::Mask, typename Start::Y;
-    static constexpr bool chooses_length = true;
 
-    ExplicitSteps(const Setup&, const Plant<T>& plant, RightHandSide<T, T>& rhs, T& evaluations)
-        : Start(rhs, evaluations), judge_(plant, rhs) {}
+    ExplicitSteps(const Setup& setup, const Plant<T>& plant, RightHandSide<T, T>& rhs, T& evaluations)
+        : Start(rhs, evaluations), chooses_length_(setup.solver.method != SolverMethod::rk4), judge_(plant, rhs) {}
 
     void load_lane(int lane, const Solver& solver) { judge_.load_lane(lane, solver); }
+    bool chooses_length() const { return chooses_length_; }
     const Tolerance<T>& tolerance() const { return judge_.tolerance; }
 
-    // Tries a step `here`. Returns the error in units of its tolerance, infinite where the step fails.
+    // Tries a step `here`. Returns the error in units of its tolerance, infinite where the step fails; 0 of a step of one
+    // length, which has no estimate.
     ARM3R_INLINE T attempt(const Mask& here, const T& t, const Y& y, const T& h) {
-        this->count(here, 6);
-        step_.step(outlined<T>(this->rhs_), t, y, this->f0_, h);
-        const Tolerance<T>& tolerance = judge_.tolerance;
-        const T error = step_.error(y, h, tolerance.rtol, tolerance.atol, judge_.has_contact_heat());
-        const auto error_of = [&](std::size_t i) ARM3R_INLINE_LAMBDA { return step_.error_of(i, h); };
-        return select(Start::is_finite(step_.y1, step_.f1), judge_.with_work_of_wall(error, y, step_.y1, error_of),
-                      T(infinite));
+        T error(0.0);
+        if (chooses_length_) {
+            this->count(here, 6);
+            step_.step(outlined<T>(this->rhs_), t, y, this->f0_, h);
+            const Tolerance<T>& tolerance = judge_.tolerance;
+            error = step_.error(y, h, tolerance.rtol, tolerance.atol, judge_.has_contact_heat());
+            const auto error_of = [&](std::size_t i) ARM3R_INLINE_LAMBDA { return step_.error_of(i, h); };
+            error = judge_.with_work_of_wall(error, y, step_.y1, error_of);
+        } else {
+            this->count(here, 4);
+            take_rk4_step(outlined<T>(this->rhs_), t, y, this->f0_, h, step_);
+        }
+        return select(Start::is_finite(step_.y1, step_.f1), error, T(infinite));
     }
     ARM3R_INLINE const Y& end() const { return step_.y1; }
     ARM3R_INLINE Interpolant<T, N> dense_output(const T& t, const Y& y, const T& h) const {
-        return step_.interpolant(t, y, h);
+        return chooses_length_ ? step_.interpolant(t, y, h) : hermite(t, h, y, this->f0_, step_.y1, step_.f1);
     }
-    ARM3R_INLINE bool repeats_to_event() const { return false; }
+    // A cubic has one order less than the end of its step, which the works need.
+    ARM3R_INLINE bool repeats_to_event() const { return !chooses_length_; }
     ARM3R_INLINE T factor(const T& error) const { return step_factor(error); }
 
     // Accepts the step to (t, y) where `moved`; where it `continues`, the next step starts there without a restart.
@@ -168,6 +184,7 @@ public:
     }
 
 private:
+    const bool chooses_length_;
     StepError<T, N> judge_;
     Dopri5<T, N, motion_size, quadrature_count, quadrature_parts> step_;
 };

@@ -84,11 +84,13 @@ double Stepper<N>::attempt(bool, double t, const Y& y, double h) {
         evaluations_ += rodas4::stages - 1;
         has_end = state_.by_stiff.step(outlined<double>(rhs_), state_.linearization, t, y, state_.f0, h);
     } else {
-        evaluations_ += 6;
-        state_.by_explicit.step(outlined<double>(rhs_), t, y, state_.f0, h);
+        evaluations_ += chooses_length() ? 6 : 4;
+        if (chooses_length()) state_.by_explicit.step(outlined<double>(rhs_), t, y, state_.f0, h);
+        else take_rk4_step(outlined<double>(rhs_), t, y, state_.f0, h, state_.by_explicit);
         has_end = is_finite(state_.by_explicit.y1) && is_finite(state_.by_explicit.f1);
     }
     if (!has_end) return infinite;
+    if (!chooses_length()) return 0;
     const bool heat = judge_.has_contact_heat();
     const double error = state_.is_stiff ? state_.by_stiff.error(y, tolerance.rtol, tolerance.atol, heat)
                                          : state_.by_explicit.error(y, h, tolerance.rtol, tolerance.atol, heat);

@@ -1,6 +1,6 @@
 #pragma once
-// Steps of a single run by the explicit method, by one for stiff equations, or by an automatic choice between the two;
-// docs/model.md (5.2), (5.6), (5.7). The names are those of ExplicitSteps.
+// Steps of a single run by the explicit methods, by one for stiff equations, or by an automatic choice; docs/model.md (5.1),
+// (5.2), (5.6), (5.7). The names are those of ExplicitSteps.
 
 #include <string>
 
@@ -16,8 +16,6 @@ class Stepper {
 public:
     using Y = State<double, N>;
 
-    static constexpr bool chooses_length = true;
-
     Stepper(const Setup& setup, const Plant<double>& plant, RightHandSide<double, double>& rhs, double& evaluations);
     void load_lane(int, const Solver& solver);
     // Of an equal setup: what it refers to stays.
@@ -25,6 +23,7 @@ public:
         judge_ = other.judge_, state_ = other.state_;
         return *this;
     }
+    bool chooses_length() const { return method_ != SolverMethod::rk4; }
     const Tolerance<double>& tolerance() const { return judge_.tolerance; }
 
     void set_start(bool here, double t, const Y& y);
@@ -37,10 +36,11 @@ public:
     double attempt(bool, double t, const Y& y, double h);
     const Y& end() const { return state_.is_stiff ? state_.by_stiff.y1 : state_.by_explicit.y1; }
     Interpolant<double, N> dense_output(double t, const Y& y, double h) const {
+        if (!chooses_length()) return hermite(t, h, y, state_.f0, state_.by_explicit.y1, state_.by_explicit.f1);
         return state_.is_stiff ? state_.by_stiff.interpolant(t, y, h) : state_.by_explicit.interpolant(t, y, h);
     }
-    // The dense output of RODAS4 has one order less than the end of its step, which the works need.
-    bool repeats_to_event() const { return state_.is_stiff; }
+    // The dense output of RODAS4 and a cubic have one order less than the end of their step, which the works need.
+    bool repeats_to_event() const { return state_.is_stiff || !chooses_length(); }
     double factor(double error) const { return state_.is_stiff ? Stiff::step_factor(error) : step_factor(error); }
     // Where a step continues, the method may be changed.
     void accept(bool, bool continues, double t, const Y& y, double h);

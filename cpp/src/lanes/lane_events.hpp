@@ -1,7 +1,7 @@
 #pragma once
 // Runs in lanes by steps that end at events: each lane has its own step, which ends at the next sample of its controller,
-// where a formula of time changes, and where its contact changes. Method: its steps, with their error and dense output, of
-// a length that the error chooses (5.2), (5.6), (5.7) or of one length (5.1).
+// where a formula of time changes, and where its contact changes. The steps have a length that their error chooses (5.2),
+// (5.6), (5.7), or one length (5.1).
 
 #include "contact/contact_search.hpp"
 #include "contact/contact_watch.hpp"
@@ -12,11 +12,12 @@
 
 namespace arm3r {
 
-template <class T, std::size_t N, class Method = StepMethod<T, N>>
+template <class T, std::size_t N>
 class LaneEvents : public LaneRun<T, N> {
     using Base = LaneRun<T, N>;
     using Mask = typename Base::Mask;
     using Y = typename Base::Y;
+    using Method = StepMethod<T, N>;
 
 public:
     explicit LaneEvents(const Setup& any_lane)
@@ -54,7 +55,7 @@ public:
         this->rhs_.latest = T(infinite);
         Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
             method_.set_start(fresh, this->t_, this->y_);
-            if constexpr (Method::chooses_length) next_h_ = select(fresh, first_step(fresh), next_h_);
+            if (method_.chooses_length()) next_h_ = select(fresh, first_step(fresh), next_h_);
         });
     }
 
@@ -123,7 +124,7 @@ public:
         method_.accept(moved_, moved_ && continues_ && !is_new, this->t_, this->y_, this->h_);
         this->balance_.update_where(moved_, Energies<T>{this->kinetic_, this->potential_, this->stored(this->in_)},
                                     this->y_);
-        if constexpr (Method::chooses_length) choose_next_length();
+        if (method_.chooses_length()) choose_next_length();
         else whole_steps_ = whole_steps_ + select(moved_ && this->t_ >= next_on_grid() - this->slack_, T(1.0), T(0.0));
         if (in_any_lane(moved_ && this->t_ >= knot_)) pass_knots();
         check_budget();
@@ -160,7 +161,7 @@ private:
         set(max_turn_, std::min(0.25 * std::numbers::pi, fifth_root(1e5 * setup.solver.rtol)));
         set(next_h_, infinite), set(to_pose_, infinite);
         Lanes<T>::mark(ends_at_poses_, lane, setup.ends_steps_at_singular_poses());
-        set(start_, setup.start), set(step_, Method::chooses_length ? infinite : setup.solver.step);
+        set(start_, setup.start), set(step_, method_.chooses_length() ? infinite : setup.solver.step);
         set(whole_steps_, 0.0);
         Lanes<T>::mark(was_refused_, lane, false);
         Lanes<T>::mark(had_finite_end_, lane, true);
@@ -179,7 +180,7 @@ private:
     ARM3R_INLINE StepEnd step_end() const {
         const T due = this->is_controlled_ ? this->sampled_.next() : T(infinite);
         T t = min(min(knot_, due), this->stop_);
-        if constexpr (!Method::chooses_length) t = min(t, next_on_grid());
+        if (!method_.chooses_length()) t = min(t, next_on_grid());
         t = select(knot_ <= t + this->slack_, last_knot_, t);
         t = select(t >= this->stop_ - this->slack_, this->stop_, t);
         const Mask is_knot = knot_ <= t, is_jump = jump_ <= t;
@@ -192,7 +193,7 @@ private:
 
     ARM3R_INLINE void choose_length(const StepEnd& end) {
         const T rest = end.t - t0_;
-        if constexpr (Method::chooses_length) {
+        if (method_.chooses_length()) {
             const T wanted = min(min(next_h_, max_step()), to_pose_);
             was_last_ = wanted >= rest - this->slack_;
             const T half_rest = 0.5 * rest;  // avoids a very short last step
@@ -290,7 +291,7 @@ private:
         this->rejected_ = this->rejected_ + select(here, T(1.0), T(0.0));
         was_refused_ = was_refused_ || here;
         had_finite_end_ = (had_finite_end_ && !here) || (is_finite && here);
-        if constexpr (Method::chooses_length) {
+        if (method_.chooses_length()) {
             const T shorter = select(is_finite, T(this->h_ * min(T(1.0), method_.factor(error_))), T(0.1 * this->h_));
             next_h_ = select(here, shorter, next_h_);
         } else {

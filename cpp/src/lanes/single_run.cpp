@@ -3,7 +3,6 @@
 #include <type_traits>
 
 #include "arm3r/numbers/eigen_traits.hpp"
-#include "integrate/fixed_steps.hpp"
 #include "lanes/lane_events.hpp"
 #include "lanes/lane_record.hpp"
 #include "lanes/lane_taylor.hpp"
@@ -129,10 +128,6 @@ template void LaneTaylor<double>::finish_step_outlined();
 namespace {
 
 template <class T, std::size_t N>
-using ByError = LaneEvents<T, N>;
-template <class T, std::size_t N>
-using LocatedRk4 = LaneEvents<T, N, FixedSteps<T, N>>;
-template <class T, std::size_t N>
 using GridRk4 = std::conditional_t<N == state_size, SingleRk4, LaneRk4<T, N>>;
 
 // Calls a template with the integrator of the setup's method.
@@ -143,9 +138,8 @@ auto with_integrator(const Setup& setup, Visit visit) {
                                        : visit.template operator()<Of<double, state_size>>();
     };
     if (setup.solver.method == SolverMethod::taylor) return visit.template operator()<LaneTaylor<double>>();
-    if (setup.solver.method != SolverMethod::rk4) return by_memory.template operator()<ByError>();
-    if (setup.solver.events == StepEvents::located) return by_memory.template operator()<LocatedRk4>();
-    return by_memory.template operator()<GridRk4>();
+    if (setup.solver.is_on_grid()) return by_memory.template operator()<GridRk4>();
+    return by_memory.template operator()<LaneEvents>();
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+#include "batch/lane_group.hpp"
+#include "batch/lane_group_template.hpp"
+#include "lanes/lane_events.hpp"
+
+namespace arm3r {
+
+template <class T>
+using LaneEventsAlone = LaneEvents<T, state_size>;
+
+void run_lanes_to_events(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
+    run_lane_groups<LaneEventsAlone>(lanes, worker, first, run);
+}
+
+}  // namespace arm3r
