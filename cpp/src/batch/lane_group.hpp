@@ -5,7 +5,7 @@
 
 namespace arm3r {
 
-// Integrates a run and the following runs with the same key in lanes (lane_group_template.hpp): by RK4 on its grid, by
+// Integrates a run and the following runs with the same key in two lanes or more (lane_group_template.hpp): by RK4 on its grid, by
 // Taylor series, or by steps that end at events. `controlled`: with the memory of a continuous controller in the state.
 void run_lanes_rk4(int lanes, BatchWorker& worker, const Setup& first, std::size_t run);
 void run_lanes_rk4_controlled(int lanes, BatchWorker& worker, const Setup& first, std::size_t run);

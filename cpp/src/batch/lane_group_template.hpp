@@ -36,8 +36,7 @@ public:
             }
             if (count == 0) return;
             if (worker_.records()) forget_dense_outputs();
-            if constexpr (Integrator::lanes == 1) advance(*running[0], next_row());
-            else if constexpr (Integrator::together == 1) running[0]->step();
+            if constexpr (Integrator::together == 1) running[0]->step();
             else Integrator::step_together(running, count);
             if (worker_.records()) record_step();
         }
@@ -106,8 +105,6 @@ private:
             if (!record.is_running()) part.lane_run->stop_lane(lane, record.outcome());
         });
     }
-    double next_row() { return worker_.records() ? parts_[0].record[0]->next_row() : infinite; }
-
     void store(Part& part, int lane) {
         if (!worker_.records()) return worker_.store(part.run[lane], part.lane_run->metrics(lane));
         worker_.store_with_rows(part.run[lane], part.record[lane]->record_end());
@@ -137,7 +134,7 @@ private:
 // Packs as wide as the registers; wider packs are slow.
 template <template <class> class Integrator>
 void run_lane_groups(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
-    run_at_width(LaneTypes{}, lanes, [&]<class T>() ARM3R_INLINE_LAMBDA {
+    run_at_width(LanePacks{}, lanes, [&]<class T>() ARM3R_INLINE_LAMBDA {
         std::make_unique<LaneGroup<Integrator<T>>>(worker, first, run)->run();
     });
 }

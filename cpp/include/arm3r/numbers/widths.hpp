@@ -74,6 +74,10 @@ using LaneTypes = TypeList<double ARM3R_LANE_PACKS(ARM3R_COMMA_BEFORE)>;
 using RowTypes = TypeList<double ARM3R_ROW_PACKS(ARM3R_COMMA_BEFORE)>;
 #undef ARM3R_COMMA_BEFORE
 
+template <class First, class... Rest>
+TypeList<Rest...> without_first(TypeList<First, Rest...>);
+using LanePacks = decltype(without_first(LaneTypes{}));
+
 // Whether this processor has registers for as many lanes, and this build instructions for them.
 inline bool has_registers_for(int lanes) {
 #if ARM3R_WIDE_PACKS
