@@ -1,157 +1,21 @@
 #include "lanes/single_run.hpp"
 
-#include <type_traits>
-
-#include "arm3r/numbers/eigen_traits.hpp"
-#include "lanes/lane_events.hpp"
-#include "lanes/lane_record.hpp"
-#include "lanes/lane_taylor.hpp"
-#include "lanes/single_rk4.hpp"
-#include "record/end_messages.hpp"
-
 namespace arm3r {
 namespace {
 
-template <class Integrator>
-class SingleRun {
-public:
-    SingleRun(const Setup& setup, const RunOptions& options)
-        : loaded_(setup), lane_run_(loaded_), record_(setup, options, lane_run_, 0) {
-        lane_run_.set_user_law(options.user_law);
-        observe_changes();
-        lane_run_.load_lane(0, loaded_);
-    }
-
-    Run run() {
-        lane_run_.start_lanes();
-        record_.record_contact_at_start();
-        record_.record_start();
-        while (record_.goes_on()) {
-            record_.forget_dense_output();
-            advance(lane_run_, record_.next_row());  // several steps, as far as nothing happens in them
-            record_.record_step();
-            record_.update_row_context();
-        }
-        return record_.record_end();
-    }
-
-protected:
-    // A copy continues as `other` would.
-    SingleRun(const SingleRun& other) : loaded_(other.loaded_), lane_run_(loaded_), record_(other.record_, lane_run_) {
-        lane_run_ = other.lane_run_;
-        lane_run_.set_setup(loaded_);
-        observe_changes();
-    }
-
-private:
-    void observe_changes() {
-        lane_run_.set_observer([this](int, const ContactChange& change) { record_.record_change(change); });
-    }
-
-    const Setup loaded_;  // while that of the record follows the torque that is held
-
-protected:
-    Integrator lane_run_;
-    LaneRecord<Integrator> record_;
-};
-
-// It stands where a step has reached a sample.
-template <class Integrator>
-class StandingRun : public InteractiveRun, SingleRun<Integrator> {
-    using Base = SingleRun<Integrator>;
-    using Base::lane_run_, Base::record_;
-
-public:
-    StandingRun(const Setup& setup, const RunOptions& options) : Base(setup, options) {
-        lane_run_.place_lanes();
-        record_.record_contact_at_start();
-    }
-    StandingRun(const StandingRun&) = default;
-
-    bool is_over() const override { return !stands_; }
-    void set_user_law(const UserLaw& law) override { lane_run_.set_user_law(law); }
-    void preview(const UserLaw& law) const override { lane_run_.preview(law); }
-    std::unique_ptr<InteractiveRun> copy() const override { return std::make_unique<StandingRun>(*this); }
-    Run snapshot() const override { return StandingRun(*this).conclude(); }
-
-    void advance() override {
-        stands_ = false;
-        has_started_ ? finish_step() : start();
-        while (record_.goes_on()) {
-            record_.forget_dense_output();
-            const bool has_moved = lane_run_.take_step_outlined();
-            if constexpr (Integrator::completes_before_sample) record_.record_step();
-            else record_.stand_at_end();
-            stands_ = has_moved && record_.is_running() && !lane_run_.has_failed() && lane_run_.stands_at_sample();
-            if (stands_) return;
-            if (has_moved) finish_step();
-        }
-    }
-
-    Run conclude() override {
-        if constexpr (!Integrator::completes_before_sample)
-            if (stands_ && has_started_) {
-                lane_run_.skip_sample();
-                finish_step();
-            }
-        if (!is_over()) record_.stop("the simulation stands" + at_time(record_.t_end()));
-        return record_.record_end();
-    }
-
-private:
-    void start() {
-        has_started_ = true;
-        lane_run_.start_steps_outlined();
-        record_.record_start();
-    }
-    void finish_step() {
-        lane_run_.finish_step_outlined();
-        if constexpr (!Integrator::completes_before_sample) record_.record_step();
-        record_.update_row_context();
-    }
-
-    bool stands_ = true, has_started_ = false;
-};
-
-}  // namespace
-
-template void LaneRk4<double, state_size>::step_outlined();
-template void LaneRk4<double, full_size>::step_outlined();
-template bool LaneRk4<double, state_size>::take_step_outlined();
-template bool LaneRk4<double, full_size>::take_step_outlined();
-template void LaneRk4<double, state_size>::finish_step_outlined();
-template void LaneRk4<double, full_size>::finish_step_outlined();
-template void LaneTaylor<double>::step_outlined();
-template bool LaneTaylor<double>::take_step_outlined();
-template void LaneTaylor<double>::finish_step_outlined();
-
-namespace {
-
-template <class T, std::size_t N>
-using GridRk4 = std::conditional_t<N == state_size, SingleRk4, LaneRk4<T, N>>;
-
-// Calls a template with the integrator of the setup's method.
-template <class Visit>
-auto with_integrator(const Setup& setup, Visit visit) {
-    const auto by_memory = [&]<template <class, std::size_t> class Of>() {
-        return has_memory(setup.plant) ? visit.template operator()<Of<double, full_size>>()
-                                       : visit.template operator()<Of<double, state_size>>();
-    };
-    if (setup.solver.method == SolverMethod::taylor) return visit.template operator()<LaneTaylor<double>>();
-    if (setup.solver.is_on_grid()) return by_memory.template operator()<GridRk4>();
-    return by_memory.template operator()<LaneEvents>();
+SingleRunMethod method_of(const Setup& setup) {
+    if (setup.solver.method == SolverMethod::taylor) return single_run_by_taylor();
+    const bool remembers = has_memory(setup.plant);
+    if (setup.solver.is_on_grid()) return remembers ? single_run_on_grid_with_memory() : single_run_on_grid();
+    return remembers ? single_run_to_events_with_memory() : single_run_to_events();
 }
 
 }  // namespace
 
-Run run_alone(const Setup& setup, const RunOptions& options) {
-    return with_integrator(setup, [&]<class Integrator>() { return SingleRun<Integrator>(setup, options).run(); });
-}
+Run run_alone(const Setup& setup, const RunOptions& options) { return method_of(setup).run(setup, options); }
 
 std::unique_ptr<InteractiveRun> start_interactive_run(const Setup& setup, const RunOptions& options) {
-    return with_integrator(setup, [&]<class Integrator>() -> std::unique_ptr<InteractiveRun> {
-        return std::make_unique<StandingRun<Integrator>>(setup, options);
-    });
+    return method_of(setup).start(setup, options);
 }
 
 }  // namespace arm3r

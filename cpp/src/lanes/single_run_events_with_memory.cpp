@@ -1,0 +1,9 @@
+#include "arm3r/numbers/eigen_traits.hpp"
+#include "lanes/lane_events.hpp"
+#include "lanes/single_run_template.hpp"
+
+namespace arm3r {
+
+SingleRunMethod single_run_to_events_with_memory() { return single_run_by<LaneEvents<double, full_size>>(); }
+
+}  // namespace arm3r
