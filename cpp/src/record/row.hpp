@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "arm3r/numbers/polynomial.hpp"
 #include "arm3r/plant.hpp"
@@ -106,6 +107,8 @@ struct RowContext {
     const ControllerState<double>& controller_state;  // of the sampled controller
     ContinuousInputs inputs;                          // of a continuous one
     double lost_at_edges;                             // J, so far
+    std::span<const double> jumps;                    // s, of formulas of time within the step
+    double clock_rounding;                            // s
     const RowPlan& plan;
 
     bool needs(unsigned parts) const { return (plan.parts & parts) != 0; }

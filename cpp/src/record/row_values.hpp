@@ -285,7 +285,9 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
                            RowValues<T>& row) {
     const Plant<double>& plant = context.plant;
     RowState<T> now;
-    now.t = max(row_time, T(context.dense.t0));  // no row is before the start of its step
+    now.t = max(row_time, T(context.dense.t0));  // no row is before the start of its step, nor just before a jump
+    for (const double jump : context.jumps)
+        now.t = select(abs(now.t - jump) <= T(context.clock_rounding), max(now.t, T(jump)), now.t);
     now.q = {y[0], y[1], y[2]};
     now.qd = {y[3], y[4], y[5]};
     row.link_behind_wall = T(0.0);

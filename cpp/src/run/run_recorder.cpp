@@ -9,6 +9,7 @@
 #include "run/singular_passage.hpp"
 #include "schema/choice_words.hpp"
 #include "setup/make_controller.hpp"
+#include "setup/time_instants.hpp"
 #include "validate/size_limits.hpp"
 #include "validate/warnings.hpp"
 
@@ -32,6 +33,7 @@ RunRecorder::RunRecorder(const Setup& setup, const RunOptions& options)
     run_.has_user_law = setup_.controller().type == ControllerType::user;
     seeks_singular_pose_ = options.judges && inverts_jacobian(setup_.controller());
     if (!options.rows) return;
+    jumps_ = jumps_within_steps(setup_);
     plan_ = make_row_plan(setup_, options.kept, options.judges);
     row_log().reserve(plan_);
     run_.has_wall = setup_.plant.has_wall;

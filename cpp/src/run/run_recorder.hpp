@@ -98,11 +98,14 @@ private:
                 controller_state_,
                 inputs_,
                 contacts_.lost_at_edges,
+                jumps_,
+                setup_.clock_rounding(),
                 plan};
     }
     void explain(const FullState& y);
     void record(Event::Type type, double t, const FullState& y);
     RowPlan plan_;
+    std::vector<double> jumps_;
     bool seeks_singular_pose_ = false;
     TorqueOscillation oscillation_;
     double energy_at_start_ = 0;

@@ -99,15 +99,13 @@ double Setup::clock_rounding() const {
 
 void set_jumps_on_clock(Setup& setup) {
     const bool has_grid = setup.solver.is_on_grid(), has_samples = setup.digital.sampling.on;
-    // An adaptive step ends at every jump; within a fixed one a row must find it.
-    const double between_rows = has_grid ? setup.log_every : infinite;
     const double period = has_grid ? setup.solver.step : has_samples ? setup.digital.sampling.period : infinite;
     const auto nearest = [&](double jump, double every) {
         const double count = nearest_integer((jump - setup.start) / every);
         return setup.start + (count > 0 ? count * every : 0);
     };
     const auto snap = [&](double& jump) {
-        for (const double instant : {setup.stop, nearest(jump, period), nearest(jump, between_rows)})
+        for (const double instant : {setup.stop, nearest(jump, period)})
             if (std::abs(jump - instant) <= setup.clock_rounding()) {
                 jump = instant;
                 return;
@@ -117,6 +115,16 @@ void set_jumps_on_clock(Setup& setup) {
     if (setup.plant.has_wall) each_jump_of_wall(setup.plant.wall, snap);
     Controller<double>& law = has_samples ? setup.digital.controller : setup.plant.controller;
     each_jump_of_reference(law.reference, snap);
+}
+
+std::vector<double> jumps_within_steps(const Setup& setup) {
+    std::vector<double> jumps;
+    if (!setup.solver.is_on_grid()) return jumps;
+    const auto add = [&](double jump) { jumps.push_back(jump); };
+    each_jump_of_external_force(setup.plant.external_force, add);
+    if (setup.plant.has_wall) each_jump_of_wall(setup.plant.wall, add);
+    if (has_law(setup.controller().type)) each_jump_of_reference(setup.controller().reference, add);
+    return jumps;
 }
 
 }  // namespace arm3r

@@ -19,8 +19,11 @@ double next_knot(const Setup& setup, double t);
 double next_jump(const Setup& setup, double t);
 double just_before(double t);
 
-// Moves jumps that differ by rounding only from the end of the run, from a sample or the end of a fixed step, or else,
-// within a fixed step, from a row, exactly onto it.
+// Moves jumps that differ by rounding only from the end of the run, from a sample or the end of a fixed step exactly onto
+// it.
 void set_jumps_on_clock(Setup& setup);
+
+// The jumps within steps: of fixed ones, since the others end there.
+std::vector<double> jumps_within_steps(const Setup& setup);
 
 }  // namespace arm3r

@@ -21,7 +21,7 @@ def quiet(drawn: dict[str, Any]) -> arm3r.Scenario:
 def outcome_of(scenario: arm3r.Scenario, **options: Any) -> arm3r.Run:
     try:
         return scenario.run(**options)
-    except arm3r.NumericalError as error:
+    except arm3r.Arm3rError as error:
         assert error.run is not None
         return error.run
 
@@ -102,24 +102,30 @@ def passage(run: arm3r.Run) -> int | None:
 
 @pytest.mark.parametrize("count", [4, pytest.param(80, marks=[pytest.mark.gate, pytest.mark.random])])
 def test_steps_end_where_a_law_inverts_the_jacobian_of_a_singular_pose(count: int) -> None:
-    """The torque is at its limit there for microseconds; steps of 10 us cannot pass over that."""
+    """The torque is at its limit there for microseconds; steps of 10 us cannot pass over that.
+
+    Where torques at their limits hold the arm at a singular pose, they turn to and fro without end: such a run is cut
+    short, and nothing is compared.
+    """
     rng = np.random.default_rng(sample_seed())
     passes = 0
     for number in range(count):
-        drawn = random_passage(rng, method="dopri5")
-        exact = outcome_of(quiet(drawn | {"solver": {"rtol": 1e-11, "atol": 1e-13, "max_step": 1e-5}}))
+        drawn = random_passage(rng, method="dopri5", max_steps=100_000)
+        exact = outcome_of(quiet(drawn | {"solver": {"rtol": 1e-11, "atol": 1e-13, "max_step": 1e-5}}), time_limit=20)
+        values = drawn["initial"]["q"] + rng.uniform(-1e-3, 1e-3, (9, 3))
         place = f"seed {sample_seed()}, number {number} of\n{yaml_of(drawn)}"
         for method in ("dopri5", "rodas4", "auto"):
-            run = outcome_of(quiet(drawn | {"solver": {"method": method}}), trust=method == "dopri5")
-            assert len(run.t) == len(exact.t), place
-            assert_allclose(run["q"], exact["q"], rtol=0, atol=1e-6, err_msg=place)
+            solver = {"method": method, "max_steps": 100_000}
+            run = outcome_of(quiet(drawn | {"solver": solver}), trust=method == "dopri5")
+            if {exact.outcome, run.outcome} & {"budget", "stopped"}:
+                continue
+            assert_allclose(run["q"], exact["q"], rtol=0, atol=1e-6, err_msg=f"{method}, {place}")
             assert run.trust is None or run.trust.to_the_end, place
-        passes += passage(exact) is not None
-        values = drawn["initial"]["q"] + rng.uniform(-1e-3, 1e-3, (9, 3))
+            passes += passage(exact) is not None
         batch = quiet(drawn).batch({"initial.q": values}, columns=["q3"])
         for place_in_batch, q in enumerate(values):
             alone = outcome_of(quiet(drawn | {"initial": drawn["initial"] | {"q": q.tolist()}}))
-            assert np.array_equal(batch.rows["q3"][place_in_batch], alone["q3"]), place
+            assert np.array_equal(batch.rows["q3"][place_in_batch][: len(alone.t)], alone["q3"]), place
     assert passes > 0 or count < 10
 
 
