@@ -44,7 +44,7 @@ class ParamKey(NamedTuple):
     path: str
     """ "wall.contact.stiffness" """
     kind: str
-    """ "number", "angle", "integer", "flag", "choice", "section" or "column" """
+    """ "number", "angle", "integer", "flag", "choice", "section", "column" or "file" """
     unit: str
     """ "N/m"; "" for none"""
 

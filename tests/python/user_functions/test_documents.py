@@ -70,6 +70,21 @@ def test_a_live_script_is_judged(tmp_path: Path) -> None:
     assert {(one.line, one.old, one.new) for one in findings} == {(5, "-", "+")}
 
 
+def test_a_symbolic_live_script_is_judged(tmp_path: Path) -> None:
+    path = tmp_path / "derive.mlx"
+    path.write_bytes(
+        live_script(
+            "syms q1 q2 q3 real\na2 = 1; a3 = 1;\n"
+            "r = a2*cos(q2) + a3*cos(q2+q3);\n"
+            "p = [cos(q1)*r; sin(q1)*r; a2*sin(q2) + a3*sin(q2+q3)];\n"
+            "J = simplify(jacobian(p, [q1 q2 q3]))"
+        )
+    )
+    verdict = arm3r.verify.jacobian(path)
+    assert verdict.ok
+    assert "its variable J" in str(verdict)
+
+
 BROKEN = {
     "a.ipynb": b"{",
     "b.ipynb": b"[]",
