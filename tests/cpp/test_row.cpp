@@ -54,9 +54,13 @@ TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
         const ControllerState<double> controller_state{};
         const RowPlan plan = make_row_plan(setup, {});
         const auto context_of = [&](const RowPlan& chosen) -> RowContext {
-            return {setup.plant, trial % 4 < 2,         0.5,   static_cast<ContactMode>(trial % 4),
-                    dense,       setup.controller(),    false, controller_state,
-                    1,           double(trial % 7 < 4), 0.0,   chosen};
+            return {setup.plant, trial % 4 < 2,
+                    0.5,         static_cast<ContactMode>(trial % 4),
+                    dense,       setup.controller(),
+                    false,       controller_state,
+                    1,           double(trial % 7 < 4),
+                    0.0,         {},
+                    0.0,         chosen};
         };
         const RowContext context = context_of(plan);
         RowBlock rows;

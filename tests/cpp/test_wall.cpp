@@ -170,8 +170,8 @@ TEST_CASE(a_table_of_a_quintic_is_that_quintic_and_stands_still_outside) {
     const auto s = [](double t) { return 0.1 + t * (0.2 + t * (-0.3 + t * (0.15 + t * (-0.02 + t * 0.001)))); };
     const auto v = [](double t) { return 0.2 + t * (-0.6 + t * (0.45 + t * (-0.08 + t * 0.005))); };
     const auto a = [](double t) { return -0.6 + t * (0.9 + t * (-0.24 + t * 0.02)); };
-    std::vector<double> all_knots;
-    for (int i = 0; i < max_knots; ++i) all_knots.push_back(0.5 + 0.25 * i + 0.01 * i * i);
+    std::vector<double> all_knots;  // as many as a key has places for
+    for (int i = 0; i < 16; ++i) all_knots.push_back(0.5 + 0.25 * i + 0.01 * i * i);
     for (const std::vector<double>& knots : {std::vector<double>{0.5, 3}, {0.5, 1.1, 1.3, 3}, all_knots}) {
         const Wall<double> wall = wall_of(table(walled(), knots, s, v, a));
         for (double t = knots.front(); t < knots.back(); t += 0.0371) {
