@@ -235,7 +235,7 @@ def test_a_reference_of_the_tip_says_where_to(refused, reference: str, says: str
         ),
         ("1, 2.5; 1, 1", "scenario.table]: reference.t[2]: the instants of a table must increase, got 1 after 1"),
         ("1, 2.5]; 1]", "scenario.table]: reference.x: not as long as reference.t, got 3 numbers, allowed 2 numbers"),
-        ("z: [0, 0.1, 0.2]; z: [0]", "reference.z: expects a list of 2 to 16 numbers"),
+        ("z: [0, 0.1, 0.2]; z: [0]", "reference.z: expects a list of 2 or more numbers"),
         (", z: [0, 0.1, 0.2]; ", "scenario.missing_key]: reference.z: "),
         ("0.1, 0.2]; 0.1, 2e6]", "scenario.range]: reference.z[2]: "),
     ],
