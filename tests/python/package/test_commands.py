@@ -256,7 +256,8 @@ def test_the_build_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     ]
     output: list[str] = []
     lines = list(module.reported(printed, output))
-    assert lines[0].startswith(f"Compiling arm3r: about {-(-module.CPU_MINUTES // 2)} min the first time, 2 jobs at once")
+    minutes = -(-module.CPU_MINUTES // 2)
+    assert lines[0].startswith(f"Compiling arm3r: about {minutes} min the first time, 2 jobs at once")
     assert lines[1:] == ["[1/136] a.dir/b.cpp.o", "[2/136] Linking CXX x"] and output == printed
     assert "tools/install_package.py" in (ROOT / "Makefile").read_text()
 
