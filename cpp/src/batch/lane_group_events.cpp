@@ -5,10 +5,10 @@
 namespace arm3r {
 
 template <class T>
-using LaneEventsAlone = LaneEvents<T, state_size>;
+using PlainLaneEvents = LaneEvents<T, state_size>;
 
 void run_lanes_to_events(int lanes, BatchWorker& worker, const Setup& first, std::size_t run) {
-    run_lane_groups<LaneEventsAlone>(lanes, worker, first, run);
+    run_lane_groups<PlainLaneEvents>(lanes, worker, first, run);
 }
 
 }  // namespace arm3r

@@ -57,7 +57,7 @@ std::string number_schema(const Key& key) {
 
 std::string list_schema(const Key& key, const std::string& number) {
     const std::size_t fewest = key.form == Form::list ? key.min_size : key.size;
-    const std::size_t most = key.any_length ? max_table_numbers / 2 : key.size;
+    const std::size_t most = key.any_length ? max_list_length : key.size;
     return object({member("type", json_string("array")), member("items", number),
                    member("minItems", std::to_string(fewest)), member("maxItems", std::to_string(most))});
 }

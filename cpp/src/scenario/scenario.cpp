@@ -269,7 +269,7 @@ private:
         }
         const std::size_t min_size = key.form == Form::list ? key.min_size : key.size;
         if (is_list_here(key) && node.type == Node::list && node.children.size() >= min_size &&
-            node.children.size() <= (key.any_length ? max_table_numbers / 2 : key.size))
+            node.children.size() <= (key.any_length ? max_list_length : key.size))
             return read_list(key, node);
         wrong_shape(key, node);
     }

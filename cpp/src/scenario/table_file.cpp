@@ -170,11 +170,14 @@ private:
     std::vector<Node> lists_;
 };
 
+bool is_absolute(const std::string& name) {
+    return platform::last_separator(name.substr(0, 1)) == 0 || name.substr(1, 1) == ":";
+}
+
 std::string path_of(const std::string& name, const std::string& scenario_file) {
-    const std::size_t folder = platform::last_separator(scenario_file);
     if (name == "-") return "./-";  // no standard input
-    const bool is_absolute = platform::last_separator(name.substr(0, 1)) == 0 || name.substr(1, 1) == ":";
-    return is_absolute || folder == scenario_file.npos ? name : scenario_file.substr(0, folder + 1) + name;
+    const std::size_t folder = platform::last_separator(scenario_file);
+    return is_absolute(name) || folder == scenario_file.npos ? name : scenario_file.substr(0, folder + 1) + name;
 }
 
 // The section above a path, in the tree; null where there is none.
@@ -189,12 +192,13 @@ Node* section_of(Node& root, const std::string& path) {
 std::string text_of(const std::string& path, const Key& key, const Node& name, const std::string& scenario_file,
                     std::vector<Problem>& problems) {
     const auto refuse = [&](const std::string& reason) {
-        problems.push_back(located({.code = "table.file",
-                                    .path = key.path,
-                                    .message = "cannot be read: " + reason,
-                                    .got = visible(name.text),
-                                    .hint = "a relative name counts from the folder of the scenario"},
-                                   name.mark, scenario_file));
+        problems.push_back(
+            located({.code = "table.file",
+                     .path = key.path,
+                     .message = "cannot be read: " + reason,
+                     .got = visible(name.text),
+                     .hint = is_absolute(name.text) ? "" : "a relative name counts from the folder of the scenario"},
+                    name.mark, scenario_file));
         return std::string();
     };
     try {

@@ -209,7 +209,7 @@ bool is_param_count(std::size_t count) {
     for (const Key& key : schema())
         if (key.any_length) {
             fewest = std::min(fewest, list_head + key.size + 1);
-            most += list_head + max_table_numbers / 2;
+            most += list_head + max_list_length;
         }
     return count == param_count() || (count >= param_count() + fewest && count <= param_count() + most);
 }
@@ -222,8 +222,8 @@ bool has_whole_lists(std::span<const double> params) {
             schema(), [&](const Key& one) { return one.any_length && double(one.offset) == offset; });
         const bool is_new = std::ranges::find(seen, offset) == seen.end();
         seen.push_back(offset);
-        fits = key != schema().end() && is_new && numbers.size() > key->size &&
-               numbers.size() <= max_table_numbers / 2 && std::isnan(params[key->offset]);
+        fits = key != schema().end() && is_new && numbers.size() > key->size && numbers.size() <= max_list_length &&
+               std::isnan(params[key->offset]);
         return !fits;
     });
     return whole && fits;

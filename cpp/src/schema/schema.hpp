@@ -92,8 +92,8 @@ double param(std::span<const double> params, std::string_view path, std::size_t 
 // A list that is longer than the `size` of its key stands behind the flat array: the offset of the key, the number of
 // numbers, the numbers; the places of the key hold NaN then.
 
-inline constexpr std::size_t max_table_numbers =
-    40'000;  // in all lists of a table: a scenario with them can be read again
+// In all lists of a table, so that a scenario with them can be read again; and in one of them: there are two or more.
+inline constexpr std::size_t max_table_numbers = 40'000, max_list_length = max_table_numbers / 2;
 
 // The numbers of a list, wherever they stand.
 std::span<const double> list_at(std::span<const double> params, const Key& key);

@@ -208,6 +208,15 @@ void check_motion_table(std::span<const double> params, ProblemList& problem_lis
 
 }  // namespace
 
+Problem missing(const Key& key, std::size_t count, std::string hint) {
+    return {.code = "scenario.missing_key",
+            .path = key.path,
+            .message = "this must be given",
+            .allowed = (count == 1 ? "a number" : "a list of " + list_sizes(key) + " numbers") +
+                       (key.unit.empty() ? "" : ", " + key.unit),
+            .hint = std::move(hint)};
+}
+
 WorstPose min_M11(const Lumped<double>& l) {  // (3.10)
     const double B = std::abs(l.B), toward = l.B > 0 ? -1 : 1;
     WorstPose worst{l.A1, pi / 2, 0};

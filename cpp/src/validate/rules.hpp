@@ -37,40 +37,31 @@ void check_direction(std::span<const double> params, ProblemList& problem_list) 
         });
 }
 
-// The list of a table that must be given, here or by a file.
-template <Name column>
-void check_given(std::span<const double> params, const char* hint, ProblemList& problem_list) {
-    const Key& key = known_key(column);
-    if (!list_at<column>(params).empty() || key.unset != of_the_file) return;
-    problem_list.add([&] {
-        return Problem{.code = "scenario.missing_key",
-                       .path = key.path,
-                       .message = "this must be given",
-                       .allowed = "a list of " + list_sizes(key) + " numbers, " + key.unit,
-                       .hint = hint};
-    });
-}
+// A key that must be given, as so many numbers.
+Problem missing(const Key& key, std::size_t count, std::string hint = {});
 
 template <Name column, Name t>
 void check_length(std::span<const double> params, const char* hint, ProblemList& problem_list) {
     const std::size_t length = list_at<column>(params).size(), knots = list_at<t>(params).size();
-    if (length == 0) check_given<column>(params, hint, problem_list);
-    if (length != knots && (length > 0 || known_key(column).unset != of_the_file))
-        problem_list.add([&] {
-            return Problem{.code = "scenario.table",
-                           .path = std::string(column),
-                           .message = "not as long as " + std::string(t),
-                           .got = std::to_string(length) + " numbers",
-                           .allowed = std::to_string(knots) + " numbers",
-                           .hint = hint};
-        });
+    if (length == knots) return;
+    problem_list.add([&] {
+        const Key& key = known_key(column);
+        if (length == 0 && key.unset == of_the_file) return missing(key, key.min_size, hint);
+        return Problem{.code = "scenario.table",
+                       .path = key.path,
+                       .message = "not as long as " + std::string(t),
+                       .got = std::to_string(length) + " numbers",
+                       .allowed = std::to_string(knots) + " numbers",
+                       .hint = hint};
+    });
 }
 
 // The lists of a table must have the same length, and its instants must increase.
 template <Name t, Name... columns>
 void check_table(std::span<const double> params, const char* hint, ProblemList& problem_list) {
     const std::span<const double> instants = list_at<t>(params);
-    if (instants.empty()) return check_given<t>(params, hint, problem_list);
+    const Key& key = known_key(t);
+    if (instants.empty()) return problem_list.add([&] { return missing(key, key.min_size, hint); });
     (check_length<columns, t>(params, hint, problem_list), ...);
     for (std::size_t i = 1; i < instants.size(); ++i)
         if (!(instants[i - 1] < instants[i]))

@@ -46,14 +46,6 @@ std::size_t expected_count(const Key& key, std::span<const double> params) {
     return key.size;
 }
 
-Problem missing(const Key& key, std::size_t count) {
-    return {.code = "scenario.missing_key",
-            .path = key.path,
-            .message = "this must be given",
-            .allowed = (count == 1 ? "a number" : "a list of " + list_sizes(key) + " numbers") +
-                       (key.unit.empty() ? "" : ", " + key.unit)};
-}
-
 // A choice must be the index of one of its words; everything else is read only when all of them are.
 void check_choice(const Key& key, std::span<const double> params, ProblemList& problem_list) {
     const double stored = params[key.offset];
@@ -102,11 +94,7 @@ void check_numbers(const Key& key, std::span<const double> params, ProblemList& 
 template <Name path>
 void need_number(std::span<const double> params, const char* hint, ProblemList& problem_list) {
     if (!std::isnan(at<path>(params))) return;
-    problem_list.add([&] {
-        Problem problem = missing(known_key(path), 1);
-        problem.hint = hint;
-        return problem;
-    });
+    problem_list.add([&] { return missing(known_key(path), 1, hint); });
 }
 
 // Numbers that a shape does not determine must be given.

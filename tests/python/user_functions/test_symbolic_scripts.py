@@ -77,6 +77,13 @@ def test_in_a_loop_and_in_cells() -> None:
         assert_allclose(got, arm.jacobian(q), rtol=0, atol=1e-11)
 
 
+def test_symbols_of_one_value_are_told_apart() -> None:
+    text = HEAD + "f = q1 + 10*q2 + 100*q3;\ng = subs(f, q2, 7);\nh = diff(q1*q2^2*q3, q2);\n"
+    alike = np.full((2, 3), 0.5)
+    assert_allclose(value_of(text, "g", alike).ravel(), 0.5 + 70 + 50)
+    assert_allclose(value_of(text, "h", alike).ravel(), 2 * 0.5**3)
+
+
 def test_the_symbols_that_a_variable_needs_are_its_arguments() -> None:
     text = "syms a b c d real\nu = a + b;\nv = [u; c];\nw = jacobian(v, [a b]);\nb = 2;\nx = b*d;\n"
     needed = {"u": ["a", "b"], "v": ["a", "b", "c"], "w": ["c"], "x": ["d"]}
@@ -161,6 +168,7 @@ REFUSED = {
     HEAD + "x = diff(q1^2);\n": "script.m:2: cannot be judged: diff is read with the symbols",
     HEAD + "x = jacobian(q1^2, q1+q2);\n": "holds what is no symbol",
     HEAD + "x = solve(q1^2 == 2, q1);\n": "'solve' is not known",
+    HEAD + "x = 0;\nif q1 > 0\n  x = q2;\nend\n": "a condition or an index depends on a symbol",
     HEAD + "x = cos(q1);\n": "script.m: there is no variable y; it has x",
 }
 

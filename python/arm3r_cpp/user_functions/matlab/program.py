@@ -53,7 +53,7 @@ _MOST_BYTES = 1 << 20  # of a file beside the program's
 _NOTHING = np.zeros((1, 0, 0))
 
 
-class _Divided(Exception):
+class Divided(Exception):
     """A condition holds at some states and not at others."""
 
 
@@ -173,7 +173,7 @@ class MatlabProgram:
         self._replaced = self._edited(edit) if edit else None
         try:
             return self._evaluate(call, table)
-        except _Divided:
+        except Divided:
             rows = [self._evaluate(call, row[None]) for row in table]
         finally:
             self._replaced = None
@@ -185,7 +185,7 @@ class MatlabProgram:
         """
         Raises:
             ProgramError: the function failed.
-            _Divided: a condition holds at some of the states.
+            Divided: a condition holds at some of the states.
         """
         self._begin()
         self._outside = {}
@@ -818,7 +818,7 @@ class MatlabProgram:
         if not isinstance(places, np.ndarray):
             raise Unread("an index is a number, a range or a comparison")
         if len(places) > 1 and (places != places[:1]).any():
-            raise _Divided
+            raise Divided
         if places.dtype == bool:
             return [int(place) for place in np.flatnonzero(places[0].T.ravel())]
         return [round(float(one)) - 1 for one in places[0].T.ravel()]
@@ -884,11 +884,11 @@ def _is_true(array: Any) -> bool:
     """Whether all elements are other than zero, and there are some.
 
     Raises:
-        _Divided: at some states, and not at others.
+        Divided: at some states, and not at others.
     """
     holds = np.logical_and.reduce(array.reshape(len(array), -1) != 0, axis=1) & (array.size > 0)
     if holds.any() != holds.all():
-        raise _Divided
+        raise Divided
     return bool(holds.all())
 
 

@@ -11,7 +11,7 @@ from ...errors import UsageError
 from ..expressions import Node, Number
 from ..programs import Call, ProgramError, Unread
 from .indexing import flat
-from .program import MatlabProgram, Workspace
+from .program import Divided, MatlabProgram, Workspace
 from .reader import read
 from .symbols import MOST_STATES, WEIGHTS, Stencil
 from .syntax import Function, Statement
@@ -101,23 +101,35 @@ class SymbolicScript(MatlabProgram):
             raise Unread("differentiates more often, or by more symbols, than is read")
         count = max(1, MOST_STATES // stencil.states)  # of states at once
         parts = [table[first : first + count] for first in range(0, len(table), count)]
-        found = [super(SymbolicScript, self)._evaluate(call, stencil.spread(one, columns))[: len(one)] for one in parts]
+        found = [
+            self._values_at(call, np.vstack([one, self._apart(table.shape[1])]), columns)[: len(one)] for one in parts
+        ]
         if stencil.missing:  # an edit differentiates what the text does not
             raise ProgramError("differentiates more often than before")
         return np.concatenate(found)
+
+    @staticmethod
+    def _apart(width: int) -> Floats:
+        """A state in which all symbols differ, so that each is known by its values."""
+        return np.random.default_rng(0).uniform(0.3, 0.9, (1, width))
+
+    def _values_at(self, call: Call, table: Floats, columns: dict[str, int]) -> Floats:
+        try:
+            return super()._evaluate(call, self._stencil.spread(table, columns))
+        except Divided:
+            raise Unread("a condition or an index depends on a symbol, which has no single value") from None
 
     def _levels_needed(self, call: Call, width: int, columns: dict[str, int]) -> list[dict[str, int]]:
         """By which symbols the script differentiates, what is a derivative already in another level, in how many steps.
 
         Each round adds what was missing in the one before.
         """
-        state = np.random.default_rng(0).uniform(0.3, 0.9, (1, width))
         levels: list[dict[str, int]] = []
         while True:
             stencil = self._stencil = Stencil([*levels, {}])
             if stencil.states > MOST_STATES:
                 raise Unread("differentiates more often, or by more symbols, than is read")
-            super()._evaluate(call, stencil.spread(state, columns))
+            self._values_at(call, self._apart(width), columns)
             levels = [
                 {symbol: steps if (number, symbol) in stencil.curved else 1 for symbol, steps in level.items()}
                 for number, level in enumerate(levels)
