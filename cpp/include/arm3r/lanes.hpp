@@ -7,7 +7,28 @@
 
 namespace arm3r {
 
-// Calls f(x...) for each number x of arms of any number types, in a fixed order; flags and choices are left out.
+// Calls f(x...) for each number x of elbow arms of any number types, in a fixed order; flags are left out.
+template <class F, class... Elbows>
+ARM3R_INLINE void each_elbow_number(F f, Elbows&... e) {
+    const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
+    vector(e.position...);
+    for (int i = 0; i < 9; ++i) f(e.rotation.data()[i]...);
+    f(e.shoulder_offset...), f(e.offset...);
+    vector(e.tip...);
+    for (std::size_t i = 0; i < 3; ++i) {
+        f(e.links[i].mass...);
+        vector(e.links[i].com...), vector(e.links[i].inertia...), vector(e.links[i].products...);
+        f(e.rotors[i].inertia...), f(e.rotors[i].ratio...), f(e.rotors[i].mass...);
+        vector(e.rotors[i].axis...);
+    }
+    f(e.lateral...), f(e.D2...), f(e.D3...), f(e.E2...), f(e.F2...), f(e.E3...), f(e.F3...), f(e.Gy2...), f(e.Gy3...);
+    f(e.Hu...), f(e.Hv...), f(e.K12...), f(e.E23...), f(e.F23...);
+    vector(e.gravity...);
+    f(e.fixed_energy...);
+}
+
+// Calls f(x...) for each number x of arms of any number types, in a fixed order; flags and choices are left out. Their
+// choices (copy_arm_choices) must be the same before.
 template <class F, class... Arms>
 ARM3R_INLINE void each_arm_number(F f, Arms&... a) {
     const auto vector = [&](auto&... v) ARM3R_INLINE_LAMBDA { f(v[0]...), f(v[1]...), f(v[2]...); };
@@ -26,6 +47,7 @@ ARM3R_INLINE void each_arm_number(F f, Arms&... a) {
     f(a.friction_velocity...);
     vector(a.torque_limit...);
     lumped(a.lumped...);
+    if ((... && a.is_elbow)) each_elbow_number(f, a.elbow...);
 }
 
 template <class F, class... Tables>
@@ -108,6 +130,9 @@ ARM3R_INLINE void copy_arm_choices(const Arm<A>& from, Arm<B>& to) {
     to.has_damping = from.has_damping;
     to.has_dry_friction = from.has_dry_friction;
     to.has_torque_limit = from.has_torque_limit;
+    to.is_elbow = from.is_elbow;
+    to.elbow.base_is_turned = from.elbow.base_is_turned;
+    to.elbow.has_skew_rotors = from.elbow.has_skew_rotors;
 }
 
 template <class A, class B>

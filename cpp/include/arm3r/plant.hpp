@@ -84,12 +84,13 @@ bool can_lose_energy(const Plant<P>& plant) {
 // that the code holds no others and asks for few.
 enum class Terms { any, common };
 
-// Whether gravity is vertical, the joints have no friction and the actuators no limit, nothing has a memory, and the wall,
+// Whether the arm is planar and gravity vertical, the joints have no friction and the actuators no limit, nothing has a memory, and the wall,
 // where there is one, stands still or moves at one velocity and is a plain spring.
 template <class P>
 bool has_common_terms(const Plant<P>& plant) {
     const auto is_common = [](const Arm<P>& arm) {
-        return arm.gravity_is_vertical && !arm.has_damping && !arm.has_dry_friction && !arm.has_torque_limit;
+        return !arm.is_elbow && arm.gravity_is_vertical && !arm.has_damping && !arm.has_dry_friction &&
+               !arm.has_torque_limit;
     };
     const Wall<P>& wall = plant.wall;
     const bool has_common_wall = moves_evenly(wall) && is_plain_spring(wall, plant.contact);

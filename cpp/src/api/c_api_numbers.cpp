@@ -16,7 +16,9 @@
 #include "batch/simulation.hpp"
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
+#include "setup/make_elbow.hpp"
 #include "setup/setup.hpp"
+#include "validate/rules.hpp"
 #include "validate/validate.hpp"
 
 using namespace arm3r;
@@ -100,9 +102,12 @@ StateRows rows(Inputs inputs, Outputs outputs) {
 
 Vec3<double> load(const double* data, std::size_t i) { return {data[3 * i], data[3 * i + 1], data[3 * i + 2]}; }
 
-// Joint vectors in the caller's convention from and to slide.
+// Joint angles, and other joint vectors, in the caller's convention from and to slide.
+Vec3<double> load_angles(const arm3r_arm& arm, const double* data, std::size_t i) {
+    return arm.convention.to_slide(load(data, i));
+}
 Vec3<double> load_joints(const arm3r_arm& arm, const double* data, std::size_t i) {
-    return arm.simscape ? change_convention(load(data, i)) : load(data, i);
+    return arm.convention.flipped(load(data, i));
 }
 
 void store(const Vec3<double>& v, double* data, std::size_t i) {
@@ -110,7 +115,7 @@ void store(const Vec3<double>& v, double* data, std::size_t i) {
 }
 
 void store_joints(const arm3r_arm& arm, const Vec3<double>& v, double* data, std::size_t i) {
-    store(arm.simscape ? change_convention(v) : v, data, i);
+    store(arm.convention.flipped(v), data, i);
 }
 
 Error singular(std::size_t i, const char* what) {
@@ -164,7 +169,7 @@ int32_t by_recursion(const arm3r_arm* arm, std::size_t n, const double* q, const
         check(arm, n, {joint_angles(q), numbers(qd, "qd"), numbers(third, third_name), tip_force(f_on_tip)}, {out});
         for (std::size_t i = 0; i < n; ++i)
             store_joints(*arm,
-                         body(load_joints(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third, i),
+                         body(load_angles(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third, i),
                               f_on_tip ? load(f_on_tip, i) : load(no_force, 0)),
                          out.data, i);
     });
@@ -172,10 +177,10 @@ int32_t by_recursion(const arm3r_arm* arm, std::size_t n, const double* q, const
 
 // A matrix of derivatives of a joint vector with respect to a joint vector: D A D (1.1).
 void store_derivatives(const arm3r_arm& arm, const Mat3<double>& A, double* data, std::size_t i) {
-    const auto sign = [&](int joint) { return arm.simscape && joint > 0 ? -1.0 : 1.0; };
+    const Vec3<double>& sign = arm.convention.sign;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
-            data[9 * i + 3 * row + column] = sign(row) * sign(column) * A(row, column) + 0.0;  // no negative zero
+            data[9 * i + 3 * row + column] = sign[row] * sign[column] * A(row, column) + 0.0;  // no negative zero
 }
 
 // The derivatives of a joint vector with respect to q, qd and a third argument, for one state after the other.
@@ -186,7 +191,7 @@ int32_t differentiated(const arm3r_arm* arm, std::size_t n, const double* q, con
         check(arm, n, {joint_angles(q), numbers(qd, "qd"), third, tip_force(f_on_tip)}, {by[0], by[1], by[2]});
         for (std::size_t i = 0; i < n; ++i) {
             const Derivatives found =
-                body(arm->arm, load_joints(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third.data, i),
+                body(arm->arm, load_angles(*arm, q, i), load_joints(*arm, qd, i), load_joints(*arm, third.data, i),
                      f_on_tip ? load(f_on_tip, i) : load(no_force, 0));
             for (int k = 0; k < 3; ++k) store_derivatives(*arm, found[k], by[k].data, i);
         }
@@ -266,7 +271,7 @@ int32_t arm3r_arm_create(const double* params, size_t count, arm3r_arm** arm) {
         need(arm, "arm");
         const std::span<const double> all = params_in(params, count);
         valid_setup(all);
-        *arm = new arm3r_arm{{make_arm(all), choice_of(all, "arm.convention") == "simscape"}};
+        *arm = new arm3r_arm{{make_arm(all), convention_of(all)}};
     });
 }
 
@@ -408,17 +413,14 @@ int32_t arm3r_arm_inverse_kinematics(const arm3r_arm* arm, size_t n, const doubl
             const double C3 = inverse_kinematics(arm->arm, load(tip, i), front, elbow_up).cos_q3;
             if (std::abs(C3) <= 1 + rounding) continue;
             if (failed) *failed = i;
-            const double a2 = arm->arm.link2.length, a3 = arm->arm.link3.length;
-            const double distance = std::sqrt(std::max(0.0, a2 * a2 + a3 * a3 + 2 * a2 * a3 * C3));
-            throw Error(ARM3R_E_REACH,
-                        {{.code = "argument.reach",
-                          .path = "tip[" + std::to_string(i) + "]",
-                          .message = "the point is out of reach",
-                          .got = shortest(distance) + " m from the shoulder",
-                          .allowed = "[" + shortest(std::abs(a2 - a3)) + ", " + shortest(a2 + a3) + "] m"}});
+            throw Error(ARM3R_E_REACH, {{.code = "argument.reach",
+                                         .path = "tip[" + std::to_string(i) + "]",
+                                         .message = "the point is out of reach",
+                                         .got = distance_from_reach(arm->arm, load(tip, i), front),
+                                         .allowed = reach_text(arm->arm)}});
         }
         for (std::size_t i = 0; i < n; ++i)
-            store_joints(*arm, inverse_kinematics(arm->arm, load(tip, i), front, elbow_up).q, q, i);
+            store(arm->convention.from_slide(inverse_kinematics(arm->arm, load(tip, i), front, elbow_up).q), q, i);
     });
 }
 

@@ -11,14 +11,14 @@ namespace arm3r {
 class LawAdapter {
 public:
     LawAdapter(arm3r_law function, void* user, const Setup& setup)
-        : function_(function), user_(user), view_(setup), simscape_(setup.simscape) {
+        : function_(function), user_(user), view_(setup), convention_(setup.convention) {
         state_.struct_size = sizeof state_;
     }
     LawAdapter(const LawAdapter&) = delete;
     LawAdapter& operator=(const LawAdapter&) = delete;
 
     // It is valid as long as this object is.
-    UserLaw user_law() { return {call, this, simscape_}; }
+    UserLaw user_law() { return {call, this, convention_}; }
 
 private:
     static int call(void* self, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
@@ -34,7 +34,7 @@ private:
     arm3r_law function_;
     void* user_;
     LawView view_;
-    bool simscape_;
+    JointConvention convention_;
     arm3r_law_state state_{};
 };
 

@@ -41,22 +41,23 @@ ARM3R_INLINE void store_columns(const Vec3<Eight>& columns, double* rows) {
 struct Group {
     const StateRows& rows;
     std::size_t index;
-    const Eight& flip;  // of joints 2 and 3, between slide and the convention of the rows
+    const JointConvention& convention;  // of the rows
 
     ARM3R_INLINE Vec3<Eight> vector(int argument) const {
         const double* from = rows.in[argument];
         if (!from) return {Eight(0.0), Eight(0.0), Eight(0.0)};
         return load_columns(from + index * 3 * group);
     }
-    ARM3R_INLINE Vec3<Eight> joints(int argument) const { return change_convention(vector(argument)); }
-    ARM3R_INLINE Pose<Eight> pose() const { return arm3r::pose(joints(0)); }
+    ARM3R_INLINE Vec3<Eight> joints(int argument) const { return convention.flipped(vector(argument)); }
+    ARM3R_INLINE Vec3<Eight> angles() const { return convention.to_slide(vector(0)); }
+    ARM3R_INLINE Pose<Eight> pose() const { return arm3r::pose(angles()); }
 
     // + 0.0: no negative zero
     ARM3R_INLINE void store(const Eight& number, int result = 0) const { (number + 0.0).store(row(result)); }
     ARM3R_INLINE void store(const Vec3<Eight>& v, int result = 0) const {
         store_columns({v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}, row(result));
     }
-    ARM3R_INLINE void store_joints(const Vec3<Eight>& v) const { store(change_convention(v)); }
+    ARM3R_INLINE void store_joints(const Vec3<Eight>& v) const { store(convention.flipped(v)); }
 
     // Nine numbers of every row, from `offset` on.
     ARM3R_INLINE void store(const Mat3<Eight>& m, std::size_t offset = 0) const {
@@ -69,12 +70,12 @@ struct Group {
     // J D: rows in space, columns in joints. D M D: both in joints.
     ARM3R_INLINE void store_in_joints(Mat3<Eight> J, std::size_t offset = 0) const {
         for (int i = 0; i < 3; ++i)
-            for (int j = 1; j < 3; ++j) J(i, j) *= flip;
+            for (int j = 0; j < 3; ++j) J(i, j) *= Eight(convention.sign[j]);
         store(J, offset);
     }
     ARM3R_INLINE void store_joints(Mat3<Eight> M) const {
-        for (int i = 1; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) M(i, j) *= flip;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) M(i, j) *= Eight(convention.sign[i]);
         store_in_joints(M);
     }
 
@@ -82,14 +83,13 @@ private:
     ARM3R_INLINE double* row(int result) const {
         return rows.out[result].data + index * group * rows.out[result].width;
     }
-    ARM3R_INLINE Vec3<Eight> change_convention(const Vec3<Eight>& v) const { return {v[0], v[1] * flip, v[2] * flip}; }
 };
 
 // The parameters in all lanes, so that no formula has to spread them.
 ARM3R_INLINE Arm<Eight> broadcast_arm(const Arm<double>& from) {
     Arm<Eight> arm;
-    each_arm_number([](Eight& to, const double& number) ARM3R_INLINE_LAMBDA { to = number; }, arm, from);
     copy_arm_choices(from, arm);
+    each_arm_number([](Eight& to, const double& number) ARM3R_INLINE_LAMBDA { to = number; }, arm, from);
     return arm;
 }
 
@@ -97,8 +97,7 @@ template <class Formula>
 void each(const Model& model, std::size_t groups, const StateRows& rows, Formula formula) {
     run_at_widest([&]() ARM3R_INLINE_LAMBDA {
         const Arm<Eight> arm = broadcast_arm(model.arm);
-        const Eight flip = model.simscape ? -1.0 : 1.0;
-        for (std::size_t i = 0; i < groups; ++i) formula(Group{rows, i, flip}, arm);
+        for (std::size_t i = 0; i < groups; ++i) formula(Group{rows, i, model.convention}, arm);
     });
 }
 
@@ -140,7 +139,7 @@ void geometric_jacobian(const Model& model, std::size_t groups, const StateRows&
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
         g.store_in_joints(arm3r::jacobian(arm, p));
-        g.store_in_joints(angular_jacobian(p), 9);
+        g.store_in_joints(angular_jacobian(arm, p), 9);
     });
 }
 
@@ -209,7 +208,7 @@ void inverse_dynamics(const Model& model, std::size_t groups, const StateRows& r
 
 void tip_sensor(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
-        const TipSensor<Eight> sensor = arm3r::tip_sensor(arm, g.joints(0), g.joints(1));
+        const TipSensor<Eight> sensor = arm3r::tip_sensor(arm, g.angles(), g.joints(1));
         g.store(sensor.position, 0);
         g.store(sensor.velocity, 1);
     });
@@ -218,7 +217,7 @@ void tip_sensor(const Model& model, std::size_t groups, const StateRows& rows) {
 void singularity(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const Pose<Eight> p = g.pose();
-        g.store(abs(Eight(sin_q3(p))), 0);
+        g.store(abs(Eight(sine_of_bend(arm, p))), 0);
         g.store(abs(radius(arm, p)), 1);
     });
 }

@@ -10,7 +10,7 @@ namespace arm3r {
 
 struct Model {
     Arm<double> arm;
-    bool simscape;  // the convention of the joint vectors in the rows
+    JointConvention convention;  // of the joint vectors in the rows
 };
 
 // Arrays with one row per state: input rows of 3, where null means zeros, and output rows of `width`.

@@ -23,7 +23,7 @@ bool is_narrow(const DenseOutput& dense, double a, double b) {
 double rounding_of_depth(const Plant<double>& plant, const DenseOutput& dense) {
     const auto size = [](const Vec3<double>& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
     const Vec3<double> origin = wall_at(plant.wall, dense.t0 + dense.h).position;
-    const double of_tip = reach(plant.arm) * (1 + size(angles(dense.motion(0)))) + std::abs(plant.arm.base_height);
+    const double of_tip = reach(plant.arm) * (1 + size(angles(dense.motion(0)))) + size(base_position(plant.arm));
     const double of_wall = size(origin) + size(plant.wall.point) + std::abs(plant.wall.face_offset);
     return 4 * std::numeric_limits<double>::epsilon() * (of_tip + of_wall);
 }

@@ -12,17 +12,15 @@ void write(const Vec3<double>& v, double* out) {
 
 }  // namespace
 
-void LawView::write_joints(const Vec3<double>& v, double* out) const {
-    const double sign = simscape_ ? -1.0 : 1.0;
-    write({v[0], sign * v[1], sign * v[2]}, out);
-}
+void LawView::write_angles(const Vec3<double>& q, double* out) const { write(convention_.from_slide(q), out); }
+void LawView::write_joints(const Vec3<double>& v, double* out) const { write(convention_.flipped(v), out); }
 
 void LawView::fill_state(double tick, const GroundTruth& truth, const Measurement<double>& sensed,
                          const ControllerState<double>& controller_state, arm3r_law_state& state) const {
     state.tick = tick;
     state.t = sensed.t;
     state.period = period_;
-    write_joints(sensed.q, state.q);
+    write_angles(sensed.q, state.q);
     write_joints(sensed.qd, state.qd);
     write(tip_position(arm_, sensed.pose), state.tip);
     write(tip_velocity(arm_, sensed.pose, sensed.qd), state.tip_velocity);
@@ -49,14 +47,13 @@ void LawView::fill_state(double tick, const GroundTruth& truth, const Measuremen
         state.wall_speed_estimate = controller_state.wall_speed;
         state.identifiable = controller_state.identifiable;
     }
-    write_joints(truth.q, state.q_true);
+    write_angles(truth.q, state.q_true);
     write_joints(truth.qd, state.qd_true);
     write(truth.f_on_tip, state.f_on_tip_true);
 }
 
 Vec3<double> LawView::torque(const double* tau) const {
-    const Vec3<double> v(tau[0], tau[1], tau[2]);
-    return simscape_ ? change_convention(v) : v;
+    return convention_.flipped(Vec3<double>(tau[0], tau[1], tau[2]));
 }
 
 }  // namespace arm3r

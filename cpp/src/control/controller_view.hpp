@@ -15,7 +15,7 @@ public:
           has_wall_(setup.plant.has_wall),
           observes_(setup.observes()),
           estimates_(setup.estimation.on),
-          simscape_(setup.simscape),
+          convention_(setup.convention),
           period_(setup.digital.sampling.period) {}
 
     // Fills a state of zeros, or one that was filled before.
@@ -25,11 +25,13 @@ public:
     Vec3<double> torque(const double* tau) const;  // slide
 
 private:
-    void write_joints(const Vec3<double>& v, double* out) const;
+    void write_angles(const Vec3<double>& q, double* out) const;
+    void write_joints(const Vec3<double>& v, double* out) const;  // rates, torques and rows of the Jacobian
 
     Arm<double> arm_;
     Wall<double> wall_;
-    bool has_wall_, observes_, estimates_, simscape_;
+    bool has_wall_, observes_, estimates_;
+    JointConvention convention_;
     double period_;
 };
 

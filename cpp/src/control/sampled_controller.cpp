@@ -150,7 +150,7 @@ std::string SampledController<T>::error_message() const {
     const double t = Lanes<T>::get(digital_.sampling.start, 0) + tick * Lanes<T>::get(digital_.sampling.period, 0);
     const std::string position = " at tick " + shortest(tick) + ", t = " + shortest(t) + " s";
     if (user_status_ != 0) return "the controller asked to stop with " + std::to_string(user_status_) + position;
-    const Vec3<double> tau = user.simscape ? change_convention(user_torque_) : user_torque_;
+    const Vec3<double> tau = user.convention.flipped(user_torque_);
     return "the controller gave the torque [" + shortest(tau[0]) + ", " + shortest(tau[1]) + ", " + shortest(tau[2]) +
            "] N m" + position + "; three finite numbers are needed, at most 1e12 either way";
 }

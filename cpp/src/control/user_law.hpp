@@ -21,7 +21,7 @@ struct UserLaw {
     int (*function)(void* user, double tick, const GroundTruth& truth, const Measurement<double>& sensed,
                     const ControllerState<double>& controller_state, Vec3<double>& tau) = nullptr;
     void* user = nullptr;
-    bool simscape = false;  // the convention of torques in messages
+    JointConvention convention = {};  // of torques in messages
 };
 
 }  // namespace arm3r

@@ -6,6 +6,7 @@ namespace {
 
 // Whether the determinant of joints 2 and 3 can be as small as its rounding error in some pose.
 bool may_be_ill_conditioned(const Arm<double>& arm) {
+    if (arm.is_elbow) return !(min_pivot(arm).value > 1e-3);
     const Lumped<double>& l = arm.lumped;
     const double largest = (l.B2 + l.B3 + 2 * std::abs(l.B)) * (l.B3 + l.J3);
     return !(min_lower_determinant(l).value > 64 * std::numeric_limits<double>::epsilon() * largest);
@@ -25,26 +26,28 @@ int series_order(const Setup& setup) {
 BatchKey batch_key_of(const Setup& setup) {
     const Plant<double>& plant = setup.plant;
     const Arm<double>&arm = plant.arm, &model = plant.controller.model;
-    return {setup.solver.method,
-            setup.solver.method == SolverMethod::taylor ? series_order(setup) : 0,
-            plant.has_wall,
-            plant.acts_on_arm,
-            plant.wall.has_outline,
-            may_be_ill_conditioned(arm),
-            plant.wall.motion,
-            plant.wall.table ? plant.wall.table->knots() : 0,
-            plant.wall.rotation,
-            plant.contact.law,
-            plant.contact.has_friction,
-            setup.controller(),
-            setup.controller().reference,
-            setup.digital.sampling,
-            setup.digital.sensors,
-            setup.digital.observer,
-            setup.estimation,
-            plant.external_force.on,
-            {arm.gravity_is_vertical, arm.has_damping, arm.has_dry_friction, arm.has_torque_limit,
-             model.gravity_is_vertical, model.has_damping, model.has_dry_friction, model.has_torque_limit}};
+    return {
+        setup.solver.method,
+        setup.solver.method == SolverMethod::taylor ? series_order(setup) : 0,
+        plant.has_wall,
+        plant.acts_on_arm,
+        plant.wall.has_outline,
+        may_be_ill_conditioned(arm),
+        plant.wall.motion,
+        plant.wall.table ? plant.wall.table->knots() : 0,
+        plant.wall.rotation,
+        plant.contact.law,
+        plant.contact.has_friction,
+        setup.controller(),
+        setup.controller().reference,
+        setup.digital.sampling,
+        setup.digital.sensors,
+        setup.digital.observer,
+        setup.estimation,
+        plant.external_force.on,
+        {arm.gravity_is_vertical, arm.has_damping, arm.has_dry_friction, arm.has_torque_limit,
+         model.gravity_is_vertical, model.has_damping, model.has_dry_friction, model.has_torque_limit, arm.is_elbow,
+         arm.elbow.base_is_turned, arm.elbow.has_skew_rotors, model.elbow.base_is_turned, model.elbow.has_skew_rotors}};
 }
 
 #define ARM3R_WITHOUT_MEMORY(T) ARM3R_LANE_RUN(T, state_size)

@@ -40,7 +40,7 @@ struct BatchKey {
     ObserverChoices observer;
     EstimationChoices estimation;
     bool has_external_force;
-    std::array<bool, 8> flags;  // of arm and model
+    std::array<bool, 13> flags;  // of arm and model
 
     bool operator==(const BatchKey&) const = default;
 };

@@ -17,15 +17,12 @@ constexpr double a_visible_share = 0.1;  // of the friction, as a residual
 
 double to_thousandths(double x) { return nearest_integer(1000 * x) / 1000; }
 
-double determinant(const Arm<double>& arm, const Vec3<double>& q) {  // of J, m^3 (2.8)
-    const Pose<double> p = pose(q);
-    return arm.link2.length * arm.link3.length * (p.S2 * p.C23 - p.C2 * p.S23) * radius(arm, p);
-}
+double determinant(const Arm<double>& arm, const Vec3<double>& q) { return jacobian_determinant(arm, pose(q)); }
 
 // No pose has a larger one.
 double max_determinant(const Arm<double>& arm) {
     const double a2 = arm.link2.length, a3 = arm.link3.length;
-    return a2 * a3 * (a2 + a3);
+    return a2 * a3 * reach(arm);
 }
 
 // What is no continuous function of time where the contact begins or ends; null: nothing.
@@ -103,7 +100,7 @@ std::optional<std::string> singular_pose(const Setup& setup, const Run& run, con
     const auto q1 = run.find(ColumnIndex("q1")), q2 = run.find(ColumnIndex("q2")), q3 = run.find(ColumnIndex("q3"));
     for (std::size_t row = 0; row < run.rows; ++row) {
         const Vec3<double> there(q1[row], q2[row], q3[row]);
-        const double here = determinant(model, setup.simscape ? change_convention(there) : there);
+        const double here = determinant(model, setup.convention.to_slide(there));
         if (std::abs(here) < std::abs(closest)) closest = here, when = t[row];
     }
     const double share = std::abs(closest) / max_determinant(model);

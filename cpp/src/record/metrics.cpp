@@ -86,8 +86,8 @@ const std::vector<SummaryNumber>& summary_table() {
 void set_end_values(const Setup& setup, double t, const FullState& y, bool is_touching, const ContactTally& contacts,
                     const Peak& peak, Metrics& metrics) {
     metrics.t_end = t;
-    metrics.q = joints_out(setup, angles(y));
-    metrics.qd = joints_out(setup, rates(y));
+    metrics.q = angles_out(setup, angles(y));
+    metrics.qd = rates_out(setup, rates(y));
     metrics.tip = without_negative_zero(tip_position(setup.plant.arm, pose(angles(y))));
     metrics.work_of_actuators = y[work_of_actuators];
     metrics.work_of_wall = y[work_of_wall];

@@ -16,13 +16,16 @@
 
 namespace arm3r {
 
-// The vector without negative zeros, as users see it; of joints, in the arm's convention.
+// The vector without negative zeros, as users see it; angles and rates of joints in the arm's convention.
 inline std::array<double, 3> without_negative_zero(const Vec3<double>& v) {
     return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0};
 }
 
-inline std::array<double, 3> joints_out(const Setup& setup, const Vec3<double>& v) {
-    return without_negative_zero(setup.simscape ? change_convention(v) : v);
+inline std::array<double, 3> angles_out(const Setup& setup, const Vec3<double>& q) {
+    return without_negative_zero(setup.convention.from_slide(q));
+}
+inline std::array<double, 3> rates_out(const Setup& setup, const Vec3<double>& qd) {
+    return without_negative_zero(setup.convention.flipped(qd));
 }
 
 template <class T>
@@ -98,7 +101,7 @@ RowPlan plan_of_end();  // of what EndValues has (run_data.hpp); in memory it ha
 // The data that all rows within a step share.
 struct RowContext {
     const Plant<double>& plant;
-    bool simscape;
+    const JointConvention& convention;
     double energy_at_start;
     ContactMode mode;
     const DenseOutput& dense;  // the tip position is differentiated along it (5.4)

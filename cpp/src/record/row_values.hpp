@@ -71,8 +71,7 @@ ARM3R_INLINE T passes_through(const Wall<double>& wall, const WallState<T>& stat
 // 1 if link 2, or a link 3 whose tip is not in contact, passes through the plate, else 0.
 template <class T>
 ARM3R_INLINE T link_behind(const Plant<double>& plant, const WallState<T>& wall, const Pose<T>& p, const T& touches) {
-    const Vec3<T> shoulder(T(0.0), T(0.0), T(plant.arm.base_height));
-    const Vec3<T> elbow = elbow_position(plant.arm, p);
+    const Vec3<T> shoulder = shoulder_position(plant.arm, p), elbow = elbow_position(plant.arm, p);
     const T link3 = passes_through(plant.wall, wall, elbow, tip_position(plant.arm, p));
     return max(passes_through(plant.wall, wall, shoulder, elbow), T(link3 - touches));
 }
@@ -144,21 +143,21 @@ ARM3R_INLINE State<T, full_size> state_for_row(const RowContext& context, const 
 template <class T>
 class RowWriter {
 public:
-    ARM3R_INLINE RowWriter(RowValues<T>& row, bool simscape) : value_(row.value), simscape_(simscape) {}
+    ARM3R_INLINE RowWriter(RowValues<T>& row, const JointConvention& convention)
+        : value_(row.value), convention_(convention) {}
 
     ARM3R_INLINE void number(ColumnIndex column, const T& x) { put(column, x); }
     ARM3R_INLINE void vector(ColumnIndex first, const Vec3<T>& v) {
         for (std::size_t i = 0; i < 3; ++i) put(first + i, v[i]);
     }
-    ARM3R_INLINE void joints(ColumnIndex first, const Vec3<T>& v) {
-        vector(first, simscape_ ? change_convention(v) : v);
-    }
+    ARM3R_INLINE void angles(ColumnIndex first, const Vec3<T>& q) { vector(first, convention_.from_slide(q)); }
+    ARM3R_INLINE void joints(ColumnIndex first, const Vec3<T>& v) { vector(first, convention_.flipped(v)); }
 
 private:
     ARM3R_INLINE void put(std::size_t column, const T& x) { value_[column] = x + 0.0; }  // + 0.0: no negative zero
 
     std::array<T, column_count>& value_;
-    const bool simscape_;
+    const JointConvention& convention_;
 };
 
 // Arm, wall and the force between them at the instant of a row.
@@ -245,7 +244,8 @@ ARM3R_INLINE void write_law(const RowContext& context, const Measurement<T>& sen
     const Vec3<T> desired =
         tracks_path(law.type) ? desired_motion_at(law.reference, sensed.t).position : zero_vector<T>();
     write.vector("tip_ref_x", law.reference.in_joints ? zero_vector<T>() : desired);
-    write.joints("q_ref1", law.reference.in_joints ? desired : zero_vector<T>());
+    if (law.reference.in_joints) write.angles("q_ref1", desired);
+    else write.vector("q_ref1", zero_vector<T>());
 }
 
 template <class T>
@@ -291,9 +291,9 @@ ARM3R_INLINE void fill_row(const RowContext& context, const T& row_time, const S
     now.q = {y[0], y[1], y[2]};
     now.qd = {y[3], y[4], y[5]};
     row.link_behind_wall = T(0.0);
-    RowWriter<T> write(row, context.simscape);
+    RowWriter<T> write(row, context.convention);
     write.number("t", row_time);
-    write.joints("q1", now.q);
+    write.angles("q1", now.q);
     write.joints("qd1", now.qd);
     if (context.plan.parts == 0) return;
     now.pose = pose(now.q);

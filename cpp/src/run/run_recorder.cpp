@@ -71,13 +71,13 @@ void RunRecorder::record_contact_change(const ContactChange& change, const FullS
 
 void RunRecorder::record(Event::Type type, double t, const FullState& y) {
     if (options_.rows && double(run_.events.size()) < max_events)
-        run_.events.push_back({type, t, joints_out(setup_, angles(y)), joints_out(setup_, rates(y)),
+        run_.events.push_back({type, t, angles_out(setup_, angles(y)), rates_out(setup_, rates(y)),
                                without_negative_zero(tip_position(setup_.plant.arm, pose(angles(y))))});
 }
 
 void RunRecorder::seek_singular_pose(double theta) {
     if (const std::optional<double> at = first_passage(setup_.controller().model, dense_, theta))
-        run_.singular_passage = {dense_.t0 + *at * dense_.h, joints_out(setup_, angles(dense_.motion(*at)))};
+        run_.singular_passage = {dense_.t0 + *at * dense_.h, angles_out(setup_, angles(dense_.motion(*at)))};
 }
 
 void RunRecorder::end(arm3r_outcome outcome, std::string message) {

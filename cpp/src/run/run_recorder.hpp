@@ -89,7 +89,7 @@ private:
     RowContext row_context() const { return row_context(plan_); }
     RowContext row_context(const RowPlan& plan) const {
         return {setup_.plant,
-                setup_.simscape,
+                setup_.convention,
                 energy_at_start_,
                 mode_,
                 dense_,

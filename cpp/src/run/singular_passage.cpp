@@ -55,15 +55,14 @@ namespace {
 
 // The first zero of the two factors of det J, of which the second is a share of the reach, less `margin` towards 0.
 std::optional<double> first_zero(const Arm<double>& arm, const DenseOutput& dense, double end, double margin) {
-    const double reach = arm.link2.length + arm.link3.length;
     const auto pose_at = [&](double theta) { return pose(angles(dense.motion(theta))); };
     const auto zero_of = [&](auto factor) -> std::optional<double> {
         const double start = factor(0.0), sign = start < 0 ? -1 : 1;
         if (margin > 0 && sign * start <= 2 * margin) return {};
         return first_change_of_sign([&](double theta) { return sign * factor(theta) - margin; }, end);
     };
-    const auto stretched = zero_of([&](double theta) { return sin_q3(pose_at(theta)); });
-    const auto on_axis = zero_of([&](double theta) { return radius(arm, pose_at(theta)) / reach; });
+    const auto stretched = zero_of([&](double theta) { return sine_of_bend(arm, pose_at(theta)); });
+    const auto on_axis = zero_of([&](double theta) { return radius(arm, pose_at(theta)) / reach(arm); });
     if (stretched && on_axis) return std::min(*stretched, *on_axis);
     return stretched ? stretched : on_axis;
 }

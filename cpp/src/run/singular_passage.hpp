@@ -35,11 +35,11 @@ ARM3R_INLINE auto has_one_sign(const ValueAndRate<T>& start, const ValueAndRate<
 template <class P, class T, std::size_t N>
 ARM3R_INLINE auto may_pass_singular_pose(const Arm<P>& arm, const Pose<T>& p0, const State<T, N>& y0,
                                          const State<T, N>& y1, const T& h) {
-    const auto bend = [](const Pose<T>& p, const State<T, N>& y) ARM3R_INLINE_LAMBDA {
-        return ValueAndRate<T>{sin_q3(p), (p.C23 * p.C2 + p.S23 * p.S2) * y[5]};
+    const auto bend = [&](const Pose<T>& p, const State<T, N>& y) ARM3R_INLINE_LAMBDA {
+        return ValueAndRate<T>{sine_of_bend(arm, p), cosine_of_bend(arm, p) * y[5]};
     };
     const auto distance = [&](const Pose<T>& p, const State<T, N>& y) ARM3R_INLINE_LAMBDA {
-        return ValueAndRate<T>{radius(arm, p), -(height(arm, p) * y[4] + arm.link3.length * p.S23 * y[5])};
+        return ValueAndRate<T>{radius(arm, p), radius_rate(arm, p, Vec3<T>(y[3], y[4], y[5]))};
     };
     const Pose<T> p1 = pose(Vec3<T>(y1[0], y1[1], y1[2]));
     return !(has_one_sign(bend(p0, y0), bend(p1, y1), h) && has_one_sign(distance(p0, y0), distance(p1, y1), h));

@@ -142,12 +142,16 @@ std::vector<double> default_of(const Key& key, std::span<const double> params) {
         if (const auto other = key.fallback_for.find(choice_of(params, *key.decided_by));
             other != key.fallback_for.end())
             return other->second;
+    const bool is_elbow = choice_of(params, "arm.model") == "elbow";
+    if (is_elbow && key.path == "arm.link1.mass") value = {0};
+    if (is_elbow && key.path == "arm.link1.com") value = {0, 0, 0};
     const bool link1_by_shape =
         key.path.starts_with("arm.link1.") && !key.unset.empty() && choice_of(params, "arm.link1.shape") != "explicit";
     if (link1_by_shape) std::fill(value.begin(), value.end(), unset);
     if (key.path == "wall.contact.stiffness") value[0] = default_stiffness(params, value[0]);
     if (key.path == "initial.q" && choice_of(params, "arm.convention") == "slide")
         value = {value[0], -value[1], -value[2]};
+    if (key.path == "initial.q" && is_elbow) value = {unset, unset, unset};
     return value;
 }
 
@@ -246,15 +250,23 @@ double choice_index(const Key& key, std::string_view word) {
     return static_cast<double>(found - key.choices.begin());
 }
 
+namespace {
+
+// A key of controller.model that exists wherever there is such a section.
+const Key& key_of_any_model() { return known_key("controller.model.payload.mass"); }
+
+}  // namespace
+
 bool key_exists(const Key& key, std::span<const double> params) {
+    if (key.plant && &key != &key_of_any_model() && !key_exists(key_of_any_model(), params)) return false;
     if (!key.decided_by) return true;
     return is_chosen(key, params) && key_exists(*key.decided_by, params);
 }
 
 const Key& key_refused(const Key& key, std::span<const double> params) {
     const Key* refused = &key;
-    while (is_chosen(*refused, params)) refused = refused->decided_by;
-    return *refused;
+    while (refused && (!refused->decided_by || is_chosen(*refused, params))) refused = refused->decided_by;
+    return refused ? *refused : key_of_any_model();
 }
 
 std::vector<std::string> words_without(const Key& key) {

@@ -1,5 +1,7 @@
 #include "setup/make_controller.hpp"
 
+#include "setup/make_elbow.hpp"
+
 namespace arm3r {
 namespace {
 
@@ -55,7 +57,7 @@ void set_controller(std::span<const double> params, Controller<double>& controll
     controller.saturation = choice_at<"controller.saturation", Saturation>(params);
     controller.torque = {0, 0, 0};
     if (controller.type == ControllerType::constant)
-        controller.torque = to_slide(params, vector_at<"controller.torque">(params));
+        controller.torque = convention_of(params).flipped(vector_at<"controller.torque">(params));
     set_gains(params, controller.gains);  // of every type: a sampled controller without a law detects contact too
     if (has_law(controller.type)) set_choices(params, controller);
 }

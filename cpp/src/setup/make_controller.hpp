@@ -9,13 +9,6 @@
 
 namespace arm3r {
 
-inline bool is_simscape(std::span<const double> params) { return is<"arm.convention", "simscape">(params); }
-
-// A joint vector of the scenario, in the slide convention.
-inline Vec3<double> to_slide(std::span<const double> params, const Vec3<double>& joint_vector) {
-    return is_simscape(params) ? change_convention(joint_vector) : joint_vector;
-}
-
 // One number is used for all three axes or joints.
 template <Name path>
 Vec3<double> each_axis(std::span<const double> params) {

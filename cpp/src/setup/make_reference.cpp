@@ -21,7 +21,7 @@ Vec3<double> target_of(std::span<const double> params, const Arm<double>& model,
                        bool in_joints) {
     const Vec3<double> tip = vector_at<"reference.tip">(params);
     if (!std::isnan(tip[0])) return in_joints ? joints_at(model, tip, start_q).q : tip;
-    const Vec3<double> q = to_slide(params, vector_at<"reference.q">(params));
+    const Vec3<double> q = convention_of(params).to_slide(vector_at<"reference.q">(params));
     return in_joints ? q : tip_of(model, q);
 }
 
@@ -36,8 +36,8 @@ void set_circle(std::span<const double> params, const Setup& setup, Reference<do
     reference.duration = at<"reference.period">(params) * reference.turns;
 }
 
-void set_sinusoid(std::span<const double> params, Reference<double>& reference) {
-    reference.amplitude = reference.in_joints ? to_slide(params, vector_at<"reference.q_amplitude">(params))
+void set_sinusoid(std::span<const double> params, const Setup& setup, Reference<double>& reference) {
+    reference.amplitude = reference.in_joints ? setup.convention.flipped(vector_at<"reference.q_amplitude">(params))
                                               : vector_at<"reference.tip_amplitude">(params);
     reference.frequency = at<"reference.frequency">(params);
 }
@@ -75,9 +75,7 @@ bool is_aimed(Path path) { return path == Path::point || path == Path::line || p
 
 IkResult<double> joints_at(const Arm<double>& arm, const Vec3<double>& tip, const Vec3<double>& near) {
     const Pose<double> p = pose(near);
-    const double S3 = sin_q3(p);
-    const bool front = radius(arm, p) >= 0;
-    IkResult<double> solution = inverse_kinematics(arm, tip, front, front == (S3 <= 0));
+    IkResult<double> solution = inverse_kinematics_near(arm, tip, radius(arm, p), sine_of_bend(arm, p));
     for (int i = 0; i < 3; ++i) solution.q[i] = next_to(near[i], solution.q[i]);
     return solution;
 }
@@ -94,7 +92,7 @@ void set_reference(std::span<const double> params, const Setup& setup, Reference
     reference.duration = at<"reference.duration">(params);
     if (is_aimed(reference.path)) reference.to = target_of(params, controller.model, setup.q, reference.in_joints);
     if (reference.path == Path::circle) set_circle(params, setup, reference);
-    if (reference.path == Path::sinusoid) set_sinusoid(params, reference);
+    if (reference.path == Path::sinusoid) set_sinusoid(params, setup, reference);
     if (reference.path == Path::table) set_table(params, reference);
     reference.end = reference.start + reference.duration;
     set_force_profile(params, reference);

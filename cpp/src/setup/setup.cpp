@@ -9,6 +9,7 @@
 #include "base/spline.hpp"
 #include "schema/param_access.hpp"
 #include "setup/make_controller.hpp"
+#include "setup/make_elbow.hpp"
 #include "setup/make_reference.hpp"
 #include "setup/make_sampling.hpp"
 #include "setup/time_instants.hpp"
@@ -72,8 +73,10 @@ Link<double> link_of(std::span<const double> params) {
 bool any_above_zero(const Vec3<double>& v) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
 
 void finish(Arm<double>& arm) {
-    arm.lumped = lump(arm);
-    arm.gravity_is_vertical = arm.gravity[0] == 0 && arm.gravity[1] == 0;
+    if (arm.is_elbow) lump_elbow(arm);
+    else arm.lumped = lump_planar(arm);
+    const Vec3<double>& g = arm.is_elbow ? arm.elbow.gravity : arm.gravity;
+    arm.gravity_is_vertical = g[0] == 0 && g[1] == 0;
     arm.has_damping = any_above_zero(arm.damping);
     arm.has_dry_friction = any_above_zero(arm.friction);
     arm.has_torque_limit =
@@ -234,11 +237,16 @@ Setup& Setup::operator=(Setup&&) noexcept = default;
 Setup::~Setup() = default;
 
 Arm<double> make_arm(std::span<const double> params) {
-    Arm<double> arm;
-    arm.base_height = at<"arm.base_height">(params);
-    arm.link1 = base_link_of(params);
-    arm.link2 = link_of<"arm.link2">(params);
-    arm.link3 = link_of<"arm.link3">(params);
+    Arm<double> arm{};
+    arm.is_elbow = is<"arm.model", "elbow">(params);
+    if (arm.is_elbow) {
+        set_elbow(params, arm);
+    } else {
+        arm.base_height = at<"arm.base_height">(params);
+        arm.link1 = base_link_of(params);
+        arm.link2 = link_of<"arm.link2">(params);
+        arm.link3 = link_of<"arm.link3">(params);
+    }
     arm.payload = at<"arm.payload.mass">(params);
     arm.gravity = vector_at<"arm.gravity">(params);
     arm.armature = vector_at<"arm.armature">(params);
@@ -274,7 +282,7 @@ static void wire_sampling(std::span<const double> params, Setup& setup) {
 }
 
 Setup::Setup(std::span<const double> params) : Setup() {
-    simscape = is_simscape(params);
+    convention = convention_of(params);
     start = at<"time.start">(params);
     plant.arm = make_arm(params);
     set_controller(params, plant.controller);
@@ -301,8 +309,8 @@ bool Setup::ends_steps_at_singular_poses() const {
 }
 
 void Setup::set_start_and_contact(std::span<const double> params) {
-    q = to_slide(params, vector_at<"initial.q">(params));
-    qd = to_slide(params, vector_at<"initial.qd">(params));
+    q = convention.to_slide(vector_at<"initial.q">(params));
+    qd = convention.flipped(vector_at<"initial.qd">(params));
     plant.contact = make_contact(params, mass_at_start(*this));
 }
 

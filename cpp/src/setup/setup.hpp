@@ -28,7 +28,7 @@ struct Solver {
 };
 
 struct Setup {
-    bool simscape;  // the convention of q, qd and torques of input and output
+    JointConvention convention;  // of q, qd and torques of input and output
     Plant<double> plant;
     DigitalController<double> digital;  // if it is on, the plant has no controller and holds the torque of this one
     Estimation<double> estimation;

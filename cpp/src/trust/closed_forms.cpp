@@ -17,8 +17,6 @@
 namespace arm3r {
 namespace {
 
-Vec3<double> slide(const Setup& setup, const Vec3<double>& v) { return setup.simscape ? change_convention(v) : v; }
-
 // A state of the arm, with the wall as the tip meets it.
 struct Meeting {
     double t;
@@ -34,8 +32,8 @@ Meeting meeting_at(const Plant<double>& plant, double t, const Vec3<double>& q, 
 }
 
 Meeting meeting_at(const Setup& setup, const Event& event) {
-    return meeting_at(setup.plant, event.t, slide(setup, Vec3<double>(event.q.data())),
-                      slide(setup, Vec3<double>(event.qd.data())));
+    return meeting_at(setup.plant, event.t, setup.convention.to_slide(Vec3<double>(event.q.data())),
+                      setup.convention.flipped(Vec3<double>(event.qd.data())));
 }
 
 // ---- the motion along the normal, less the wall's force (9.2)
@@ -207,14 +205,16 @@ void add_contacts(const Setup& setup, const Run& run, std::span<const Event> eve
 void add_steady_force(const Setup& setup, const Run& run, double tolerance, std::vector<ClosedForm>& forms) {
     if (!run.at_end || run.events.back().type != Event::make || setup.plant.external_force.on) return;
     const Arm<double>& arm = setup.plant.arm;
-    const Vec3<double> q = slide(setup, Vec3<double>(run.q.data())), qd = slide(setup, Vec3<double>(run.qd.data()));
+    const Vec3<double> q = setup.convention.to_slide(Vec3<double>(run.q.data())),
+                       qd = setup.convention.flipped(Vec3<double>(run.qd.data()));
     const Meeting end = meeting_at(setup.plant, run.t_end, q, qd);
     const Pose<double> p = pose(q);
     const Vec3<double> carried = times(inverse_jacobian(arm, p), end.n);  // f_n = carried . (J^T f)
-    const Vec3<double> moving = plus(times(mass_matrix(arm, p), slide(setup, Vec3<double>(run.at_end->qdd.data()))),
-                                     velocity_product(arm, p, qd));
+    const Vec3<double> moving =
+        plus(times(mass_matrix(arm, p), setup.convention.flipped(Vec3<double>(run.at_end->qdd.data()))),
+             velocity_product(arm, p, qd));
     const Vec3<double> holding = minus(plus(gravity_torque(arm, p), friction_torque(arm, qd)),
-                                       slide(setup, Vec3<double>(run.at_end->tau.data())));
+                                       setup.convention.flipped(Vec3<double>(run.at_end->tau.data())));
     const double form = dot(carried, holding), allowed = std::abs(dot(carried, moving));
     if (allowed < 0.01 * form) forms.push_back({"final_force", "N", run.final_force, form, allowed + tolerance * form});
 }

@@ -18,10 +18,14 @@ Vector weight_left(const Plant<double>& plant, const Pose<Interval>& p) {
     const Arm<double>&arm = plant.arm, &model = plant.controller.model;
     if (plant.controller.type != ControllerType::gravity_compensation) return link_weight(arm, p);
     if (arm.gravity != model.gravity) return minus(link_weight(arm, p), link_weight(model, p));
-    Lumped<double> rest = arm.lumped;
-    rest.G2 -= model.lumped.G2;
-    rest.G3 -= model.lumped.G3;
-    return link_weight(rest, arm.gravity, arm.gravity_is_vertical, p);
+    Arm<double> rest = arm;
+    rest.lumped.G2 -= model.lumped.G2;
+    rest.lumped.G3 -= model.lumped.G3;
+    rest.elbow.Gy2 -= model.elbow.Gy2;
+    rest.elbow.Gy3 -= model.elbow.Gy3;
+    rest.elbow.Hu -= model.elbow.Hu;
+    rest.elbow.Hv -= model.elbow.Hv;
+    return link_weight(rest, p);
 }
 
 // The acceleration of the joints without the wall, and by a force of 1 N along n.

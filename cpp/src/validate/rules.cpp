@@ -24,6 +24,21 @@ std::string at_pose(const WorstPose& pose) {
 }
 
 void check_mass_matrix(const Arm<double>& arm, ProblemList& problem_list) {
+    if (arm.is_elbow) {
+        const WorstPose pivot = min_pivot(arm);
+        if (!(pivot.value > 1e-12))
+            problem_list.add([&] {
+                return Problem{.code = "scenario.singular_mass_matrix",
+                               .path = "arm.link1.inertia",
+                               .message =
+                                   "the mass matrix is singular or has a negative eigenvalue: its least pivot "
+                                   "falls to " +
+                                   shortest(pivot.value) + " of its diagonal " + at_pose(pivot),
+                               .allowed = "a positive definite mass matrix",
+                               .hint = "give the inertias of the links, or armature for the joints"};
+            });
+        return;
+    }
     const WorstPose M11 = min_M11(arm.lumped);
     if (M11.value < min_inertia)
         problem_list.add([&] {
@@ -186,7 +201,17 @@ std::optional<NoSeries> without_series(const Plant<double>& plant) {
 }
 
 void check_series(const Setup& setup, ProblemList& problem_list) {
-    if (setup.solver.method != SolverMethod::taylor || !setup.plant.has_wall) return;
+    if (setup.solver.method != SolverMethod::taylor) return;
+    if (setup.plant.arm.is_elbow)
+        return problem_list.add([] {
+            return Problem{.code = "scenario.no_series",
+                           .path = "solver.method",
+                           .message = "taylor has no series of an elbow arm",
+                           .got = "taylor",
+                           .allowed = "dopri5, rk4, rodas4 or auto with arm.model: elbow",
+                           .hint = "use method: dopri5"};
+        });
+    if (!setup.plant.has_wall) return;
     if (const std::optional<NoSeries> reason = without_series(setup.plant))
         problem_list.add([&] {
             return Problem{.code = "scenario.no_series",
@@ -215,6 +240,33 @@ Problem missing(const Key& key, std::size_t count, std::string hint) {
             .allowed = (count == 1 ? "a number" : "a list of " + list_sizes(key) + " numbers") +
                        (key.unit.empty() ? "" : ", " + key.unit),
             .hint = std::move(hint)};
+}
+
+std::string distance_from_reach(const Arm<double>& arm, const Vec3<double>& tip, bool front) {
+    if (arm.is_elbow) return shortest(reach_excess(arm, tip, front)) + " m out of reach";
+    const Vec3<double> x = minus(tip, base_position(arm));
+    return shortest(hypot2(hypot2(x[0], x[1]), x[2])) + " m from joint 2";
+}
+
+std::string reach_text(const Arm<double>& arm) {
+    const double a2 = arm.link2.length, a3 = arm.link3.length;
+    const std::string range = shortest(std::abs(a2 - a3)) + " to " + shortest(a2 + a3) + " m";
+    return arm.is_elbow ? range + " from joint 2, outside the cylinder of radius " +
+                              shortest(std::abs(arm.elbow.lateral)) + " m about axis 1"
+                        : range;
+}
+
+WorstPose min_pivot(const Arm<double>& arm) {
+    constexpr int places = 16;  // of an angle: the mass matrix has its sines up to the second order
+    WorstPose worst{infinite, 0, 0};
+    for (int i = 0; i < places; ++i)
+        for (int j = 0; j < places; ++j) {
+            const double q2 = 2 * pi * i / places, q3 = 2 * pi * j / places;
+            const auto [lower, whole] = elbow_arm::pivots(arm, pose(Vec3<double>(0, q2, q3)));
+            const double least = lower > 0 ? std::min(lower, whole) : lower;
+            if (!(least >= worst.value)) worst = {least, q2, q3};
+        }
+    return worst;
 }
 
 WorstPose min_M11(const Lumped<double>& l) {  // (3.10)

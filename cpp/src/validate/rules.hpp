@@ -21,6 +21,13 @@ struct WorstPose {
     double value;
     double q2, q3;  // rad, slide
 };
+// How far a point out of reach is, and what is within reach: "2.5 m from joint 2", "0.1 to 2 m".
+std::string distance_from_reach(const Arm<double>& arm, const Vec3<double>& tip, bool front);
+std::string reach_text(const Arm<double>& arm);
+
+// The least pivot of an elbow arm's mass matrix on a grid of poses, relative to its diagonal, and where.
+WorstPose min_pivot(const Arm<double>& arm);
+
 WorstPose min_M11(const Lumped<double>& lumped);
 WorstPose min_lower_determinant(const Lumped<double>& lumped);
 

@@ -83,18 +83,19 @@ void check_target(std::span<const double> params, const Setup& setup, ProblemLis
     const bool is_aimed = path == Path::point || path == Path::line || path == Path::minimum_jerk;
     if (!controller.reference.in_joints || !is_aimed || !is_given(tip)) return;
     const Arm<double>& model = controller.model;
-    const double a2 = model.link2.length, a3 = model.link3.length, up = tip[2] - model.base_height;
-    const double aside = hypot2(tip[0], tip[1]), distance = hypot2(aside, up);
+    const Vec3<double> from_base = minus(tip, base_position(model));
+    const Vec3<double> x = model.is_elbow ? elbow_arm::to_base(model, from_base) : from_base;
+    const double aside = hypot2(x[0], x[1]);
     if (std::abs(joints_at(model, tip, setup.q).cos_q3) > 1 + 1e-12)
         problem_list.add([&] {
             return Problem{.code = "scenario.out_of_reach",
                            .path = "reference.tip",
                            .message = "no joint angles bring the tip there",
-                           .got = shortest(distance) + " m from joint 2",
-                           .allowed = shortest(std::abs(a2 - a3)) + " to " + shortest(a2 + a3) + " m",
+                           .got = distance_from_reach(model, tip, radius(model, pose(setup.q)) >= 0),
+                           .allowed = reach_text(model),
                            .hint = "move the target, or give reference.q"};
         });
-    else if (aside < 1e-9 * (a2 + a3))
+    else if (aside < 1e-9 * reach(model))
         problem_list.add([&] {
             return Problem{.code = "scenario.singular",
                            .path = "reference.tip",
@@ -111,7 +112,7 @@ void check_pose(std::span<const double> params, const Setup& setup, ProblemList&
     if (!inverts_jacobian(setup.controller())) return;
     const Arm<double>& model = setup.controller().model;
     const Pose<double> p = pose(setup.q);
-    const double S3 = sin_q3(p), r = radius(model, p);
+    const double S3 = sine_of_bend(model, p), r = radius(model, p);
     const double min_r = min_sine * reach(model);
     const auto refuse = [&](const std::string& message, const std::string& got, const std::string& allowed) {
         problem_list.add([&] {

@@ -27,6 +27,7 @@ double projected_mobility(const Arm<double>& arm, const Pose<double>& p, const V
     const double lower = M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2);
     const auto A = [&](const Vec3<double>& along) {
         const Vec3<double> v = times(K, along);
+        if (arm.is_elbow) return times(J, elbow_arm::by_inverse_mass(arm, p, v));
         return times(J, Vec3<double>(v[0] / M(0, 0), (M(2, 2) * v[1] - M(1, 2) * v[2]) / lower,
                                      (M(1, 1) * v[2] - M(1, 2) * v[1]) / lower));
     };

@@ -104,7 +104,39 @@ void check_slender(std::span<const double> params, ProblemList& problem_list) {
         need_number<link + ".mass">(params, "a slender link has no density: give its mass", problem_list);
 }
 
+// How many numbers the planar or the elbow arm takes where the key lets a user write either.
+void check_size(const Key& key, std::span<const double> params, std::size_t of_planar, std::size_t of_elbow,
+                bool must_be_given, ProblemList& problem_list) {
+    const bool is_elbow = is<"arm.model", "elbow">(params);
+    const std::size_t given = given_count(key, params), wanted = is_elbow ? of_elbow : of_planar;
+    const std::string& model = choice_of(params, "arm.model");
+    if (given == 0 && must_be_given && is_elbow)
+        problem_list.add([&] { return missing(key, wanted, "an elbow arm has no shapes to derive it from"); });
+    if (given == 0 || given == wanted) return;
+    problem_list.add([&] {
+        return Problem{.code = "scenario.type",
+                       .path = key.path,
+                       .message = "arm.model " + model + " takes " +
+                                  (wanted == 1 ? "one number" : "a list of " + std::to_string(wanted) + " numbers") +
+                                  " here",
+                       .got = given == 1 ? "one number" : "a list of " + std::to_string(given),
+                       .allowed = std::to_string(wanted) + (key.unit.empty() ? "" : ", " + key.unit),
+                       .hint = is_elbow ? "give [x, y, z], or [xx, yy, zz, xy, xz, yz] of a tensor"
+                                        : "arm.model: elbow takes points and tensors"};
+    });
+}
+
+template <Name link>
+void check_sizes(std::span<const double> params, ProblemList& problem_list) {
+    const bool is_first = std::string_view(link) == "arm.link1";
+    check_size(known_key(link + ".com"), params, 1, 3, !is_first, problem_list);
+    check_size(known_key(link + ".inertia"), params, 3, 6, !is_first, problem_list);
+    if (!is_first && is<"arm.model", "elbow">(params))
+        need_number<link + ".mass">(params, "an elbow arm has no shapes to derive it from", problem_list);
+}
+
 void check_shapes(std::span<const double> params, ProblemList& problem_list) {
+    if (is<"arm.model", "elbow">(params)) return;
     check_slender<"arm.link1">(params, problem_list);
     check_slender<"arm.link2">(params, problem_list);
     check_slender<"arm.link3">(params, problem_list);
@@ -115,9 +147,38 @@ void check_shapes(std::span<const double> params, ProblemList& problem_list) {
     need_number<"arm.link1.inertia_axial">(params, hint, problem_list);
 }
 
+// A tensor that no body has: with a negative principal inertia. One above the sum of the other two warns.
+void check_tensor(const Key& key, std::span<const double> params, ProblemList& problem_list) {
+    const auto I = [&](std::size_t i) { return params[key.offset + i]; };
+    const double minors[] = {
+        I(0) * I(1) - I(3) * I(3), I(0) * I(2) - I(4) * I(4), I(1) * I(2) - I(5) * I(5),
+        I(0) * (I(1) * I(2) - I(5) * I(5)) - I(3) * (I(3) * I(2) - I(5) * I(4)) + I(4) * (I(3) * I(5) - I(1) * I(4))};
+    const double size = std::max({I(0), I(1), I(2)}), rounding = 1e-9;
+    const bool is_body = minors[0] >= -rounding * size * size && minors[1] >= -rounding * size * size &&
+                         minors[2] >= -rounding * size * size && minors[3] >= -rounding * size * size * size;
+    if (is_body || std::isnan(size)) return;
+    problem_list.add([&] {
+        return Problem{.code = "scenario.inertia",
+                       .path = key.path,
+                       .message = "no body has this tensor: a principal inertia is negative",
+                       .allowed = "a positive semidefinite tensor, [xx, yy, zz, xy, xz, yz]",
+                       .hint = "is the order that of xx, yy, zz, xy, xz, yz, and are products entries of the tensor?"};
+    });
+}
+
 template <Name path>
 void check_inertia(std::span<const double> params, ProblemList& problem_list) {
     const Vec3<double> inertia = vector_at<path>(params);
+    for (std::size_t i = 0; i < 3; ++i)
+        if (inertia[i] < 0)
+            problem_list.add([&] {
+                return Problem{.code = "scenario.range",
+                               .path = item_path(known_key(path), i, 3),
+                               .message = "out of range",
+                               .got = shortest(inertia[i]),
+                               .allowed = "[0, " + yaml_number(known_key(path).bounds.high) + "] kg m^2"};
+            });
+    if (is<"arm.model", "elbow">(params)) return check_tensor(known_key(path), params, problem_list);
     for (int i = 0; i < 3; ++i) {
         const double own = inertia[i], others = inertia[(i + 1) % 3] + inertia[(i + 2) % 3];
         if (own > others * (1 + 1e-12))
@@ -131,10 +192,53 @@ void check_inertia(std::span<const double> params, ProblemList& problem_list) {
     }
 }
 
+void check_convention(std::span<const double> params, ProblemList& problem_list) {
+    if (!is<"arm.convention", "urdf">(params)) return;
+    if (is<"arm.model", "planar">(params))
+        problem_list.add([] {
+            return Problem{.code = "scenario.conflict",
+                           .path = "arm.convention",
+                           .message = "urdf is the convention of an elbow arm",
+                           .got = "arm.model planar",
+                           .allowed = "simscape or slide with arm.model: planar",
+                           .hint = "write arm.model: elbow, or another convention"};
+        });
+    for (std::size_t i = 0; i < 3; ++i)
+        if (const double sign = at<"arm.joint_sign">(params, i); std::abs(sign) != 1)
+            problem_list.add([&] {
+                return Problem{.code = "scenario.range",
+                               .path = "arm.joint_sign[" + std::to_string(i) + "]",
+                               .message = "a sign is 1 or -1",
+                               .got = shortest(sign),
+                               .allowed = "1 or -1"};
+            });
+}
+
+void check_axis(const Key& key, std::span<const double> params, ProblemList& problem_list) {
+    const double x = params[key.offset], y = params[key.offset + 1], z = params[key.offset + 2];
+    if (!(std::sqrt(x * x + y * y + z * z) < 1e-9)) return;  // NaN: not given
+    problem_list.add([&] {
+        return Problem{.code = "scenario.range",
+                       .path = key.path,
+                       .message = "a direction needs a length",
+                       .got = "[0, 0, 0]",
+                       .allowed = "any vector that is not zero"};
+    });
+}
+
 // The rules of `arm`, its keys and what holds between them.
 void check_arm(std::span<const double> params, const std::vector<const Key*>& keys, ProblemList& problem_list) {
     for (const Key* key : keys) check_numbers(*key, params, problem_list);
+    check_convention(params, problem_list);
+    check_sizes<"arm.link1">(params, problem_list);
+    check_sizes<"arm.link2">(params, problem_list);
+    check_sizes<"arm.link3">(params, problem_list);
     check_shapes(params, problem_list);
+    if (is<"arm.model", "elbow">(params)) {
+        check_inertia<"arm.link1.inertia">(params, problem_list);
+        for (const char* rotor : {"arm.rotor1", "arm.rotor2", "arm.rotor3"})
+            check_axis(known_key(std::string(rotor) + ".axis"), params, problem_list);
+    }
     check_inertia<"arm.link2.inertia">(params, problem_list);
     check_inertia<"arm.link3.inertia">(params, problem_list);
 }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Eigenvalues>
+
 #include "base/number_text.hpp"
 #include "schema/param_access.hpp"
 #include "setup/make_controller.hpp"
@@ -54,7 +56,7 @@ void warn_of_gravity(const Setup& setup, std::vector<std::string>& warnings) {
 }
 
 void warn_of_angles(const Setup& setup, std::vector<std::string>& warnings) {
-    const Vec3<double> q = setup.simscape ? change_convention(setup.q) : setup.q;
+    const Vec3<double> q = setup.convention.from_slide(setup.q);
     for (int i = 0; i < 3; ++i) {
         const double angle = q[i], in_degrees = angle * 180 / pi;
         const bool was_degrees = std::abs(in_degrees - std::round(in_degrees)) < 1e-9 * std::abs(in_degrees);
@@ -66,11 +68,39 @@ void warn_of_angles(const Setup& setup, std::vector<std::string>& warnings) {
 }
 
 void warn_of_links(const Arm<double>& arm, std::vector<std::string>& warnings) {
+    if (arm.is_elbow) return;  // its links are bodies of any shape
     const Link<double>* links[] = {&arm.link2, &arm.link3};
     for (int i = 0; i < 2; ++i) {
         if (links[i]->com < 0 || links[i]->com > links[i]->length)
             warnings.push_back("the centre of mass of link " + std::to_string(i + 2) + " lies outside the link, at " +
                                shortest(links[i]->com) + " m of " + shortest(links[i]->length) + " m");
+    }
+}
+
+// The largest principal inertia less the sum of the other two, kg m^2, by the eigenvalues of the tensor.
+double triangle_excess(const RigidBody<double>& body) {
+    Mat3<double> tensor;
+    for (int i = 0; i < 3; ++i) tensor(i, i) = body.inertia[i];
+    tensor(0, 1) = tensor(1, 0) = body.products[0];
+    tensor(0, 2) = tensor(2, 0) = body.products[1];
+    tensor(1, 2) = tensor(2, 1) = body.products[2];
+    const Vec3<double> principal =
+        Eigen::SelfAdjointEigenSolver<Mat3<double>>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
+    return principal[2] - principal[1] - principal[0];
+}
+
+// Published robots have such tensors, so they are no error.
+void warn_of_tensors(const Arm<double>& arm, std::vector<std::string>& warnings) {
+    if (!arm.is_elbow) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const RigidBody<double>& body = arm.elbow.links[i];
+        const double size = std::max({body.inertia[0], body.inertia[1], body.inertia[2]});
+        const bool is_axial = i == 0 && body.inertia[0] == 0 && body.inertia[1] == 0;  // link 1 needs no more
+        if (!is_axial && triangle_excess(body) > 1e-9 * size)
+            warnings.push_back("arm.link" + std::to_string(i + 1) +
+                               ".inertia is not that of a body: its largest principal inertia exceeds the sum of the "
+                               "other two by " +
+                               rounded(triangle_excess(body), 4) + " kg m^2");
     }
 }
 
@@ -95,7 +125,7 @@ void warn_of_units(const Arm<double>& arm, std::vector<std::string>& warnings) {
 // The largest distance of joint 2 behind the wall's plane during the run, m; < 0 if it is never behind it.
 double max_shoulder_depth(const Setup& setup) {
     const Wall<double>& wall = setup.plant.wall;
-    const Vec3<double> shoulder(0, 0, setup.plant.arm.base_height);
+    const Vec3<double> shoulder = base_position(setup.plant.arm);
     double deepest = -infinite;
     const auto look = [&](double t) {
         const Indentation<double> in = indentation(wall, wall_at(wall, t), shoulder, {0, 0, 0});
@@ -140,7 +170,7 @@ std::optional<std::string> compensation_warning(const Setup& setup, bool by_defa
                vector_text(compensates) +
                " m/s^2, the default of controller.gravity; write controller.gravity: " + vector_text(feels) +
                ", or the value that its model must have";
-    const auto out = [&](const Vec3<double>& tau) { return setup.simscape ? change_convention(tau) : tau; };
+    const auto out = [&](const Vec3<double>& tau) { return setup.convention.flipped(tau); };
     const Pose<double> start = pose(setup.q);
     const Vec3<double> needed = gravity_torque(setup.plant.arm, start), given = gravity_torque(controller.model, start);
     if (norm(compensates) == 0 || is_part_of(given, needed, controller.type)) return {};
@@ -166,6 +196,7 @@ std::vector<std::string> scenario_warnings(const Setup& setup) {
     warn_of_angles(setup, warnings);
     warn_of_links(setup.plant.arm, warnings);
     warn_of_units(setup.plant.arm, warnings);
+    warn_of_tensors(setup.plant.arm, warnings);
     warn_of_wall(setup, warnings);
     warn_of_jump(setup, warnings);
     warn_of_fixed_step(setup, warnings);

@@ -243,14 +243,12 @@ double latest_turn(const Reference<double>& reference) {
 
 // The largest distance of the desired tip position from the arm's workspace, m.
 double workspace_excess(const Arm<double>& model, const Reference<double>& reference, double start, double stop) {
-    const double a2 = model.link2.length, a3 = model.link3.length,
-                 length = std::max(0.0, std::min(stop, latest_turn(reference)) - start);
+    const double length = std::max(0.0, std::min(stop, latest_turn(reference)) - start);
     double farthest = 0;
     constexpr int samples = 200;
     for (int i = 0; i <= samples; ++i) {
         const Vec3<double> tip = desired_motion_at(reference, start + length * i / samples).position;
-        const double from_shoulder = hypot2(hypot2(tip[0], tip[1]), tip[2] - model.base_height);
-        farthest = std::max({farthest, from_shoulder - (a2 + a3), std::abs(a2 - a3) - from_shoulder});
+        farthest = std::max(farthest, workspace_excess(model, tip));
     }
     return farthest;
 }

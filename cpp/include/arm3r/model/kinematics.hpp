@@ -1,36 +1,14 @@
 #pragma once
-// Position and velocity of the arm in closed form; docs/model.md, section 2. Slide convention, base axes.
+// Position and velocity of the arm in closed form; docs/model.md, section 2. Slide convention, scenario axes. The formulas
+// that stand here are those of the planar arm; those of the elbow arm stand in elbow_kinematics.hpp.
 
-#include "arm3r/model/arm.hpp"
-#include "arm3r/numbers/pack.hpp"
+#include "arm3r/model/elbow_kinematics.hpp"
 
 namespace arm3r {
 
-// Sines and cosines of q1 and of the absolute link angles q2 and q2 + q3.
-template <class T>
-struct Pose {
-    T S1, C1, S2, C2, S23, C23;
-};
-
-// sin q3: zero where the arm is stretched or folded.
-template <class T>
-ARM3R_INLINE T sin_q3(const Pose<T>& p) {
-    return p.S23 * p.C2 - p.C23 * p.S2;
-}
-
-template <class T>
-ARM3R_INLINE Pose<T> pose(const Vec3<T>& q) {
-    const T sum = q[1] + q[2];
-    const T added = sum - q[1];
-    // the rounding error of the sum, exactly; the rotation below corrects it
-    const T lost = (q[1] - (sum - added)) + (q[2] - added);
-    const SinCos<T> first = sincos(q[0]);
-    const auto [second, third] = sincos_pair(q[1], sum);
-    return {first.sin, first.cos, second.sin, second.cos, third.sin + lost * third.cos, third.cos - lost * third.sin};
-}
-
 template <class P, class T>
 ARM3R_INLINE T radius(const Arm<P>& arm, const Pose<T>& p) {  // r (2.2)
+    if (arm.is_elbow) return elbow_arm::radius(arm, elbow_arm::reaches(arm, p));
     return arm.link2.length * p.C2 + arm.link3.length * p.C23;
 }
 
@@ -47,16 +25,25 @@ ARM3R_INLINE Vec3<T> in_arm_plane(const Arm<P>& arm, const Pose<T>& p, const T& 
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> tip_position(const Arm<P>& arm, const Pose<T>& p) {  // (2.3)
+    if (arm.is_elbow) return elbow_arm::tip_position(arm, p);
     return in_arm_plane(arm, p, radius(arm, p), height(arm, p));
 }
 
 template <class P, class T>
+ARM3R_INLINE Vec3<T> shoulder_position(const Arm<P>& arm, const Pose<T>& p) {  // of joint 2
+    if (arm.is_elbow) return elbow_arm::shoulder_position(arm, p);
+    return {T(0.0), T(0.0), T(arm.base_height)};
+}
+
+template <class P, class T>
 ARM3R_INLINE Vec3<T> elbow_position(const Arm<P>& arm, const Pose<T>& p) {  // (2.3)
+    if (arm.is_elbow) return elbow_arm::elbow_position(arm, p);
     return in_arm_plane(arm, p, T(arm.link2.length * p.C2), T(arm.link2.length * p.S2));
 }
 
 template <class P, class T>
 ARM3R_INLINE Mat3<T> centres_of_mass(const Arm<P>& arm, const Pose<T>& p) {  // (2.3), a row a link
+    if (arm.is_elbow) return elbow_arm::centres_of_mass(arm, p);
     return from_rows<T>({T(0.0), T(0.0), T(arm.link1.com)},
                         in_arm_plane(arm, p, T(arm.link2.com * p.C2), T(arm.link2.com * p.S2)),
                         in_arm_plane(arm, p, T(arm.link2.length * p.C2 + arm.link3.com * p.C23),
@@ -66,6 +53,7 @@ ARM3R_INLINE Mat3<T> centres_of_mass(const Arm<P>& arm, const Pose<T>& p) {  // 
 // J: m, tip velocity per joint rate (2.4).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> jacobian(const Arm<P>& arm, const Pose<T>& p) {
+    if (arm.is_elbow) return elbow_arm::jacobian(arm, p);
     const T r = radius(arm, p);
     const T h = height(arm, p);
     const T r3 = arm.link3.length * p.C23;
@@ -78,6 +66,7 @@ ARM3R_INLINE Mat3<T> jacobian(const Arm<P>& arm, const Pose<T>& p) {
 // J^-1, singular where S3 = 0 or r = 0 (2.8).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> inverse_jacobian(const Arm<P>& arm, const Pose<T>& p) {
+    if (arm.is_elbow) return elbow_arm::inverse_jacobian(arm, p);
     const T r = radius(arm, p);
     const T h = height(arm, p);
     const T inverse_r = 1.0 / r;
@@ -91,8 +80,9 @@ ARM3R_INLINE Mat3<T> inverse_jacobian(const Arm<P>& arm, const Pose<T>& p) {
 }
 
 // J_w: angular velocity of link 3 per joint rate (2.5).
-template <class T>
-ARM3R_INLINE Mat3<T> angular_jacobian(const Pose<T>& p) {
+template <class P, class T>
+ARM3R_INLINE Mat3<T> angular_jacobian(const Arm<P>& arm, const Pose<T>& p) {
+    if (arm.is_elbow) return elbow_arm::angular_jacobian(arm, p);
     return from_rows<T>({T(0.0), p.S1, p.S1},    //
                         {T(0.0), -p.C1, -p.C1},  //
                         {T(1.0), T(0.0), T(0.0)});
@@ -101,6 +91,7 @@ ARM3R_INLINE Mat3<T> angular_jacobian(const Pose<T>& p) {
 // J-dot: m/s (2.6).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> jacobian_dot(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
+    if (arm.is_elbow) return elbow_arm::jacobian_dot(arm, p, qd);
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T r = radius(arm, p);
     const T h = height(arm, p);
@@ -116,6 +107,7 @@ ARM3R_INLINE Mat3<T> jacobian_dot(const Arm<P>& arm, const Pose<T>& p, const Vec
 // J qd without the matrix.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> tip_velocity(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
+    if (arm.is_elbow) return elbow_arm::tip_velocity(arm, p, qd);
     const T w2 = qd[1], w3 = qd[1] + qd[2];
     const T radial = -(arm.link2.length * p.S2 * w2 + arm.link3.length * p.S23 * w3);
     const T up = arm.link2.length * p.C2 * w2 + arm.link3.length * p.C23 * w3;
@@ -123,42 +115,108 @@ ARM3R_INLINE Vec3<T> tip_velocity(const Arm<P>& arm, const Pose<T>& p, const Vec
     return {p.C1 * radial - p.S1 * around, p.S1 * radial + p.C1 * around, up};
 }
 
+// The determinant of J, m^3 (2.8), (10.3): its sign changes where the arm is stretched or folded, or the tip meets axis 1.
 template <class P, class T>
-ARM3R_INLINE T manipulability(const Arm<P>& arm, const Pose<T>& p) {  // |det J| (2.8)
-    const T S3 = sin_q3(p);
-    return abs(T(arm.link2.length * arm.link3.length * S3 * radius(arm, p)));
+ARM3R_INLINE T jacobian_determinant(const Arm<P>& arm, const Pose<T>& p) {
+    if (arm.is_elbow) {
+        const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
+        return -(elbow_arm::plane_determinant(m) * elbow_arm::radius(arm, m));
+    }
+    return -(arm.link2.length * arm.link3.length * sin_q3(p) * radius(arm, p));
 }
 
-// The distance of a point from the workspace, m: outside the outer radius or inside the inner one; not above 0 within
-// the workspace.
+template <class P, class T>
+ARM3R_INLINE T manipulability(const Arm<P>& arm, const Pose<T>& p) {  // |det J|
+    return abs(jacobian_determinant(arm, p));
+}
+
+// The sine of the angle between the line from joint 2 to joint 3 and that from there to the tip: zero where the arm is
+// stretched or folded. It is sin q3 where the tip lies on the x axis of link 3.
+template <class P, class T>
+ARM3R_INLINE T sine_of_bend(const Arm<P>& arm, const Pose<T>& p) {
+    if (!arm.is_elbow) return sin_q3(p);
+    return elbow_arm::plane_determinant(elbow_arm::reaches(arm, p)) / (arm.link2.length * arm.link3.length);
+}
+
+template <class P, class T>
+ARM3R_INLINE T cosine_of_bend(const Arm<P>& arm, const Pose<T>& p) {
+    if (!arm.is_elbow) return p.C23 * p.C2 + p.S23 * p.S2;
+    const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
+    return (m.r2 * m.r3 + m.h2 * m.h3) / (arm.link2.length * arm.link3.length);
+}
+
+// dr/dt, m/s
+template <class P, class T>
+ARM3R_INLINE T radius_rate(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
+    if (arm.is_elbow) {
+        const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
+        return -((m.h2 + m.h3) * qd[1] + m.h3 * qd[2]);
+    }
+    return -(height(arm, p) * qd[1] + arm.link3.length * p.S23 * qd[2]);
+}
+
+// How far a point is out of reach, m: outside the outer radius about joint 2 or inside the inner one, where the tip lies
+// before axis 1 or behind it; not above 0 within reach.
+template <class P>
+double reach_excess(const Arm<P>& arm, const Vec3<double>& tip, bool front) {
+    const double a2 = arm.link2.length, a3 = arm.link3.length;
+    const auto excess = [&](double distance) { return max(distance - (a2 + a3), abs(a2 - a3) - distance); };
+    if (!arm.is_elbow) {
+        const double zeta = tip[2] - arm.base_height;
+        return excess(sqrt(tip[0] * tip[0] + tip[1] * tip[1] + zeta * zeta));
+    }
+    const Vec3<double> x = elbow_arm::from_base_position(arm, tip);
+    const double e = arm.elbow.lateral, R = x[0] * x[0] + x[1] * x[1] - e * e;
+    if (R < 0) return abs(e) - hypot2(x[0], x[1]);
+    return excess(hypot2((front ? sqrt(R) : -sqrt(R)) - arm.elbow.shoulder_offset, x[2]));
+}
+
+// The same of the nearer of both.
 template <class P>
 double workspace_excess(const Arm<P>& arm, const Vec3<double>& tip) {
-    const double a2 = arm.link2.length, a3 = arm.link3.length, zeta = tip[2] - arm.base_height;
-    const double distance = sqrt(tip[0] * tip[0] + tip[1] * tip[1] + zeta * zeta);
-    return max(distance - (a2 + a3), abs(a2 - a3) - distance);
+    return min(reach_excess(arm, tip, true), reach_excess(arm, tip, false));
 }
 
 template <class T>
 struct IkResult {
     Vec3<T> q;
-    T cos_q3;  // outside [-1, 1] the point is out of reach
+    T cos_q3;  // outside [-1, 1] the point is out of reach; of an elbow arm: of the bend
 };
 
-// front: joint 1 faces the point, or faces away from it; up: the elbow lies above the line from shoulder to tip (2.7).
-// The result is meaningless where |cos_q3| > 1.
-template <class P, class T>
-IkResult<T> inverse_kinematics(const Arm<P>& arm, const Vec3<T>& tip, bool front, bool up) {
+// The joint angles at a tip position on one of the four branches: the sine of the bend (sine_of_bend) has the sign of
+// `bend_sign(rho)`, where rho is the tip's distance from joint 2 along u. The result is meaningless where |cos_q3| > 1.
+template <class P, class T, class BendSign>
+ARM3R_INLINE IkResult<T> inverse_kinematics_of_branch(const Arm<P>& arm, const Vec3<T>& tip, bool front,
+                                                      BendSign bend_sign) {
+    if (arm.is_elbow) {
+        const auto [q1, q2, q3, C3] = elbow_arm::angles_at(arm, tip, T(front ? 1.0 : -1.0), bend_sign);
+        return {{q1, q2, q3}, C3};
+    }
     const P a2 = arm.link2.length, a3 = arm.link3.length;
     const T rho_2 = tip[0] * tip[0] + tip[1] * tip[1];
     const T rho = front ? T(sqrt(rho_2)) : T(-sqrt(rho_2));
     const T zeta = tip[2] - arm.base_height;
     const T C3 = (rho_2 + zeta * zeta - a2 * a2 - a3 * a3) / (2.0 * a2 * a3);
     const T bend = acos(T(min(max(C3, T(-1.0)), T(1.0))));
-    const T q3 = front == up ? T(-bend) : bend;
+    const T q3 = copysign(bend, T(bend_sign(rho)));
     const SinCos<T> third = sincos(q3);
     const T q1 = front ? atan2(tip[1], tip[0]) : atan2(T(-tip[1]), T(-tip[0]));
     const T q2 = atan2(zeta, rho) - atan2(T(a3 * third.sin), T(a2 + a3 * third.cos));
     return {{q1, q2, q3}, C3};
+}
+
+// front: the tip lies before axis 1 along u, or behind it (for a planar arm: joint 1 faces the point, or faces away from
+// it); up: the elbow lies above the line from joint 2 to the tip (2.7), (10.5). The result is meaningless where
+// |cos_q3| > 1.
+template <class P, class T>
+IkResult<T> inverse_kinematics(const Arm<P>& arm, const Vec3<T>& tip, bool front, bool up) {
+    return inverse_kinematics_of_branch(arm, tip, front, [up](const T& rho) { return up ? T(-rho) : rho; });
+}
+
+// The branch of a pose with this radius and sine of the bend.
+template <class P>
+IkResult<double> inverse_kinematics_near(const Arm<P>& arm, const Vec3<double>& tip, double radius, double bend) {
+    return inverse_kinematics_of_branch(arm, tip, radius >= 0, [bend](double) { return bend > 0 ? 1.0 : -1.0; });
 }
 
 }  // namespace arm3r

@@ -12,12 +12,36 @@ namespace arm3r {
 // One body of the chain, in its own axes: z is its joint axis.
 template <class T>
 struct Body {
-    Mat3<T> R;        // from this body's axes to its parent's
-    Vec3<T> origin;   // m, of its joint, in the parent's axes
-    Vec3<T> com;      // m, from its joint
-    T mass;           // kg
-    Vec3<T> inertia;  // kg m^2, principal, about com
+    Mat3<T> R;         // from this body's axes to its parent's
+    Vec3<T> origin;    // m, of its joint, in the parent's axes
+    Vec3<T> com;       // m, from its joint
+    T mass;            // kg
+    Vec3<T> inertia;   // kg m^2, diagonal of the tensor about com
+    Vec3<T> products;  // kg m^2, its xy, xz, yz; of an elbow arm
 };
+
+template <class P, class T>
+ARM3R_INLINE void put_on(Body<T>& body, const RigidBody<P>& link) {
+    body.com = broadcast<T>(link.com);
+    body.mass = T(link.mass);
+    body.inertia = broadcast<T>(link.inertia);
+    body.products = broadcast<T>(link.products);
+}
+
+// The chain of an elbow arm from the base on: its frames, bodies and offsets in place of those of the planar arm.
+template <class P, class T>
+ARM3R_INLINE void extend(const Elbow<P>& elbow, std::array<Body<T>, 3>& bodies) {
+    Mat3<T> R;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            R(i, j) = elbow.rotation(i, 0) * bodies[0].R(0, j) + elbow.rotation(i, 1) * bodies[0].R(1, j) +
+                      elbow.rotation(i, 2) * bodies[0].R(2, j);
+    bodies[0].R = R;
+    bodies[0].origin = broadcast<T>(elbow.position);
+    bodies[1].origin = {T(elbow.shoulder_offset), T(0.0), T(0.0)};
+    bodies[2].origin[2] = T(elbow.offset);
+    for (int i = 0; i < 3; ++i) put_on(bodies[i], elbow.links[i]);
+}
 
 template <class P, class T>
 ARM3R_INLINE std::array<Body<T>, 3> chain(const Arm<P>& arm, const Vec3<T>& q) {
@@ -44,7 +68,23 @@ ARM3R_INLINE std::array<Body<T>, 3> chain(const Arm<P>& arm, const Vec3<T>& q) {
     bodies[2].com = {T(arm.link3.com), o, o};
     bodies[2].mass = T(arm.link3.mass);
     bodies[2].inertia = broadcast<T>(arm.link3.inertia);
+    if (arm.is_elbow) extend(arm.elbow, bodies);
     return bodies;
+}
+
+// The tip in the axes of link 3, m from its joint.
+template <class T, class P>
+ARM3R_INLINE Vec3<T> tip_of_link3(const Arm<P>& arm) {
+    return arm.is_elbow ? broadcast<T>(arm.elbow.tip) : Vec3<T>(T(arm.link3.length), T(0.0), T(0.0));
+}
+
+// The tensor of a body times a vector, in its axes.
+template <class P, class T>
+ARM3R_INLINE Vec3<T> inertia_times(const Arm<P>& arm, const Body<T>& body, const Vec3<T>& v) {
+    const Vec3<T>&d = body.inertia, &o = body.products;
+    if (!arm.is_elbow) return {d[0] * v[0], d[1] * v[1], d[2] * v[2]};
+    return {d[0] * v[0] + o[0] * v[1] + o[1] * v[2], o[0] * v[0] + d[1] * v[1] + o[2] * v[2],
+            o[1] * v[0] + o[2] * v[1] + d[2] * v[2]};
 }
 
 // A vector in the axes of body `i`, turned into base axes.
@@ -69,10 +109,27 @@ ARM3R_INLINE TipSensor<T> tip_sensor(const Arm<P>& arm, const Vec3<T>& q, const 
         omega = transposed_times(bodies[i].R, omega);
         omega[2] = omega[2] + qd[i];
     }
-    const Vec3<T> tip(T(arm.link3.length), o, o);
+    const Vec3<T> tip = tip_of_link3<T>(arm);
     Vec3<T> position = tip;
     for (int i = 2; i >= 0; --i) position = plus(bodies[i].origin, times(bodies[i].R, position));
     return {position, to_base(bodies, 2, plus(velocity, cross(omega, tip)))};
+}
+
+// The moment, N m, that a rotor needs of the link that carries it, and what its joint's actuator needs for it.
+template <class T>
+struct CarriedRotor {
+    Vec3<T> moment;
+    T on_joint;
+};
+
+// omega and alpha: of that link, in its axes.
+template <class P, class T>
+ARM3R_INLINE CarriedRotor<T> carried_rotor(const Rotor<P>& rotor, const Vec3<T>& omega, const Vec3<T>& alpha,
+                                           const T& qd, const T& qdd) {
+    const Vec3<T> axis = broadcast<T>(rotor.axis);
+    const T spin = dot(axis, omega) + rotor.ratio * qd;
+    const T change = rotor.inertia * (dot(axis, alpha) + rotor.ratio * qdd);
+    return {plus(scaled(change, axis), scaled(T(rotor.inertia * spin), cross(omega, axis))), rotor.ratio * change};
 }
 
 // tau for a motion and a force at the tip; armature and friction included (3.12).
@@ -82,6 +139,9 @@ Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Ve
     const std::array<Body<T>, 3> bodies = chain(arm, q);
     const T o(0.0);
     std::array<Vec3<T>, 3> force, moment;  // that each body needs, at its centre of mass, in its axes
+    Vec3<T> geared(o, o, o);               // N m, that the actuators need for the rotors beside `armature`
+    if (arm.is_elbow)
+        geared[0] = carried_rotor(arm.elbow.rotors[0], Vec3<T>(o, o, o), Vec3<T>(o, o, o), qd[0], qdd[0]).on_joint;
 
     // outward: gravity enters as an acceleration of the base
     Vec3<T> omega(o, o, o), alpha(o, o, o);
@@ -99,18 +159,25 @@ Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Ve
         omega[2] = omega[2] + qd[i];
 
         const Vec3<T> of_com = plus(acceleration, plus(cross(alpha, body.com), cross(omega, cross(omega, body.com))));
-        const Vec3<T> angular_momentum(body.inertia[0] * omega[0], body.inertia[1] * omega[1],
-                                       body.inertia[2] * omega[2]);
-        const Vec3<T> inertial(body.inertia[0] * alpha[0], body.inertia[1] * alpha[1], body.inertia[2] * alpha[2]);
+        const Vec3<T> angular_momentum = inertia_times(arm, body, omega), inertial = inertia_times(arm, body, alpha);
         force[i] = Vec3<T>(body.mass * of_com[0], body.mass * of_com[1], body.mass * of_com[2]);
         moment[i] = plus(inertial, cross(omega, angular_momentum));
+        if (arm.is_elbow && i < 2) {
+            const CarriedRotor<T> rotor = carried_rotor(arm.elbow.rotors[i + 1], omega, alpha, qd[i + 1], qdd[i + 1]);
+            const Vec3<T> at = bodies[i + 1].origin, from_com = minus(at, body.com);
+            const Vec3<T> of_rotor = plus(acceleration, plus(cross(alpha, at), cross(omega, cross(omega, at))));
+            const Vec3<T> push = scaled(T(arm.elbow.rotors[i + 1].mass), of_rotor);
+            force[i] = plus(force[i], push);
+            moment[i] = plus(moment[i], plus(rotor.moment, cross(from_com, push)));
+            geared[i + 1] = rotor.on_joint;
+        }
     }
 
     // inward: f and n that the parent exerts on each body, at its joint, starting from the payload and the force on the
     // tip
     Vec3<T> push = f_on_tip;
     for (int i = 0; i < 3; ++i) push = transposed_times(bodies[i].R, push);
-    const Vec3<T> tip(T(arm.link3.length), o, o);
+    const Vec3<T> tip = tip_of_link3<T>(arm);
     const Vec3<T> of_tip = plus(acceleration, plus(cross(alpha, tip), cross(omega, cross(omega, tip))));
     Vec3<T> f(arm.payload * of_tip[0] - push[0], arm.payload * of_tip[1] - push[1], arm.payload * of_tip[2] - push[2]);
     Vec3<T> n = cross(tip, f);
@@ -119,6 +186,7 @@ Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Ve
         f = plus(f, force[i]);
         n = plus(n, plus(moment[i], cross(bodies[i].com, force[i])));
         tau[i] = n[2] + arm.armature[i] * qdd[i] + arm.damping[i] * qd[i];
+        if (arm.is_elbow) tau[i] = tau[i] + geared[i];
         if (arm.has_dry_friction) tau[i] = tau[i] + arm.friction[i] * tanh(T(qd[i] / arm.friction_velocity));
         f = times(bodies[i].R, f);
         n = plus(times(bodies[i].R, n), cross(bodies[i].origin, f));
