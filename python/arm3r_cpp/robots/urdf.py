@@ -17,6 +17,7 @@ from .bodies import LARGEST, Body, rotation_about, rotation_of
 
 MOVABLE = ("revolute", "continuous", "prismatic")
 _MOST_BYTES = 10_000_000
+_ROUNDING = 5e-9  # rad, of an angle with eight decimals
 
 
 class Mimic(NamedTuple):
@@ -67,7 +68,7 @@ class UrdfJoint:
         if position and self.kind == "prismatic":
             origin = origin + rotation @ (position * self.axis)
         elif position:
-            rotation = rotation @ rotation_about(self.axis, np.array([position]))[0]
+            rotation = rotation @ rotation_about(self.axis, _meant(np.array([position])))[0]
         return rotation, origin
 
     @property
@@ -141,8 +142,10 @@ class Urdf:
             parents = {joint.parent for joint in self.joints}
             ends = [link for link in self._links if link not in parents]
             if len(ends) != 1:
-                words = ", ".join(ends) or "no link"
-                raise UsageError(f"{self.file}: the tree ends in {words}; name the tip's link: --tip LINK, in Python tip=")
+                raise UsageError(
+                    f"{self.file}: the tree ends in {', '.join(ends) or 'no link'}; name the tip's link: --tip LINK, in "
+                    f"a scenario arm.tip, in Python tip="
+                )
             (name,) = ends
         if name not in self._links:
             raise UsageError(f"{self.file}: there is no link {name!r}; it has {', '.join(self._links)}")
@@ -227,5 +230,11 @@ def _numbers(file: str, element: ElementTree.Element | None, key: str, default: 
 def _pose(file: str, element: ElementTree.Element) -> tuple[Floats, Floats]:
     """Rotation and origin of an <origin>: roll, pitch, yaw about fixed axes x, y, z."""
     origin = element.find("origin")
-    rotation = rotation_of(_numbers(file, origin, "rpy", "0 0 0"))
+    rotation = rotation_of(_meant(_numbers(file, origin, "rpy", "0 0 0")))
     return rotation, _numbers(file, origin, "xyz", "0 0 0")
+
+
+def _meant(angles: Floats) -> Floats:
+    """Angles in which 1.570796327 is a right angle."""
+    right = np.round(angles / (np.pi / 2)) * (np.pi / 2)
+    return np.where(np.abs(angles - right) < _ROUNDING, right, angles)
