@@ -49,7 +49,7 @@ def exercise() -> int:
 
 
 def import_urdf() -> int:
-    return _call("import_urdf")
+    return _call("arms.import_urdf")
 
 
 def live() -> int:

@@ -43,22 +43,25 @@ class Choice:
         Raises:
             UsageError: a value is none of its key.
         """
-        joints, lock, tip = request.get("joints"), request.get("lock") or {}, request.get("tip")
-        file = os.path.join(os.fspath(request.get("folder", "")), os.fspath(request["urdf"]))
+        joints, lock, tip, tolerance = map(request.get, ("joints", "lock", "tip", "axis_tolerance"))
+        file = os.path.join(os.fspath(request.get("folder") or ""), os.fspath(request["urdf"]))
         if joints is not None and (isinstance(joints, str) or len(joints) != 3 or len({*joints}) != 3):
             raise UsageError(f"{file}: joints: the names of three joints are needed, from base to tip, got {joints!r}")
+        lock = {} if lock is None else lock
         if not isinstance(lock, Mapping):
-            raise UsageError(f"{file}: lock: a map of names and angles is needed, such as {{wrist: -90 deg}}, got {lock!r}")
-        tolerance = angle(request.get("axis_tolerance", AXIS_TOLERANCE), f"{file}: axis_tolerance")
+            raise UsageError(
+                f"{file}: lock: a map of names and angles is needed, such as {{wrist: -90 deg}}, got {lock!r}"
+            )
+        tolerance = AXIS_TOLERANCE if tolerance is None else angle(tolerance, f"{file}: axis_tolerance")
         if not 0 <= tolerance < math.pi / 4:
             raise UsageError(f"{file}: axis_tolerance: an angle from 0 to 45 deg is needed, got {tolerance:g} rad")
         return cls(
             file,
             None if joints is None else tuple(map(str, joints)),
             {str(name): angle(value, f"{file}: lock: {name}") for name, value in lock.items()},
-            tip,
+            None if tip is None else str(tip),
             tolerance,
-            frozenset(request.get("given", ())),
+            frozenset(request.get("given") or ()),
         )
 
 
@@ -138,8 +141,8 @@ def held_positions(urdf: Urdf, lock: Mapping[str, float]) -> dict[str, float]:
     for name in lock:
         joint = urdf.joint(name)
         if not joint.is_movable:
-            raise UsageError(f"{urdf.file}: lock: {name} is {joint.kind}; what can be locked is revolute, continuous or "
-                             "prismatic")  # fmt: skip
+            rule = "what can be locked is revolute, continuous or prismatic"
+            raise UsageError(f"{urdf.file}: lock: {name} is {joint.kind}; {rule}")
     found = dict(lock)
     following = [(joint.name, joint.mimic) for joint in urdf.joints if joint.mimic]
     for _ in following:  # a joint may mimic one that mimics another

@@ -78,7 +78,7 @@ def _frames_at_zero(chain: Serial) -> list[_Frame]:
 def misfit(chain: Serial) -> Misfit:
     """How far the axes of a chain are from those of an elbow arm; the angles do not depend on q."""
     one, two, three = (frame.axis for frame in _frames_at_zero(chain))
-    return Misfit(math.asin(min(1.0, abs(one @ two))), _angle_between_lines(two, three))
+    return Misfit(math.asin(min(1.0, abs(float(one @ two)))), _angle_between_lines(two, three))
 
 
 def _angle_between_lines(one: Floats, other: Floats) -> float:
@@ -86,9 +86,9 @@ def _angle_between_lines(one: Floats, other: Floats) -> float:
 
 
 def as_elbow(chain: Serial, file: str) -> Elbow:
-    """The chain as an elbow arm, whatever its axes are: those of an elbow arm that are nearest take their place.
+    """The chain as an elbow arm, whatever its axes are: axis 2 is turned across axis 1, axis 3 parallel to axis 2.
 
-    Joints, tip and bodies are where the chain has them at q = 0.
+    Each link keeps what it measures along and across its own axis.
 
     Raises:
         UsageError: axes 2 and 3 are one line, or the tip lies on axis 3.
@@ -96,8 +96,7 @@ def as_elbow(chain: Serial, file: str) -> Elbow:
     one, two, three = _frames_at_zero(chain)
     tip = three.origin + three.rotation @ chain.tool
     up, base_rotation = _base(one.axis)
-    lateral = two.axis + np.sign(two.axis @ three.axis) * three.axis
-    lateral = _unit(lateral - (lateral @ up) * up)
+    lateral = _unit(two.axis - (two.axis @ up) * up)
 
     # The shoulder is where axis 2 is nearest to axis 1, and the base's origin lies on axis 1 at its height.
     shoulder = two.origin - (lateral @ (two.origin - one.origin)) / (lateral @ two.axis) * two.axis
@@ -106,12 +105,9 @@ def as_elbow(chain: Serial, file: str) -> Elbow:
     forward = np.cross(lateral, up)
     forward *= _forward_sign(forward, shoulder - base, tip - base, base_rotation)
     left = np.cross(up, forward)
-    shoulder_offset = _tidy(forward @ (shoulder - base))
-    shoulder = base + shoulder_offset * forward
     sign = np.array([np.sign(up @ one.axis), -np.sign(left @ two.axis), -np.sign(left @ three.axis)])
 
-    second = _link_axes(three.origin - shoulder, -sign[1] * left)
-    third = _link_axes(tip - three.origin, -sign[2] * left)
+    second, third = _link_axes(three.origin - shoulder, two.axis), _link_axes(tip - three.origin, three.axis)
     length, offset = (second.T @ (three.origin - shoulder))[[0, 2]]
     reach, aside = (third.T @ (tip - three.origin))[[0, 2]]
     names = [joint.name for joint in chain.joints]
@@ -129,7 +125,7 @@ def as_elbow(chain: Serial, file: str) -> Elbow:
         base_rotation,
         np.array([_tidy_angle(one) for one in (turn, lifts[0], lifts[1] - lifts[0])]),
         sign,
-        shoulder_offset,
+        _tidy(float(forward @ (shoulder - base))),
         float(length),
         _tidy(offset),
         np.array([reach, 0.0, _tidy(aside)]),

@@ -14,7 +14,7 @@ from .._native import Floats
 from ..errors import ScenarioWarning, UsageError
 from .bodies import Body
 from .choice import Choice, listed
-from .elbow import ROUNDING, Elbow, as_elbow, misfit
+from .elbow import Elbow, as_elbow, misfit
 from .remedy import conforming, tip_error
 from .serial import Serial
 from .urdf import Urdf
@@ -69,10 +69,10 @@ def _doubts(urdf: Urdf, chain: Serial) -> Iterable[str]:
     if chain.held:
         yield f"held at zero beside the way to {chain.tip}: {', '.join(chain.held)}; lock sets other positions"
     bodies = {link: urdf.body(link) for links in chain.links for link in links if urdf.has_inertial(link)}
-    first, *others = [*bodies.values()] or [None]
-    if first and len(others) > 1 and all(_same_numbers(first, other) for other in others):
+    some = next(iter(bodies.values()), None)
+    if some and len(bodies) > 2 and all(_has_numbers_of(some, other) for other in bodies.values()):
         yield (
-            f"{', '.join(bodies)} all have the mass {first.mass:g} kg and one inertia: these are placeholders, and "
+            f"{', '.join(bodies)} all have the mass {some.mass:g} kg and one inertia: these are placeholders, and "
             "forces and motions mean nothing before you give masses"
         )
     angle = max(misfit(chain))
@@ -81,13 +81,13 @@ def _doubts(urdf: Urdf, chain: Serial) -> Iterable[str]:
         yield f"the axes are taken as those of an elbow arm, {angle:.2g} rad off; the tip is up to {cost:.2g} mm off"
 
 
-def _same_numbers(one: Body, other: Body) -> bool:
-    principal = [np.linalg.eigvalsh(body.inertia) for body in (one, other)]
-    return one.mass == other.mass and np.allclose(*principal, rtol=1e-9, atol=0.0)
+def _has_numbers_of(one: Body, other: Body) -> bool:
+    principal, others = (np.linalg.eigvalsh(body.inertia) for body in (one, other))
+    return one.mass == other.mass and np.allclose(principal, others, rtol=1e-9, atol=0.0)
 
 
 def _text(elbow: Elbow, chain: Serial, file: str) -> str:
-    geometry = (
+    geometry: tuple[list[str], ...] = (
         [],
         [f"length: {number(elbow.length)}", f"offset: {number(elbow.offset)}"],
         [f"tip: {_row(elbow.tip)}"],

@@ -31,10 +31,11 @@ def start_scenario(choice: Choice) -> str:
     [tip] = arm.elbow.tip_position(pose[None])
     away = _away_from_axis_1(arm.elbow, pose)
     stem = os.path.splitext(os.path.basename(choice.file))[0]
+    locked = ", ".join(f"{name} at {position:.6g}" for name, position in choice.lock.items())
     head = f"The arm of {os.path.basename(choice.file)}, with the tip {arm.chain.tip}"
-    head += f". Locked, in rad or m: {', '.join(f'{name} at {at:.6g}' for name, at in choice.lock.items())}" * bool(choice.lock)
+    head += f". Locked, in rad or m: {locked}" if locked else ""
     return "\n".join([
-        note(f"{head}. Gravity compensation holds it, while a wall comes towards the tip and touches it after a second."),
+        note(f"{head}. Gravity compensation holds it; a wall comes towards the tip and touches it after a second."),
         "format: 1",
         f"name: {re.sub('[^A-Za-z0-9_-]+', '-', stem).strip('-') or 'arm'}",
         "",

@@ -143,8 +143,8 @@ class Urdf:
             ends = [link for link in self._links if link not in parents]
             if len(ends) != 1:
                 raise UsageError(
-                    f"{self.file}: the tree ends in {', '.join(ends) or 'no link'}; name the tip's link: --tip LINK, in "
-                    f"a scenario arm.tip, in Python tip="
+                    f"{self.file}: the tree ends in {', '.join(ends) or 'no link'}; name the tip's link: "
+                    "--tip LINK, in a scenario arm.tip, in Python tip="
                 )
             (name,) = ends
         if name not in self._links:

@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from .exit_codes import attempt, print_line
+from ..exit_codes import attempt, print_line
 
 EXAMPLES = """\
 An elbow arm has three revolute joints: axis 2 across axis 1, axis 3 parallel to axis 2. Other joints on the way to
@@ -38,7 +38,14 @@ def parser() -> argparse.ArgumentParser:
         metavar="A,B,C",
         help="the joints that move, from base to tip (default: the first three that are not locked)",
     )
-    add("--lock", action="append", default=[], type=locked, metavar="NAME=ANGLE", help="a joint that is held at an angle")
+    add(
+        "--lock",
+        action="append",
+        default=[],
+        type=locked,
+        metavar="NAME=ANGLE",
+        help="a joint that is held at an angle",
+    )
     add("--tip", metavar="LINK", help="the link whose frame is the tip (default: the only one without a child)")
     add("--axis-tolerance", metavar="X", help="by which angle axes may be off those of an elbow arm (default: 1e-6)")
     return parser
@@ -53,8 +60,8 @@ def locked(text: str) -> tuple[str, str]:
 
 
 def show(options: argparse.Namespace) -> None:
-    from ..robots.choice import Choice
-    from ..robots.start_scenario import start_scenario
+    from ...robots.choice import Choice
+    from ...robots.start_scenario import start_scenario
 
     given = {"joints": options.joints, "tip": options.tip, "axis_tolerance": options.axis_tolerance}
     request = {"urdf": options.urdf, "lock": dict(options.lock)}
