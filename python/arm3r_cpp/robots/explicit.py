@@ -111,7 +111,9 @@ def _text(elbow: Elbow, chain: Serial, file: str) -> str:
 
 def note(text: str) -> str:
     """As a comment."""
-    return fill(shown(text), 110, initial_indent="# ", subsequent_indent="# ", break_long_words=False)
+    return fill(
+        shown(text), 110, initial_indent="# ", subsequent_indent="# ", break_long_words=False, break_on_hyphens=False
+    )
 
 
 def _body_lines(body: Body) -> list[str]:

@@ -49,6 +49,7 @@ def serial_chain(urdf: Urdf, tip: str | None, positions: Mapping[str, float]) ->
         UsageError: the file branches and names no tip, or has joints of other types on the way.
     """
     way = urdf.way(tip)
+    on_way = {joint.child for joint in way}
     moving: list[UrdfJoint] = []
     parts: list[Joint] = []
     bodies: list[Body] = []
@@ -59,7 +60,7 @@ def serial_chain(urdf: Urdf, tip: str | None, positions: Mapping[str, float]) ->
         step_rotation, step_origin = joint.pose(positions.get(joint.name, 0.0))
         origin, rotation = origin + rotation @ step_origin, rotation @ step_rotation
         names: list[str] = []
-        body = _with_branches(urdf, joint.child, way, positions, names, held)
+        body = _with_branches(urdf, joint.child, on_way, positions, names, held)
         if joint.kind == "fixed" or joint.name in positions:
             if bodies:
                 bodies[-1] = joined(bodies[-1], _moved(body, rotation, origin))
@@ -82,17 +83,23 @@ def serial_chain(urdf: Urdf, tip: str | None, positions: Mapping[str, float]) ->
 
 
 def _with_branches(
-    urdf: Urdf, link: str, way: list[UrdfJoint], positions: Mapping[str, float], links: list[str], held: list[str]
+    urdf: Urdf, link: str, on_way: set[str], positions: Mapping[str, float], links: list[str], held: list[str]
 ) -> Body:
     """A link with all that hangs on it beside the way. Appends the names of its links and of joints held at zero."""
-    body = urdf.body(link)
-    links.append(link)
-    for joint in urdf.branches(link, way):
-        if joint.kind != "fixed" and joint.name not in positions:
-            held.append(joint.name)
-        other = _with_branches(urdf, joint.child, way, positions, links, held)
-        body = joined(body, _moved(other, *joint.pose(positions.get(joint.name, 0.0))))
-    return body
+    whole = Body(0.0, np.zeros(3), np.zeros((3, 3)))
+    rest = [(link, np.eye(3), np.zeros(3))]
+    while rest:
+        name, rotation, origin = rest.pop()
+        links.append(name)
+        whole = joined(whole, _moved(urdf.body(name), rotation, origin))
+        for joint in reversed(urdf.children(name)):
+            if joint.child in on_way:
+                continue
+            if joint.kind != "fixed" and joint.name not in positions:
+                held.append(joint.name)
+            step_rotation, step_origin = joint.pose(positions.get(joint.name, 0.0))
+            rest.append((joint.child, rotation @ step_rotation, origin + rotation @ step_origin))
+    return whole
 
 
 def _moved(body: Body, rotation: Floats, origin: Floats) -> Body:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -114,7 +113,9 @@ class Urdf:
         self._links = {link.get("name", ""): link for link in root.findall("link")}
         self.joints = [UrdfJoint(self.file, joint) for joint in root.findall("joint")]
         self._by_child = {joint.child: joint for joint in self.joints}
+        self._by_parent: dict[str, list[UrdfJoint]] = {}
         for joint in self.joints:
+            self._by_parent.setdefault(joint.parent, []).append(joint)
             if self._by_child[joint.child] is not joint:
                 names = f"{joint.name!r} and {self._by_child[joint.child].name!r}"
                 raise UsageError(f"{self.file}: the joints {names} have one child, {joint.child!r}; a URDF is a tree")
@@ -139,8 +140,7 @@ class Urdf:
     def tip(self, name: str | None) -> str:
         """The name of the tip's link."""
         if name is None:
-            parents = {joint.parent for joint in self.joints}
-            ends = [link for link in self._links if link not in parents]
+            ends = [link for link in self._links if link not in self._by_parent]
             if len(ends) != 1:
                 raise UsageError(
                     f"{self.file}: the tree ends in {', '.join(ends) or 'no link'}; name the tip's link: "
@@ -162,9 +162,9 @@ class Urdf:
             raise UsageError(f"{self.file}: there is no joint {name!r}; {hint}")
         return self.joints[names.index(name)]
 
-    def branches(self, link: str, way: Sequence[UrdfJoint]) -> list[UrdfJoint]:
-        """The joints that stand on a link beside the way."""
-        return [joint for joint in self._by_child.values() if joint.parent == link and joint not in way]
+    def children(self, link: str) -> list[UrdfJoint]:
+        """The joints that stand on a link."""
+        return self._by_parent.get(link, [])
 
     def has_inertial(self, link: str) -> bool:
         return self._links[link].find("inertial") is not None
