@@ -45,7 +45,7 @@ class Choice:
         """
         joints, lock, tip, tolerance = map(request.get, ("joints", "lock", "tip", "axis_tolerance"))
         file = os.path.join(os.fspath(request.get("folder") or ""), os.fspath(request["urdf"]))
-        if joints is not None and (isinstance(joints, str) or len(joints) != 3 or len({*joints}) != 3):
+        if joints is not None and not (isinstance(joints, (list, tuple)) and len(joints) == len({*joints}) == 3):
             raise UsageError(f"{file}: joints: the names of three joints are needed, from base to tip, got {joints!r}")
         lock = {} if lock is None else lock
         if not isinstance(lock, Mapping):
