@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._messages import did_you_mean
 
-_ONE_ARM = "arm3r simulates one arm with three joints; verify.Chain.from_urdf and from_dh describe chains for formulas"
+_ONE_ARM = "an arm has three joints; verify.Chain.from_urdf and from_dh describe other chains, for formulas"
 
 # By the class or module: names, parted by blanks, and what to write instead.
 _TABLE: dict[str, dict[str, str]] = {
@@ -24,7 +24,7 @@ _TABLE: dict[str, dict[str, str]] = {
         "PID pid Controller": 'scenario["controller"] = {"type": "joint_pd"}, or scenario.run(controller=f)',
         "overview lecture compare force animate scope": "plot.overview(run), plot.lecture, plot.compare, plot.force",
         "example load_example": 'Scenario.example("moving_wall")',
-        "Robot SerialLink DHRobot loadrobot importrobot rigidBodyTree from_urdf": _ONE_ARM,
+        "Robot SerialLink DHRobot loadrobot importrobot rigidBodyTree from_urdf": "Arm.from_urdf(path)",
     },
     "Arm": {
         "fkine fk forward_kinematics tip": "tip_position(q)",
@@ -40,7 +40,8 @@ _TABLE: dict[str, dict[str, str]] = {
         "maniplty": "manipulability(q)",
         "jacob_dot Jdot": "jacobian_dot(q, qd)",
         "linmod ss": "linearize(q, qd, tau)",
-        "joints links dof n nq numjoints njoints from_urdf from_dh urdf": _ONE_ARM,
+        "joints links dof n nq numjoints njoints from_dh": _ONE_ARM,
+        "urdf load importrobot": "Arm.from_urdf(path)",
         "mass masses length lengths a2 a3 m2 m3": 'scenario["arm.link2.mass"], scenario["arm.link2.length"] ...',
         "run simulate": "Scenario().run(): an arm moves in a scenario",
     },

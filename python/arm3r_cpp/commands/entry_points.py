@@ -48,6 +48,10 @@ def exercise() -> int:
     return _call("exercise")
 
 
+def import_urdf() -> int:
+    return _call("arms.import_urdf")
+
+
 def live() -> int:
     return _call("live")
 

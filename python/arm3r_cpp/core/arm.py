@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Mapping, Sequence
+from textwrap import indent
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -32,6 +34,36 @@ class Arm(metaclass=Answering):
         """
         self._params = param_defaults() if params is None else np.array(params, np.float64)
         self._handle = _native.create("arm", lib.arm3r_arm_create, _native.readable(self._params), self._params.size)
+
+    @classmethod
+    def from_urdf(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        joints: Sequence[str] | None = None,
+        lock: Mapping[str, float | str] | None = None,
+        tip: str | None = None,
+        axis_tolerance: float = 1e-6,
+    ) -> Arm:
+        """An elbow arm from a URDF: three revolute joints, axis 2 across axis 1, axis 3 parallel to axis 2.
+
+        Angles, rates and torques are those of the file. `arm3r import` prints the same arm in a scenario.
+
+        Args:
+            joints: names of those that move, from base to tip; by default the first three that are not locked.
+            lock: positions of other joints, in rad or such as "-90 deg".
+            tip: the link whose frame is the tip; by default the only one without a child.
+            axis_tolerance: by which the axes may be off, rad.
+
+        Raises:
+            UsageError: the file cannot be read, or its arm is no elbow arm; the message says what would help.
+        """
+        from ..robots.explicit import explicit_arm
+        from .scenario import Scenario
+
+        request = {"urdf": path, "joints": joints, "lock": lock, "tip": tip, "axis_tolerance": axis_tolerance}
+        keys = indent(explicit_arm(request), "  ")
+        return Scenario(f"format: 1\narm:\n{keys}", file=os.fspath(path)).arm
 
     if not TYPE_CHECKING:
 

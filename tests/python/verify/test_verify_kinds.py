@@ -12,10 +12,10 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from arm3r_cpp import verify
+from arm3r_cpp.robots.bodies import Joint, rotation_about, rotation_of
 from arm3r_cpp.verify import Chain, kinds
 from arm3r_cpp.verify.explain.frames import of_other_frames
 from arm3r_cpp.verify.kinds import KINDS
-from arm3r_cpp.verify.truth.bodies import Joint, rotation_about, rotation_of
 from arm3r_cpp.verify.truth.three_r import ThreeR
 
 ARM = arm3r.Scenario().arm

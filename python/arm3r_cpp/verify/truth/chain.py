@@ -10,8 +10,8 @@ import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
+from ...robots.bodies import Joint, rotation_about
 from ..kinds import SPATIAL, Kind, Rows
-from .bodies import Joint, rotation_about
 
 MAX_JOINTS = 7
 GRAVITY = (0.0, 0.0, -9.80665)  # m/s^2

@@ -11,12 +11,13 @@ import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
+from ...robots.bodies import LARGEST, pose_words, rotation_of, vector_words, with_mass
+from ...robots.serial import serial_chain
+from ...robots.urdf import Urdf
 from ..explain.hypotheses import STEINER_MISSING, STEINER_TWICE
 from ..kinds import SPATIAL, Kind, Rows
-from .bodies import LARGEST, pose_words, rotation_of, vector_words, with_mass
 from .chain import SerialChain
 from .dh import read_dh
-from .urdf import read_urdf
 
 _OTHER_GRAVITIES = (9.81, 9.8, 10.0)
 
@@ -31,7 +32,15 @@ class Chain(SerialChain):
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], *, tip: str | None = None) -> Chain:
         """The chain from the base link of a URDF to a link, by default the last one."""
-        return read_urdf(path, tip, cls)
+        found = serial_chain(Urdf(path), tip, {})
+        return cls(
+            found.parts,
+            tool=found.tool,
+            tool_rotation=found.tool_rotation,
+            name=os.path.basename(os.fspath(path)),
+            tip=found.tip,
+            held=found.held,
+        )
 
     @classmethod
     def from_dh(cls, path: str | os.PathLike[str]) -> Chain:

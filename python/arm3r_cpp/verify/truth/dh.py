@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from .bodies import LARGEST, Joint
+from ...robots.bodies import LARGEST, Joint
 from .chain import AnyChain
 
 _NUMBER = re.compile(

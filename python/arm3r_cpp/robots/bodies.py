@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._native import Floats
+from .._native import Floats
 
 LARGEST = 1e12
 """Of a number that describes a chain, either way."""
