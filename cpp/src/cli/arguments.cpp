@@ -36,6 +36,7 @@ constexpr Program programs[] = {
     {"sweep", "SWEEP", "run a scenario many times with other values, into one table"},
     {"converge", "FILE", "run a scenario with smaller and smaller steps, and print the observed order"},
     {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},
+    {"export", "SCENARIO", "write the arm of a scenario as URDF, or as MJCF for MuJoCo"},
     {"docs", "[NAME]", "list the pages of this installation, or print one, such as verify or sweeps"},
     {"exercise", "CALL", "list and show exercises, judge what you hand in, and mark a folder of submissions"},
 };

@@ -36,6 +36,10 @@ def examples() -> int:
     return _call("examples")
 
 
+def export() -> int:
+    return _call("interchange.export")
+
+
 def verify() -> int:
     return _call("verify")
 
