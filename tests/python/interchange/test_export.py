@@ -10,6 +10,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 from arm3r_cpp.commands.interchange import export as export_cli
 from exported import Numbers, by_mujoco, by_pinocchio, largest_difference
@@ -81,6 +82,15 @@ def test_other_programs_compute_the_same_arm(seed: int, tmp_path: Path) -> None:
     assert largest_difference(ours, theirs._replace(mass_matrix=theirs.mass_matrix + rotors)) <= LIMIT
 
 
+def test_the_centres_of_mass_are_those_of_the_links(tmp_path: Path) -> None:
+    """That of link 1 has no effect on the motion."""
+    for seed in range(10):
+        scenario = random_scenario(np.random.default_rng(seed))
+        model, data = started(text_of(scenario, tmp_path / "arm.xml"))
+        mujoco.mj_forward(model, data)
+        np.testing.assert_allclose(data.xipos[1:4], scenario.arm.centres(data.qpos), atol=1e-14)
+
+
 def test_mujoco_reads_the_urdf_too(tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     scenario, q = random_scenario(rng), np.array([0.7, -0.4, 1.1])
@@ -150,10 +160,10 @@ def with_compensated_weight(text: str) -> str:
 
 
 def test_a_moving_wall_pushes_the_arm_to_the_same_place(tmp_path: Path) -> None:
-    for velocity in (0.05, [-0.06, -0.1, 0.1]):
+    for velocity, control in ((0.05, -7), ([-0.06, -0.1, 0.1], 7)):
         scenario = walled(motion={"type": "constant", "velocity": velocity})
         model, data = started(with_compensated_weight(text_of(scenario, tmp_path / "wall.xml")))
-        data.ctrl = 0  # the wall moves whatever its control is
+        data.ctrl[3] = control  # the wall moves whatever it is
         assert farthest(model, data, scenario) <= 1e-6
         assert np.abs(data.qpos - scenario["initial.q"]).max() > 0.02
 
@@ -215,12 +225,15 @@ def test_what_is_left_out_is_said_in_the_file_and_by_a_warning(tmp_path: Path) -
     assert "frictionloss" in said and "push" in said and "armature" not in said
 
 
-def test_torque_limits_are_in_both_files(tmp_path: Path) -> None:
+def test_limits_and_friction_are_in_both_files(tmp_path: Path) -> None:
     scenario = arm3r.Scenario()
-    scenario["arm.torque_limit"] = [3, 0, np.inf]
-    robot = ElementTree.fromstring(text_of(scenario, tmp_path / "arm.urdf"))
-    assert [limit.get("effort") for limit in robot.iter("limit")] == ["3", "0", "1000000000"]
+    limits, damping, friction = [3, 0, np.inf], [0.1, 0, 0.3], [0, 0.2, 0.4]
+    scenario.update({"arm.torque_limit": limits, "arm.damping": damping, "arm.friction": friction})
+    robot = pin.buildModelFromXML(text_of(scenario, tmp_path / "arm.urdf"))
+    assert robot.upperEffortLimit.tolist() == [3, 0, 1e9]
+    assert (robot.damping.tolist(), robot.friction.tolist()) == (damping, friction)
     model, data = started(text_of(scenario, tmp_path / "arm.xml"))
+    assert (model.dof_damping.tolist(), model.dof_frictionloss.tolist()) == (damping, friction)
     data.ctrl = [5, 5, 5]
     mujoco.mj_forward(model, data)
     assert data.qfrc_actuator.tolist() == [3, 0, 5]
