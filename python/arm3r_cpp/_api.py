@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from .accuracy.convergence import Convergence, converge
+    from .interchange.export import export
     from .live.show import show
     from .sweeps.definition import Sweep
     from .sweeps.runner import sweep
@@ -43,6 +44,7 @@ _LATER = {
     "Sweep": "sweeps.definition",
     "SweepTable": "sweeps.table",
     "converge": "accuracy.convergence",
+    "export": "interchange.export",
     "show": "live.show",
     "sweep": "sweeps.runner",
 }
@@ -84,6 +86,7 @@ __all__ = [
     "UsageError",
     "__version__",
     "converge",
+    "export",
     "law_state_index",
     "param_count",
     "param_defaults",

@@ -37,6 +37,7 @@ constexpr Program programs[] = {
     {"converge", "FILE", "run a scenario with smaller and smaller steps, and print the observed order"},
     {"verify", "FILE...", "compare formulas that you wrote with the model, and name the wrong terms"},
     {"import", "FILE.urdf", "print a scenario whose arm is that of a URDF"},
+    {"export", "SCENARIO", "write the arm of a scenario as URDF, or as MJCF for MuJoCo"},
     {"docs", "[NAME]", "list the pages of this installation, or print one, such as verify or sweeps"},
     {"exercise", "CALL", "list and show exercises, judge what you hand in, and mark a folder of submissions"},
 };

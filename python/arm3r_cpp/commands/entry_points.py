@@ -36,6 +36,10 @@ def examples() -> int:
     return _call("examples")
 
 
+def export() -> int:
+    return _call("interchange.export")
+
+
 def verify() -> int:
     return _call("verify")
 
@@ -49,7 +53,7 @@ def exercise() -> int:
 
 
 def import_urdf() -> int:
-    return _call("arms.import_urdf")
+    return _call("interchange.import_urdf")
 
 
 def live() -> int:

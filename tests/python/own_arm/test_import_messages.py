@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import yaml
 from arm3r_cpp import Arm, ScenarioWarning, UsageError
-from arm3r_cpp.commands.arms.import_urdf import main
+from arm3r_cpp.commands.interchange.import_urdf import main
 from arm3r_cpp.core.params import places
 from arm3r_cpp.core.scenario import Scenario
 from arm3r_cpp.robots.choice import Choice
