@@ -207,7 +207,7 @@ def puma_arm(wrist: np.ndarray) -> Keys:
     return {
         "model": "elbow",
         "convention": "slide",
-        "link1": {"mass": 0, "com": [0, 0, 0], "inertia": [0, 0, 0.35, 0, 0, 0]},  # its axis of the table is y
+        "link1": {"inertia": [0, 0, 0.35, 0, 0, 0]},  # its axis of the table is y
         "link2": {
             "length": length,
             "mass": upper_mass,
