@@ -6,6 +6,7 @@ that runs know neither place nor time, is tested where it is for planar arms.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import arm3r_cpp as arm3r
@@ -425,6 +426,17 @@ def test_the_observer_finds_the_push(rotors: bool) -> None:
     assert abs(run["f_estimate"][-1] - push).max() <= 0.02
 
 
+def test_an_observer_of_another_model_takes_its_weight_for_a_force() -> None:
+    """At rest r = tau_g of the model - tau_g of the arm."""
+    model = {"link2": {"mass": 5.0}, "payload": {"mass": 0.7}}
+    wrong = {**ARM, "link2": {**ARM["link2"], "mass": 5.0}, "payload": model["payload"]}
+    run = run_with({"type": "joint_pd", "model": model}, stop=6.0, observer={})
+    q = run["q"][-1]
+    assert abs(run["qd"][-1]).max() < 1e-5
+    due = Truth(wrong).gravity_torque(q) - Truth(ARM).gravity_torque(q)
+    assert abs(run["residual"][-1] - due).max() <= 1e-3 * abs(due).max()
+
+
 def test_the_observer_needs_the_momentum_of_the_coupling() -> None:
     """No force acts on an arm that swings freely: its residual stays at the size of rounding, whatever is coupled."""
     arm = {**ARM, "rotor3": {"inertia": 2e-3, "ratio": 60.0, "mass": 0.4, "axis": [1.0, 0.1, -0.2]}}
@@ -471,3 +483,46 @@ def test_the_sensors_of_the_tip_agree() -> None:
     assert abs(run["tip"] - truth.tip_position(run["q"])).max() <= 1e-13
     assert abs(run["tip_v"] - run["tip_jv"]).max() <= 1e-12
     assert abs(run["tip_v"] - run["tip_dv"])[1:-1].max() <= 1e-5
+
+
+@pytest.mark.parametrize("convention", ["slide", "simscape", "urdf"])
+def test_a_law_of_the_users_own_speaks_the_convention_of_the_arm(convention: str) -> None:
+    """Angles, rates, Jacobian and weight that it reads, and the torque that it writes."""
+    arm = told_in(ARM, convention, sign=[-1, 1, -1], zero=[0.4, -0.7, 1.1]) if ARM.get("model") == "elbow" else ARM
+    start, truth = joint_angles(arm, inner_angles(ARM, BENT)), Truth(arm)
+    target, wrong = start + np.array([0.1, -0.2, 0.3]), set()
+
+    def law(t: float, state: Any) -> np.ndarray:
+        q, qd = np.array(state.q), np.array(state.qd)
+        if state.tick % 50 == 7:
+            J = truth.jacobian(q)
+            due = {
+                "tip": truth.tip_position(q),
+                "tip_velocity": J @ qd,
+                "jacobian": J,
+                "tau_g": truth.gravity_torque(q),
+            }
+            wrong.update(name for name, value in due.items() if abs(getattr(state, name) - value).max() > 1e-11)
+        return state.tau_g + 40 * (target - q) - 8 * qd
+
+    scenario = scenario_of(
+        arm,
+        initial={"q": start.tolist()},
+        controller={"type": "user"},
+        sampling={"rate": 500},
+        time={"stop": 3.0},
+    )
+    run = scenario.run(controller=law)
+    assert not wrong
+    assert abs(run["q"][-1] - target).max() <= 1e-2
+
+
+def test_the_executable_and_a_file_have_the_same_bits(cli: Any, tmp_path: Path) -> None:
+    start = {"q": BENT.tolist(), "qd": [1.0, -0.8, 1.2]}
+    scenario = scenario_of(ARM, initial=start, controller={"type": "none"}, time={"stop": 0.2})
+    (tmp_path / "s.yaml").write_text(scenario.to_yaml())
+    done = cli("run", tmp_path / "s.yaml", "-o", tmp_path / "run.csv")
+    assert done.returncode == 0, done.stderr
+    ours, theirs = scenario.run(), arm3r.Run.load(tmp_path / "run.csv")
+    for name in ours.columns:
+        assert np.array_equal(ours[name], theirs[name]), name
