@@ -248,40 +248,23 @@ class Pinocchio:
 
     def __init__(self, arm: Keys) -> None:
         position, base = base_of(arm)
-        signs, zeros = signs_and_zeros(arm)
-        links, rotors, payload = [body for body in bodies_of(arm) if not body.joint], {}, None
-        *links, payload = links
+        *links, payload = [body for body in bodies_of(arm) if not body.joint]
         rotors = {body.joint: body for body in bodies_of(arm) if body.joint}
-        x_turns = np.array([[1, 0, 0], [0, 0, -signs[1]], [0, -signs[1], 0]]).T  # x stays, z becomes -s2 y
-        x_turns[:, 1] = np.cross(x_turns[:, 2], x_turns[:, 0])
-        upper = arm["link2"]
-        places = [
-            pin.SE3(base @ pin.utils.rotate("z", zeros[0]), position),
-            pin.SE3(
-                x_turns @ pin.utils.rotate("z", signs[1] * zeros[1]), np.array([arm.get("shoulder_offset", 0.0), 0, 0])
-            ),
-            pin.SE3(
-                np.diag([1.0, signs[1] * signs[2], signs[1] * signs[2]]) @ pin.utils.rotate("z", signs[2] * zeros[2]),
-                np.array([upper["length"], 0, upper.get("offset", 0.0)]),
-            ),
-        ]
-        model, ratios, self._own = pin.Model(), [], []
-        parent = 0
-        for joint in (1, 2, 3):
+        places = self._places(arm)
+        model, ratios, parent = pin.Model(), [], 0
+        for joint, place, body in zip((1, 2, 3), places, links, strict=True):
             if rotor := rotors.get(joint):
                 ratio = np.linalg.norm(rotor.spin)
-                own = rotor.spin / ratio
                 seat = pin.SE3(base, position) if joint == 1 else pin.SE3(np.eye(3), rotor.at)
-                new = model.addJoint(parent, pin.JointModelRevoluteUnaligned(own), seat, f"rotor{joint}")
-                model.appendBodyToJoint(new, pin.Inertia(rotor.mass, np.zeros(3), rotor.inertia), pin.SE3.Identity())
+                kind = pin.JointModelRevoluteUnaligned(rotor.spin / ratio)
+                added = model.addJoint(parent, kind, seat, f"rotor{joint}")
+                model.appendBodyToJoint(added, pin.Inertia(rotor.mass, np.zeros(3), rotor.inertia), pin.SE3.Identity())
                 ratios.append((joint, ratio))
-            axis = np.array([0.0, 0.0, signs[0] if joint == 1 else 1.0])
-            kind = pin.JointModelRevoluteUnaligned(axis)
-            parent = model.addJoint(parent, kind, places[joint - 1], f"joint{joint}")
-            ratios.append((joint, 1.0))
-            self._own.append(parent)
-            body = links[joint - 1]
+            turns = signs_and_zeros(arm)[0][0] if joint == 1 else 1
+            kind = pin.JointModelRevoluteUnaligned(np.array([0.0, 0.0, turns]))
+            parent = model.addJoint(parent, kind, place, f"joint{joint}")
             model.appendBodyToJoint(parent, pin.Inertia(body.mass, body.at, body.inertia), pin.SE3.Identity())
+            ratios.append((joint, 1.0))
         tip = pin.SE3(np.eye(3), payload.at)
         model.appendBodyToJoint(parent, pin.Inertia(payload.mass, np.zeros(3), np.zeros((3, 3))), tip)
         model.gravity.linear = np.array(arm.get("gravity", GRAVITY), float)
@@ -291,6 +274,26 @@ class Pinocchio:
         self._gears = np.zeros((model.nv, 3))
         for row, (joint, ratio) in enumerate(ratios):
             self._gears[row, joint - 1] = ratio
+
+    @staticmethod
+    def _places(arm: Keys) -> list[pin.SE3]:
+        """Of the joints where they read zero, each in the frame before: z along the axis, of joint 1 along axis 1."""
+        (_, s2, s3), zeros = signs_and_zeros(arm)
+        position, base = base_of(arm)
+        upper = arm["link2"]
+        onto_second = np.array(
+            [[1.0, 0, 0], [0, 0, -s2], [0, s2, 0]]
+        )  # its columns: x, y along axis 1, z along joint 2
+        onto_third = np.diag([1.0, s2 * s3, s2 * s3])
+
+        def turn(angle: float) -> np.ndarray:
+            return pin.utils.rotate("z", angle)
+
+        return [
+            pin.SE3(base @ turn(zeros[0]), position),
+            pin.SE3(onto_second @ turn(s2 * zeros[1]), np.array([arm.get("shoulder_offset", 0.0), 0, 0])),
+            pin.SE3(onto_third @ turn(s3 * zeros[2]), np.array([upper["length"], 0, upper.get("offset", 0.0)])),
+        ]
 
     def mass_matrix(self, q: np.ndarray) -> np.ndarray:
         M = np.triu(pin.crba(self.model, self.data, self._gears @ q))
