@@ -281,9 +281,7 @@ class Pinocchio:
         (_, s2, s3), zeros = signs_and_zeros(arm)
         position, base = base_of(arm)
         upper = arm["link2"]
-        onto_second = np.array(
-            [[1.0, 0, 0], [0, 0, -s2], [0, s2, 0]]
-        )  # its columns: x, y along axis 1, z along joint 2
+        onto_second = np.array([[1.0, 0, 0], [0, 0, -s2], [0, s2, 0]])  # columns: x, y and z
         onto_third = np.diag([1.0, s2 * s3, s2 * s3])
 
         def turn(angle: float) -> np.ndarray:
