@@ -27,6 +27,8 @@ FEELING = ("computed_torque", "resolved_acceleration", "shaped_impedance", "admi
 """Laws that answer to the measured force: a one-way wall leads them astray, for the arm does not feel what they do."""
 WITHOUT_A_PATH = ("none", "constant", "gravity_compensation", "virtual_wall")
 LAWS = (*WITHOUT_A_PATH, *IN_JOINTS, *AT_THE_TIP, *ON_THE_FORCE)
+MOST_DRAWS = 1000
+"""until one is valid: a few are enough"""
 
 
 def sample_seed() -> int:
@@ -40,7 +42,12 @@ def yaml_of(scenario: Mapping[str, Any]) -> str:
 
 
 def random_scenario(
-    rng: np.random.Generator, *, law: str | None = None, sampled: bool | None = None, longest: float = 1.2
+    rng: np.random.Generator,
+    *,
+    law: str | None = None,
+    sampled: bool | None = None,
+    longest: float = 1.2,
+    start: Callable[[Draw], tuple[Keys, Keys]] | None = None,
 ) -> Keys:
     """A valid scenario as nested dictionaries; a draw that validation refuses is drawn anew.
 
@@ -48,29 +55,35 @@ def random_scenario(
         law: fixes controller.type.
         sampled: fixes whether there is a section `sampling`.
         longest: s, the largest time.stop; the shortest is a quarter of it.
+        start: draws the sections `arm` and `initial`, by default those of a planar arm.
     """
-    while True:
+    for draws in range(MOST_DRAWS):
         try:
-            scenario = drawn_scenario(Draw(rng), law or Draw(rng).one_of(LAWS), sampled, longest)
+            drawn_law = law or Draw(rng).one_of(LAWS)
+            scenario = drawn_scenario(Draw(rng), drawn_law, sampled, longest, start or _planar_start)
             arm3r.Scenario(yaml_of(scenario)).validate()
         except arm3r.ScenarioError:
+            if draws == MOST_DRAWS - 1:
+                raise
             continue
-        return scenario
+        break
+    return scenario
 
 
-def drawn_scenario(draw: Draw, law: str, sampled: bool | None, longest: float) -> Keys:
+def drawn_scenario(
+    draw: Draw, law: str, sampled: bool | None, longest: float, start: Callable[[Draw], tuple[Keys, Keys]]
+) -> Keys:
     """A scenario that validation may still refuse."""
     stop = draw.number(longest / 4, longest)
-    arm, initial = _arm(draw), _initial(draw)
-    if arm["convention"] == "simscape":
-        initial = {key: [first, -second, -third] for key, (first, second, third) in initial.items()}
-    start = arm3r.Scenario(yaml_of({"format": 1, "arm": arm, "initial": initial})).arm
-    tip = start.tip_position(np.array(initial["q"]))
+    arm, initial = start(draw)
+    at_start = arm3r.Scenario(yaml_of({"format": 1, "arm": arm, "initial": initial})).arm
+    tip = at_start.tip_position(np.array(initial["q"]))
+    outwards = _outwards(arm, tip)
     scenario: Keys = {"format": 1, "arm": arm, "initial": initial}
     has_wall = law in ON_THE_FORCE or draw.chance(0.75)
     if has_wall:
-        scenario["wall"] = _wall(draw, tip, stop, 0.9 if law in FEELING else 0.5)
-    scenario["controller"] = _controller(draw, law, tip)
+        scenario["wall"] = _wall(draw, tip, outwards, stop, 0.9 if law in FEELING else 0.5)
+    scenario["controller"] = _controller(draw, law, tip, outwards)
     if law not in WITHOUT_A_PATH:
         scenario["reference"] = _reference(draw, law, tip, np.array(initial["q"]), stop, has_wall)
     computes = law not in ("none", "constant")
@@ -86,7 +99,24 @@ def drawn_scenario(draw: Draw, law: str, sampled: bool | None, longest: float) -
         scenario["push"] = _push(draw, stop)
     scenario["solver"] = {"max_steps": 20000}
     scenario["time"] = {"stop": stop, "log_every": _log_every(draw, scenario)}
+    if arm.get("model") == "elbow":
+        scenario["controller"].get("model", {}).pop("base_height", None)
     return scenario
+
+
+def _planar_start(draw: Draw) -> tuple[Keys, Keys]:
+    arm, initial = _arm(draw), _initial(draw)
+    if arm["convention"] == "simscape":
+        initial = {key: [first, -second, -third] for key, (first, second, third) in initial.items()}
+    return arm, initial
+
+
+def _outwards(arm: Keys, tip: np.ndarray) -> np.ndarray:
+    """The direction in which the arm reaches: of a planar arm level, of an elbow arm from its base to the tip."""
+    if arm.get("model") == "elbow":
+        reach = tip - arm.get("base", {}).get("position", [0, 0, 0])
+        return reach / np.linalg.norm(reach)
+    return np.array([tip[0], tip[1], 0]) / math.hypot(tip[0], tip[1])
 
 
 def _log_every(draw: Draw, scenario: Keys) -> float:
@@ -207,12 +237,11 @@ def _initial(draw: Draw) -> Keys:
 # ---- the wall --------------------------------------------------------------------------------------------------------
 
 
-def _wall(draw: Draw, tip: np.ndarray, stop: float, acting: float) -> Keys:
+def _wall(draw: Draw, tip: np.ndarray, outwards: np.ndarray, stop: float, acting: float) -> Keys:
     """A plate in front of the tip, which the tip meets as a rule within the run; `acting` is the share of two-way ones.
 
     Springs along the plate are one-way only.
     """
-    outwards = np.array([tip[0], tip[1], 0]) / math.hypot(tip[0], tip[1])
     normal = -outwards + np.array(draw.numbers(-0.6, 0.6))
     normal = np.array([float(f"{part:.5g}") for part in normal])
     unit = normal / np.linalg.norm(normal)
@@ -305,7 +334,7 @@ def _contact(draw: Draw, acts_on_arm: bool) -> Keys:
 # ---- the controller --------------------------------------------------------------------------------------------------
 
 
-def _controller(draw: Draw, law: str, tip: np.ndarray) -> Keys:
+def _controller(draw: Draw, law: str, tip: np.ndarray, outwards: np.ndarray) -> Keys:
     controller: Keys = {"type": law, **_gains(draw, law)}
     if law == "constant":
         controller["torque"] = draw.numbers(-5, 5)
@@ -321,7 +350,6 @@ def _controller(draw: Draw, law: str, tip: np.ndarray) -> Keys:
     if law in ON_THE_FORCE and draw.chance(0.5):
         controller["switching"] = draw.one_of(["in_contact", "latched", "always"])
     if law == "virtual_wall":
-        outwards = np.array([tip[0], tip[1], 0]) / math.hypot(tip[0], tip[1])
         normal = -outwards + np.array(draw.numbers(-0.5, 0.5))
         plane = tip - draw.number(-0.01, 0.02) * normal
         controller["plane_point"] = [float(f"{part:.6g}") for part in plane]

@@ -6,9 +6,12 @@ its order where something changes within a step: runs with other steps tell its 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from agreement import ADAPTIVE, MAX_STEPS, Band, Gap, OwnError, disturbed, rk4, run_of
+from elbow_arms import random_elbow_scenario
 from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 SEED = sample_seed()
@@ -77,7 +80,7 @@ def worst_gap(
     return max(band.gap(other), band.event_gap(other))
 
 
-def disagreements(number: int, longest: float, methods: tuple[str, ...]) -> list[str]:
+def disagreements(number: int, longest: float, methods: tuple[str, ...], draw: Callable[..., Keys]) -> list[str]:
     """What is wrong in a scenario, one text for each method that leaves the band.
 
     Behind a singular pose that a law inverts, steps that do not end there may pass over torques of microseconds at any
@@ -85,7 +88,7 @@ def disagreements(number: int, longest: float, methods: tuple[str, ...]) -> list
     chatters adds up the errors of a thousand steps, and no single disturbance tells how much that is: what a hundredth
     of the tolerance takes away is such an error.
     """
-    scenario = random_scenario(np.random.default_rng([SEED, number]), longest=longest)
+    scenario = draw(np.random.default_rng([SEED, number]), longest=longest)
     band, found = band_of(scenario, number), []
     passed = [line for line in band.run.warnings if "passed a singular pose" in line] if band else []
     if any("may miss" in line for line in passed):
@@ -106,8 +109,10 @@ def disagreements(number: int, longest: float, methods: tuple[str, ...]) -> list
     return found
 
 
-def check(numbers: range, longest: float, methods: tuple[str, ...]) -> None:
-    found = [text for number in numbers for text in disagreements(number, longest, methods)]
+def check(
+    numbers: range, longest: float, methods: tuple[str, ...], draw: Callable[..., Keys] = random_scenario
+) -> None:
+    found = [text for number in numbers for text in disagreements(number, longest, methods, draw)]
     assert not found, f"{len(found)} disagreements in {len(numbers)} scenarios\n" + "\n".join(found[:10])
 
 
@@ -120,3 +125,16 @@ def test_methods_agree() -> None:
 @pytest.mark.parametrize("part", range(5))
 def test_methods_agree_in_many(part: int) -> None:
     check(range(1000 + 500 * part, 1500 + 500 * part), longest=1.2, methods=METHODS)
+
+
+def test_methods_agree_on_elbow_arms() -> None:
+    check(range(25), longest=0.3, methods=METHODS, draw=random_elbow_scenario)  # 400 in the gates
+
+
+@pytest.mark.gate
+@pytest.mark.random
+@pytest.mark.parametrize("part", range(2))
+def test_methods_agree_on_many_elbow_arms(part: int) -> None:
+    """Three quarters of them have a wall, so that 300 meet one."""
+    numbers = range(1000 + 200 * part, 1200 + 200 * part)
+    check(numbers, longest=1.2, methods=METHODS, draw=random_elbow_scenario)

@@ -1,5 +1,5 @@
 """Physics knows no x axis and no sign of an angle: a scenario turned about the vertical, or told in the other
-convention, gives the same motion.
+convention, gives the same motion. That of an elbow arm, whose base has any pose, may be turned about any axis.
 
 A failure prints the seed of its scenario and its YAML; ARM3R_SEED sets another seed, the gates that of the day.
 """
@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import copy
 import re
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from agreement import ADAPTIVE, SIZE, Band, Gap, OwnError, disturbed, instants, kinds, rk4, run_of
+from elbow_arms import moved, random_elbow_scenario, random_turn, told_in
 from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 SEED = sample_seed()
@@ -42,7 +45,9 @@ def entry(scenario: Keys, path: str) -> tuple[dict[str, Any], str] | None:
 def mirrored(scenario: Keys) -> Keys:
     """The scenario in the other convention."""
     other = copy.deepcopy(scenario)
-    other["arm"]["convention"] = {"slide": "simscape", "simscape": "slide"}[scenario["arm"]["convention"]]
+    convention = {"slide": "simscape", "simscape": "slide"}[scenario["arm"]["convention"]]
+    is_elbow = scenario["arm"].get("model") == "elbow"
+    other["arm"] = told_in(scenario["arm"], convention) if is_elbow else scenario["arm"] | {"convention": convention}
     for path in MIRRORED:
         if found := entry(other, path):
             place, key = found
@@ -59,10 +64,10 @@ def wrong_in_mirror(scenario: Keys, solver: Keys) -> list[str]:
     return [name for name in run.columns if not np.array_equal(run[name], signs.get(name, 1) * other[name])]
 
 
-def check_mirror(numbers: range, longest: float) -> None:
+def check_mirror(numbers: range, longest: float, draw: Callable[..., Keys] = random_scenario) -> None:
     found = []
     for number in numbers:
-        scenario = random_scenario(np.random.default_rng([SEED, number]), longest=longest)
+        scenario = draw(np.random.default_rng([SEED, number]), longest=longest)
         for method, solver in {**ADAPTIVE, "rk4": rk4(scenario, 1e-3)}.items():
             if wrong := wrong_in_mirror(scenario, solver):
                 found.append(f"# seed {SEED}, scenario {number}, {method}: {wrong}\n{yaml_of(scenario)}")
@@ -77,6 +82,19 @@ def test_both_conventions_give_the_same_bits() -> None:
 @pytest.mark.random
 def test_both_conventions_give_the_same_bits_in_many() -> None:
     check_mirror(range(1000, 2000), longest=1.2)
+
+
+IN_TWO_CONVENTIONS = partial(random_elbow_scenario, conventions=("slide", "simscape"))
+
+
+def test_elbow_arms_have_the_same_bits_in_both_conventions() -> None:
+    check_mirror(range(20), longest=0.3, draw=IN_TWO_CONVENTIONS)
+
+
+@pytest.mark.gate
+@pytest.mark.random
+def test_many_elbow_arms_have_the_same_bits_in_both_conventions() -> None:
+    check_mirror(range(1000, 1200), longest=1.2, draw=IN_TWO_CONVENTIONS)
 
 
 # ---- turned about the vertical ---------------------------------------------------------------------------------------
@@ -135,29 +153,33 @@ class TurnedBack:
         return self._back[axis] @ np.array([self._run[stem + letter] for letter in "xyz"])
 
 
-def wrong_in_turn(scenario: Keys, number: int, solver: Keys, share: float) -> Gap | None:
-    """Where the turned run leaves this share of the band by more than rounding explains.
+Back = Callable[[arm3r.Run, arm3r.Run], Any]
+"""Shows a run of the moved world, of which the second argument is the run in place, as it looks from moved axes."""
+
+
+def wrong_in_turn(scenario: Keys, there: Keys, back: Back, number: int, solver: Keys, share: float) -> Gap | None:
+    """Where the run of the moved world leaves this share of the band by more than rounding explains.
 
     A turned world has other roundings at every step. A pose near a singular one, a contact or an unstable loop makes
     them larger as it makes the disturbances of 1e-15 rad, m and rad/s of a dozen other runs: ten times as much as
     these do is rounding, whatever share of the band it is; and so is another outcome, where one of them has another.
     """
-    angle = float(np.random.default_rng([SEED, number, 99]).uniform(-3, 3))
-    run, other = run_of(scenario, solver), run_of(turned(scenario, angle), solver)
+    run, other = run_of(scenario, solver), run_of(there, solver)
     if run is None or run.outcome != "ok":
         return None
     if other is None or other.outcome != "ok":
         rounded = (disturbed(scenario, np.random.default_rng([SEED, number, 50 + i]), 1e-15) for i in range(12))
         is_rounding = any(one is None or one.outcome != "ok" for one in (run_of(near, solver) for near in rounded))
         return None if is_rounding else Gap(np.inf, "outcome", 0.0)
+    seen = back(other, run)
     for disturbances in (2, 12):
         others = (disturbed(scenario, np.random.default_rng([SEED, number, i])) for i in range(disturbances))
         band = Band(run, [run_of(one, solver) for one in others])
-        gap = max(band.gap(TurnedBack(other, angle)), band.event_gap(TurnedBack(other, angle)))
+        gap = max(band.gap(seen), band.event_gap(seen))
         if gap.ratio <= share:
             return None
     rounding = rounding_of(scenario, number, solver, run, share)
-    gap = max(band.gap(TurnedBack(other, angle), rounding), band.event_gap(TurnedBack(other, angle), rounding))
+    gap = max(band.gap(seen, rounding), band.event_gap(seen, rounding))
     return None if gap.ratio <= share else gap
 
 
@@ -184,11 +206,25 @@ def check_turn(numbers: range, longest: float) -> None:
     found = []
     for number in numbers:
         scenario = alike_in_all_directions(random_scenario(np.random.default_rng([SEED, number]), longest=longest))
-        for method in ("dopri5", "taylor", "rk4") if scenario else ():
-            solver, share = (ADAPTIVE[method], 1.0) if method in ADAPTIVE else (rk4(scenario, 1e-3), 1e-3)
-            if gap := wrong_in_turn(scenario, number, solver, share):
-                found.append(f"# seed {SEED}, scenario {number}, {method}: {gap}\n{yaml_of(scenario)}")
+        if scenario:
+            angle = float(np.random.default_rng([SEED, number, 99]).uniform(-3, 3))
+            back = partial(seen_from_turned_axes, angle=angle)
+            found += wrong_of_methods(scenario, turned(scenario, angle), back, number)
     assert not found, "\n".join(found[:10])
+
+
+def seen_from_turned_axes(run: arm3r.Run, here: arm3r.Run, angle: float) -> TurnedBack:
+    return TurnedBack(run, angle)
+
+
+def wrong_of_methods(scenario: Keys, there: Keys, back: Back, number: int) -> list[str]:
+    """A text for each method by which the moved world has another run."""
+    found = []
+    for method in ("dopri5", "taylor", "rk4"):
+        solver, share = (ADAPTIVE[method], 1.0) if method in ADAPTIVE else (rk4(scenario, 1e-3), 1e-3)
+        if gap := wrong_in_turn(scenario, there, back, number, solver, share):
+            found.append(f"# seed {SEED}, scenario {number}, {method}: {gap}\n{yaml_of(scenario)}")
+    return found
 
 
 def test_a_turned_world_gives_the_turned_run() -> None:
@@ -199,6 +235,86 @@ def test_a_turned_world_gives_the_turned_run() -> None:
 @pytest.mark.random
 def test_many_turned_worlds_give_the_turned_runs() -> None:
     check_turn(range(1000, 2000), longest=1.2)
+
+
+# ---- turned about any axis, and moved --------------------------------------------------------------------------------
+
+POINTS = ("wall.point", "controller.plane_point", "reference.tip")
+DIRECTIONS = tuple(path for path in VECTORS if path not in (*POINTS, "arm.gravity", "controller.gravity"))
+POINT_COLUMNS = ("tip_", "wall_", "tip_ref_")
+
+
+def without_a_vertical(scenario: Keys) -> Keys | None:
+    """The scenario without what the vertical decides: outline and axes of the plate; None for a circle on it."""
+    other = alike_in_all_directions(scenario)
+    if other is None or other.get("reference", {}).get("type") == "circle":
+        return None
+    if "wall" in other:
+        other["wall"]["size"] = "infinite"
+        if other["wall"]["contact"]["law"] == "diagonal":
+            other["wall"]["contact"] |= {"law": "spring", "stiffness": other["wall"]["contact"]["stiffness"][0]}
+    return other
+
+
+def moved_in_space(scenario: Keys, R: np.ndarray, by: np.ndarray) -> Keys:
+    """An elbow arm and the world about it turned about the origin and moved; its joint angles stay."""
+    other = copy.deepcopy(scenario)
+    other["arm"] = moved(scenario["arm"], R, by)
+    for path in DIRECTIONS:
+        if found := entry(other, path):
+            place, key = found
+            place[key] = (R @ place[key]).tolist()
+    for path in POINTS:
+        if found := entry(other, path):
+            place, key = found
+            place[key] = (R @ place[key] + by).tolist()
+    reference, controller = other.get("reference", {}), other["controller"]
+    if reference.get("type") == "table":
+        path = R @ np.array([reference[axis] for axis in "xyz"]) + by[:, None]
+        reference |= {axis: path[i].tolist() for i, axis in enumerate("xyz")}
+    if controller["type"] not in ("none", "constant"):
+        gravity = controller.get("gravity", 9.80665)
+        controller["gravity"] = (R @ (gravity if isinstance(gravity, list) else [0, 0, -gravity])).tolist()
+    return other
+
+
+class MovedBack:
+    """A run of the moved world as it looks from axes that have moved with it, with the same zero of the energy."""
+
+    def __init__(self, run: arm3r.Run, here: arm3r.Run, R: np.ndarray, by: np.ndarray) -> None:
+        self.t, self.events, self._run, self._R, self._by = run.t, run.events, run, R, by
+        self._higher = run["energy_potential"][0] - here["energy_potential"][0]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        stem, axis = name[:-1], "xyz".find(name[-1])
+        if name == "energy_potential":
+            return self._run[name] - self._higher
+        if axis < 0 or not all(stem + letter in self._run.columns for letter in "xyz"):
+            return self._run[name]
+        vectors = np.array([self._run[stem + letter] for letter in "xyz"])
+        return self._R[:, axis] @ (vectors - self._by[:, None] if stem in POINT_COLUMNS else vectors)
+
+
+def check_moved(numbers: range, longest: float) -> None:
+    found = []
+    for number in numbers:
+        scenario = without_a_vertical(random_elbow_scenario(np.random.default_rng([SEED, number]), longest=longest))
+        if scenario:
+            rng = np.random.default_rng([SEED, number, 98])
+            R, by = random_turn(rng), rng.uniform(-1, 1, 3)
+            back = partial(MovedBack, R=R, by=by)
+            found += wrong_of_methods(scenario, moved_in_space(scenario, R, by), back, number)
+    assert not found, "\n".join(found[:10])
+
+
+def test_a_world_of_an_elbow_arm_that_is_turned_and_moved_gives_the_moved_run() -> None:
+    check_moved(range(25), longest=0.3)
+
+
+@pytest.mark.gate
+@pytest.mark.random
+def test_many_worlds_of_elbow_arms_that_are_turned_and_moved_give_the_moved_runs() -> None:
+    check_moved(range(1000, 1300), longest=1.2)
 
 
 # ---- raised ----------------------------------------------------------------------------------------------------------

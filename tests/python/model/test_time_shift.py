@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import arm3r_cpp as arm3r
@@ -10,8 +11,9 @@ import numpy as np
 import pytest
 from arm3r_cpp.core.scenario import Scenario
 from conftest import scenario_files
+from elbow_arms import random_elbow_scenario
 from force_scenarios import D
-from random_scenarios import random_scenario, sample_seed, yaml_of
+from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 SHIFTS = [0.7, 37.0]
 NUDGE = 1e-7  # rad: a perturbation of the start, by which the growth of an error over the run is measured
@@ -222,12 +224,12 @@ def ends_with(run: arm3r.Run) -> bool:
     return bool(told["settling_time"] is None or abs(told["first_contact"] + told["settling_time"] - run.t[-1]) < 1e-9)
 
 
-def hold_random(count: int) -> None:
+def hold_random(count: int, draw: Callable[..., Keys] = random_scenario) -> None:
     seed = sample_seed()
     rng = np.random.default_rng(seed)
     counts: list[tuple[int, int]] = []
     for i in range(count):
-        keys = random_scenario(rng, longest=0.8)
+        keys = draw(rng, longest=0.8)
         method = ["dopri5", "rodas4", "auto", "rk4", "taylor"][i % 5]
         by = SHIFTS[int(rng.integers(2))]
         scenario = with_method(Scenario(yaml_of(keys)), method)
@@ -251,6 +253,16 @@ def test_random_scenarios_do_not_know_what_time_it_is() -> None:
 @pytest.mark.random
 def test_many_random_scenarios_do_not_know_what_time_it_is() -> None:
     hold_random(300)
+
+
+def test_random_elbow_arms_do_not_know_what_time_it_is() -> None:
+    hold_random(10, random_elbow_scenario)
+
+
+@pytest.mark.gate
+@pytest.mark.random
+def test_many_random_elbow_arms_do_not_know_what_time_it_is() -> None:
+    hold_random(100, random_elbow_scenario)
 
 
 @pytest.mark.parametrize("path", scenario_files(), ids=lambda path: path.stem)
