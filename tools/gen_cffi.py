@@ -13,6 +13,7 @@ CALLED_FROM_C = """
 extern "Python" int32_t arm3r_python_progress(void *user, double t, double stop, int64_t steps);
 extern "Python" int32_t arm3r_python_batch_progress(void *user, int64_t runs_done, int64_t runs);
 extern "Python" int32_t arm3r_python_tick(double t);
+extern "Python" int32_t arm3r_python_arm_reader(void *user, const char *request, const char **text);
 int32_t arm3r_python_law(void *user, const arm3r_law_state *state, double *tau);
 extern "Python" int32_t arm3r_python_batch_law(void *user, const arm3r_law_state *state, double *tau);
 """

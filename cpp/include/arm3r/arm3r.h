@@ -114,6 +114,11 @@ ARM3R_API void arm3r_arm_free(arm3r_arm *arm); /* Nullable */
 /*                                               per state:   in                                       out                */
 ARM3R_API int32_t arm3r_arm_tip_position(const arm3r_arm *arm, size_t n, const double *q, double *tip);      /* 3 -> 3, m */
 ARM3R_API int32_t arm3r_arm_elbow_position(const arm3r_arm *arm, size_t n, const double *q, double *elbow);  /* 3 -> 3, m */
+/* The points that the arm is drawn through, scenario axes: that of axis 1 nearest to the origin, that at the height of joint 2,
+ * joint 2, the end of link 2 in its plane, joint 3, the end of link 3 in its plane, the tip; of a planar arm some coincide. */
+ARM3R_API int32_t arm3r_arm_points(const arm3r_arm *arm, size_t n, const double *q, double *points);          /* 3 -> 7x3, m */
+/* The largest distance of the tip from the point of axis 1 at the height of joint 2, or a little more, m. */
+ARM3R_API int32_t arm3r_arm_reach(const arm3r_arm *arm, double *reach);
 ARM3R_API int32_t arm3r_arm_centres(const arm3r_arm *arm, size_t n, const double *q, double *centres);       /* 3 -> 3x3, m: a row a link */
 ARM3R_API int32_t arm3r_arm_jacobian(const arm3r_arm *arm, size_t n, const double *q, double *jacobian);     /* 3 -> 3x3, m */
 ARM3R_API int32_t arm3r_arm_geometric_jacobian(const arm3r_arm *arm, size_t n, const double *q, double *jacobian); /* 3 -> 6x3, linear rows first */
@@ -286,6 +291,14 @@ ARM3R_API int32_t arm3r_batch_control(const double *params, size_t count, const 
 /* ---- text: scenarios ----------------------------------------------------------------------------------------------- */
 
 typedef struct arm3r_scenario arm3r_scenario;
+
+/* Reads the file of arm.urdf. request: JSON, an object with `urdf`, `joints`, `lock`, `tip`, `axis_tolerance` as the scenario has
+ * them (numbers as text), the `folder` of the scenario where it is in one, and the keys `given` beside them, without `arm.`.
+ * Returns 0 with the keys of an elbow arm as YAML, or another number with one sentence that says what is wrong. The text stays
+ * until the thread calls the reader again. */
+typedef int32_t (*arm3r_arm_reader)(void *user, const char *request, const char **text);
+/* The reader of all scenarios of the process; without one, scenarios with arm.urdf are refused. */
+ARM3R_API int32_t arm3r_set_arm_reader(arm3r_arm_reader reader /* Nullable */, void *user);
 
 /* Read a scenario from text; `file` is the name used in messages and, without its suffix, the default of `name`. */
 ARM3R_API int32_t arm3r_scenario_create(const char *text, size_t text_size, const char *file, size_t file_size, arm3r_scenario **scenario);

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double max_number = 1e100;  // its square and cube are still numbers
 constexpr double min_sine = 1e-3;     // of joint 3, or of the tip's distance from joint 1's axis over the arm's length
-constexpr std::size_t max_states = std::numeric_limits<std::size_t>::max() / (18 * sizeof(double));
+constexpr std::size_t max_states = std::numeric_limits<std::size_t>::max() / (21 * sizeof(double));
 
 struct Input {  // rows of 3
     const double* data;
@@ -283,6 +283,18 @@ int32_t arm3r_arm_tip_position(const arm3r_arm* arm, size_t n, const double* q, 
 
 int32_t arm3r_arm_elbow_position(const arm3r_arm* arm, size_t n, const double* q, double* elbow) {
     return evaluated(arm, n, {joint_angles(q)}, {{elbow, 3, "elbow"}}, in_groups::elbow_position);
+}
+
+int32_t arm3r_arm_points(const arm3r_arm* arm, size_t n, const double* q, double* points) {
+    return evaluated(arm, n, {joint_angles(q)}, {{points, 21, "points"}}, in_groups::arm_points);
+}
+
+int32_t arm3r_arm_reach(const arm3r_arm* arm, double* most) {
+    return guard([&] {
+        need(arm, "arm");
+        need(most, "reach");
+        *most = reach(arm->arm);
+    });
 }
 
 int32_t arm3r_arm_centres(const arm3r_arm* arm, size_t n, const double* q, double* centres_of_mass) {

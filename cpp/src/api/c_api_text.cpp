@@ -13,6 +13,7 @@
 #include "results/csv.hpp"
 #include "results/report.hpp"
 #include "results/run_file.hpp"
+#include "scenario/arm_file.hpp"
 #include "scenario/json_schema.hpp"
 #include "scenario/reference_docs.hpp"
 #include "schema/columns.hpp"
@@ -102,6 +103,10 @@ int32_t arm3r_nearest_word(const char* word, const char* const* words, size_t n_
         const auto found = std::ranges::find(all, nearest(word, all));
         *place = found == all.end() ? -1 : found - all.begin();
     });
+}
+
+int32_t arm3r_set_arm_reader(arm3r_arm_reader reader, void* user) {
+    return guard([&] { set_arm_reader(reader, user); });
 }
 
 int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* file, size_t file_size,

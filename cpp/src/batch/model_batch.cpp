@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "arm3r/lanes.hpp"
+#include "arm3r/model/arm_points.hpp"
 #include "arm3r/model/dynamics.hpp"
 #include "arm3r/model/recursion.hpp"
 #include "arm3r/numbers/eigen_traits.hpp"
@@ -13,7 +14,7 @@ namespace arm3r {
 namespace {
 
 constexpr std::size_t group = 8;
-constexpr std::size_t max_row_width = 18;
+constexpr std::size_t max_row_width = 3 * arm_point_count;
 using Eight = Pack<group>;
 
 // Eight rows of three numbers, turned into three columns of eight.
@@ -56,6 +57,14 @@ struct Group {
     ARM3R_INLINE void store(const Eight& number, int result = 0) const { (number + 0.0).store(row(result)); }
     ARM3R_INLINE void store(const Vec3<Eight>& v, int result = 0) const {
         store_columns({v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}, row(result));
+    }
+    // A point of every row, the `place`th of its points.
+    ARM3R_INLINE void store_point(const Vec3<Eight>& point, std::size_t place) const {
+        alignas(64) double columns[3][group];
+        for (int k = 0; k < 3; ++k) (point[k] + 0.0).store(columns[k]);
+        double* to = row(0) + 3 * place;
+        for (std::size_t lane = 0; lane < group; ++lane, to += rows.out[0].width)
+            for (int k = 0; k < 3; ++k) to[k] = columns[k][lane];
     }
     ARM3R_INLINE void store_joints(const Vec3<Eight>& v) const { store(convention.flipped(v)); }
 
@@ -123,6 +132,13 @@ void tip_position(const Model& model, std::size_t groups, const StateRows& rows)
 void elbow_position(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows,
          [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA { g.store(arm3r::elbow_position(arm, g.pose())); });
+}
+
+void arm_points(const Model& model, std::size_t groups, const StateRows& rows) {
+    each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
+        const auto points = arm3r::arm_points(arm, g.pose());
+        for (std::size_t i = 0; i < points.size(); ++i) g.store_point(points[i], i);
+    });
 }
 
 void centres_of_mass(const Model& model, std::size_t groups, const StateRows& rows) {

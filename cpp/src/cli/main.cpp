@@ -248,16 +248,46 @@ std::vector<std::string> own_directories(const std::string& called) {
     return directories;
 }
 
+// The paths of programs arm3r-NAME: beside this one, and on PATH.
+std::vector<std::string> programs_named(const std::string& name, const std::string& called) {
+    if (platform::last_separator(name) != name.npos) return {};
+    std::vector<std::string> directories = own_directories(called), found;
+    for (const std::string& directory : platform::search_path()) directories.push_back(directory);
+    for (const std::string& directory : directories)
+        if (const std::string path = platform::program_in(directory, "arm3r-" + name); !path.empty())
+            found.push_back(path);
+    return found;
+}
+
 // Goes on as the program arm3r-NAME, with these words behind its own name. Returns where there is none.
 void become(const std::string& name, const std::string& called, std::vector<std::string> words) {
-    if (platform::last_separator(name) != name.npos) return;
-    std::vector<std::string> directories = own_directories(called);
-    for (const std::string& directory : platform::search_path()) directories.push_back(directory);
     words.insert(words.begin(), "");
-    for (const std::string& directory : directories) {
-        words[0] = platform::program_in(directory, "arm3r-" + name);
-        if (!words[0].empty()) platform::become_program(words[0], words);
+    for (const std::string& path : programs_named(name, called)) {
+        words[0] = path;
+        platform::become_program(path, words);
     }
+}
+
+// Reads the file of arm.urdf by the Python package: arm3r-import prints the keys of the arm, or what is wrong.
+struct ArmReader {
+    std::string program, text;
+
+    static int32_t read(void* self, const char* request, const char** text) {
+        ArmReader& reader = *static_cast<ArmReader*>(self);
+        const platform::Ended ended = platform::run_program(reader.program, {reader.program, "--keys", request});
+        reader.text = ended.output;
+        if (ended.code < 0) reader.text = "the Python package's program cannot be started: " + reader.program;
+        *text = reader.text.c_str();
+        return ended.code;
+    }
+};
+
+void set_arm_reader(const std::string& called) {
+    static ArmReader reader;
+    const std::vector<std::string> programs = programs_named("import", called);
+    if (programs.empty()) return;
+    reader.program = programs.front();
+    check(arm3r_set_arm_reader(ArmReader::read, &reader));
 }
 
 [[noreturn]] void run_controller(const Arguments& arguments, const std::string& called) {
@@ -279,6 +309,7 @@ int main(const std::vector<std::string>& words) {
         return print("arm3r " + std::string(arm3r_version()) + "\n" + arm3r_build_info() + "\n"), exit_ok;
     if (arguments.cmake_dir) return print(cmake_directory() + "\n"), exit_ok;
     if (!arguments.controller.empty()) run_controller(arguments, words[0]);
+    set_arm_reader(words[0]);
     return call(arguments);
 }
 

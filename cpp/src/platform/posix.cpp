@@ -3,9 +3,11 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -183,6 +185,34 @@ void become_program(const std::string& path, const std::vector<std::string>& wor
     for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
     pointers.push_back(nullptr);
     execv(path.c_str(), pointers.data());
+}
+
+Ended run_program(const std::string& path, const std::vector<std::string>& words) {
+    std::vector<char*> pointers;
+    for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
+    pointers.push_back(nullptr);
+    int ends[2];
+    if (pipe(ends) != 0) return {-1, ""};
+    const pid_t child = fork();
+    if (child == 0) {
+        dup2(ends[1], STDOUT_FILENO);
+        close(ends[0]), close(ends[1]);
+        execv(path.c_str(), pointers.data());
+        _exit(127);
+    }
+    close(ends[1]);
+    std::string output;
+    char piece[4096];
+    for (ssize_t size = 1; child > 0 && size != 0;) {
+        size = read(ends[0], piece, sizeof piece);
+        if (size > 0) output.append(piece, static_cast<std::size_t>(size));
+        else if (size < 0 && errno != EINTR) break;
+    }
+    close(ends[0]);
+    int status = 0;
+    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return {child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
 }
 
 void catch_end_requests(void (*handler)(int)) {

@@ -19,6 +19,14 @@ std::string program_in(const std::string& directory, const std::string& name);
 // Goes on as another program, with words[0] as its name. Returns where it cannot be started.
 void become_program(const std::string& path, const std::vector<std::string>& words);
 
+// The exit code of another program, with words[0] as its name, that is run to its end, and what it printed on standard
+// output; -1 where it cannot be started.
+struct Ended {
+    int code;
+    std::string output;
+};
+Ended run_program(const std::string& path, const std::vector<std::string>& words);
+
 // The first request to end the program (Ctrl-C, SIGTERM, SIGHUP) calls the handler with its number, and returns; a second
 // one ends it. A signal that the caller ignores stays ignored.
 void catch_end_requests(void (*handler)(int));

@@ -235,6 +235,36 @@ void become_program(const std::string& path, const std::vector<std::string>& wor
     if (code != -1) ExitProcess(static_cast<UINT>(code));
 }
 
+Ended run_program(const std::string& path, const std::vector<std::string>& words) {
+    std::wstring line;
+    for (const std::string& word : words) line += (line.empty() ? L"" : L" ") + quoted(wide(word));
+    SECURITY_ATTRIBUTES inherited{sizeof inherited, nullptr, TRUE};
+    HANDLE from = nullptr, to = nullptr;
+    if (!CreatePipe(&from, &to, &inherited, 0)) return {-1, ""};
+    SetHandleInformation(from, HANDLE_FLAG_INHERIT, 0);
+    STARTUPINFOW start{};
+    start.cb = sizeof start;
+    start.dwFlags = STARTF_USESTDHANDLES;
+    start.hStdInput = GetStdHandle(STD_INPUT_HANDLE), start.hStdOutput = to;
+    start.hStdError = GetStdHandle(STD_ERROR_HANDLE);
+    PROCESS_INFORMATION child{};
+    const bool started =
+        CreateProcessW(wide(path).c_str(), line.data(), nullptr, nullptr, TRUE, 0, nullptr, nullptr, &start, &child);
+    CloseHandle(to);
+    std::string output;
+    char piece[4096];
+    for (DWORD size = 0; started && ReadFile(from, piece, sizeof piece, &size, nullptr) && size > 0;)
+        output.append(piece, size);
+    CloseHandle(from);
+    DWORD code = 0;
+    if (started) {
+        WaitForSingleObject(child.hProcess, INFINITE);
+        GetExitCodeProcess(child.hProcess, &code);
+        CloseHandle(child.hProcess), CloseHandle(child.hThread);
+    }
+    return {started ? static_cast<int>(code) : -1, output};
+}
+
 void catch_end_requests(void (*handler)(int)) {
     end_handler = handler;
     SetConsoleCtrlHandler(on_console_event, TRUE);

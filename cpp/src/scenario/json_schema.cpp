@@ -62,10 +62,18 @@ std::string list_schema(const Key& key, const std::string& number) {
                    member("minItems", std::to_string(fewest)), member("maxItems", std::to_string(most))});
 }
 
+std::string arm_file_schema(const std::string& name) {
+    const std::string angle = R"({"type": ["number", "string"]})", text = R"({"type": "string", "minLength": 1})";
+    if (name == "joints") return R"({"type": "array", "items": )" + text + R"(, "minItems": 3, "maxItems": 3})";
+    if (name == "lock") return R"({"type": "object", "additionalProperties": )" + angle + "}";
+    return name == "axis_tolerance" ? angle : text;
+}
+
 // For the choices made in `params`.
 std::string value_schema(const Key& key, const Params& params) {
     if (key.kind == Kind::flag) return R"({"type": "boolean"})";
     if (key.kind == Kind::file) return R"({"type": "string", "minLength": 1})";
+    if (key.kind == Kind::arm_file) return arm_file_schema(last_name(key.path));
     if (key.kind == Kind::choice) return object({member("enum", json_words(key.choices))});
     if (key.kind == Kind::column)
         return R"({"type": "array", "items": {"$ref": "#/definitions/column of a run"}, "minItems": 1, )"

@@ -42,12 +42,20 @@ std::string table_head(const std::vector<std::string>& names) {
     return out + "\n";
 }
 
+// How what is said of a URDF is written.
+std::string arm_file_text(const std::string& name) {
+    if (name == "joints") return "three names";
+    if (name == "lock") return "a map of names and angles";
+    return name == "axis_tolerance" ? "an angle" : "a name";
+}
+
 std::string range_text(const Key& key) {
     if (key.kind == Kind::choice) return listed(key.choices, ", ");
     if (key.kind == Kind::flag) return "true, false";
     if (key.kind == Kind::section) return "a map";
     if (key.kind == Kind::column) return "[columns](columns.md)";
     if (key.kind == Kind::file) return "a name";
+    if (key.kind == Kind::arm_file) return arm_file_text(last_name(key.path));
     std::string out = (key.bounds.open_low ? "> " : "") + yaml_number(key.bounds.low) + " to " +
                       (key.bounds.open_high ? "< " : "") + yaml_number(key.bounds.high);
     if (key.allow_infinity) out += ", inf";

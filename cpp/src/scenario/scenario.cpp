@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "files/paths.hpp"
 #include "platform/files.hpp"
+#include "scenario/arm_file.hpp"
 #include "scenario/meant_key.hpp"
 #include "scenario/meant_word.hpp"
 #include "scenario/table_file.hpp"
@@ -39,6 +40,7 @@ std::string expected(const Key& key, std::span<const double> params) {
         case Kind::section: return "a map";
         case Kind::integer: return "a whole number" + unit;
         case Kind::file: return "the name of a file";
+        case Kind::arm_file: return "what is said of a URDF";
         case Kind::column: return "a list of 1 to " + std::to_string(key.size) + " names of columns";
         default: break;
     }
@@ -71,7 +73,8 @@ public:
     explicit Resolver(const Scenario& scenario)
         : scenario_(scenario),
           problems_(scenario.document.problems),
-          root_(with_table_files(scenario.document.root, scenario.file, problems_)),
+          root_(with_table_files(with_arm_file(scenario.document.root, scenario.file, problems_), scenario.file,
+                                 problems_)),
           origin_(schema().size()) {}
 
     Resolved resolve() {
@@ -262,6 +265,7 @@ private:
         if (key.kind == Kind::choice) return;
         if (key.kind == Kind::flag) return read_flag(key, node);
         if (key.kind == Kind::file) return node.type == Node::scalar ? void() : wrong_shape(key, node);
+        if (key.kind == Kind::arm_file) return refuse_without_urdf(key, node);
         if (is_number_here(key, node)) return read_single(key, node);
         if (key.form == Form::vector_or_word && node.type == Node::scalar && node.text == key.word) {
             std::fill_n(at(key), key.size, infinite);
@@ -272,6 +276,14 @@ private:
             node.children.size() <= (key.any_length ? max_list_length : key.size))
             return read_list(key, node);
         wrong_shape(key, node);
+    }
+
+    // What is said of a URDF was read before, where there is one.
+    void refuse_without_urdf(const Key& key, const Node& node) {
+        if (key.path == "arm.urdf") return wrong_shape(key, node);
+        problem(node.key_mark, {"scenario.other_choice", key.path,
+                                "`" + last_name(key.path) + "` belongs to a URDF, and there is no arm.urdf", "", "",
+                                "take it out, or give arm.urdf"});
     }
 
     // A key of another choice: "`section` belongs to shape brick; here the shape is cylinder".
@@ -485,7 +497,7 @@ private:
             if (section.kind == Kind::section && key.path.starts_with(section.path + ".") && *at(section) == 0)
                 return false;
         if (key.kind == Kind::section) return *at(key) != 0;
-        if (key.kind == Kind::file) return false;  // its lists are there
+        if (key.kind == Kind::file || key.kind == Kind::arm_file) return false;  // what it has is there
         return key_exists(key, result_.params) && !(std::isnan(*at(key)) && is_copy_of_nothing(key));
     }
 

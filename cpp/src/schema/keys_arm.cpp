@@ -129,6 +129,17 @@ void append_plant(std::vector<Key>& keys) {
     keys.push_back(choice("arm.model", {"planar", "elbow"}, Source::lecture,
                           "planar: the links begin on axis 1 and lie in one plane with it. elbow: axes 2 and 3 are "
                           "parallel and across axis 1; offsets, tensors, rotors and base as they are."));
+    const auto of_file = [&](const char* name, std::string unset_means, std::string doc) {
+        keys.push_back(derived(std::move(unset_means),
+                               of_kind(Kind::arm_file, number(std::string("arm.") + name, {unset}, Source::ours,
+                                                              no_bounds, "", std::move(doc)))));
+    };
+    of_file("urdf", "the keys given here",
+            "A URDF that has the arm, an elbow arm; each key given beside it replaces that of the file.");
+    of_file("joints", "the first three that are not locked", "Names of the three joints that move, from base to tip.");
+    of_file("lock", "none", "Joints on the way to the tip that are held, each with its angle.");
+    of_file("tip", "the only link without a child", "The link whose frame is the tip.");
+    of_file("axis_tolerance", "1.0e-6", "Angle in rad by which the axes may be off those of an elbow arm.");
     keys.push_back(
         choice("arm.convention", {"simscape", "slide", "urdf"}, Source::lecture,
                "Sign of joints 2 and 3. simscape: positive angles lower the arm (axes +y); slide: they raise "

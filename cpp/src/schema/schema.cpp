@@ -89,7 +89,8 @@ const Key& known_key(std::string_view path) {
 }
 
 const char* kind_name(Kind kind) {
-    constexpr const char* names[] = {"number", "angle", "integer", "flag", "choice", "section", "column", "file"};
+    constexpr const char* names[] = {"number",  "angle",  "integer", "flag",    "choice",
+                                     "section", "column", "file",    "arm_file"};
     return names[static_cast<std::size_t>(kind)];
 }
 

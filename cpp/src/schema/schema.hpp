@@ -14,14 +14,15 @@
 namespace arm3r {
 
 enum class Kind {
-    number,   // a real number
-    angle,    // a real number, rad; `VALUE deg` allowed
-    integer,  // a whole number
-    flag,     // true | false
-    choice,   // one word of `choices`
-    section,  // a map that may be absent; the parameter is 1 where it is present (only `wall`)
-    column,   // the name of a column of a run; one word of `choices`
-    file,     // the name of a file with lists of the section; its number is NaN, the lists are those of the file
+    number,    // a real number
+    angle,     // a real number, rad; `VALUE deg` allowed
+    integer,   // a whole number
+    flag,      // true | false
+    choice,    // one word of `choices`
+    section,   // a map that may be absent; the parameter is 1 where it is present (only `wall`)
+    column,    // the name of a column of a run; one word of `choices`
+    file,      // the name of a file with lists of the section; its number is NaN, the lists are those of the file
+    arm_file,  // what is said of arm.urdf; its number is NaN, the keys are those of the file
 };
 
 const char* kind_name(Kind kind);

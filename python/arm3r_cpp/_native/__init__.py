@@ -6,6 +6,7 @@ Out: the same calls, which raise where the library refuses, and runs, batches an
 What a callback raises comes out of the call that led to it (`progress`); memory that both sides see is in `laws`.
 """
 
+from .arm_files import read_arms_with
 from .arrays import States, check_finite, readable, reals, writable
 from .batches import batch, batch_row_count, batch_rows, summary_columns
 from .calls import call, create, error, file_path, nearest_word, text, utf8, yaml
@@ -40,6 +41,7 @@ __all__ = [
     "outcome",
     "outcome_name",
     "put_torque",
+    "read_arms_with",
     "readable",
     "reals",
     "start",

@@ -96,6 +96,21 @@ class Arm(metaclass=Answering):
         """(..., 3) -> (..., 3), m."""
         return self._one(lib.arm3r_arm_elbow_position, 3, q=q)
 
+    def points(self, q: ArrayLike) -> Floats:
+        """The points that the arm is drawn through: (..., 3) -> (..., 7, 3), m.
+
+        That of axis 1 nearest to the origin, that at the height of joint 2, joint 2, the end of link 2 in its plane,
+        joint 3, the end of link 3 in its plane, the tip. Of a planar arm some coincide.
+        """
+        return self._one(lib.arm3r_arm_points, 7, 3, q=q)
+
+    @property
+    def reach(self) -> float:
+        """No tip is farther from the point of axis 1 at the height of joint 2, m."""
+        reach = _native.ffi.new("double *")
+        _native.call(lib.arm3r_arm_reach, self._handle, reach)
+        return float(reach[0])
+
     def centres(self, q: ArrayLike) -> Floats:
         """Centres of mass of the three links: (..., 3) -> (..., 3, 3), m, a row a link."""
         return self._one(lib.arm3r_arm_centres, 3, 3, q=q)

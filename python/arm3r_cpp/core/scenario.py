@@ -483,3 +483,12 @@ def flow(value: Any, path: str) -> str:
             + "}"
         )
     raise TypeError(f"{path}: a number, text, flag, list, array or map is needed, got {type(value).__name__}")
+
+
+def _read_arm(request: str) -> tuple[int, str]:
+    from ..robots.explicit import answer
+
+    return answer(request)
+
+
+_native.read_arms_with(_read_arm)

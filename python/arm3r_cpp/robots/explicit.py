@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Mapping
 from textwrap import fill
@@ -39,6 +40,14 @@ def explicit_arm(request: Mapping[str, Any]) -> str:
         UsageError: the file cannot be read, or its chain is no elbow arm.
     """
     return own_arm(Choice.of(request)).text
+
+
+def answer(request: str) -> tuple[int, str]:
+    """What the reader of `arm.urdf` gives back (arm3r.h): 0 and keys as YAML, or 1 and a sentence of what is wrong."""
+    try:
+        return 0, explicit_arm(json.loads(request))
+    except (UsageError, ScenarioWarning) as error:  # a warning where Python was told to raise them
+        return 1, str(error)
 
 
 def own_arm(choice: Choice) -> OwnArm:

@@ -19,7 +19,12 @@ the tip are locked; what hangs beside the way is counted, with its joints at zer
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point of `arm3r-import`; argv without the program's name. Returns one of the exit codes of `arm3r`."""
-    options = parser().parse_args(sys.argv[1:] if argv is None else argv)
+    usage = parser()
+    options = usage.parse_args(sys.argv[1:] if argv is None else argv)
+    if options.keys is not None:
+        return show_keys(options.keys)
+    if options.urdf is None:
+        usage.error("the name of a URDF is needed")
     return attempt("arm3r-import", lambda: show(options))
 
 
@@ -31,7 +36,8 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
-    add("urdf", metavar="FILE.urdf", help="the file; of a xacro file, what `xacro` makes of it")
+    add("urdf", nargs="?", metavar="FILE.urdf", help="the file; of a xacro file, what `xacro` makes of it")
+    add("--keys", metavar="REQUEST", help="print the keys alone, for a scenario that says all this as JSON")
     add(
         "--joints",
         type=lambda text: text.split(","),
@@ -57,6 +63,15 @@ def locked(text: str) -> tuple[str, str]:
     if not (name and equals):
         raise argparse.ArgumentTypeError(f"NAME=ANGLE is needed, got {text!r}")
     return name, angle
+
+
+def show_keys(request: str) -> int:
+    """Print the keys of the arm that a scenario asks for; with exit code 1, what is wrong."""
+    from ...robots.explicit import answer
+
+    status, text = answer(request)
+    sys.stdout.write(text)
+    return status
 
 
 def show(options: argparse.Namespace) -> None:
