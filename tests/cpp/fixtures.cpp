@@ -1,5 +1,6 @@
 #include "fixtures.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
 
@@ -68,6 +69,29 @@ Params random_params(Random& random) {
     params.set("arm.damping", random.vector(0, 0.5))
         .set("arm.friction", random.vector(0, 0.5))
         .set("arm.friction_velocity", 0.1);
+    return params;
+}
+
+Params random_elbow_params(Random& random) {
+    Params params = random_params(random);
+    params.choose("arm.model", "elbow").set("arm.link2.offset", random.in(-0.3, 0.3));
+    params.set("arm.base.position", random.vector(-1, 1)).set("arm.base.rotation", random.vector(-3, 3));
+    params.set("arm.shoulder_offset", random.in(-0.4, 0.4)).set("arm.link3.tip", random.vector(0.2, 0.8));
+    for (const std::string link : {"arm.link1", "arm.link2", "arm.link3"}) {
+        const Vec3<double> principal = Vec3<double>(1, 1, 1) + random.vector(0, 0.9);  // of a body
+        const Eigen::Matrix3d turn = Eigen::Quaterniond(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1), 1.0)
+                                         .normalized()
+                                         .toRotationMatrix();
+        const Eigen::Matrix3d tensor = 0.1 * turn * principal.asDiagonal() * turn.transpose();
+        params.set(link + ".com", random.vector(-0.5, 0.5));
+        params.set(link + ".inertia",
+                   {tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2)});
+    }
+    for (const std::string rotor : {"arm.rotor1", "arm.rotor2", "arm.rotor3"})
+        params.set(rotor + ".inertia", random.in(0, 1e-3))
+            .set(rotor + ".ratio", random.in(-30, 30))
+            .set(rotor + ".mass", random.in(0, 1))
+            .set(rotor + ".axis", random.vector(0.1, 1));
     return params;
 }
 

@@ -62,6 +62,9 @@ void randomise_link(Params& params, const std::string& link, Random& random);
 // All that an arm can have: armature, damping, dry friction, payload, base height, oblique gravity.
 Params random_params(Random& random);
 
+// All that an elbow arm can have: offsets, tensors, rotors that spin across their joints, a base anywhere.
+Params random_elbow_params(Random& random);
+
 // An unequal arm that nothing disturbs; the wall, once set, is infinite.
 Params unequal_params();
 

@@ -16,8 +16,8 @@ struct Case {
     Vec3<double> q, qd, tau, f;
     Pose<double> p;
 
-    explicit Case(Random& random)
-        : params(random_params(random)),
+    explicit Case(Random& random, bool is_elbow = false)
+        : params(is_elbow ? random_elbow_params(random) : random_params(random)),
           arm(params.arm()),
           q(random.vector(-4, 4)),
           qd(random.vector(-5, 5)),
@@ -27,9 +27,17 @@ struct Case {
 };
 
 template <class F>
-static void for_random_cases(unsigned seed, F check) {
+static void for_planar_cases(unsigned seed, F check) {
     Random random(seed);
     for (int i = 0; i < 1000; ++i) check(Case(random));
+}
+
+// Planar arms, then elbow arms.
+template <class F>
+static void for_random_cases(unsigned seed, F check) {
+    for_planar_cases(seed, check);
+    Random random(100 + seed);
+    for (int i = 0; i < 1000; ++i) check(Case(random, true));
 }
 
 static bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double tolerance = 1e-12) {
@@ -87,7 +95,7 @@ static Vec3<double> angular_velocity(const Mat3<Dual<1>>& R) {  // of Rdot R^T =
 
 TEST_CASE(angular_jacobian_turns_link_3_as_the_rotation_matrices_do) {
     for_random_cases(4, [](const Case& c) {
-        CHECK(close(angular_velocity(orientation(c.arm, c.q, c.qd, 2)), angular_jacobian(c.p) * c.qd));
+        CHECK(close(angular_velocity(orientation(c.arm, c.q, c.qd, 2)), angular_jacobian(c.arm, c.p) * c.qd));
     });
 }
 
@@ -101,7 +109,7 @@ TEST_CASE(manipulability_is_the_determinant_and_the_inverse_inverts) {
 }
 
 TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) {
-    for_random_cases(6, [](const Case& c) {
+    for_planar_cases(6, [](const Case& c) {
         const Vec3<double> tip = tip_position(c.arm, c.p);
         const double out = std::hypot(tip[0], tip[1]), up = tip[2] - c.arm.base_height;
         bool came_back = false;
@@ -123,8 +131,36 @@ TEST_CASE(inverse_kinematics_has_four_branches_that_reach_the_point) {
     });
 }
 
+// The elbow is above the line from joint 2 to the tip; the tip is before axis 1 along u, or behind it.
+TEST_CASE(inverse_kinematics_of_an_elbow_arm_has_four_branches_too) {
+    Random random(106);
+    for (int i = 0; i < 1000; ++i) {
+        const Case c(random, true);
+        const Vec3<double> tip = tip_position(c.arm, c.p);
+        int reached = 0;
+        bool came_back = false;
+        for (const bool front : {true, false}) {
+            for (const bool elbow_up : {true, false}) {
+                const auto [q, cosine] = inverse_kinematics(c.arm, tip, front, elbow_up);
+                CHECK((reach_excess(c.arm, tip, front) <= 1e-14) == (std::abs(cosine) <= 1 + 1e-13));
+                if (std::abs(cosine) > 1) continue;
+                const Pose<double> p = pose(q);
+                const elbow_arm::Reaches<double> m = elbow_arm::reaches(c.arm, p);
+                CHECK(close(tip, tip_position(c.arm, p), 1e-11));
+                CHECK((radius(c.arm, p) > 0) == front);
+                CHECK((m.h2 * (m.r2 + m.r3) - m.r2 * (m.h2 + m.h3) > 0) == (elbow_up == (m.r2 + m.r3 > 0)));
+                came_back |= distance((q - c.q).array().sin(), Vec3<double>(0, 0, 0)) < 1e-6 &&
+                             distance((q - c.q).array().cos(), Vec3<double>(1, 1, 1)) < 1e-6;
+                ++reached;
+            }
+        }
+        CHECK(came_back);
+        CHECK(reached >= 2);
+    }
+}
+
 TEST_CASE(inverse_kinematics_distinguishes_points_out_of_reach) {
-    for_random_cases(7, [](const Case& c) {
+    for_planar_cases(7, [](const Case& c) {
         const double a2 = c.arm.link2.length, a3 = c.arm.link3.length;
         const Vec3<double> shoulder(0, 0, c.arm.base_height), direction = c.f.normalized();
         const auto cosine_at = [&](double reach) {
@@ -213,6 +249,45 @@ TEST_CASE(payload_is_a_force_on_the_bare_arm) {
     }
 }
 
+TEST_CASE(dynamics_are_those_of_the_recursion) {
+    for_random_cases(20, [](const Case& c) {
+        const Vec3<double> qdd = recursion_forward_dynamics(c.arm, c.q, c.qd, c.tau, c.f);
+        CHECK(close(qdd, forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f), 1e-9));
+        CHECK(close(recursion_inverse_dynamics(c.arm, c.q, c.qd, qdd, c.f),
+                    inverse_dynamics(c.arm, c.p, c.qd, qdd, c.f), 1e-11));
+        const TipSensor<double> sensor = tip_sensor(c.arm, c.q, c.qd);
+        CHECK(close(sensor.position, tip_position(c.arm, c.p)));
+        CHECK(close(sensor.velocity, tip_velocity(c.arm, c.p, c.qd)));
+    });
+}
+
+// All their terms, once, with zeros for what only the elbow arm has.
+TEST_CASE(a_planar_arm_is_an_elbow_arm_without_offsets) {
+    for_planar_cases(21, [](const Case& c) {
+        Params params = c.params;
+        const Vec3<double> zero(0, 0, 0);
+        const auto number = [&](const std::string& key) { return param(c.params, key); };
+        params.choose("arm.model", "elbow").set("arm.base.position", {0, 0, number("arm.base_height")});
+        params.set("arm.link3.tip", {number("arm.link3.length"), 0, 0});
+        params.set("arm.link1.com", {0, 0, number("arm.link1.com")});
+        params.set("arm.link1.inertia", {0, 0, number("arm.link1.inertia_axial"), 0, 0, 0});
+        for (const std::string link : {"arm.link2", "arm.link3"}) {
+            const Link<double>& stated = link == "arm.link2" ? c.arm.link2 : c.arm.link3;
+            params.set(link + ".mass", stated.mass).set(link + ".com", {stated.com, 0, 0});
+            params.set(link + ".inertia", {stated.inertia[0], stated.inertia[1], stated.inertia[2], 0, 0, 0});
+        }
+        const Arm<double> elbow = params.arm();
+        REQUIRE(elbow.is_elbow);
+        CHECK(close(mass_matrix(c.arm, c.p), mass_matrix(elbow, c.p)));
+        CHECK(close(forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f), forward_dynamics(elbow, c.p, c.qd, c.tau, c.f),
+                    1e-11));
+        CHECK(close(tip_position(c.arm, c.p), tip_position(elbow, c.p)));
+        CHECK(close(jacobian(c.arm, c.p), jacobian(elbow, c.p)));
+        CHECK(close(potential_energy(c.arm, c.p), potential_energy(elbow, c.p)));
+        CHECK(close(zero, velocity_product(c.arm, c.p, c.qd) - velocity_product(elbow, c.p, c.qd)));
+    });
+}
+
 TEST_CASE(forward_dynamics_inverts_inverse_dynamics) {
     for_random_cases(13, [](const Case& c) {
         const Vec3<double> qdd = forward_dynamics(c.arm, c.p, c.qd, c.tau, c.f);
@@ -270,11 +345,14 @@ TEST_CASE(common_terms_are_the_terms_of_every_plant) {
     for (const std::string controller : {"none", "gravity_compensation", "constant"}) {
         for (int i = 0; i < 100; ++i) {
             Params params;
-            randomise_link(params, "arm.link2", random), randomise_link(params, "arm.link3", random);
+            if (i % 2 == 0) params = random_elbow_params(random);
+            else randomise_link(params, "arm.link2", random), randomise_link(params, "arm.link3", random);
+            params.choose("arm.convention", "slide").set("arm.base.rotation", {0, 0, random.in(-3, 3)});
+            for (const char* key : {"arm.damping", "arm.friction"}) params.set(key, {0, 0, 0});
             const Vec3<double> q = random.vector(-1, 1), qd = random.vector(-5, 5);
             params.set("wall", 1).set("wall.acts_on_arm", i % 3 != 0).set("controller.torque", random.vector(-20, 20));
             params.set("wall.normal", random.vector(-1, 1)).set("wall.point", random.vector(-2, 2));
-            params.choose("wall.motion.type", i % 2 == 0 ? "constant" : "fixed").set("wall.size", {4, 6});
+            params.choose("wall.motion.type", i % 3 == 0 ? "constant" : "fixed").set("wall.size", {4, 6});
             params.set("wall.motion.velocity", random.vector(-0.1, 0.1)).set("wall.face_offset", random.in(0, 0.1));
             params.set("arm.base_height", random.in(0, 1)).set("arm.gravity", {0, 0, random.in(-10, 10)});
             params.set("controller.gravity", {0, 0, random.in(-10, 10)});

@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "arm3r/model/arm_points.hpp"
 #include "arm3r/model/recursion.hpp"
 #include "batch/model_batch.hpp"
 #include "check.hpp"
@@ -48,6 +49,15 @@ const Case cases[] = {
      {3},
      Kind::space,
      [](const State1& s) { return numbers(elbow_position(s.arm, s.p)); }},
+    {"points",
+     in_groups::arm_points,
+     {21},
+     Kind::space,
+     [](const State1& s) {
+         Numbers all;
+         for (const Vec3<double>& point : arm_points(s.arm, s.p)) all = joined(all, numbers(point));
+         return all;
+     }},
     {"centres",
      in_groups::centres_of_mass,
      {9},
@@ -62,7 +72,7 @@ const Case cases[] = {
      in_groups::geometric_jacobian,
      {18},
      Kind::columns_in_joints,
-     [](const State1& s) { return joined(numbers(jacobian(s.arm, s.p)), numbers(angular_jacobian(s.p))); }},
+     [](const State1& s) { return joined(numbers(jacobian(s.arm, s.p)), numbers(angular_jacobian(s.arm, s.p))); }},
     {"jacobian_dot",
      in_groups::jacobian_dot,
      {9},
@@ -149,15 +159,19 @@ Numbers random_rows(Random& random, std::size_t n, double limit) {
     return rows;
 }
 
+JointConvention convention(bool is_simscape) {
+    return is_simscape ? JointConvention{.sign = {1, -1, -1}} : JointConvention{};
+}
+
 Vec3<double> row(const Numbers& rows, std::size_t i, bool flip) {
-    const Vec3<double> v(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]);
-    return flip ? change_convention(v) : v;
+    return convention(flip).flipped(Vec3<double>(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]));
 }
 
 constexpr double untouched = 12345;
 
 // Every number of every case on n states against the formula in double, and that nothing is written beyond.
 void compare(const Model& model, std::size_t n, Random& random, bool with_force) {
+    const bool is_simscape = model.convention.sign[1] < 0;
     const Numbers q = random_rows(random, n, 10), qd = random_rows(random, n, 5), third = random_rows(random, n, 20);
     const Numbers force = with_force ? random_rows(random, n, 50) : Numbers(3 * n);
     for (const Case& c : cases) {
@@ -169,10 +183,10 @@ void compare(const Model& model, std::size_t n, Random& random, bool with_force)
         }
         evaluate(c.function, model, n, rows);
         for (std::size_t i = 0; i < n; ++i) {
-            const State1 state{model.arm, row(q, i, model.simscape), row(qd, i, model.simscape),
-                               row(third, i, model.simscape), row(force, i, false)};
+            const State1 state{model.arm, row(q, i, is_simscape), row(qd, i, is_simscape), row(third, i, is_simscape),
+                               row(force, i, false)};
             Numbers expected = c.formula(state);
-            if (model.simscape) turn(expected, c.kind);
+            if (is_simscape) turn(expected, c.kind);
             std::size_t at = 0;
             for (std::size_t k = 0; k < c.widths.size(); ++k)
                 for (std::size_t j = 0; j < c.widths[k]; ++j, ++at)
@@ -192,15 +206,15 @@ TEST_CASE(every_state_gets_the_bits_of_the_formula_in_double) {
     Random random(11);
     for (std::size_t n = 0; n <= 25; ++n)
         for (const bool simscape : {false, true}) {
-            const Model model{random_params(random).arm(), simscape};
-            compare(model, n, random, n % 3 != 0);
+            compare({random_params(random).arm(), convention(simscape)}, n, random, n % 3 != 0);
+            compare({random_elbow_params(random).arm(), convention(simscape)}, n, random, n % 3 != 0);
         }
 }
 
 TEST_CASE(an_arm_without_extras_gets_them_too) {
     Random random(12);
     for (const bool simscape : {false, true}) {
-        const Model model{Params().arm(), simscape};
+        const Model model{Params().arm(), convention(simscape)};
         CHECK(model.arm.gravity_is_vertical);
         compare(model, 1000, random, simscape);
     }
@@ -209,7 +223,7 @@ TEST_CASE(an_arm_without_extras_gets_them_too) {
 TEST_CASE(effective_mass_is_that_of_the_unit_direction) {
     Random random(13);
     const std::size_t n = 203;
-    const Model model{random_params(random).arm(), true};
+    const Model model{random_params(random).arm(), convention(true)};
     const Numbers q = random_rows(random, n, 3);
     Numbers direction = random_rows(random, n, 4), mass(n);
     std::fill_n(direction.begin() + 60, 3, -0.0);

@@ -205,7 +205,7 @@ static Arm<Pack<N>> packed_arm(const std::vector<Arm<double>>& arms) {
     result.damping = pack3([](const auto& arm) { return arm.damping; });
     result.friction = pack3([](const auto& arm) { return arm.friction; });
     result.friction_velocity = pack([](const auto& arm) { return arm.friction_velocity; });
-    result.lumped = lump(result);
+    result.lumped = lump_planar(result);
     result.has_damping = result.has_dry_friction = true;
     return result;
 }
@@ -299,7 +299,7 @@ TEST_CASE(slopes_by_a_mass_are_the_differences) {
             heavier.payload = P(arm.payload);
             heavier.gravity = broadcast<P>(arm.gravity);
             heavier.armature = broadcast<P>(arm.armature);
-            heavier.lumped = lump(heavier);
+            heavier.lumped = lump_planar(heavier);
             const Vec3<P> q = broadcast<P>(three(x.data())), qd = broadcast<P>(three(x.data() + 3)),
                           tau = broadcast<P>(three(x.data() + 6));
             return joint_acceleration(heavier, pose(q), qd, tau);

@@ -84,13 +84,12 @@ bool can_lose_energy(const Plant<P>& plant) {
 // that the code holds no others and asks for few.
 enum class Terms { any, common };
 
-// Whether the arm is planar and gravity vertical, the joints have no friction and the actuators no limit, nothing has a memory, and the wall,
+// Whether gravity is along axis 1, the joints have no friction and the actuators no limit, nothing has a memory, and the wall,
 // where there is one, stands still or moves at one velocity and is a plain spring.
 template <class P>
 bool has_common_terms(const Plant<P>& plant) {
     const auto is_common = [](const Arm<P>& arm) {
-        return !arm.is_elbow && arm.gravity_is_vertical && !arm.has_damping && !arm.has_dry_friction &&
-               !arm.has_torque_limit;
+        return arm.gravity_is_vertical && !arm.has_damping && !arm.has_dry_friction && !arm.has_torque_limit;
     };
     const Wall<P>& wall = plant.wall;
     const bool has_common_wall = moves_evenly(wall) && is_plain_spring(wall, plant.contact);
@@ -239,6 +238,8 @@ public:
     template <std::size_t N>
     ARM3R_INLINE void common_derivative(const T& t, const Pose<T>& p, const State<T, N>& y, State<T, N>& dy,
                                         Vec3<T>& tau) const {
+        if (plant_.arm.is_elbow)
+            return Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { elbow_derivative(t, p, y, dy, tau); });
         const T o(0.0);
         const Vec3<T> qd(y[3], y[4], y[5]);
         Vec3<T> torque(o, common_.weight2 * p.C2, common_.weight3 * p.C23);  // on q1, q2, q2 + q3
@@ -262,6 +263,48 @@ public:
             }
         }
         const Vec3<T> qdd = acceleration_by_link_torques(plant_.arm.lumped, common_.inertia, p, qd, torque);
+        for (int i = 0; i < 3; ++i) {
+            dy[i] = qd[i];
+            dy[3 + i] = qdd[i];
+        }
+        if constexpr (N >= state_size) {
+            dy[work_of_actuators] = power;
+            dy[work_of_wall] = outer_power;
+        }
+    }
+
+    // The same of an elbow arm.
+    template <std::size_t N>
+    ARM3R_INLINE void elbow_derivative(const T& t, const Pose<T>& p, const State<T, N>& y, State<T, N>& dy,
+                                       Vec3<T>& tau) const {
+        const Arm<P>& arm = plant_.arm;
+        const T o(0.0);
+        const Vec3<T> qd(y[3], y[4], y[5]);
+        const auto& g = common_.elbow;
+        Vec3<T> torque(o, g.weight_x2 * p.C2 - g.weight_y2 * p.S2, g.weight_x3 * p.C23 - g.weight_y3 * p.S23);
+        T power(0.0), outer_power(0.0);
+        if (plant_.holds_torque) {
+            tau = broadcast<T>(plant_.held_torque);
+            torque = {tau[0], torque[1] + (tau[1] - tau[2]), torque[2] + tau[2]};
+            power = dot(tau, qd);
+        } else if (plant_.controller.type == ControllerType::gravity_compensation) {
+            tau = elbow_arm::on_joints(elbow_arm::link_weight(plant_.controller.model, p));
+            power = tau[1] * qd[1] + tau[2] * qd[2];
+        } else {
+            tau = zero_vector<T>();
+        }
+        if (plant_.acts_on_arm) {
+            const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
+            const Vec3<T> n(p.C1 * g.normal[0] + p.S1 * g.normal[1], p.C1 * g.normal[1] - p.S1 * g.normal[0],
+                            T(g.normal[2]));
+            const T distance = n[0] * elbow_arm::radius(arm, m) + n[1] * arm.elbow.lateral + n[2] * (m.h2 + m.h3);
+            const T force = push_at(t, (common_.face + common_.speed * t) - distance, p);
+            const Vec3<T> push = elbow_arm::angle_torques(arm, m, n);
+            for (int i = 0; i < 3; ++i) torque[i] = torque[i] + push[i] * force;
+            outer_power = force * common_.speed;
+        }
+        const Vec3<T> qdd =
+            elbow_arm::acceleration_by_angle_torques(arm, p, elbow_arm::first_moments(arm, p), qd, torque);
         for (int i = 0; i < 3; ++i) {
             dy[i] = qd[i];
             dy[3 + i] = qdd[i];
@@ -393,6 +436,10 @@ private:
         LinkInertia<P> inertia;
         P weight2, weight3;  // N m: of link 2 and 3 along gravity, less what the actuators compensate
         P face, speed;       // m, m/s: the face along the normal, from above the base in the height of the shoulder
+        struct OfElbow {
+            Vec3<P> normal;                                // base axes
+            P weight_x2, weight_y2, weight_x3, weight_y3;  // N m: first moments along gravity, less what is compensated
+        } elbow;
 
         ARM3R_INLINE explicit CommonNumbers(const Plant<P>& plant)
             : inertia(plant.arm.lumped),
@@ -401,12 +448,43 @@ private:
               face(plant.wall.face_offset +
                    (dot(plant.wall.n, plant.wall.point) - plant.wall.n[2] * plant.arm.base_height)),
               speed(plant.wall.motion == Motion::constant ? P(dot(plant.wall.n, plant.wall.velocity)) : P(0.0)) {
+            if (plant.arm.is_elbow) {
+                set_elbow(plant);
+                return;
+            }
             if (plant.holds_torque || plant.controller.type != ControllerType::gravity_compensation) return;
             const Arm<P>& model = plant.controller.model;
             weight2 = weight2 - model.lumped.G2 * model.gravity[2];
             weight3 = weight3 - model.lumped.G3 * model.gravity[2];
         }
+
+        ARM3R_INLINE void set_elbow(const Plant<P>& plant) {
+            const Arm<P>& arm = plant.arm;
+            const P g = arm.elbow.gravity[2];
+            face = plant.wall.face_offset + dot(plant.wall.n, minus(plant.wall.point, arm.elbow.position));
+            elbow = {elbow_arm::to_base(arm, plant.wall.n), arm.lumped.G2 * g, arm.elbow.Gy2 * g, arm.lumped.G3 * g,
+                     arm.elbow.Gy3 * g};
+            if (plant.holds_torque || plant.controller.type != ControllerType::gravity_compensation) return;
+            const Arm<P>& model = plant.controller.model;
+            const P held = model.elbow.gravity[2];
+            elbow.weight_x2 = elbow.weight_x2 - model.lumped.G2 * held;
+            elbow.weight_y2 = elbow.weight_y2 - model.elbow.Gy2 * held;
+            elbow.weight_x3 = elbow.weight_x3 - model.lumped.G3 * held;
+            elbow.weight_y3 = elbow.weight_y3 - model.elbow.Gy3 * held;
+        }
     };
+
+    // N: the push of an even plate with a plain spring at this depth; 0 where the tip is not inside.
+    ARM3R_INLINE T push_at(const T& t, const T& depth, const Pose<T>& p) const {
+        auto where = depth > T(0.0);
+        if (!in_any_lane(where)) return T(0.0);
+        if (plant_.wall.has_outline) {
+            const WallState<T> state = even_wall_at(plant_.wall, t);
+            const Indentation<T> in = indentation_at_rest(plant_.wall, state, tip_position(plant_.arm, p));
+            where = where && inside_outline(plant_.wall, in) >= T(0.0);
+        }
+        return plant_.contact.stiffness[0] * select(where, depth, T(0.0));
+    }
 
     // The push of an even plate with a plain spring on q1, q2, q2 + q3, N m, and its power, W.
     struct PlateForce {

@@ -152,7 +152,6 @@ std::vector<double> default_of(const Key& key, std::span<const double> params) {
     if (key.path == "wall.contact.stiffness") value[0] = default_stiffness(params, value[0]);
     if (key.path == "initial.q" && choice_of(params, "arm.convention") == "slide")
         value = {value[0], -value[1], -value[2]};
-    if (key.path == "initial.q" && is_elbow) value = {unset, unset, unset};
     return value;
 }
 

@@ -130,8 +130,9 @@ template <Name link>
 void check_sizes(std::span<const double> params, ProblemList& problem_list) {
     const bool is_first = std::string_view(link) == "arm.link1";
     check_size(known_key(link + ".com"), params, 1, 3, !is_first, problem_list);
-    check_size(known_key(link + ".inertia"), params, 3, 6, !is_first, problem_list);
-    if (!is_first && is<"arm.model", "elbow">(params))
+    if (is_first) return;
+    check_size(known_key(link + ".inertia"), params, 3, 6, true, problem_list);
+    if (is<"arm.model", "elbow">(params))
         need_number<link + ".mass">(params, "an elbow arm has no shapes to derive it from", problem_list);
 }
 

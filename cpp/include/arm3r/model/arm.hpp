@@ -84,7 +84,7 @@ Lumped<P> lump_planar(const Arm<P>& arm) {  // (3.2)
     };
 }
 
-// The base parameters of an elbow arm (10.2). The rotors' own inertia and mass count with the links that carry them.
+// The base parameters of an elbow arm (10.6). The rotors' own inertia and mass count with the links that carry them.
 template <class P>
 void lump_elbow(Arm<P>& arm) {
     Elbow<P>& elbow = arm.elbow;

@@ -17,7 +17,8 @@ ARM3R_INLINE std::array<Vec3<T>, arm_point_count> arm_points(const Arm<P>& arm, 
     const T o(0.0);
     const Vec3<T> shoulder = shoulder_position(arm, p), elbow = elbow_position(arm, p), tip = tip_position(arm, p);
     if (!arm.is_elbow) return {Vec3<T>(o, o, o), shoulder, shoulder, elbow, elbow, tip, tip};
-    const Vec3<T> axis = elbow_arm::direction(arm, p, o, o, T(1.0)), across = elbow_arm::direction(arm, p, o, T(1.0), o);
+    const Vec3<T> axis = elbow_arm::direction(arm, p, o, o, T(1.0)),
+                  across = elbow_arm::direction(arm, p, o, T(1.0), o);
     const Vec3<T> base = broadcast<T>(arm.elbow.position);
     return {minus(base, scaled(dot(base, axis), axis)),
             base,

@@ -143,7 +143,7 @@ ARM3R_INLINE P weight_times_reach(const Arm<P>& arm) {
 // The joint torques of a force at the tip: J^T f.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& f_on_tip) {
-    if (arm.is_elbow) return elbow_arm::on_joints(elbow_arm::angle_torques(arm, p, f_on_tip));
+    if (arm.is_elbow) return elbow_arm::tip_force_torque(arm, p, f_on_tip);
     const T radial = p.C1 * f_on_tip[0] + p.S1 * f_on_tip[1];
     const T around = p.C1 * f_on_tip[1] - p.S1 * f_on_tip[0];
     const T third = arm.link3.length * (p.C23 * f_on_tip[2] - p.S23 * radial);

@@ -37,7 +37,7 @@ struct Elbow {
     std::array<RigidBody<P>, 3> links;
     std::array<Rotor<P>, 3> rotors;
 
-    // Of all this, what determines the motion beside Lumped (10.2).
+    // Of all this, what determines the motion beside Lumped (10.6).
     P lateral;                 // m, e: of the tip, along v
     P D2, D3, E2, F2, E3, F3;  // kg m^2: products of inertia
     P Gy2, Gy3;                // kg m: first moments across links 2 and 3

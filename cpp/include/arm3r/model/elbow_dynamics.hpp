@@ -112,6 +112,12 @@ ARM3R_INLINE Vec3<T> on_joints(const Vec3<T>& on_angles) {
     return {on_angles[0], on_angles[1] + on_angles[2], on_angles[2]};
 }
 
+// J^T f
+template <class P, class T>
+ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& f_on_tip) {
+    return on_joints(angle_torques(arm, reaches(arm, p), components(arm, p, f_on_tip)));
+}
+
 template <class P, class T>
 ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
     const Vec3<T> w(qd[0], qd[1], qd[1] + qd[2]);

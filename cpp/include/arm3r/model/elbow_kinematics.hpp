@@ -140,7 +140,8 @@ ARM3R_INLINE Vec3<T> joint_rates(const Arm<P>& arm, const Pose<T>& p, const Vec3
 template <class P, class T>
 ARM3R_INLINE Mat3<T> inverse_jacobian(const Arm<P>& arm, const Pose<T>& p) {
     const T o(0.0), l(1.0);
-    return from_columns(elbow_arm::joint_rates(arm, p, Vec3<T>(l, o, o)), elbow_arm::joint_rates(arm, p, Vec3<T>(o, l, o)),
+    return from_columns(elbow_arm::joint_rates(arm, p, Vec3<T>(l, o, o)),
+                        elbow_arm::joint_rates(arm, p, Vec3<T>(o, l, o)),
                         elbow_arm::joint_rates(arm, p, Vec3<T>(o, o, l)));
 }
 
@@ -173,18 +174,10 @@ ARM3R_INLINE Vec3<T> tip_velocity(const Arm<P>& arm, const Pose<T>& p, const Vec
                      T(m.r2 * w2 + m.r3 * w3));
 }
 
-// The torques of a force at the tip on the three angles q1, q2, q2 + q3.
+// The torques on the three angles q1, q2, q2 + q3 of a force at the tip, by its components along u, v, k.
 template <class P, class T>
-ARM3R_INLINE Vec3<T> angle_torques(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& f_on_tip) {
-    const Reaches<T> m = reaches(arm, p);
-    const Vec3<T> f = components(arm, p, f_on_tip);
+ARM3R_INLINE Vec3<T> angle_torques(const Arm<P>& arm, const Reaches<T>& m, const Vec3<T>& f) {
     return {radius(arm, m) * f[1] - arm.elbow.lateral * f[0], m.r2 * f[2] - m.h2 * f[0], m.r3 * f[2] - m.h3 * f[0]};
-}
-
-// The radius |rho| at which the tip's plane cuts the cylinder of the lateral offset; R < 0 within the cylinder (10.5).
-template <class P>
-double squared_radius(const Arm<P>& arm, const Vec3<double>& in_base) {
-    return in_base[0] * in_base[0] + in_base[1] * in_base[1] - arm.elbow.lateral * arm.elbow.lateral;
 }
 
 template <class P, class T>
