@@ -10,6 +10,7 @@ namespace arm3r {
 static void derive(std::ostream& out) {
     std::size_t numbers = 0;
     Plant<Expr> plant;
+    plant.arm.is_elbow = plant.controller.model.is_elbow = true;  // it has the most
     each_number([&](Expr&) { ++numbers; }, plant);
     out << "// Made by derive_taylor from the recorded motion of the arm.\n\n"
         << "template <class T>\nstruct Numbers {\n    std::array<const T*, " << numbers << "> at;\n"
@@ -18,9 +19,9 @@ static void derive(std::ostream& out) {
         << "template <std::size_t recipe, class T>\nstruct Recurrence;\n";
     for (std::size_t i = 0; i < recipes.size(); ++i) {
         const Recording recording(recipes[i]);
-        const System system(recording.tape(), recipes[i].even_wall);
+        const System system(recording.tape(), recipes[i]);
         Printer(system, out).print(i);
-        PrinterByFour(system, out).print(i);
+        if (!recipes[i].elbow) PrinterByFour(system, out).print(i);
     }
 }
 

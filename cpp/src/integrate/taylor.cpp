@@ -17,15 +17,16 @@ Recipe needs(const Plant<double>& plant, bool pressed) {
             .force = pressed,
             .oblique = !arm.gravity_is_vertical || (compensates && !controller.model.gravity_is_vertical),
             .friction = arm.has_dry_friction,
-            .even_wall = moves_evenly(plant.wall)};
+            .even_wall = moves_evenly(plant.wall),
+            .elbow = arm.is_elbow};
 }
 
 bool covers(const Recipe& recipe, const Recipe& needed) {
     const bool has_torque =
         recipe.torque == needed.torque || (needed.torque == TorqueSource::none && recipe.torque == TorqueSource::held);
-    return has_torque && recipe.damping >= needed.damping && recipe.oblique >= needed.oblique &&
-           recipe.even_wall <= needed.even_wall && recipe.signals >= needed.signals && recipe.force >= needed.force &&
-           recipe.friction >= needed.friction;
+    return has_torque && recipe.elbow == needed.elbow && recipe.damping >= needed.damping &&
+           recipe.oblique >= needed.oblique && recipe.even_wall <= needed.even_wall &&
+           recipe.signals >= needed.signals && recipe.force >= needed.force && recipe.friction >= needed.friction;
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ public:
         ahead_.insert(system.directions.begin(), system.directions.end());
         std::set<int> nodes = system.nodes_of(system.roots()), with_rate;
         nodes.insert(ahead_.begin(), ahead_.end());
+        if (system.is_elbow) late_.insert(system.accelerations[0]);
         for (const ProductRate& p : system.products) {
             late_.insert({p.node, p.acceleration});
             with_rate.insert(p.product);
@@ -51,7 +52,7 @@ public:
             (ahead_.contains(i) || with_rate.contains(i) ? ahead_sums_ : sums_).push_back(i);
             factors_.insert({n.a, n.b});
         }
-        for (std::size_t j = 0; j + 1 < system.products.size(); ++j) forces_.push_back(force_of(j));
+        for (std::size_t j = 0; !system.is_elbow && j + 1 < system.products.size(); ++j) forces_.push_back(force_of(j));
     }
     virtual ~Printer() = default;
 
@@ -156,6 +157,7 @@ protected:
     virtual void print_accelerations() {
         print_orders();
         for (const ProductRate& p : system_.products) define(p.node, 'p', "orders * " + named('h', p.product));
+        if (system_.is_elbow) define(system_.accelerations[0], 'p', "T(0.0)");
         for (const Force& f : forces_) {
             if (is_first()) break;
             print_node(f.rest, 'x');
@@ -240,6 +242,15 @@ protected:
             rest[i] = value(system_.remainder[i], 'p');
         }
         const auto& a = system_.accelerations;
+        const auto sum = [&](const std::string& first, const std::string& second, const std::string& third) {
+            return first + " * " + rest[0] + " + (" + second + " * " + rest[1] + " + " + third + " * " + rest[2] + ")";
+        };
+        if (system_.is_elbow) {
+            define(a[0], kind_, sum("inverse11", "inverse12", "inverse13"));
+            define(a[1], kind_, sum("inverse12", "inverse22", "inverse23"));
+            define(a[2], kind_, sum("inverse13", "inverse23", "inverse33"));
+            return;
+        }
         define(a[0], kind_, "inverse11 * " + rest[0]);
         define(a[1], kind_, "inverse22 * " + rest[1] + " + inverse23 * " + rest[2]);
         define(a[2], kind_, "inverse23 * " + rest[1] + " + inverse33 * " + rest[2]);
@@ -295,9 +306,25 @@ private:
         for (const int i : system_.matrix) print_node(i, 'z');
         print_node(system_.inertia, 'z');
         const auto m = [&](int i) { return named('z', system_.matrix[i]); };
+        if (system_.is_elbow) return print_inverse(named('z', system_.inertia), m(3), m(4), m(0), m(1), m(2));
         line("const T over = 1.0 / (" + m(0) + " * " + m(2) + " - " + m(1) + " * " + m(1) + ");");
         line("const T inverse22 = " + m(2) + " * over, inverse23 = -" + m(1) + " * over, inverse33 = " + m(0) +
              " * over, inverse11 = 1.0 / " + named('z', system_.inertia) + ";");
+    }
+
+    // Of a symmetric matrix, by its cofactors.
+    void print_inverse(const std::string& a11, const std::string& a12, const std::string& a13, const std::string& a22,
+                       const std::string& a23, const std::string& a33) {
+        const auto minor = [](const std::string& a, const std::string& b, const std::string& c, const std::string& d) {
+            return "(" + a + " * " + b + " - " + c + " * " + d + ")";
+        };
+        line("const T cofactor11 = " + minor(a22, a33, a23, a23) + ", cofactor12 = " + minor(a13, a23, a12, a33) +
+             ", cofactor13 = " + minor(a12, a23, a13, a22) + ";");
+        line("const T over = 1.0 / (" + a11 + " * cofactor11 + (" + a12 + " * cofactor12 + " + a13 +
+             " * cofactor13));");
+        line("const T inverse11 = cofactor11 * over, inverse12 = cofactor12 * over, inverse13 = cofactor13 * over;");
+        line("const T inverse22 = " + minor(a11, a33, a13, a13) + " * over, inverse23 = " + minor(a12, a13, a11, a23) +
+             " * over, inverse33 = " + minor(a11, a22, a12, a12) + " * over;");
     }
 
     std::string first(int i) const {

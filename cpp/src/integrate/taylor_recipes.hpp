@@ -23,9 +23,10 @@ struct Recipe {
     bool oblique = false;    // gravity
     bool friction = false;   // dry
     bool even_wall = false;  // it stands still or moves at one velocity
+    bool elbow = false;      // an elbow arm, whose rotors spin along their joints
 };
 
-// The cheapest first. With oblique gravity or friction a wall that does not press is one of no stiffness.
+// The cheapest first. With oblique gravity or friction, and with an elbow arm, a wall that does not press is one of no stiffness.
 inline constexpr std::array recipes = [] {
     constexpr TorqueSource held = TorqueSource::held, gravity = TorqueSource::gravity_compensation;
     return std::array{
@@ -44,6 +45,12 @@ inline constexpr std::array recipes = [] {
         Recipe{gravity, true, true, true, true},
         Recipe{held, true, true, true, true, true},
         Recipe{gravity, true, true, true, true, true},
+        Recipe{.torque = held, .damping = true, .elbow = true},
+        Recipe{.torque = gravity, .damping = true, .elbow = true},
+        Recipe{.torque = held, .damping = true, .signals = true, .force = true, .elbow = true},
+        Recipe{.torque = gravity, .damping = true, .signals = true, .force = true, .elbow = true},
+        Recipe{held, true, true, true, true, true, false, true},
+        Recipe{gravity, true, true, true, true, true, false, true},
     };
 }();
 

@@ -152,7 +152,7 @@ struct System {
     std::vector<int> directions;        // of the links: states
     std::vector<int> accelerations;     // of q1 and of the link angles
     int inertia = -1;                   // about the first axis
-    std::vector<int> matrix;            // of the link angles: 22, 23, 33
+    std::vector<int> matrix;            // of the link angles: 22, 23, 33; of an elbow arm 12, 13, too
     std::vector<int> remainder;         // what inertia and matrix times the accelerations are
     std::vector<ProductRate> products;  // in the remainder: the momentum about the first axis, directions times rate
     std::vector<int> energy;            // the derivatives of the quadratures
@@ -162,13 +162,15 @@ struct System {
     std::vector<int> states;         // those of them with a derivative
     std::map<int, int> derivatives;  // of the states
 
-    System(const Tape& tape, bool even_wall) : even_wall_(even_wall) {
+    System(const Tape& tape, const Recipe& recipe) : is_elbow(recipe.elbow), even_wall_(recipe.even_wall) {
         std::vector<int> place;
         for (const TapeNode& node : tape.nodes()) place.push_back(translated(node, place));
         for (const int output : tape.outputs()) list_of_output().push_back(place[output]);
         differentiate();
         find_live();
     }
+
+    const bool is_elbow;
 
     // What has to be known of an order.
     std::vector<int> roots() const {
@@ -212,13 +214,14 @@ private:
         const bool is_number = even_wall_ && given.size() >= 3 && given.size() < wall_size;
         if (given.size() < wall_size + motion_size) return given.emplace_back(series.input(!is_number));
         if (products.size() < directions_size) return products.emplace_back(series.input(true)).node;
+        if (is_elbow && accelerations.empty()) return accelerations.emplace_back(series.input(true));
         return numbers.emplace_back(series.input(false));
     }
     std::vector<int>& list_of_output() {
         const std::array<std::pair<std::vector<int>*, std::size_t>, 6> lists{{{&rates, wall_size + 3},
                                                                               {&directions, directions_size},
                                                                               {&remainder, 4},
-                                                                              {&matrix, 3},
+                                                                              {&matrix, is_elbow ? 5 : 3},
                                                                               {&energy, quadrature_count},
                                                                               {&powers, 3}}};
         for (const auto& [list, size] : lists)
@@ -228,7 +231,7 @@ private:
 
     void differentiate() {
         const int* const qd = &given[wall_size + 3];
-        for (int i = 0; i < 3; ++i) accelerations.push_back(series.input(true));
+        while (accelerations.size() < 3) accelerations.push_back(series.input(true));
         for (std::size_t i = 0; i < rates.size(); ++i) derivatives[given[i]] = rates[i];
         for (int i = 0; i < 2; ++i) derivatives[qd[i]] = accelerations[i];
         derivatives[qd[2]] = series.subtract(accelerations[2], accelerations[1]);

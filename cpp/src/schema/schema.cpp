@@ -146,6 +146,7 @@ std::vector<double> default_of(const Key& key, std::span<const double> params) {
     const bool is_elbow = choice_of(params, "arm.model") == "elbow";
     if (is_elbow && key.path == "arm.link1.mass") value = {0};
     if (is_elbow && key.path == "arm.link1.com") value = {0, 0, 0};
+    if (is_elbow && key.path == "arm.link2.length") value = {unset};
     const bool link1_by_shape =
         key.path.starts_with("arm.link1.") && !key.unset.empty() && choice_of(params, "arm.link1.shape") != "explicit";
     if (link1_by_shape) std::fill(value.begin(), value.end(), unset);

@@ -82,8 +82,8 @@ std::size_t param_index(std::string_view name);  // throws Error ARM3R_E_INDEX, 
 std::vector<double> param_defaults();
 
 // The default of one key, given the choices that stand in `params` (keys are in such an order that a choice precedes
-// what depends on it). Beside fallback_for three defaults depend on choices: initial.q on arm.convention, link1 on its
-// shape and arm.model, the wall's stiffness on its law and preset.
+// what depends on it). Beside fallback_for three defaults depend on choices: initial.q on arm.convention, links on shapes
+// and arm.model, the wall's stiffness on its law and preset.
 std::vector<double> default_of(const Key& key, std::span<const double> params);
 
 double param(std::span<const double> params, std::string_view path, std::size_t item = 0);

@@ -23,22 +23,32 @@ std::string at_pose(const WorstPose& pose) {
     return "at q2 = " + degrees(pose.q2) + ", q3 = " + degrees(pose.q3) + ", any q1";
 }
 
+void check_pivots(const LeastPivots& least, ProblemList& problem_list) {
+    if (!(least.lower.value > 1e-12))
+        problem_list.add([&] {
+            return Problem{.code = "scenario.singular_mass_matrix",
+                           .path = "arm.link3.inertia",
+                           .message = "the mass matrix is singular: the determinant of joints 2 and 3 falls to " +
+                                      shortest(least.lower.value) + " of the product of its diagonal " +
+                                      at_pose(least.lower),
+                           .allowed = "a positive definite mass matrix",
+                           .hint = "give arm.link3.inertia, or armature for joints 2 and 3"};
+        });
+    else if (!(least.first.value >= min_inertia))
+        problem_list.add([&] {
+            return Problem{.code = "scenario.singular_mass_matrix",
+                           .path = "arm.link1.inertia",
+                           .message = "the mass matrix is nearly singular: the inertia of joint 1 falls to " +
+                                      shortest(least.first.value) + " kg m^2 " + at_pose(least.first),
+                           .allowed = "at least 1e-9 kg m^2",
+                           .hint =
+                               "give arm.link1.inertia or arm.armature[0]; slender links have no inertia about "
+                               "their own axis"};
+        });
+}
+
 void check_mass_matrix(const Arm<double>& arm, ProblemList& problem_list) {
-    if (arm.is_elbow) {
-        const WorstPose pivot = min_pivot(arm);
-        if (!(pivot.value > 1e-12))
-            problem_list.add([&] {
-                return Problem{.code = "scenario.singular_mass_matrix",
-                               .path = "arm.link1.inertia",
-                               .message =
-                                   "the mass matrix is singular or has a negative eigenvalue: its least pivot "
-                                   "falls to " +
-                                   shortest(pivot.value) + " of its diagonal " + at_pose(pivot),
-                               .allowed = "a positive definite mass matrix",
-                               .hint = "give the inertias of the links, or armature for the joints"};
-            });
-        return;
-    }
+    if (arm.is_elbow) return check_pivots(least_pivots(arm), problem_list);
     const WorstPose M11 = min_M11(arm.lumped);
     if (M11.value < min_inertia)
         problem_list.add([&] {
@@ -202,13 +212,14 @@ std::optional<NoSeries> without_series(const Plant<double>& plant) {
 
 void check_series(const Setup& setup, ProblemList& problem_list) {
     if (setup.solver.method != SolverMethod::taylor) return;
-    if (setup.plant.arm.is_elbow)
+    const Plant<double>& plant = setup.plant;
+    if (plant.arm.elbow.has_skew_rotors || plant.controller.model.elbow.has_skew_rotors)
         return problem_list.add([] {
             return Problem{.code = "scenario.no_series",
                            .path = "solver.method",
-                           .message = "taylor has no series of an elbow arm",
+                           .message = "taylor has no series of rotors that spin across their joints",
                            .got = "taylor",
-                           .allowed = "dopri5, rk4, rodas4 or auto with arm.model: elbow",
+                           .allowed = "rotor axes along the joints with solver.method: taylor",
                            .hint = "use method: dopri5"};
         });
     if (!setup.plant.has_wall) return;
@@ -256,17 +267,21 @@ std::string reach_text(const Arm<double>& arm) {
                         : range;
 }
 
-WorstPose min_pivot(const Arm<double>& arm) {
+LeastPivots least_pivots(const Arm<double>& arm) {
     constexpr int places = 16;  // of an angle: the mass matrix has its sines up to the second order
-    WorstPose worst{infinite, 0, 0};
+    LeastPivots least{{infinite, 0, 0}, {infinite, 0, 0}, infinite};
+    const auto keep = [](WorstPose& worst, double value, double q2, double q3) {
+        if (!(value >= worst.value)) worst = {value, q2, q3};
+    };
     for (int i = 0; i < places; ++i)
         for (int j = 0; j < places; ++j) {
             const double q2 = 2 * pi * i / places, q3 = 2 * pi * j / places;
-            const auto [lower, whole] = elbow_arm::pivots(arm, pose(Vec3<double>(0, q2, q3)));
-            const double least = lower > 0 ? std::min(lower, whole) : lower;
-            if (!(least >= worst.value)) worst = {least, q2, q3};
+            const elbow_arm::Pivots<double> here = elbow_arm::pivots(arm, pose(Vec3<double>(0, q2, q3)));
+            keep(least.lower, here.lower, q2, q3);
+            keep(least.first, here.first, q2, q3);
+            least.first_over_diagonal = std::min(least.first_over_diagonal, here.first / here.diagonal);
         }
-    return worst;
+    return least;
 }
 
 WorstPose min_M11(const Lumped<double>& l) {  // (3.10)

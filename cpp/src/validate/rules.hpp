@@ -25,8 +25,13 @@ struct WorstPose {
 std::string distance_from_reach(const Arm<double>& arm, const Vec3<double>& tip, bool front);
 std::string reach_text(const Arm<double>& arm);
 
-// The least pivot of an elbow arm's mass matrix on a grid of poses, relative to its diagonal, and where.
-WorstPose min_pivot(const Arm<double>& arm);
+// Of an elbow arm, on a grid of poses: the least determinant of joints 2 and 3 over the product of their diagonal, the
+// least inertia of joint 1 while the others are free, kg m^2, and that over its diagonal.
+struct LeastPivots {
+    WorstPose lower, first;
+    double first_over_diagonal;
+};
+LeastPivots least_pivots(const Arm<double>& arm);
 
 WorstPose min_M11(const Lumped<double>& lumped);
 WorstPose min_lower_determinant(const Lumped<double>& lumped);

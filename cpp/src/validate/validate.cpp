@@ -215,6 +215,19 @@ void check_convention(std::span<const double> params, ProblemList& problem_list)
             });
 }
 
+// On the axis of joint 3 the tip would not move with it.
+void check_tip(std::span<const double> params, ProblemList& problem_list) {
+    const Vec3<double> tip = vector_at<"arm.link3.tip">(params);
+    if (!(std::sqrt(tip[0] * tip[0] + tip[1] * tip[1]) < 1e-6)) return;
+    problem_list.add([&] {
+        return Problem{.code = "scenario.singular",
+                       .path = "arm.link3.tip",
+                       .message = "the tip is on the axis of joint 3, which cannot move it",
+                       .got = "[" + shortest(tip[0]) + ", " + shortest(tip[1]) + ", " + shortest(tip[2]) + "]",
+                       .allowed = "x and y at least 1e-6 m from that axis"};
+    });
+}
+
 void check_axis(const Key& key, std::span<const double> params, ProblemList& problem_list) {
     const double x = params[key.offset], y = params[key.offset + 1], z = params[key.offset + 2];
     if (!(std::sqrt(x * x + y * y + z * z) < 1e-9)) return;  // NaN: not given
@@ -237,6 +250,7 @@ void check_arm(std::span<const double> params, const std::vector<const Key*>& ke
     check_shapes(params, problem_list);
     if (is<"arm.model", "elbow">(params)) {
         check_inertia<"arm.link1.inertia">(params, problem_list);
+        check_tip(params, problem_list);
         for (const char* rotor : {"arm.rotor1", "arm.rotor2", "arm.rotor3"})
             check_axis(known_key(std::string(rotor) + ".axis"), params, problem_list);
     }

@@ -269,7 +269,7 @@ def test_the_command_prints_a_scenario(tmp_path: Path, capsys: pytest.CaptureFix
 def test_the_scenario_runs_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
     run = Scenario(start_scenario(Choice.of({"urdf": tmp_path / "arm.urdf", **LOCKED}))).run()
-    assert run.passed and [event.kind for event in run.events] == ["make"]
+    assert run.passed and [event["type"] for event in run.events] == ["make"]
     assert np.ptp(run["q"], axis=0).max() < 1e-6
 
 

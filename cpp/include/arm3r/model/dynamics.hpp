@@ -265,8 +265,8 @@ template <class P, class T>
 ARM3R_INLINE auto is_well_conditioned(const Arm<P>& arm, const Pose<T>& p) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     if (arm.is_elbow) {
-        const auto [first, last] = elbow_arm::pivots(arm, p);
-        return first > T(8 * epsilon) && last > T(8 * epsilon);
+        const elbow_arm::Pivots<T> pivots = elbow_arm::pivots(arm, p);
+        return pivots.lower > T(8 * epsilon) && pivots.first > T(8 * epsilon * pivots.diagonal);
     }
     const Mat3<T> M = mass_matrix(arm, p);
     return M(0, 0) > T(0.0) && T(M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2)) > T(8 * epsilon * M(1, 1) * M(2, 2));

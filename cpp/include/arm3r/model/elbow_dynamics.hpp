@@ -230,13 +230,19 @@ ARM3R_INLINE Mat3<T> transformed(const Mat3<T>& M, const Mat3<T>& K) {
     return L;
 }
 
-// The pivots of the mass matrix, of angle 2 and of q1, relative to its diagonal: 0 where M is singular.
+// The pivots of the mass matrix: the determinant of the link angles over the product of their diagonal, and the inertia of
+// q1 while they are free, kg m^2, beside its diagonal. Both vanish where M is singular.
+template <class T>
+struct Pivots {
+    T lower, first, diagonal;
+};
+
 template <class P, class T>
-ARM3R_INLINE std::array<T, 2> pivots(const Arm<P>& arm, const Pose<T>& p) {
+ARM3R_INLINE Pivots<T> pivots(const Arm<P>& arm, const Pose<T>& p) {
     const AngleInertia<T> N = angle_inertia(arm, p, first_moments(arm, p));
-    const T lower = N.N22 * N.N33 - N.N23 * N.N23;
+    const T determinant = N.N22 * N.N33 - N.N23 * N.N23;
     const T z2 = N.N33 * N.N12 - N.N23 * N.N13, z3 = N.N22 * N.N13 - N.N23 * N.N12;
-    return {lower / (N.N22 * N.N33), (N.N11 - (N.N12 * z2 + N.N13 * z3) / lower) / N.N11};
+    return {determinant / (N.N22 * N.N33), N.N11 - (N.N12 * z2 + N.N13 * z3) / determinant, N.N11};
 }
 
 }  // namespace arm3r::elbow_arm
