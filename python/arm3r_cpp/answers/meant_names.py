@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from .._messages import did_you_mean
 
-_ONE_ARM = "an arm has three joints; verify.Chain.from_urdf and from_dh describe other chains, for formulas"
+_THREE_JOINTS = (
+    "an arm has three joints, those of a URDF with Arm.from_urdf(path); verify.Chain.from_urdf and from_dh describe "
+    "other chains, for formulas"
+)
 
 # By the class or module: names, parted by blanks, and what to write instead.
 _TABLE: dict[str, dict[str, str]] = {
@@ -40,7 +43,7 @@ _TABLE: dict[str, dict[str, str]] = {
         "maniplty": "manipulability(q)",
         "jacob_dot Jdot": "jacobian_dot(q, qd)",
         "linmod ss": "linearize(q, qd, tau)",
-        "joints links dof n nq numjoints njoints from_dh": _ONE_ARM,
+        "joints links dof n nq numjoints njoints from_dh": _THREE_JOINTS,
         "urdf load importrobot": "Arm.from_urdf(path)",
         "mass masses length lengths a2 a3 m2 m3": 'scenario["arm.link2.mass"], scenario["arm.link2.length"] ...',
         "run simulate": "Scenario().run(): an arm moves in a scenario",
