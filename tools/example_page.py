@@ -56,7 +56,8 @@ def page(printed: Mapping[Path, str]) -> str:
         text += f"\n## {language}\n"
         for program in (one for one in programs() if one.parent.name == folder):
             shows, code = parts(program)
-            text += f"\n### {program.name}\n\n{textwrap.fill(shows, 100, break_on_hyphens=False)}\n\n```{folder}\n{code}```\n\nIt prints:\n\n"
+            shows = textwrap.fill(shows, 100, break_on_hyphens=False)
+            text += f"\n### {program.name}\n\n{shows}\n\n```{folder}\n{code}```\n\nIt prints:\n\n"
             text += f"```text\n{printed[program]}```\n"
     return text
 

@@ -87,7 +87,7 @@ def no_attribute(owner: str, name: str, known: Iterable[str], *, meant: str = ""
     what = f"module {owner!r}" if owner == "arm3r_cpp" else f"{owner!r} object"
     names = [one for one in known if not one.startswith("_")]
     pair = meant or PAIRS[owner].get(name, "")
-    near = "" if name.startswith("_") else f"it is {pair}" if pair and pair != _ONE_ARM else pair
+    near = "" if name.startswith("_") else f"it is {pair}" if pair and pair != _THREE_JOINTS else pair
     if not near and not name.startswith("_"):
         near = did_you_mean(name, names) or f"it has {', '.join(sorted(names))}"
     return AttributeError(f"{what} has no attribute {name!r}{'; ' if near else ''}{near}", name=name)

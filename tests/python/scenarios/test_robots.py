@@ -14,6 +14,7 @@ from conftest import ROOT
 from elbow_truth import Truth
 
 GALLERY = ROOT / "scenarios" / "robots"
+PAGE = (ROOT / "docs" / "own_arm.md").read_text()
 NAMES = sorted(path.stem for path in GALLERY.glob("*.yaml"))
 every_robot = pytest.mark.parametrize("name", NAMES)
 
@@ -161,3 +162,19 @@ def test_every_row_obeys_an_independent_equation_of_motion(name: str) -> None:
 def test_a_tip_beside_the_plane_of_axis_1_loads_joint_1() -> None:
     """A UR5's tip is 109.15 mm beside it: 20 N along x are 2.183 N m there, where a planar arm has none."""
     assert run_of("ur5_hybrid")["tau1"][-1] == pytest.approx(-20 * 0.10915, abs=1e-6)
+
+
+@every_robot
+def test_the_page_says_what_the_run_shows(name: str) -> None:
+    """Force and effective mass in the table of docs/own_arm.md."""
+    scenario, run = scenario_of(name), run_of(name)
+    row = re.search(rf"^\|.*\| `{scenario['controller.type']}` \| (.*) N.* \| (.*) kg \|$", PAGE, re.M)
+    due = scenario.arm.effective_mass(scenario["initial.q"], [1, 0, 0])
+    force = re.match(r"[\d.]+", row[1])[0]
+    assert run["force"][-1] == pytest.approx(float(force), abs=0.06)
+    assert due == pytest.approx(float(row[2]), abs=0.051)
+
+
+def test_the_readme_begins_with_robots_and_arms_of_ones_own() -> None:
+    first = "\n".join((ROOT / "README.md").read_text().splitlines()[:10])
+    assert "(docs/own_arm.md)" in first and "UR5" in first
