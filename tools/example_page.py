@@ -18,7 +18,7 @@ FOLDERS = {"python": "Python", "cpp": "C++", "c": "C"}
 HEAD = """\
 # Small programs
 
-Ten programs in Python, C++ and C, each complete. They lie in `examples`; the tests build and run
+Eleven programs in Python, C++ and C, each complete. They lie in `examples`; the tests build and run
 them, and compare what they print with this page. The C++ ones use `arm3r/arm3r.hpp`: objects that
 free themselves and exceptions around the C interface of `arm3r/arm3r.h`. CMake finds the installed
 library:
@@ -56,7 +56,8 @@ def page(printed: Mapping[Path, str]) -> str:
         text += f"\n## {language}\n"
         for program in (one for one in programs() if one.parent.name == folder):
             shows, code = parts(program)
-            text += f"\n### {program.name}\n\n{textwrap.fill(shows, 100)}\n\n```{folder}\n{code}```\n\nIt prints:\n\n"
+            shows = textwrap.fill(shows, 100, break_on_hyphens=False)
+            text += f"\n### {program.name}\n\n{shows}\n\n```{folder}\n{code}```\n\nIt prints:\n\n"
             text += f"```text\n{printed[program]}```\n"
     return text
 

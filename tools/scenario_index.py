@@ -36,6 +36,7 @@ TITLES = {
     "collision": "Momentum observer and collisions",
     "sampled_control": "Sampled control and sensors",
     "passivity": "Passivity",
+    "robots": "Real robots",
     "sweeps": "Sweeps",
 }
 HEAD = """\
@@ -179,25 +180,23 @@ def draw_curves(ax: Any, run: arm3r.Run, part: tuple[float, float], curves: dict
 
 
 def draw_arm(ax: Any, run: arm3r.Run) -> None:
-    """From the side: along the horizontal direction in which the arm points at first, and upwards."""
+    """From the side: across joint 2 as it stands at first, with the tip to the right, and upwards."""
     scenario = arm3r.Scenario(run.summary["scenario"])
-    base = np.array([0, 0, scenario["arm.base_height"]])
-    reach = scenario["arm.link2.length"] + scenario["arm.link3.length"]
-    shown = np.union1d(0, flash_rows(run["tip"], reach))
-    q1 = run["q1"][0]
-    view = np.array([[np.cos(q1), np.sin(q1), 0], [0, 0, 1]])
-    elbow = scenario.arm.elbow_position(run["q"][shown])
-    for k, row in enumerate(shown):
-        points = view @ np.stack([base, elbow[k], run["tip"][row]], axis=1)
-        ax.plot(*points, color=ARM, lw=2, alpha=0.15 + 0.85 * (k + 1) / len(shown), solid_capstyle="round",
+    shown = np.union1d(0, flash_rows(run["tip"], scenario.arm.reach))
+    points = scenario.arm.points(run["q"][shown])
+    across = scenario.arm.geometric_jacobian(run["q"][0])[3:, 1]
+    ahead = np.cross(across, [0, 0, 1]) / np.hypot(*across[:2])
+    view = np.array([ahead if ahead @ (points[0, -1] - points[0, 1]) >= 0 else -ahead, [0, 0, 1]])
+    for k, line in enumerate(points @ view.T):
+        ax.plot(*line.T, color=ARM, lw=2, alpha=0.15 + 0.85 * (k + 1) / len(shown), solid_capstyle="round",
                 clip_on=False)  # fmt: skip
     if "wall_x" in run.columns and abs(scenario["wall.normal"][2]) < 0.5:
         size = scenario["wall.size"]
         half = 0.5 if isinstance(size, str) else size[1] / 2
         for row, alpha in ((shown[0], 0.3), (shown[-1], 1.0)):
-            across, up = view @ run["wall"][row]
-            ax.plot([across, across], [up - half, up + half], color=WALL, lw=1.6, alpha=alpha)
-    ax.plot(*(view @ base), "o", color=BLACK, ms=4, clip_on=False)
+            place, up = view @ run["wall"][row]
+            ax.plot([place, place], [up - half, up + half], color=WALL, lw=1.6, alpha=alpha)
+    ax.plot(*(view @ points[0, 0]), "o", color=BLACK, ms=4, clip_on=False)
     ax.set_aspect("equal")
     ax.set_axis_off()
 

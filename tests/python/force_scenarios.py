@@ -9,7 +9,8 @@ import arm3r_cpp as arm3r
 import numpy as np
 from conftest import scenario_files
 
-FILES = {path.stem: path for path in scenario_files() if path.parent.name not in ("scenarios", "lecture")}
+OTHERS = ("scenarios", "lecture", "robots")
+FILES = {path.stem: path for path in scenario_files() if path.parent.name not in OTHERS}
 """The file of each scenario of contact and control, by its name."""
 D = np.array([1, -1, -1])
 

@@ -22,7 +22,7 @@ from pathlib import Path
 
 MARK = "*In a clone, with a compiler:*"
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
-FILE_NAME = re.compile(r"\A(?:#|%|/\*) (\w+\.\w+)(?: \*/)?\n")
+FILE_NAME = re.compile(r"\A(?:#|%|/\*|<!--) (\w+\.\w+)(?: \*/| -->)?\n")
 # The suite does not start itself: make only has to know what to do.
 MAKE = """make() {
     case "$1" in

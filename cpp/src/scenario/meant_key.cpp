@@ -205,8 +205,8 @@ std::vector<std::string> names_there(std::string_view section, std::span<const d
 // docs/faq.md says the same.
 std::string not_of_this_arm(std::string_view name, std::string_view section) {
     if (!is_of_another_robot(name, section) || is_in(names_below(section), name)) return "";
-    return "arm3r simulates one arm with three joints; `arm3r verify` judges formulas of any serial chain of up to seven "
-           "joints, from a URDF or a DH table";
+    return "arm3r simulates arms with three joints, also yours from a URDF (`arm.urdf`); `arm3r verify` judges formulas of "
+           "any serial chain of up to seven joints, from a URDF or a DH table";
 }
 
 std::string suggested_key(const std::string& name, std::string_view section, std::span<const double> params) {

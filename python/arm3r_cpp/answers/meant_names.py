@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from .._messages import did_you_mean
 
-_ONE_ARM = "an arm has three joints; verify.Chain.from_urdf and from_dh describe other chains, for formulas"
+_THREE_JOINTS = (
+    "an arm has three joints, those of a URDF with Arm.from_urdf(path); verify.Chain.from_urdf and from_dh describe "
+    "other chains, for formulas"
+)
 
 # By the class or module: names, parted by blanks, and what to write instead.
 _TABLE: dict[str, dict[str, str]] = {
@@ -40,7 +43,7 @@ _TABLE: dict[str, dict[str, str]] = {
         "maniplty": "manipulability(q)",
         "jacob_dot Jdot": "jacobian_dot(q, qd)",
         "linmod ss": "linearize(q, qd, tau)",
-        "joints links dof n nq numjoints njoints from_dh": _ONE_ARM,
+        "joints links dof n nq numjoints njoints from_dh": _THREE_JOINTS,
         "urdf load importrobot": "Arm.from_urdf(path)",
         "mass masses length lengths a2 a3 m2 m3": 'scenario["arm.link2.mass"], scenario["arm.link2.length"] ...',
         "run simulate": "Scenario().run(): an arm moves in a scenario",
@@ -84,7 +87,7 @@ def no_attribute(owner: str, name: str, known: Iterable[str], *, meant: str = ""
     what = f"module {owner!r}" if owner == "arm3r_cpp" else f"{owner!r} object"
     names = [one for one in known if not one.startswith("_")]
     pair = meant or PAIRS[owner].get(name, "")
-    near = "" if name.startswith("_") else f"it is {pair}" if pair and pair != _ONE_ARM else pair
+    near = "" if name.startswith("_") else f"it is {pair}" if pair and pair != _THREE_JOINTS else pair
     if not near and not name.startswith("_"):
         near = did_you_mean(name, names) or f"it has {', '.join(sorted(names))}"
     return AttributeError(f"{what} has no attribute {name!r}{'; ' if near else ''}{near}", name=name)

@@ -63,7 +63,7 @@ def joined(one: Body, other: Body) -> Body:
     """Two bodies in one frame as one (parallel axis theorem)."""
     mass = one.mass + other.mass
     if mass == 0:
-        return one
+        return Body(0.0, one.centre, one.inertia + other.inertia)
     centre = (one.mass * one.centre + other.mass * other.centre) / mass
     inertia = np.zeros((3, 3))
     for part in (one, other):

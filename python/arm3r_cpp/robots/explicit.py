@@ -112,7 +112,7 @@ def _text(elbow: Elbow, chain: Serial, file: str) -> str:
         f"shoulder_offset: {number(elbow.shoulder_offset)}",
     ]
     for place, (keys, body, links) in enumerate(zip(geometry, elbow.bodies, chain.links, strict=True), start=1):
-        keys += _body_lines(body) if body.mass else []
+        keys += _body_lines(body) if body.mass or body.inertia.any() else []
         lines += [note(", ".join(links)), f"link{place}:", *(f"  {key}" for key in keys)] if keys else []
     lines += [f"{key}: {_row(values)}" for key, values in _joint_keys(chain).items()]
     return "\n".join(lines) + "\n"

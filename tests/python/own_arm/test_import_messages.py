@@ -188,6 +188,16 @@ def test_placeholders_are_named(imported: Import) -> None:
         imported(*alike, **LOCKED)
 
 
+def test_a_link_1_without_mass_keeps_its_inertia(imported: Import) -> None:
+    """Of a PUMA 560's link 1 only the inertia about axis 1 is published."""
+    keys = ElbowKeys(
+        imported((inertial(3, 0), inertial(0, 0, "0 0 0.35").replace("0.001", "0").replace("-0.002", "0")), **LOCKED)
+    )
+    other = ElbowKeys(imported((inertial(3, 0), ""), **LOCKED))
+    q = np.array([0.3, -0.7, 1.1])
+    assert keys.mass_matrix(q) - other.mass_matrix(q) == pytest.approx(np.diag([0.35, 0, 0]), abs=1e-13)
+
+
 def test_a_joint_that_mimics_a_locked_one_is_locked(imported: Import) -> None:
     mimic = ('<axis xyz="0 0 1"/><limit', '<axis xyz="0 0 1"/><mimic joint="roll" multiplier="-2" offset="0.1"/><limit')
     assert imported(with_roll(), mimic, lock={"roll": np.pi}) == imported(
@@ -269,7 +279,7 @@ def test_the_command_prints_a_scenario(tmp_path: Path, capsys: pytest.CaptureFix
 def test_the_scenario_runs_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
     run = Scenario(start_scenario(Choice.of({"urdf": tmp_path / "arm.urdf", **LOCKED}))).run()
-    assert run.passed and [event["type"] for event in run.events] == ["make"]
+    assert run.passed and [event.type for event in run.events] == ["make"]
     assert np.ptp(run["q"], axis=0).max() < 1e-6
 
 

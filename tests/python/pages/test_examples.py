@@ -21,6 +21,6 @@ def test_the_page_shows_the_programs_and_what_they_print(scripts: Path, package:
     run("cmake", "-S", pages.ROOT / "examples", "-B", tmp_path, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={package}")
     run("cmake", "--build", tmp_path)
     printed = {one: run(*pages.command(one, tmp_path)) for one in pages.programs()}
-    assert len(printed) == 10
+    assert len(printed) == 11
     hint = "`python tools/example_page.py FOLDER` writes the page"
     assert pages.page(printed) == pages.PAGE.read_text(), hint

@@ -19,7 +19,7 @@ from page_runner import MARK, blocks_of
 PROGRAMS = ROOT / "docs" / "examples.md"  # test_examples.py runs what it shows
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted({*ROOT.glob("docs/*.md")} - {PROGRAMS})]
 # Changes of the sources ("diff", "cpp") are made by test_adding_laws.py.
-LANGUAGES = {"python", "sh", "console", "yaml", "csv", "c", "matlab", "octave", "diff", "cpp"}
+LANGUAGES = {"python", "sh", "console", "yaml", "csv", "c", "matlab", "octave", "diff", "cpp", "xml", "text"}
 RUN_BY_NODE = {"docs/webassembly.md": "js"}  # by test_wasm.py
 NEEDS_A_CLONE = re.compile(r"\b(make|cmake|g\+\+|gcc|git|apt|sudo|clang-format)\b|(benchmarks|tests|cpp)/")
 

@@ -23,9 +23,8 @@ HEAD = "format: 1\n"
 SHORT = HEAD + "time: {stop: 0.02}\n"
 ROOT = Path(__file__).parents[3]
 OTHER_ENDINGS = (".mat", ".parquet", ".xlsx", ".html", ".bag", ".mcap", ".json", ".CSVV", ".csv.gz", "")
-ROBOT_KEYS = ("arm.link4", "arm.joints", "arm.link2.offset", "arm.link3.alpha", "dof", "urdf", "arm.urdf", "arm.dh",
-              "joints", "links", "arm.n_joints", "arm.d4", "arm.a1", "robot", "arm.link2.d",
-              "controller.model.joints")  # fmt: skip
+ROBOT_KEYS = ("arm.link4", "arm.link3.alpha", "dof", "urdf", "arm.dh", "joints", "links", "arm.n_joints", "arm.d4",
+              "arm.a1", "robot", "arm.link2.d", "controller.model.joints")  # fmt: skip
 
 
 def command(scripts: Path, folder: Path, *words: object) -> subprocess.CompletedProcess[str]:
@@ -238,7 +237,7 @@ def test_keys_of_other_robots_get_the_sentence_of_the_questions_and_answers(key:
         scenario[key] = 6
     for words in raised.value.problems[0]["hint"].split("; "):
         assert words in faq and "arm3r" in words
-    with pytest.raises(arm3r.UsageError, match="one arm with three joints"):
+    with pytest.raises(arm3r.UsageError, match="arms with three joints"):
         scenario[key]
 
 

@@ -53,9 +53,9 @@ def test_a_picture_is_drawn(index: ModuleType, name: str) -> None:
 
 @pytest.mark.parametrize("path", scenario_files(), ids=lambda path: path.stem)
 def test_names_and_first_sentences_say_what_is_shown(index: ModuleType, path: Path) -> None:
-    """A name of words, where only those of the lecture begin with a number; a sentence of its own for each."""
-    pattern = r"\d\d_[a-z_]+" if path.parent.name == "lecture" else r"[a-z]{2,}(_[a-z]+)*"
-    assert re.fullmatch(pattern, path.stem)
+    """A name of words, with numbers in those of the lecture and of robots; a sentence of its own for each."""
+    patterns = {"lecture": r"\d\d_[a-z_]+", "robots": r"[a-z]+(\d+e?)?(_[a-z]+)+"}
+    assert re.fullmatch(patterns.get(path.parent.name, r"[a-z]{2,}(_[a-z]+)*"), path.stem)
     line = index.summary(path)
     assert line[-1] in ".:" and 20 < len(line) < 140
     assert not re.search(r"\b[BCXbcx]\d+[a-e]?\b", path.read_text()), "an id that is explained nowhere"
@@ -64,5 +64,7 @@ def test_names_and_first_sentences_say_what_is_shown(index: ModuleType, path: Pa
 
 @pytest.mark.parametrize("path", scenario_files(), ids=lambda path: path.stem)
 def test_one_convention_where_the_convention_is_not_the_subject(path: Path) -> None:
-    expected = "slide" if path.stem in ABOUT_THE_CONVENTION else "simscape"
+    """Real robots keep the angles of their files."""
+    usual = "urdf" if path.parent.name == "robots" else "simscape"
+    expected = "slide" if path.stem in ABOUT_THE_CONVENTION else usual
     assert arm3r.Scenario.load(path)["arm.convention"] == expected

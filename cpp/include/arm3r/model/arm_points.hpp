@@ -1,5 +1,5 @@
 #pragma once
-// The arm as a line of points, for whoever draws it.
+// The arm as a line of points, for drawings.
 
 #include <array>
 
