@@ -18,15 +18,27 @@ namespace {
 const std::string our_build = "arm3r " ARM3R_VERSION ", " BENCH_BUILD;
 
 peers::Body body_of(const Link<double>& link) {
-    return {link.length, link.mass, link.com, {link.inertia[0], link.inertia[1], link.inertia[2]}};
+    return {link.length, link.mass, {link.com, 0, 0}, {link.inertia[0], link.inertia[1], link.inertia[2]}, {0, 0, 0}};
+}
+
+peers::Body body_of(double length, const RigidBody<double>& body) {
+    const Vec3<double>&c = body.com, &d = body.inertia, &o = body.products;
+    return {length, body.mass, {c[0], c[1], c[2]}, {d[0], d[1], d[2]}, {o[0], o[1], o[2]}};
 }
 
 [[maybe_unused]] peers::Numbers numbers_of(const Arm<double>& arm) {
+    const Vec3<double>& g = arm.gravity;
+    if (!arm.is_elbow)
+        return {arm.base_height,   0, 0, arm.link1.inertia_axial, body_of(arm.link2), body_of(arm.link3),
+                {g[0], g[1], g[2]}};
+    const RigidBody<double>& column = arm.elbow.links[0];
     return {arm.base_height,
-            arm.link1.inertia_axial,
-            body_of(arm.link2),
-            body_of(arm.link3),
-            {arm.gravity[0], arm.gravity[1], arm.gravity[2]}};
+            arm.elbow.shoulder_offset,
+            arm.elbow.offset,
+            column.inertia[2] + column.mass * (column.com[0] * column.com[0] + column.com[1] * column.com[1]),
+            body_of(arm.link2.length, arm.elbow.links[1]),
+            body_of(arm.link3.length, arm.elbow.links[2]),
+            {g[0], g[1], g[2]}};
 }
 
 // `answer(query, qdd)` for one state after another.
@@ -71,17 +83,26 @@ Contender our_runs(std::string job, std::vector<double> (*params)()) {
 
 Arm<double> arm() { return make_arm(free_fall()); }
 
+Contender our_accelerations(std::string job, std::vector<double> (*params)()) {
+    return {std::move(job), "arm3r", our_build, [params] {
+                return over_queries(
+                    [arm = make_arm(params())](const Query& query, Joints& qdd) { forward_dynamics(arm, query, qdd); });
+            }};
+}
+
 #ifdef BENCH_PINOCCHIO
-Contender pinocchio() {
-    return {"forward dynamics", "Pinocchio aba", peers::Pinocchio::build(), [] {
-                auto peer = std::make_shared<peers::Pinocchio>(numbers_of(arm()));
+Contender pinocchio(std::string job, std::vector<double> (*params)()) {
+    return {std::move(job), "Pinocchio aba", peers::Pinocchio::build(), [params] {
+                auto peer = std::make_shared<peers::Pinocchio>(numbers_of(make_arm(params())));
                 return over_queries([peer](const Query& query, Joints& qdd) {
                     peer->forward_dynamics(query.q.data(), query.qd.data(), query.tau.data(), qdd.data());
                 });
             }};
 }
 #else
-Contender pinocchio() { return {"forward dynamics", "Pinocchio aba", "not found when this was built", {}}; }
+Contender pinocchio(std::string job, std::vector<double> (*)()) {
+    return {std::move(job), "Pinocchio aba", "not found when this was built", {}};
+}
 #endif
 
 template <class Peer>
@@ -130,8 +151,7 @@ Contender mujoco(std::string job) { return {std::move(job), "MuJoCo mj_step", "n
 }
 
 template <class Peer>
-[[maybe_unused]] void compare_accelerations(const std::string& who, Peer& peer) {
-    const Arm<double> ours_arm = arm();
+[[maybe_unused]] void compare_accelerations(const std::string& who, Peer& peer, const Arm<double>& ours_arm = arm()) {
     for (const Query& query : queries()) {
         Joints ours, theirs;
         forward_dynamics(ours_arm, query, ours);
@@ -158,12 +178,11 @@ std::vector<Contender> contenders() {
     const std::string zero_crossing = "RK4 step, free fall", pushed = "RK4 step, compensation and two-way wall";
     const std::string quadratures = ", with the energy balance";
     return {
-        {"forward dynamics", "arm3r", our_build,
-         [] {
-             return over_queries([arm = arm()](const Query& query, Joints& qdd) { forward_dynamics(arm, query, qdd); });
-         }},
+        our_accelerations("forward dynamics", free_fall),
         casadi(),
-        pinocchio(),
+        pinocchio("forward dynamics", free_fall),
+        our_accelerations("forward dynamics, UR5", elbow_free_fall),
+        pinocchio("forward dynamics, UR5", elbow_free_fall),
         our_steps<motion_size>(zero_crossing, free_fall),
         our_packs<motion_size>(zero_crossing, free_fall),
         casadi(zero_crossing, false),
@@ -178,6 +197,10 @@ std::vector<Contender> contenders() {
         our_steps<state_size>(pushed + quadratures, compensated_at_wall),
         our_packs<state_size>(pushed + quadratures, compensated_at_wall),
         our_runs(pushed + quadratures, compensated_at_wall),
+        our_steps<motion_size>(zero_crossing + ", UR5", elbow_free_fall),
+        our_packs<motion_size>(zero_crossing + ", UR5", elbow_free_fall),
+        our_steps<state_size>(pushed + quadratures + ", UR5", elbow_compensated_at_wall),
+        our_packs<state_size>(pushed + quadratures + ", UR5", elbow_compensated_at_wall),
     };
 }
 
@@ -189,8 +212,9 @@ void check_agreement() {
     compare_steps("CasADi", pushed_by_casadi, compensated_at_wall());
 #endif
 #ifdef BENCH_PINOCCHIO
-    peers::Pinocchio pinocchio(numbers_of(arm()));
+    peers::Pinocchio pinocchio(numbers_of(arm())), of_ur5(numbers_of(make_arm(elbow_free_fall())));
     compare_accelerations("Pinocchio", pinocchio);
+    compare_accelerations("Pinocchio", of_ur5, make_arm(elbow_free_fall()));
 #endif
 #ifdef BENCH_MUJOCO
     peers::Mujoco accelerating(numbers_of(arm()), step), falling(numbers_of(arm()), step);

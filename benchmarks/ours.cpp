@@ -47,6 +47,34 @@ std::vector<double> compensated_at_wall() {
                       {"controller.type", double(ControllerType::gravity_compensation)}});
 }
 
+namespace {
+
+std::vector<double> ur5(std::vector<double> params) {
+    const auto set = [&](const std::string& key, std::initializer_list<double> values) {
+        std::copy(values.begin(), values.end(), params.begin() + std::ptrdiff_t(known_key(key).offset));
+    };
+    set("arm.model", {1});
+    set("arm.base.position", {0, 0, 0.089159});
+    set("arm.link1.mass", {3.7}), set("arm.link1.com", {0, 0.00193, -0.02561});
+    set("arm.link1.inertia", {0.014972358333333331, 0.014972358333333331, 0.01040625, 0, 0, 0});
+    set("arm.link2.length", {0.425}), set("arm.link2.mass", {8.393}), set("arm.link2.com", {0.2125, 0, 0.11336});
+    set("arm.link2.inertia", {0.0151074, 0.13388583541666665, 0.13388583541666665, 0, 0, 0});
+    set("arm.link3.tip", {0.5165074991734051, 0, 0.10914999998058698}), set("arm.link3.mass", {4.9559});
+    set("arm.link3.com", {0.3471961002238645, 0.005587822915859083, 0.06984963073764358});
+    set("arm.link3.inertia", {0.018818002485488067, 0.09578477746963364, 0.08981638329460005, -0.007146286548695125,
+                              -0.020121250570010275, -0.0028651337948400898});
+    return params;
+}
+
+}  // namespace
+
+std::vector<double> elbow_free_fall() { return ur5(free_fall()); }
+std::vector<double> elbow_compensated_at_wall() {
+    std::vector<double> params = ur5(compensated_at_wall());
+    params[param_index("wall.point[0]")] = 0.82;  // 3 mm from the tip, about
+    return params;
+}
+
 [[gnu::noinline]] void forward_dynamics(const Arm<double>& arm, const Query& query, Joints& qdd) {
     const Vec3<double> q(query.q[0], query.q[1], query.q[2]), qd(query.qd[0], query.qd[1], query.qd[2]);
     const Vec3<double> tau(query.tau[0], query.tau[1], query.tau[2]);

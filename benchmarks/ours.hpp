@@ -26,6 +26,8 @@ const std::vector<Query>& queries();  // the same ones for everyone, spread over
 
 std::vector<double> free_fall();            // the lecture's arm, released
 std::vector<double> compensated_at_wall();  // held up, and pushed by the moving wall
+std::vector<double> elbow_free_fall();      // the same of a UR5 with its wrist locked
+std::vector<double> elbow_compensated_at_wall();
 
 void forward_dynamics(const arm3r::Arm<double>& arm, const Query& query, Joints& qdd);
 

@@ -19,8 +19,8 @@ struct Inertial {
 
 // Body axes: x along the link, y along the joint, pointing right of the arm; a slide joint turns about -y.
 std::ostream& operator<<(std::ostream& out, const Inertial& inertial) {
-    const auto& [length, mass, com, inertia] = inertial.body;
-    return out << "<inertial mass='" << mass << "' pos='" << com << " 0 0' diaginertia='" << inertia[0] << ' '
+    const auto& [length, mass, com, inertia, products] = inertial.body;
+    return out << "<inertial mass='" << mass << "' pos='" << com[0] << " 0 0' diaginertia='" << inertia[0] << ' '
                << inertia[2] << ' ' << inertia[1] << "'/>";
 }
 

@@ -10,16 +10,18 @@ namespace pin = pinocchio;
 namespace {
 
 pin::Inertia inertia_of(const Body& body) {
-    return {
-        body.mass, {body.com, 0, 0}, Eigen::Vector3d(body.inertia[0], body.inertia[1], body.inertia[2]).asDiagonal()};
+    const double *d = body.inertia, *o = body.products;
+    const Eigen::Matrix3d tensor =
+        (Eigen::Matrix3d() << d[0], o[0], o[1], o[0], d[1], o[2], o[1], o[2], d[2]).finished();
+    return {body.mass, {body.com[0], body.com[1], body.com[2]}, tensor};
 }
 
 pin::Model model_of(const Numbers& numbers) {
     pin::Model model;
     model.gravity.linear(Eigen::Vector3d(numbers.gravity[0], numbers.gravity[1], numbers.gravity[2]));
     const Eigen::Matrix3d quarter_turn = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
-    const pin::SE3 shoulder(quarter_turn, Eigen::Vector3d(0, 0, numbers.base_height));
-    const pin::SE3 elbow(Eigen::Matrix3d::Identity(), Eigen::Vector3d(numbers.link2.length, 0, 0));
+    const pin::SE3 shoulder(quarter_turn, Eigen::Vector3d(numbers.shoulder_offset, 0, numbers.base_height));
+    const pin::SE3 elbow(Eigen::Matrix3d::Identity(), Eigen::Vector3d(numbers.link2.length, 0, numbers.offset));
     const auto first = model.addJoint(0, pin::JointModelRZ(), pin::SE3::Identity(), "joint1");
     const auto second = model.addJoint(first, pin::JointModelRZ(), shoulder, "joint2");
     const auto third = model.addJoint(second, pin::JointModelRZ(), elbow, "joint3");

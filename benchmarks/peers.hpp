@@ -7,13 +7,16 @@
 namespace peers {
 
 struct Body {
-    double length, mass, com;  // m, kg, m from the joint
-    double inertia[3];         // kg m^2 about the centre of mass: along the link, across in its plane, along the joint
+    double length, mass;  // m, kg
+    double com[3];        // m from the joint: along the link, across in its plane, along the joint
+    double inertia[3];    // kg m^2 about the centre of mass, along these axes
+    double products[3];   // kg m^2, xy, xz, yz of the tensor
 };
 
 struct Numbers {
-    double base_height;     // m
-    double turret_inertia;  // kg m^2 about the vertical
+    double base_height;              // m
+    double shoulder_offset, offset;  // m: of joint 2 from axis 1, of link 3 along the axis of joint 2
+    double turret_inertia;           // kg m^2 about the vertical
     Body link2, link3;
     double gravity[3];  // m/s^2
 };
