@@ -1,0 +1,38 @@
+"""The arm as the line that pictures and films show."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .._native import Floats
+from ..core.arm import Arm
+from ..core.scenario import Scenario
+from ..robots.bodies import rotation_of
+
+SAME = 1e-9  # m: points that are nearer to each other are one
+JOINTS = (2, 4)  # joints 2 and 3 among the arm's points
+
+
+class ArmLine(NamedTuple):
+    """From the point of axis 1 at the height of joint 2 to the tip. A planar arm has joint 2, joint 3 and the tip."""
+
+    points: Floats
+    """(..., points, 3), m: each differs from the one before."""
+    joints: list[int]
+    """Where joints 2 and 3 are among them."""
+
+
+def arm_line(arm: Arm, q: ArrayLike) -> ArmLine:
+    """At joint angles (..., 3). The distances between neighbours, and so which of them coincide, are the arm's own."""
+    points = arm.points(q)
+    apart = np.linalg.norm(np.diff(points.reshape(-1, 7, 3)[0, 1:], axis=0), axis=1) > SAME
+    kept = np.flatnonzero([False, True, *apart])
+    return ArmLine(points[..., kept, :], [int(np.searchsorted(kept, joint, side="right")) - 1 for joint in JOINTS])
+
+
+def base_axes(scenario: Scenario) -> Floats:
+    """(3, 3): the base's x, y and z as columns, z along axis 1."""
+    return rotation_of(scenario["arm.base.rotation"]) if scenario["arm.model"] == "elbow" else np.eye(3)
