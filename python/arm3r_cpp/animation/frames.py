@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .._native import Floats
+from ..core.arm_line import arm_line, base_axes
 from ..core.run import Run
 from ..core.scenario import Scenario
 from ..errors import UsageError
-from ..plot.arm_line import arm_line, base_axes
 from ..plot.force_run import pressing_force
 from ..plot.style import contact_spans
 from ..plot.wall_frame import half_sides, wall_frame

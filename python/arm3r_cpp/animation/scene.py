@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from .._native import Floats
+from ..core.arm_line import SAME
 from ..core.run import Run
 from ..core.scenario import Scenario
-from ..plot.arm_line import SAME
 from ..plot.force_run import pressing_force
 from ..plot.style import ARM, BLACK, ON_WALL, REFERENCE, TIP, WALL, contact_spans, style
 from .frames import Frames

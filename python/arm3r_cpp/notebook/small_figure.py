@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core.arm_line import arm_line
 from ..core.scenario import Scenario
-from ..plot.arm_line import arm_line
 from ..plot.style import ARM, ON_WALL, TIP, TRIPLE, WALL, angle_unit, style
 from ..plot.wall_frame import half_sides, wall_frame
 

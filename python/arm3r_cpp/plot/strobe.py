@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .arm_line import ArmLine, arm_line, base_axes
+from ..core.arm_line import ArmLine, arm_line, base_axes
 from .force_run import ForceRun
 from .style import ARM, BLACK, ON_TIP, ON_WALL, TIP, TRIPLE, WALL
 from .wall_frame import half_sides, wall_frame

@@ -11,8 +11,8 @@ import matplotlib
 import numpy as np
 import pytest
 from arm3r_cpp.commands import plot as plot_cli
+from arm3r_cpp.core.arm_line import arm_line
 from arm3r_cpp.plot import style
-from arm3r_cpp.plot.arm_line import arm_line
 from arm3r_cpp.plot.force_run import ForceRun
 from conftest import Cli, scenario_files
 from elbow_arms import WITH_OFFSETS, random_elbow_scenario, scenario_of

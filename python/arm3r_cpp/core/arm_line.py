@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._native import Floats
-from ..core.arm import Arm
-from ..core.scenario import Scenario
 from ..robots.bodies import rotation_of
+from .arm import Arm
+from .scenario import Scenario
 
 SAME = 1e-9  # m: points that are nearer to each other are one
 JOINTS = (2, 4)  # joints 2 and 3 among the arm's points
