@@ -64,8 +64,8 @@ def _lines(ax: Any, run: Run, name: str, label: str, parts: str, factor: float =
 def of_scenario(scenario: Scenario) -> bytes:
     """The arm in its initial pose and the wall's plate, from the side and from above."""
     arm, q = scenario.arm, scenario["initial.q"]
-    line = arm_line(arm, q)
-    points, shown = np.vstack([arm.points(q)[0], line.points]), [0, *(joint + 1 for joint in line.joints), -1]
+    line, joints = arm_line(arm, q)
+    points, shown = np.vstack([arm.points(q)[0], line]), [0, *(joint + 1 for joint in joints), -1]
     plate = _plate(scenario) if "wall" in scenario else None
     with _panels(2) as (_, axes, png):
         for ax, across, label in zip(axes, (2, 1), "zy", strict=True):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.arm_line import ArmLine, arm_line, base_axes
+from ..core.arm_line import arm_line, base_axes
 from .force_run import ForceRun
 from .style import ARM, BLACK, ON_TIP, ON_WALL, TIP, TRIPLE, WALL
 from .wall_frame import half_sides, wall_frame
@@ -29,23 +29,24 @@ def strobe(run: Run, _: float) -> RunFigure:
     arm, q, tip = scenario.arm, run["q"], run["tip"]
     reach = arm.reach
     flashes = flash_rows(tip, reach)
-    line, last = arm_line(arm, q[flashes]), arm_line(arm, q[flashes[-1]])
+    lines, joints = arm_line(arm, q[flashes])
+    last = lines[-1]
 
     figure = RunFigure(figsize=(6.3, 4.9))
     ax: Any = figure.add_axes((0, -0.02, 0.97, 0.97), projection="3d", computed_zorder=False)
     times = run.t[flashes]
     moment = f"{times[0]:.4g} to {times[-1]:.4g} s, darker is later" if len(flashes) > 1 else f"{times[0]:.4g} s"
     ax.plot([], [], color=ARM, lw=4, solid_capstyle="round", label=f"arm at {moment}")
-    ground(ax, last.points[0], base_axes(scenario), reach)
+    ground(ax, last[0], base_axes(scenario), reach)
     if "depth" in run.units:
         draw_walls(ax, run, scenario, reach)
     if len(flashes) > 1:
         ax.plot(*tip[: flashes[-1] + 1].T, color=TIP, lw=1.0, zorder=3, label="path of the tip")
-    for k, points in enumerate(line.points):
-        draw_arm(ax, ArmLine(points, line.joints), alpha=0.15 + 0.85 * (k + 1) / len(flashes))
-    draw_joint_axes(ax, arm.geometric_jacobian(q[flashes[-1]])[3:].T, last.points[[0, *last.joints]], reach)
+    for k, points in enumerate(lines):
+        draw_arm(ax, points, joints, alpha=0.15 + 0.85 * (k + 1) / len(flashes))
+    draw_joint_axes(ax, arm.geometric_jacobian(q[flashes[-1]])[3:].T, last[[0, *joints]], reach)
     draw_forces(ax, run, tip, reach)
-    ahead = last.points[-1] - last.points[0]
+    ahead = last[-1] - last[0]
     fit(ax, q[flashes[-1]][0] if scenario["arm.model"] == "planar" else np.arctan2(ahead[1], ahead[0]))
     figure.legend(loc="upper left", bbox_to_anchor=(0.02, 0.99))
     return figure
@@ -69,8 +70,7 @@ def ground(ax: Any, top: NDArray[np.float64], axes: NDArray[np.float64], reach: 
     ax.plot(*disc.T, color="#777777", lw=1.5, zorder=2)
 
 
-def draw_arm(ax: Any, line: ArmLine, *, alpha: float) -> None:
-    points, joints = line
+def draw_arm(ax: Any, points: Any, joints: list[int], *, alpha: float) -> None:
     ax.plot(*points.T, color=ARM, lw=4, alpha=alpha, solid_capstyle="round", solid_joinstyle="round", zorder=4)
     ax.plot(*points[joints].T, color=BLACK, ls="", marker="o", ms=5, alpha=alpha, zorder=5)
     ax.plot(*points[-1:].T, color=TIP, ls="", marker="o", ms=4, alpha=alpha, zorder=5)
