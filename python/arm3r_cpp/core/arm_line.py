@@ -33,6 +33,13 @@ def arm_line(arm: Arm, q: ArrayLike) -> ArmLine:
     return ArmLine(points[..., kept, :], [int(np.searchsorted(kept, joint, side="right")) - 1 for joint in JOINTS])
 
 
+def heading(scenario: Scenario, q: ArrayLike) -> float:
+    """Where the arm points, seen from above, rad: of a planar arm q1, of an elbow arm the direction of its tip."""
+    points = scenario.arm.points(q)
+    ahead = points[-1] - points[1]
+    return float(np.asarray(q)[0] if scenario["arm.model"] == "planar" else np.arctan2(ahead[1], ahead[0]))
+
+
 def base_axes(scenario: Scenario) -> Floats:
     """(3, 3): the base's x, y and z as columns, z along axis 1."""
     return rotation_of(scenario["arm.base.rotation"]) if scenario["arm.model"] == "elbow" else np.eye(3)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.arm_line import arm_line, base_axes
+from ..core.arm_line import arm_line, base_axes, heading
 from .force_run import ForceRun
 from .style import ARM, BLACK, ON_TIP, ON_WALL, TIP, TRIPLE, WALL
 from .wall_frame import half_sides, wall_frame
@@ -46,8 +46,7 @@ def strobe(run: Run, _: float) -> RunFigure:
         draw_arm(ax, points, joints, alpha=0.15 + 0.85 * (k + 1) / len(flashes))
     draw_joint_axes(ax, arm.geometric_jacobian(q[flashes[-1]])[3:].T, last[[0, *joints]], reach)
     draw_forces(ax, run, tip, reach)
-    ahead = last[-1] - last[0]
-    fit(ax, q[flashes[-1]][0] if scenario["arm.model"] == "planar" else np.arctan2(ahead[1], ahead[0]))
+    fit(ax, heading(scenario, q[flashes[-1]]))
     figure.legend(loc="upper left", bbox_to_anchor=(0.02, 0.99))
     return figure
 
@@ -136,7 +135,7 @@ def arrow(
     ax.quiver(*start, *(end - start), color=colour, lw=width, arrow_length_ratio=head, zorder=7, label=label)
 
 
-def fit(ax: Any, heading: float) -> None:
+def fit(ax: Any, ahead: float) -> None:
     """One scale and one tick spacing on all axes, labels with units, and the arm seen from its right front."""
     from matplotlib.ticker import MaxNLocator, MultipleLocator
 
@@ -148,4 +147,4 @@ def fit(ax: Any, heading: float) -> None:
     ax.set(xlim=limits[0], ylim=limits[1], zlim=limits[2], xlabel="x, m", ylabel="y, m", zlabel="z, m")
     ax.set_box_aspect(spans, zoom=0.92)
     ax.xaxis.labelpad = 9
-    ax.view_init(elev=20, azim=np.degrees(heading) - 72)
+    ax.view_init(elev=20, azim=np.degrees(ahead) - 72)
