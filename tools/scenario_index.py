@@ -17,7 +17,6 @@ from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
-from arm3r_cpp.core.arm_line import arm_line, heading
 from arm3r_cpp.examples import summary
 from arm3r_cpp.plot.strobe import flash_rows
 from arm3r_cpp.plot.style import ARM, BLACK, MEASURED, ON_WALL, REFERENCE, TRIPLE, WALL, angle_unit, style
@@ -182,12 +181,15 @@ def draw_curves(ax: Any, run: arm3r.Run, part: tuple[float, float], curves: dict
 def draw_arm(ax: Any, run: arm3r.Run) -> None:
     """From the side: along the horizontal direction in which the arm points at first, and upwards."""
     scenario = arm3r.Scenario(run.summary["scenario"])
-    shown = np.union1d(0, flash_rows(run["tip"], scenario.arm.reach))
-    ahead = heading(scenario, run["q"][0])
-    view = np.array([[np.cos(ahead), np.sin(ahead), 0], [0, 0, 1]])
-    lines, _ = arm_line(scenario.arm, run["q"][shown])
-    for k, points in enumerate(lines):
-        ax.plot(*(view @ points.T), color=ARM, lw=2, alpha=0.15 + 0.85 * (k + 1) / len(shown), solid_capstyle="round",
+    base = np.array([0, 0, scenario["arm.base_height"]])
+    reach = scenario["arm.link2.length"] + scenario["arm.link3.length"]
+    shown = np.union1d(0, flash_rows(run["tip"], reach))
+    q1 = run["q1"][0]
+    view = np.array([[np.cos(q1), np.sin(q1), 0], [0, 0, 1]])
+    elbow = scenario.arm.elbow_position(run["q"][shown])
+    for k, row in enumerate(shown):
+        points = view @ np.stack([base, elbow[k], run["tip"][row]], axis=1)
+        ax.plot(*points, color=ARM, lw=2, alpha=0.15 + 0.85 * (k + 1) / len(shown), solid_capstyle="round",
                 clip_on=False)  # fmt: skip
     if "wall_x" in run.columns and abs(scenario["wall.normal"][2]) < 0.5:
         size = scenario["wall.size"]
@@ -195,7 +197,7 @@ def draw_arm(ax: Any, run: arm3r.Run) -> None:
         for row, alpha in ((shown[0], 0.3), (shown[-1], 1.0)):
             across, up = view @ run["wall"][row]
             ax.plot([across, across], [up - half, up + half], color=WALL, lw=1.6, alpha=alpha)
-    ax.plot(*(view @ lines[0, 0]), "o", color=BLACK, ms=4, clip_on=False)
+    ax.plot(*(view @ base), "o", color=BLACK, ms=4, clip_on=False)
     ax.set_aspect("equal")
     ax.set_axis_off()
 
