@@ -206,20 +206,35 @@ export class Core {
         return this.#withScenario(text, { name, set }, (scenario) => this.#params(scenario)[this.#indexOf(key)]);
     }
 
-    /** The tip and the elbow for joint angles q (flat, 3 a state): {tip, elbow}, flat, 3 a state, m. */
+    /**
+     * Where the arm is for joint angles q (flat, 3 a state): {tip, elbow, points, axes, reach}.
+     * Flat arrays: tip and elbow, 3 numbers a state, m; points, 21, the 7 points of arm3r_arm_points, m; axes, 9, unit
+     * vectors along the positive axes of the joints. reach, m: of arm3r_arm_reach.
+     */
     positions(text, q, { name = "scenario.yaml", set = {} } = {}) {
         return this.#withScenario(text, { name, set }, (scenario) => {
             const params = this.#params(scenario);
             const arm = this.#withArray(params, (at) => this.#handle("arm3r_arm_create", at, params.length));
             try {
-                const positions = (function_) =>
+                const states = q.length / 3;
+                const of = (function_, width) =>
                     this.#withArray(Float64Array.from(q), (from) =>
-                        this.#withMemory(8 * q.length, (to) => {
-                            this.#check(this.#call(function_, arm, q.length / 3, from, to));
-                            return this.#doubles(to, q.length);
+                        this.#withMemory(8 * width * states, (to) => {
+                            this.#check(this.#call(function_, arm, states, from, to));
+                            return this.#doubles(to, width * states);
                         }),
                     );
-                return { tip: positions("arm3r_arm_tip_position"), elbow: positions("arm3r_arm_elbow_position") };
+                const reach = this.#withMemory(8, (to) => {
+                    this.#check(this.#call("arm3r_arm_reach", arm, to));
+                    return this.#doubles(to, 1)[0];
+                });
+                return {
+                    tip: of("arm3r_arm_tip_position", 3),
+                    elbow: of("arm3r_arm_elbow_position", 3),
+                    points: of("arm3r_arm_points", 21),
+                    axes: axesOf(of("arm3r_arm_geometric_jacobian", 18)),
+                    reach,
+                };
             } finally {
                 this.#call("arm3r_arm_free", arm);
             }
@@ -550,6 +565,14 @@ function attempt(make, status) {
         if (error instanceof Arm3rError && error.status === status) return undefined;
         throw error;
     }
+}
+
+// The columns of the angular rows of Jacobians (6 rows of 3), one after the other.
+function axesOf(jacobians) {
+    return Float64Array.from({ length: jacobians.length / 2 }, (_, i) => {
+        const [state, joint, row] = [Math.floor(i / 9), Math.floor((i % 9) / 3), i % 3];
+        return jacobians[18 * state + 3 * (3 + row) + joint];
+    });
 }
 
 // Evenly distributed in [0, 1): mulberry32.

@@ -3,6 +3,7 @@
 
 #include "base/spline.hpp"
 #include "setup/make_controller.hpp"
+#include "setup/make_elbow.hpp"
 #include "setup/make_reference.hpp"
 
 namespace arm3r {

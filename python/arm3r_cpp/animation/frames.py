@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._native import Floats
+from ..core.arm_line import arm_line, base_axes
 from ..core.run import Run
 from ..core.scenario import Scenario
 from ..errors import UsageError
@@ -16,6 +17,7 @@ from ..plot.wall_frame import half_sides, wall_frame
 
 MOST = 3000  # frames
 INFINITE = 0.6  # of the arm's reach: half the side of an infinite wall as it is drawn
+COLUMN = 0.2  # of the arm's reach: the length of the column that carries it
 
 
 class Frames(NamedTuple):
@@ -23,7 +25,11 @@ class Frames(NamedTuple):
 
     t: Floats
     joints: Floats
-    """(frames, 3, 3): shoulder, elbow and tip"""
+    """(frames, points, 3): the arm as a line, from axis 1 to the tip; a planar one has joint 2, joint 3 and the tip."""
+    marked: list[int]
+    """Points of the line that are joint 2, joint 3 and the tip."""
+    foot: Floats
+    """(3,): where the column begins that carries the arm."""
     reference: Floats | None
     """(frames, 3): reference of the tip"""
     plate: Floats | None
@@ -56,12 +62,13 @@ def frame_times(run: Run, *, fps: float, speed: float, every: int | None) -> Flo
 
 def frames_of(run: Run, scenario: Scenario, t: Floats) -> Frames:
     """The run as it is shown at times t, s."""
-    q, tip = at(run, "q", t), at(run, "tip", t)
-    shoulder = np.broadcast_to([0.0, 0.0, scenario["arm.base_height"]], tip.shape)
-    joints = np.stack([shoulder, scenario.arm.elbow_position(q), tip], axis=1)
-    force, on_wall = shown_forces(run, scenario, t)
+    arm = scenario.arm
+    joints, places = arm_line(arm, at(run, "q", t))
+    joints[:, -1] = at(run, "tip", t)
+    foot = joints[0, 0] - COLUMN * arm.reach * base_axes(scenario)[:, 2]
     reference = at(run, "tip_ref", t) if "tip_ref" in run else None
-    return Frames(t, joints, reference, plate(run, scenario, t), force, on_wall, touched(run, t))
+    wall = plate(run, scenario, t)
+    return Frames(t, joints, [*places, -1], foot, reference, wall, *shown_forces(run, scenario, t), touched(run, t))
 
 
 def at(run: Run, name: str, t: Floats) -> Floats:
@@ -72,7 +79,7 @@ def at(run: Run, name: str, t: Floats) -> Floats:
 def plate(run: Run, scenario: Scenario, t: Floats) -> Floats | None:
     if "wall" not in run:
         return None
-    infinite = INFINITE * (scenario["arm.link2.length"] + scenario["arm.link3.length"])
+    infinite = INFINITE * scenario.arm.reach
     half1, half2 = half_sides(scenario) or (infinite, infinite)
     frame, centre = wall_frame(scenario, t), at(run, "wall", t)
     corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)]

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from .._native import Floats
+from ..core.arm_line import SAME
 from ..core.run import Run
 from ..core.scenario import Scenario
 from ..plot.force_run import pressing_force
@@ -74,9 +75,8 @@ class Scene:
     # ---- what stands still ------------------------------------------------------------------------------------------
 
     def _prepare(self, run: Run, scenario: Scenario) -> None:
-        reach = scenario["arm.link2.length"] + scenario["arm.link3.length"]
-        self.newtons = newtons_per_metre(self.frames.force.max(), LONGEST * reach)
-        self.views = self._views(reach)
+        self.newtons = newtons_per_metre(self.frames.force.max(), LONGEST * scenario.arm.reach)
+        self.views = self._views()
         self.clock = self.figure.text(0.04, 0.955, "", va="center", family="monospace", fontsize=10, animated=True)
         self.flag: Any = self.figure.text(0.96, 0.955, "", va="center", ha="right", fontsize=10, animated=True)
         self.flag.set_bbox({"boxstyle": "round,pad=0.3", "ec": BLACK, "lw": 0.6})
@@ -85,14 +85,14 @@ class Scene:
         if self.has_wall:
             self._strip(run, scenario)
 
-    def _views(self, reach: float) -> list[View]:
+    def _views(self) -> list[View]:
         right, name = sight(self.frames)
         left = np.cross([0, 0, 1], right)
         foot, height = (0.385, 0.50) if self.has_wall else (0.12, 0.76)
         aligned = name == "x"
         labels = ("x, m", "z, m", "y, m") if aligned else (f"{name}, m", "z, m", "across, m")
         sides = np.stack([right, [0, 0, 1]]), np.stack([right, left])
-        spans = limits(self.frames, sides, reach, self.newtons)
+        spans = limits(self.frames, sides, self.newtons)
         views = []
         for i, (axes, span, title) in enumerate(zip(sides, spans, ("from the side", "from above"), strict=True)):
             ax = self.figure.add_axes((0.09 + 0.49 * i, foot, 0.40, height))
@@ -103,22 +103,24 @@ class Scene:
             ax.set_axisbelow(True)
             ax.tick_params(labelsize=8)
             ax.locator_params(nbins=6, steps=[1, 2, 5, 10])
-            self._base(ax, i, reach)
+            self._base(ax, axes)
             views.append(self._view(ax, axes))
         return views
 
-    def _base(self, ax: Any, which: int, reach: float) -> None:
-        shoulder = self.frames.joints[0, 0]
-        if which == 0:
-            ax.plot([0, 0], [shoulder[2] - 0.2 * reach, shoulder[2]], color=GREY, lw=6, solid_capstyle="butt", zorder=1)
+    def _base(self, ax: Any, axes: Floats) -> None:
+        """The column, which is a dot where one looks along it."""
+        ends = np.stack([self.frames.foot, self.frames.joints[0, 0]]) @ axes.T
+        if np.ptp(ends, axis=0).max() > SAME:
+            ax.plot(*ends.T, color=GREY, lw=6, solid_capstyle="butt", zorder=1)
         else:
-            ax.plot(0, 0, color=GREY, marker="o", ms=11, ls="", zorder=1)
+            ax.plot(*ends[:1].T, color=GREY, marker="o", ms=11, ls="", zorder=1)
 
     def _view(self, ax: Any, axes: Floats) -> View:
         still: Any = {"animated": True}
         arm = ax.plot(
-            [], [], color=ARM, lw=4, marker="o", ms=5, mfc="white", mec=BLACK, solid_capstyle="round", **still
-        )[0]
+            [], [], color=ARM, lw=4, marker="o", ms=5, mfc="white", mec=BLACK, solid_capstyle="round",
+            markevery=self.frames.marked, **still,
+        )[0]  # fmt: skip
         tip = ax.plot([], [], marker="o", ms=6, mec=BLACK, ls="", **still)[0]
         trail = ax.plot([], [], color=TIP, lw=1.0, **still)[0]
         wanted = plate = arrow = None
@@ -158,15 +160,15 @@ class Scene:
         frames = self.frames
         joints, colour = view.flat(frames.joints[k]), TOUCHING if frames.contact[k] else FREE
         view.arm.set_data(*joints.T)
-        view.tip.set_data(*joints[2:].T)
+        view.tip.set_data(*joints[-1:].T)
         view.tip.set_markerfacecolor(TIP if frames.contact[k] else "white")
-        view.trail.set_data(*view.flat(frames.joints[: k + 1, 2]).T)
+        view.trail.set_data(*view.flat(frames.joints[: k + 1, -1]).T)
         if view.wanted is not None and frames.reference is not None:
             view.wanted.set_data(*view.flat(frames.reference[k : k + 1]).T)
         if frames.plate is not None:
             view.plate.set_xy(view.flat(frames.plate[k]))
             view.plate.set(fc=(colour, GLASS), ec=TOUCHING if frames.contact[k] else GREY)
-            view.arrow.set_offsets(joints[2])
+            view.arrow.set_offsets(joints[-1])
             view.arrow.set_UVC(*(view.flat(frames.force_on_wall[k]) / self.newtons))
 
     def _tell(self, k: int) -> None:
@@ -188,7 +190,7 @@ class Scene:
 
 def sight(frames: Frames) -> tuple[Floats, str]:
     """What points to the right, (3,), and its name: towards the wall; without an upright one, where the arm points."""
-    ahead = frames.joints[0, 2] - frames.joints[0, 0]
+    ahead = frames.joints[0, -1] - frames.joints[0, 0]
     name = "ahead"
     if frames.plate is not None:
         sides = frames.plate[0, 1] - frames.plate[0, 0], frames.plate[0, 3] - frames.plate[0, 0]
@@ -200,10 +202,10 @@ def sight(frames: Frames) -> tuple[Floats, str]:
     return right, "x" if right[0] > 1 - 1e-9 else name
 
 
-def limits(frames: Frames, sides: tuple[Floats, Floats], reach: float, newtons: float) -> list[Floats]:
+def limits(frames: Frames, sides: tuple[Floats, Floats], newtons: float) -> list[Floats]:
     """Of both views, (2, 2) each, on one scale: what encloses arm, arrow and wall of all frames."""
-    arrows = frames.joints[:, 2] + frames.force_on_wall / newtons
-    points = [frames.joints.reshape(-1, 3), arrows, frames.joints[:1, 0] - [0, 0, 0.2 * reach]]
+    arrows = frames.joints[:, -1] + frames.force_on_wall / newtons
+    points = [frames.joints.reshape(-1, 3), arrows, frames.foot[None]]
     points += [] if frames.plate is None else [frames.plate.reshape(-1, 3)]
     boxes = []
     for axes in sides:

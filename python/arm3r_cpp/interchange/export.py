@@ -9,8 +9,8 @@ from .._files import check_ending, replacing
 from .._messages import shown, warn_user
 from ..core.scenario import Scenario
 from ..errors import ScenarioWarning, UsageError
+from ..robots.arm_bodies import Arm, arm_of
 from . import mjcf, wall
-from .bodies import Arm, arm_of
 from .urdf import urdf_text
 
 ENDINGS = (".urdf", ".xml")

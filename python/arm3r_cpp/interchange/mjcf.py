@@ -8,8 +8,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
+from ..robots.arm_bodies import Arm, Rotor
 from ..robots.bodies import Body, Joint
-from .bodies import Arm, Rotor
 from .wall import Wall
 from .xml_text import NO_LIMIT, document, numbers, units
 

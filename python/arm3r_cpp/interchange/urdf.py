@@ -8,8 +8,8 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from .._native import Floats
+from ..robots.arm_bodies import Arm
 from ..robots.bodies import Body, Joint
-from .bodies import Arm
 from .xml_text import NO_LIMIT, document, numbers, units
 
 NO_END = 1e5

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import _native
+from .._native import Floats
 from ..core.run import Run
 from ..core.scenario import Scenario
 from ..errors import UsageError
@@ -34,18 +35,24 @@ def of_run(run: Run) -> dict[str, Any]:
     scenario = Scenario(text)
     if scenario["time.log_columns"]:
         raise UsageError("the page draws all columns: run it without time.log_columns", code="usage")
-    matrix = np.stack([run[name] for name in run.columns]).astype("<f8").tobytes()
+    arm, q = scenario.arm, run["q"]
+    axes = arm.geometric_jacobian(q)[:, 3:].swapaxes(1, 2)
     data = {
         **of_text(text, run.summary["name"]),
         "resolved": _resolved(scenario),
         "columns": run.columns,
         "units": run.units,
-        "matrix": b64encode(gzip.compress(matrix, 6, mtime=0)).decode(),
+        "matrix": _packed(np.stack([run[name] for name in run.columns])),
+        "arm": {"points": _packed(arm.points(q)), "axes": _packed(axes), "reach": arm.reach},
         "summary": {key: value for key, value in run.summary.items() if key != "scenario"},
         "report": run.report() if run._text() is not None else "",
     }
     plain: dict[str, Any] = _plain(data)
     return plain
+
+
+def _packed(numbers: Floats) -> str:
+    return b64encode(gzip.compress(numbers.astype("<f8").tobytes(), 6, mtime=0)).decode()
 
 
 def _resolved(scenario: Scenario) -> dict[str, Any]:

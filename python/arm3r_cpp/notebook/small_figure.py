@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core.arm_line import arm_line
 from ..core.scenario import Scenario
 from ..plot.style import ARM, ON_WALL, TIP, TRIPLE, WALL, angle_unit, style
 from ..plot.wall_frame import half_sides, wall_frame
@@ -63,14 +64,15 @@ def _lines(ax: Any, run: Run, name: str, label: str, parts: str, factor: float =
 def of_scenario(scenario: Scenario) -> bytes:
     """The arm in its initial pose and the wall's plate, from the side and from above."""
     arm, q = scenario.arm, scenario["initial.q"]
-    joints = np.array([[0, 0, 0], [0, 0, scenario["arm.base_height"]], arm.elbow_position(q), arm.tip_position(q)])
+    line, joints = arm_line(arm, q)
+    points, shown = np.vstack([arm.points(q)[0], line]), [0, *(joint + 1 for joint in joints), -1]
     plate = _plate(scenario) if "wall" in scenario else None
     with _panels(2) as (_, axes, png):
         for ax, across, label in zip(axes, (2, 1), "zy", strict=True):
             if plate is not None:
                 ax.fill(plate[:, 0], plate[:, across], fc="#dddddd", ec=WALL)
-            ax.plot(joints[:, 0], joints[:, across], color=ARM, marker="o", ms=3)
-            ax.plot(*joints[-1, [0, across]], color=TIP, marker="o", ms=4)
+            ax.plot(points[:, 0], points[:, across], color=ARM, marker="o", ms=3, markevery=shown)
+            ax.plot(*points[-1, [0, across]], color=TIP, marker="o", ms=4)
             ax.set(xlabel="x, m", ylabel=f"{label}, m", aspect="equal", adjustable="datalim")
     return png.getvalue()
 

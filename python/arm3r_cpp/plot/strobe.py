@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core.arm_line import arm_line, base_axes, heading
 from .force_run import ForceRun
 from .style import ARM, BLACK, ON_TIP, ON_WALL, TIP, TRIPLE, WALL
 from .wall_frame import half_sides, wall_frame
@@ -25,27 +26,27 @@ def strobe(run: Run, _: float) -> RunFigure:
     from .run_figure import RunFigure
 
     scenario = Scenario(run.summary["scenario"])
-    q, tip = run["q"], run["tip"]
-    shoulder = np.array([0, 0, scenario["arm.base_height"]])
-    reach = scenario["arm.link2.length"] + scenario["arm.link3.length"]
+    arm, q, tip = scenario.arm, run["q"], run["tip"]
+    reach = arm.reach
     flashes = flash_rows(tip, reach)
-    elbow = scenario.arm.elbow_position(q[flashes])
+    lines, joints = arm_line(arm, q[flashes])
+    last = lines[-1]
 
     figure = RunFigure(figsize=(6.3, 4.9))
     ax: Any = figure.add_axes((0, -0.02, 0.97, 0.97), projection="3d", computed_zorder=False)
     times = run.t[flashes]
     moment = f"{times[0]:.4g} to {times[-1]:.4g} s, darker is later" if len(flashes) > 1 else f"{times[0]:.4g} s"
     ax.plot([], [], color=ARM, lw=4, solid_capstyle="round", label=f"arm at {moment}")
-    ground(ax, shoulder, reach)
+    ground(ax, last[0], base_axes(scenario), reach)
     if "depth" in run.units:
         draw_walls(ax, run, scenario, reach)
     if len(flashes) > 1:
         ax.plot(*tip[: flashes[-1] + 1].T, color=TIP, lw=1.0, zorder=3, label="path of the tip")
-    for k, row in enumerate(flashes):
-        draw_arm(ax, shoulder, elbow[k], tip[row], alpha=0.15 + 0.85 * (k + 1) / len(flashes))
-    draw_joint_axes(ax, scenario.arm.geometric_jacobian(q[flashes[-1]])[3:].T, [shoulder, shoulder, elbow[-1]], reach)
+    for k, points in enumerate(lines):
+        draw_arm(ax, points, joints, alpha=0.15 + 0.85 * (k + 1) / len(flashes))
+    draw_joint_axes(ax, arm.geometric_jacobian(q[flashes[-1]])[3:].T, last[[0, *joints]], reach)
     draw_forces(ax, run, tip, reach)
-    fit(ax, q[flashes[-1]][0])
+    fit(ax, heading(scenario, q[flashes[-1]]))
     figure.legend(loc="upper left", bbox_to_anchor=(0.02, 0.99))
     return figure
 
@@ -59,19 +60,19 @@ def flash_rows(tip: NDArray[np.float64], reach: float) -> NDArray[np.intp]:
     return np.unique(np.linspace(0, last, FLASHES).round().astype(int))
 
 
-def ground(ax: Any, shoulder: NDArray[np.float64], reach: float) -> None:
-    foot = shoulder - [0, 0, 0.25 * reach]
-    ax.plot(*np.stack([foot, shoulder]).T, color="#777777", lw=7, solid_capstyle="butt", zorder=2)
+def ground(ax: Any, top: NDArray[np.float64], axes: NDArray[np.float64], reach: float) -> None:
+    """A column along axis 1, which ends where the arm begins, on a disc."""
+    foot = top - 0.25 * reach * axes[:, 2]
+    ax.plot(*np.stack([foot, top]).T, color="#777777", lw=7, solid_capstyle="butt", zorder=2)
     angle = np.linspace(0, 2 * np.pi, 60)
-    disc = foot + 0.12 * reach * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
+    disc = foot + 0.12 * reach * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1) @ axes.T
     ax.plot(*disc.T, color="#777777", lw=1.5, zorder=2)
 
 
-def draw_arm(ax: Any, shoulder: Any, elbow: Any, tip: Any, *, alpha: float) -> None:
-    points = np.stack([shoulder, elbow, tip])
+def draw_arm(ax: Any, points: Any, joints: list[int], *, alpha: float) -> None:
     ax.plot(*points.T, color=ARM, lw=4, alpha=alpha, solid_capstyle="round", solid_joinstyle="round", zorder=4)
-    ax.plot(*points[:2].T, color=BLACK, ls="", marker="o", ms=5, alpha=alpha, zorder=5)
-    ax.plot(*points[2:].T, color=TIP, ls="", marker="o", ms=4, alpha=alpha, zorder=5)
+    ax.plot(*points[joints].T, color=BLACK, ls="", marker="o", ms=5, alpha=alpha, zorder=5)
+    ax.plot(*points[-1:].T, color=TIP, ls="", marker="o", ms=4, alpha=alpha, zorder=5)
 
 
 def draw_joint_axes(ax: Any, axes: Any, origins: Any, reach: float) -> None:
@@ -134,7 +135,7 @@ def arrow(
     ax.quiver(*start, *(end - start), color=colour, lw=width, arrow_length_ratio=head, zorder=7, label=label)
 
 
-def fit(ax: Any, q1: float) -> None:
+def fit(ax: Any, ahead: float) -> None:
     """One scale and one tick spacing on all axes, labels with units, and the arm seen from its right front."""
     from matplotlib.ticker import MaxNLocator, MultipleLocator
 
@@ -146,4 +147,4 @@ def fit(ax: Any, q1: float) -> None:
     ax.set(xlim=limits[0], ylim=limits[1], zlim=limits[2], xlabel="x, m", ylabel="y, m", zlabel="z, m")
     ax.set_box_aspect(spans, zoom=0.92)
     ax.xaxis.labelpad = 9
-    ax.view_init(elev=20, azim=np.degrees(q1) - 72)
+    ax.view_init(elev=20, azim=np.degrees(ahead) - 72)

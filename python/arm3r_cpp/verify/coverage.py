@@ -20,6 +20,7 @@ from .finding import Finding, Judgement
 from .log.reading import read_log
 from .planted import planted_and_seen
 from .samples import VECTORS, Samples
+from .truth.elbow import truth_of_arm
 from .truth.three_r import CONVENTIONS, ThreeR
 
 _VISIBLE = 1e-9  # m/s of J qd, N m of a torque
@@ -73,9 +74,9 @@ def tests_of(given: Iterable[Any], joints: int) -> list[Trial]:
             found.append(Trial(os.fspath(one), read_log(one).states(joints)))
         elif isinstance(one, (str, os.PathLike, Scenario)):
             scenario = one if isinstance(one, Scenario) else Scenario.load(one)
-            run, arm = scenario.run(), ThreeR(scenario)
+            run, arm = scenario.run(), truth_of_arm(scenario)
             states = {vector: run[vector] for vector in VECTORS}
-            found.append(Trial(str(scenario.name), states, arm.convention, arm.values_of_quantities))
+            found.append(Trial(str(scenario.name), states, arm.convention or None, arm.values_of_quantities))
         else:
             poses = np.atleast_2d(np.asarray(one, float))
             found.append(_at(f"poses {number}", poses, np.ones_like(poses)))

@@ -19,6 +19,7 @@ from .log.reading import ENDINGS, read_log
 from .meaning import kind_by_arguments
 from .told import told
 from .truth.chain_files import Chain
+from .truth.elbow import truth_of_arm
 from .truth.three_r import ThreeR
 from .verdict import Finding, Verdict
 
@@ -56,9 +57,9 @@ class Told(TypedDict, total=False):
 def truth_of(arm: Any) -> Any:
     """The truth for a scenario, an arm, a chain or a scenario's file; None is the lecture's arm."""
     if arm is None or isinstance(arm, (Scenario, Arm)):
-        return ThreeR(arm)
+        return truth_of_arm(arm)
     if isinstance(arm, (str, os.PathLike)):
-        return ThreeR(Scenario.load(arm))
+        return truth_of_arm(Scenario.load(arm))
     if isinstance(arm, (Chain, ThreeR)):
         return arm
     raise UsageError(f"arm: a Scenario, an Arm, a Chain or the path of a scenario is needed, got {type(arm).__name__}")

@@ -20,6 +20,8 @@ from arm3r_cpp.animation.scene import Scene, newtons_per_metre, palette, sight
 from arm3r_cpp.commands import animate as animate_cli
 from arm3r_cpp.plot.run_part import part_of
 from arm3r_cpp.plot.style import ARM, ON_WALL, TIP, WALL
+from elbow_arms import WITH_OFFSETS, scenario_of
+from elbow_truth import Truth, along
 from matplotlib.colors import to_rgb
 from PIL import Image
 
@@ -83,6 +85,24 @@ def test_the_arm_of_each_frame(hybrid: arm3r.Run) -> None:
     for k in (0, 50, -1):
         row = np.searchsorted(hybrid.t, frames.t[k] - 1e-9)
         assert frames.joints[k, 2] == pytest.approx(hybrid["tip"][row])
+
+
+def test_an_elbow_arm_of_each_frame() -> None:
+    """Through both ends of each offset: where the truth has them. All bends are drawn."""
+    run = scenario_of(WITH_OFFSETS, initial={"q": [0.4, -0.7, 1.1]}, time={"stop": 0.2, "log_every": 0.1}).run()
+    scene, frames = film_of(run, fps=10)
+    truth = Truth(WITH_OFFSETS)
+    rotations, (base, _, shoulder, elbow), _ = truth.frames(run["q"])
+    ends = [along((0.43, rotations[2][..., 0])), along((0.38, rotations[3][..., 0]), (0.05, rotations[3][..., 1]))]
+    line = [base, shoulder, shoulder + ends[0], elbow, elbow + ends[1], truth.tip_position(run["q"])]
+    assert frames.joints == pytest.approx(np.stack(line, axis=1), abs=1e-12)
+    assert frames.joints[:, frames.marked] == pytest.approx(np.stack([shoulder, elbow, line[-1]], axis=1), abs=1e-12)
+    picture = scene.draw(2)
+    for view in scene.views:
+        for x, y in view.ax.transData.transform(view.flat(frames.joints[2, [2, 4]])).round().astype(int):
+            assert pixels(picture[HEIGHT - y - 2 : HEIGHT - y + 2, x - 2 : x + 2], LINK) > 4
+    column = frames.joints[0, 0] - frames.foot
+    assert column / np.linalg.norm(column) == pytest.approx(truth.frames(run["q"][0]).axes[0])
 
 
 def test_the_plate_of_each_frame(hybrid: arm3r.Run) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
+from elbow_arms import as_elbow, scenario_of
 
 PUSHED = """
 format: 1
@@ -145,6 +146,21 @@ def test_the_page_of_a_scenario() -> None:
     assert "stiffness: 1000" in page.text and len(page.images) == 1
     free = arm3r.Scenario("{format: 1, initial: {q: [0, -30, 1]}}")
     assert "wall none" in Page(free._repr_html_()).text and "full turn" in Page(free._repr_html_()).text
+
+
+def test_an_elbow_arm_without_offsets_looks_as_the_planar_arm() -> None:
+    link = {"mass": 1.3, "com": 0.4, "inertia": [0.004, 0.031, 0.033]}
+    planar: dict[str, Any] = {
+        "convention": "simscape",
+        "base_height": 0.2,
+        "link1": {"mass": 0.6, "com": 0.1, "inertia_axial": 0.02},
+        "link2": {"length": 0.8, **link},
+        "link3": {"length": 0.6, **link},
+    }
+    elbow = as_elbow(planar)
+    bent = {**elbow, "link2": {**elbow["link2"], "offset": 0.3}}
+    pages = [Page(scenario_of(arm, initial={"q": [0.3, -0.5, 1.1]})._repr_html_()) for arm in (planar, elbow, bent)]
+    assert pages[0].images == pages[1].images != pages[2].images
 
 
 def test_the_page_of_a_scenario_that_is_not_valid() -> None:

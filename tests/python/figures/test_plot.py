@@ -11,14 +11,17 @@ import matplotlib
 import numpy as np
 import pytest
 from arm3r_cpp.commands import plot as plot_cli
+from arm3r_cpp.core.arm_line import arm_line
 from arm3r_cpp.plot import style
 from arm3r_cpp.plot.force_run import ForceRun
 from conftest import Cli, scenario_files
+from elbow_arms import WITH_OFFSETS, random_elbow_scenario, scenario_of
+from elbow_truth import Truth
 from figure_faults import crowded
 from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 from PIL import Image
-from random_scenarios import sample_seed
+from random_scenarios import sample_seed, yaml_of
 
 WITHOUT_WALL = {"tip", "velocities", "torques", "energies", "strobe"}
 WITH_WALL = WITHOUT_WALL | {"wall", "contact"}
@@ -119,6 +122,32 @@ def test_the_strobe_names_axes_and_forces(bounce: arm3r.Run) -> None:
     text = texts(arm3r.plot.lecture(bounce, panels=["strobe"])["strobe"])
     for part in ("$q_1$", "$q_2$", "$q_3$", "force on the wall", "force on the tip"):
         assert part in text
+
+
+def test_the_strobe_names_the_axes_of_an_elbow_arm_where_they_are() -> None:
+    run = scenario_of(WITH_OFFSETS, initial={"q": [0.4, -0.7, 1.1]}, time={"stop": 0.1}).run()
+    ax = arm3r.plot.lecture(run, panels=["strobe"])["strobe"].axes[0]
+    frames = Truth(WITH_OFFSETS).frames(run["q"][-1])
+    reach = scenario_of(WITH_OFFSETS, initial={"q": [0, 0, 0]}).arm.reach
+    names = {text.get_text(): text.get_position_3d() for text in ax.texts}
+    for name, origin, axis in zip(("$q_1$", "$q_2$", "$q_3$"), frames.origins[1:], frames.axes, strict=True):
+        assert names[name] == pytest.approx(origin + 0.4 * reach * axis)
+    last = [line.get_data_3d() for line in ax.lines if line.get_lw() == 4 and same_color(line.get_color(), style.ARM)]
+    assert np.transpose(last[-1])[[0, 1, 3]] == pytest.approx(np.array(frames.origins[1:]))
+
+
+def test_arms_are_drawn_through_the_points_in_which_they_bend() -> None:
+    """The truth's joints and tip are among them, and no two neighbours are one."""
+    for number in range(30):
+        keys = random_elbow_scenario(np.random.default_rng([sample_seed(), number]))
+        arm, truth = arm3r.Scenario(yaml_of(keys)).arm, Truth(keys["arm"])
+        q = np.random.default_rng(number).uniform(-4, 4, (5, 3))
+        (points, joints), told = arm_line(arm, q), f"seed {sample_seed()}, scenario {number}"
+        _, (_, base, shoulder, elbow), _ = truth.frames(q)
+        expected = [base, shoulder, elbow, truth.tip_position(q)]
+        assert points[:, [0, *joints, -1]] == pytest.approx(np.stack(expected, axis=1), abs=1e-12), told
+        lengths = np.linalg.norm(np.diff(points, axis=1), axis=2)
+        assert lengths.min() > 1e-9 and np.ptp(lengths, axis=0).max() < 1e-12, told
 
 
 def test_every_peak_has_the_instant_of_the_summary(bounce: arm3r.Run) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from arm3r_cpp.interchange import mjcf
-from arm3r_cpp.interchange.bodies import arm_of
 from arm3r_cpp.interchange.urdf import urdf_text
+from arm3r_cpp.robots.arm_bodies import arm_of
 from exported import Numbers, by_mujoco, by_pinocchio, largest_difference
 
 ARMS, LIMIT = 100, 1e-12

@@ -28,6 +28,8 @@ from arm3r_cpp.commands import live as live_command
 from arm3r_cpp.commands import view as view_command
 from arm3r_cpp.live import page, page_data, server
 from arm3r_cpp.live.show import Cell
+from elbow_arms import WITH_OFFSETS, scenario_of
+from elbow_truth import Truth
 
 STAND_IN = "<html><body><main></main><script>page()</script></body></html>"
 NASTY = "</script><script>alert(1)</script><!--"
@@ -78,6 +80,19 @@ def test_a_file_holds_the_run_to_the_last_bit(folder: Path, tmp_path: Path) -> N
     assert data["summary"]["hash"] == run.summary["hash"]
     assert data["resolved"]["wall"]["contact"]["stiffness"] == 1000
     assert arm3r.Scenario(data["scenario"]).run().summary["hash"] == run.summary["hash"]
+
+
+def test_a_file_holds_where_an_elbow_arm_is() -> None:
+    run = scenario_of(WITH_OFFSETS, initial={"q": [0.4, -0.7, 1.1]}, time={"stop": 0.1}).run()
+    data, truth = page_data.of_run(run), Truth(WITH_OFFSETS)
+    points, axes = (
+        np.frombuffer(gzip.decompress(base64.b64decode(data["arm"][name]))).reshape(len(run.t), -1, 3)
+        for name in ("points", "axes")
+    )
+    frames = truth.frames(run["q"])
+    joints = [frames.origins[1], frames.origins[2], frames.origins[3], truth.tip_position(run["q"])]
+    assert points[:, [1, 2, 4, 6]] == pytest.approx(np.stack(joints, axis=1), abs=1e-12)
+    assert axes == pytest.approx(np.stack(frames.axes, axis=1), abs=1e-12)
 
 
 def test_the_same_run_gives_the_same_bytes(folder: Path, tmp_path: Path) -> None:

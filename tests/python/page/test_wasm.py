@@ -17,6 +17,8 @@ import numpy as np
 import pytest
 from arm3r_cpp import _native
 from conftest import ROOT, Cli, scenario_files
+from elbow_arms import WITH_OFFSETS
+from random_scenarios import yaml_of
 
 pytestmark = pytest.mark.needs("wasm")
 
@@ -104,6 +106,16 @@ def test_the_texts_of_reference_are_the_native_ones(cli: Cli) -> None:
     q = [0.1, -0.5, 1.0]
     assert positions["tip"].tolist() == arm.tip_position(q).tolist()
     assert positions["elbow"].tolist() == arm.elbow_position(q).tolist()
+
+
+def test_the_points_and_axes_of_an_elbow_arm_are_the_native_ones() -> None:
+    q = np.random.default_rng(3).uniform(-3, 3, (4, 3))
+    scenario = {"format": 1, "arm": WITH_OFFSETS, "initial": {"q": [0.4, -0.7, 1.1]}}
+    [found] = core(["positions", yaml_of(scenario), q.ravel().tolist()])
+    arm = arm3r.Scenario(yaml_of(scenario)).arm
+    assert found["points"].tolist() == arm.points(q).ravel().tolist()
+    assert found["axes"].reshape(4, 3, 3).tolist() == arm.geometric_jacobian(q)[:, 3:].swapaxes(1, 2).tolist()
+    assert found["reach"] == arm.reach
 
 
 def test_the_example_of_the_page_runs(tmp_path: Path) -> None:

@@ -71,8 +71,14 @@ class ThreeR:
     states_gravity = True
 
     def __init__(self, scenario: Scenario | Arm | None = None) -> None:
-        """By default the lecture's arm."""
+        """By default the lecture's arm.
+
+        Raises:
+            UsageError: it is an elbow arm.
+        """
         self._params = scenario.params if scenario is not None else Scenario().params
+        if self._params[param_index("arm.model")]:
+            raise UsageError("names such as a2 and m2 are numbers of a planar arm; this one is an elbow arm")
         self._scenario = scenario.copy() if isinstance(scenario, Scenario) else None
         self.is_default = scenario is None
         self.convention = CONVENTIONS[int(self._params[param_index("arm.convention")])]
@@ -243,39 +249,8 @@ class ThreeR:
         return kind.due(self.arm(convention, quantities, follows), states, rows)
 
     def _law_torque(self, convention: str, q: Floats, qd: Floats) -> Floats:
-        """The torque of the scenario's law at the start, from each state.
-
-        Raises:
-            UsageError: there is no law.
-        """
-        if self._scenario is None or self._scenario["controller.type"] == "none":
-            raise UsageError("a controller is judged by the law of a scenario: name one that has a controller")
         signs = np.array([1.0, -1.0, -1.0]) if convention != self._own_convention else np.ones(3)
-        here = self._scenario.copy()._quiet()
-        start = here["time.start"]
-        here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}
-        self._stay_at_start(here)
-        torques = []
-        for angles, rates in zip(q, qd, strict=True):
-            here["initial.q"], here["initial.qd"] = signs * angles, signs * rates
-            torques.append(signs * here.run()["tau"][0])
-        return np.array(torques)
-
-    def _stay_at_start(self, here: Scenario) -> None:
-        """Make a reference begin where the scenario starts, and not at each state.
-
-        Raises:
-            UnjudgedError: it moves at once.
-        """
-        word = str(here["reference.type"])
-        if word in ("line", "sinusoid"):
-            raise UnjudgedError(
-                f"cannot be judged: the reference `{word}` moves from where the arm starts; a law is judged with the "
-                "reference hold or point"
-            )
-        if word in ("hold", "minimum_jerk", "circle"):  # at rest at the start
-            force = here["reference.force"]
-            here["reference"] = {"type": "point", "q": list(here["initial.q"]), **({"force": force} if force else {})}
+        return signs * law_torque(self._scenario, signs * q, signs * qd)
 
     def variants(self, kind: Kind) -> list[tuple[str, ThreeR]]:
         """Arms with a mistake that its quantities do not tell."""
@@ -293,3 +268,39 @@ class ThreeR:
         return np.stack(
             [np.stack([c1 * c, -s1, c1 * s], 1), np.stack([s1 * c, c1, s1 * s], 1), np.stack([-s, zero, c], 1)], 1
         )
+
+
+def law_torque(scenario: Scenario | None, q: Floats, qd: Floats) -> Floats:
+    """The torque of a scenario's law at the start, from each state.
+
+    Raises:
+        UsageError: there is no law.
+    """
+    if scenario is None or scenario["controller.type"] == "none":
+        raise UsageError("a controller is judged by the law of a scenario: name one that has a controller")
+    here = scenario.copy()._quiet()
+    start = here["time.start"]
+    here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}
+    _stay_at_start(here)
+    torques = []
+    for angles, rates in zip(q, qd, strict=True):
+        here["initial.q"], here["initial.qd"] = angles, rates
+        torques.append(here.run()["tau"][0])
+    return np.array(torques)
+
+
+def _stay_at_start(here: Scenario) -> None:
+    """Make a reference begin where the scenario starts, and not at each state.
+
+    Raises:
+        UnjudgedError: it moves at once.
+    """
+    word = str(here["reference.type"])
+    if word in ("line", "sinusoid"):
+        raise UnjudgedError(
+            f"cannot be judged: the reference `{word}` moves from where the arm starts; a law is judged with the "
+            "reference hold or point"
+        )
+    if word in ("hold", "minimum_jerk", "circle"):  # at rest at the start
+        force = here["reference.force"]
+        here["reference"] = {"type": "point", "q": list(here["initial.q"]), **({"force": force} if force else {})}

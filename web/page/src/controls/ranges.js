@@ -7,11 +7,13 @@ const STEPS = 1000; // positions of a slider
 const USUAL = { noise: 2, delay: 30, mass: 3, armature: 0.1, resolution: 0.5, tool_mass: 2, coefficient: 1, tip: 0.3,
   damping: 2, friction: 2, cutoff: 200, contact_on: 5, contact_off: 5, force: 20, bias: 5, start: 5, rise: 2, seed: 50,
   face_offset: 0.3, base_height: 1, velocity_gain: 50, position_gain: 500, force_integral_gain: 20, force_gain: 2,
-  velocity: 0.3, rate: 1, gravity: 10, q: Math.PI, qd: 3, point: 2, joint_damping: 20, stiffness: 1000, phase: Math.PI }; // prettier-ignore
+  velocity: 0.3, rate: 1, gravity: 10, q: Math.PI, qd: 3, point: 2, joint_damping: 20, stiffness: 1000, phase: Math.PI,
+  offset: 0.3, shoulder_offset: 0.3 }; // prettier-ignore
 
 /** Numbers that are as sensible below zero as above. */
 const SIGNED = ["q", "qd", "point", "tip", "velocity", "gravity", "bias", "force", "phase", "distance", "face_offset",
-  "torque", "q_amplitude", "tip_amplitude", "plane_point", "value", "initial", "amplitude", "base_height"]; // prettier-ignore
+  "torque", "q_amplitude", "tip_amplitude", "plane_point", "value", "initial", "amplitude", "base_height", "position",
+  "offset", "shoulder_offset"]; // prettier-ignore
 
 /** Factors by which a positive number goes down and up. */
 const SPAN = { default: 30, length: 3, rate: 20, stop: 3, duration: 10, period: 10, radius: 5, forgetting: 1.05 };
@@ -33,7 +35,7 @@ export function isAngle(key) {
 }
 
 function wanted(name, key, value) {
-  if (name === "q") return { low: -Math.PI, high: Math.PI, logarithmic: false };
+  if (name === "q" || name === "rotation") return { low: -Math.PI, high: Math.PI, logarithmic: false };
   if (SIGNED.includes(name) && key.minimum < 0) {
     const size = Math.max(2 * Math.abs(value), value === 0 ? (USUAL[name] ?? 1) : 0);
     return { low: -size, high: size, logarithmic: false };

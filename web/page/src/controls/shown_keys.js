@@ -14,7 +14,7 @@ export const GROUPS = [
 
 /** Keys for the text alone: shapes, directions, tolerances, tables, and choices between many that need others. */
 const TEXT_ONLY = [
-  /^arm\.link1\b/, /\.(section|density|com|inertia|radius|shape)\b/, /^arm\.gravity\[[01]\]/, /friction_velocity$/,
+  /^arm\.(link1|rotor\d|joint_sign|joint_zero|model)\b/, /\.(section|density|com|inertia|radius|shape)\b/, /^arm\.gravity\[[01]\]/, /friction_velocity$/,
   /slip_velocity$/, /normal\b/, /^wall\.size/, /direction\b/, /axis\b/, /^wall\.motion\.[tsva]\b/, /^reference\.[txyz]\b/,
   /^solver\.(rtol|atol|tol|max_step|max_steps)$/, /^time\.(log_every|start)$/, /^controller\.model/, /preset$/, /torque_limit/,
   /^estimator\.largest_condition$/, /^arm\.armature/, /^reference\.type$/, /^wall\.rotation\.type$/,

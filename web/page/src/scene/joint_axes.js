@@ -12,10 +12,9 @@ export class JointAxes {
     this.object = new Group().add(...this.axes.map((axis) => axis.object));
   }
 
-  place({ shoulder, elbow, jointAxis }, size) {
-    this.axes[0].place([shoulder[0], shoulder[1], shoulder[2] + 0.03 * size], [0, 0, 1], size);
-    this.axes[1].place(shoulder, jointAxis, size);
-    this.axes[2].place(elbow, jointAxis, size);
+  place({ points, axes }, size) {
+    const above = points[1].map((part, i) => part + 0.03 * size * axes[0][i]);
+    [above, points[2], points[4]].forEach((point, i) => this.axes[i].place(point, axes[i], size));
   }
 
   /** Where the labels stand. */

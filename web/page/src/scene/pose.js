@@ -1,32 +1,37 @@
 /** Where everything stands at one time of a run: points in m, base axes. */
 import { number } from "../scenario/values.js";
-import { valueOf } from "../simulate/thin.js";
+import { valueOf, valuesOf } from "../simulate/thin.js";
 
 const XYZ = ["x", "y", "z"];
 
-/** Points of the arm, frame of the wall, both forces at a time, s; straight between rows. */
+/**
+ * Points of the arm, axes of its joints, frame of the wall, both forces at a time, s; straight between rows.
+ *
+ * points: of axis 1 nearest to the origin, of axis 1 at the height of joint 2, joint 2, the end of link 2 in its plane,
+ * joint 3, the end of link 3 in its plane, the tip. up: along axis 1, away from the base.
+ */
 export function poseAt(run, time) {
-  const { columns, resolved } = run;
+  const { columns, resolved, arm } = run;
   const value = (name) => valueOf(columns.t, columns[name], time);
   const three = (name) => XYZ.map((axis) => value(`${name}_${axis}`));
-  const q = [1, 2, 3].map((joint) => value(`q${joint}`));
-  const { arm, wall } = resolved;
-  const shoulder = [0, 0, arm.base_height];
-  const raising = arm.convention === "slide" ? 1 : -1; // model (1.1): the sign of joints 2 and 3
-  const forward = [Math.cos(q[0]), Math.sin(q[0])];
-  const out = arm.link2.length * Math.cos(q[1]);
-  const up = raising * arm.link2.length * Math.sin(q[1]);
+  const points = vectors(valuesOf(columns.t, arm.points, time));
+  const axes = vectors(valuesOf(columns.t, arm.axes, time)).map(unit);
+  const { wall } = resolved;
   return {
-    q,
-    shoulder,
-    elbow: [forward[0] * out, forward[1] * out, arm.base_height + up],
-    tip: three("tip"),
-    jointAxis: [forward[1] * raising, -forward[0] * raising, 0],
+    points,
+    axes,
+    up: axes[0].map((part) => part * (resolved.arm.joint_sign?.[0] ?? 1)),
+    tip: points.at(-1),
     wall: wall && "wall_x" in columns ? { point: three("wall"), ...wallFrame(wall, time) } : null,
     forceOnTip: three("f_on_tip"),
     forceOnWall: three("f_on_wall"),
     contact: value("contact") > 0.5,
   };
+}
+
+/** Three numbers each. */
+function vectors(numbers) {
+  return Array.from({ length: numbers.length / 3 }, (_, i) => [...numbers.slice(3 * i, 3 * i + 3)]);
 }
 
 /** Unit vectors of the plate at a time, model (4.1): normal towards the arm, e1 and e2 along the plate. */

@@ -73,9 +73,8 @@ export class Scene {
   }
 
   #show(run) {
-    const { link2, link3, base_height: height } = run.resolved.arm;
-    const size = link2.length + link3.length;
-    const floor = floorOf(run, size, height);
+    const size = run.arm.reach;
+    const floor = floorOf(run, size);
     const opened = this.store.get("opened"); // the view stays while the same scenario is changed
     if (opened !== this.opened || size !== this.size) this.view.frame(pointsOf(run, size, floor), size);
     Object.assign(this, { run, size, floor, opened });
@@ -145,13 +144,14 @@ function pointsOf(run, size, floor) {
   const points = [[0, 0, floor], [0, -0.4 * size, floor]];
   for (let k = 0; k <= 20; k += 1) {
     const pose = poseAt(run, t[0] + (k / 20) * (t[t.length - 1] - t[0]));
-    points.push(pose.shoulder, pose.elbow, pose.tip);
+    points.push(...pose.points.slice(1));
   }
   return points;
 }
 
 /** Height of the floor: that of the base, or below all that the tip does, in steps of half the reach. */
-function floorOf({ columns }, size, height) {
+function floorOf({ columns, arm }, size) {
+  const height = arm.points[5];
   let lowest = Math.min(0, height);
   for (const z of columns.tip_z) lowest = Math.min(lowest, z);
   if (height > 0.1 * size && lowest >= 0) return 0;

@@ -1,7 +1,7 @@
 /** A run that Python put into the page: its rows to the last bit, not simulated again. */
 import { unpacked } from "../app/given.js";
 
-/** As the worker sends a run. data: { scenario, resolved, columns, units, matrix, summary, report }. */
+/** As the worker sends a run. data: { scenario, resolved, columns, units, matrix, arm, summary, report }. */
 export async function recordedRun(data) {
   const numbers = new Float64Array(await unpacked(data.matrix));
   const rows = numbers.length / data.columns.length;
@@ -9,9 +9,11 @@ export async function recordedRun(data) {
   data.columns.forEach((name, i) => {
     columns[name] = numbers.subarray(i * rows, (i + 1) * rows);
   });
+  const [points, axes] = await Promise.all([data.arm.points, data.arm.axes].map(unpacked));
+  const arm = { points: new Float64Array(points), axes: new Float64Array(axes), reach: data.arm.reach };
   const { summary, report, resolved } = data;
   const { events, checks, name } = summary;
-  return { columns, units: data.units, events, summary, checks, report, resolved, name, recorded: true };
+  return { columns, units: data.units, events, summary, checks, report, resolved, arm, name, recorded: true };
 }
 
 /** The run as CSV; each number reads back to the same bits. */

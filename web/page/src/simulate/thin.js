@@ -49,8 +49,15 @@ export function rowAt(t, time) {
 
 /** A column at a time, straight between rows. */
 export function valueOf(t, column, time) {
+  return valuesOf(t, column, time)[0];
+}
+
+/** Rows of several numbers, one after the other in an array, at a time, straight between rows: those of one row. */
+export function valuesOf(t, numbers, time) {
+  const width = numbers.length / t.length;
   const i = rowAt(t, time);
-  if (i >= t.length - 1) return column[t.length - 1];
+  const row = numbers.slice(width * i, width * (i + 1));
+  if (i >= t.length - 1) return row;
   const share = Math.min(1, Math.max(0, (time - t[i]) / (t[i + 1] - t[i])));
-  return column[i] + share * (column[i + 1] - column[i]);
+  return row.map((value, j) => value + share * (numbers[width * (i + 1) + j] - value));
 }

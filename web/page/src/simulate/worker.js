@@ -29,9 +29,13 @@ const answers = {
     const start = performance.now();
     const { events, summary, checks, report, ...own } = core.run(text, { name });
     const { columns, units } = resolved.time.log_columns ? core.run(text, { name, set: ALL_COLUMNS }) : own;
-    const run = { columns, units, events, summary, checks, report, resolved, name: summary.name };
+    const { q1, q2, q3, t } = columns;
+    const angles = Float64Array.from({ length: 3 * t.length }, (_, i) => [q1, q2, q3][i % 3][(i / 3) | 0]);
+    const arm = core.positions(text, angles, { name });
+    const run = { columns, units, events, summary, checks, report, resolved, arm, name: summary.name };
     run.milliseconds = performance.now() - start;
-    post({ kind: "run", id, text, run }, Object.values(columns).map((column) => column.buffer));
+    const moved = [...Object.values(columns), arm.points, arm.axes];
+    post({ kind: "run", id, text, run }, moved.map((numbers) => numbers.buffer)); // prettier-ignore
   },
 
   band({ id, text, name, options }) {

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._native import Floats
-from ..robots.bodies import Body, Joint, rotation_of, with_mass
+from .bodies import Body, Joint, rotation_of, with_mass
 
 Keys = Mapping[str, Any]
 
