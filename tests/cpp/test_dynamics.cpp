@@ -269,7 +269,7 @@ TEST_CASE(a_planar_arm_is_an_elbow_arm_without_offsets) {
         const auto number = [&](const std::string& key) { return param(c.params, key); };
         params.choose("arm.model", "elbow").set("arm.base.position", {0, 0, number("arm.base_height")});
         params.set("arm.link3.tip", {number("arm.link3.length"), 0, 0});
-        params.set("arm.link1.com", {0, 0, number("arm.link1.com")});
+        params.set("arm.link1.com", {0, 0, number("arm.link1.com") - number("arm.base_height")});
         params.set("arm.link1.inertia", {0, 0, number("arm.link1.inertia_axial"), 0, 0, 0});
         for (const std::string link : {"arm.link2", "arm.link3"}) {
             const Link<double>& stated = link == "arm.link2" ? c.arm.link2 : c.arm.link3;
@@ -352,7 +352,7 @@ TEST_CASE(common_terms_are_the_terms_of_every_plant) {
             const Vec3<double> q = random.vector(-1, 1), qd = random.vector(-5, 5);
             params.set("wall", 1).set("wall.acts_on_arm", i % 3 != 0).set("controller.torque", random.vector(-20, 20));
             params.set("wall.normal", random.vector(-1, 1)).set("wall.point", random.vector(-2, 2));
-            params.choose("wall.motion.type", i % 3 == 0 ? "constant" : "fixed").set("wall.size", {4, 6});
+            params.choose("wall.motion.type", i % 4 < 2 ? "constant" : "fixed").set("wall.size", {4, 6});
             params.set("wall.motion.velocity", random.vector(-0.1, 0.1)).set("wall.face_offset", random.in(0, 0.1));
             params.set("arm.base_height", random.in(0, 1)).set("arm.gravity", {0, 0, random.in(-10, 10)});
             params.set("controller.gravity", {0, 0, random.in(-10, 10)});

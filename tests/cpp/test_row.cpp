@@ -28,7 +28,7 @@ DenseOutput random_step(Random& random, bool is_series) {
 }
 
 Setup random_setup(Random& random, int trial, bool has_law) {
-    Params params = random_params(random);
+    Params params = trial % 7 < 3 ? random_elbow_params(random) : random_params(random);
     params.set("wall", 1).set("wall.point", random.vector(-1, 1)).set("wall.normal", random.vector(-1, 1));
     params.choose("wall.motion.type", "sinusoid")
         .set("wall.motion.amplitude", 0.1)
@@ -53,8 +53,11 @@ TEST_CASE(eight_rows_together_are_the_same_bits_as_one_by_one) {
         const DenseOutput dense = random_step(random, !has_law && trial % 3 > 0);
         const ControllerState<double> controller_state{};
         const RowPlan plan = make_row_plan(setup, {});
+        const JointConvention convention =
+            trial % 4 < 2 ? JointConvention{.sign = {1, -1, -1}, .zero = {0, 0.25 * (trial % 8), 0}}
+                          : JointConvention{};
         const auto context_of = [&](const RowPlan& chosen) -> RowContext {
-            return {setup.plant, trial % 4 < 2,
+            return {setup.plant, convention,
                     0.5,         static_cast<ContactMode>(trial % 4),
                     dense,       setup.controller(),
                     false,       controller_state,

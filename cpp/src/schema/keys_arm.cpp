@@ -82,7 +82,8 @@ void append_link(std::vector<Key>& keys, const std::string& link, bool has_tip) 
 
 void append_rotor(std::vector<Key>& keys, const std::string& rotor, const std::string& carrier) {
     keys.push_back(of_elbow(number(rotor + ".inertia", {0}, Source::ours, not_negative, "kg m^2",
-                                   "Inertia of the joint's rotor about its axis; ratio^2 times it adds to armature.")));
+                                   "Inertia of the joint's rotor about its axis, without which the carrying link's "
+                                   "tensor is given; ratio^2 times it adds to armature.")));
     keys.push_back(of_elbow(number(rotor + ".ratio", {1}, Source::ours, a_ratio, "",
                                    "Turns of the rotor, about its axis, per turn of the joint.")));
     keys.push_back(of_elbow(number(rotor + ".mass", {0}, Source::ours, {0, 1e9}, "kg",
