@@ -100,8 +100,9 @@ def c_entry(declaration: Declaration) -> list[str]:
 
 
 def cpp_items(header: str) -> Iterator[tuple[str, str]]:
-    """(comment, declaration) of what stands in namespace arm3r, function bodies left out."""
-    inside = header.partition("namespace arm3r {\n")[2].rpartition("}  // namespace arm3r")[0]
+    """(comment, declaration) of what stands in namespace arm3r or one within it, function bodies left out."""
+    inside = re.split(r"^namespace arm3r(?:::\w+)? \{\n", header, maxsplit=1, flags=re.M)[-1]
+    inside = inside.rpartition("}  // namespace arm3r")[0]
     comment: list[str] = []
     item: list[str] = []
     for line in inside.splitlines():

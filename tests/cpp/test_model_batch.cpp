@@ -136,7 +136,7 @@ const Case cases[] = {
      {1, 1},
      Kind::space,
      [](const State1& s) {
-         return Numbers{std::abs(s.p.S23 * s.p.C2 - s.p.C23 * s.p.S2), std::abs(radius(s.arm, s.p))};
+         return Numbers{std::abs(sine_of_bend(s.arm, s.p)), std::abs(radius(s.arm, s.p))};
      }},
 };
 

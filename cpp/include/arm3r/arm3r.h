@@ -297,8 +297,8 @@ typedef struct arm3r_scenario arm3r_scenario;
  * Returns 0 with the keys of an elbow arm as YAML, or another number with one sentence that says what is wrong. The text stays
  * until the thread calls the reader again. */
 typedef int32_t (*arm3r_arm_reader)(void *user, const char *request, const char **text);
-/* The reader of all scenarios of the process; without one, scenarios with arm.urdf are refused. */
-ARM3R_API int32_t arm3r_set_arm_reader(arm3r_arm_reader reader /* Nullable */, void *user);
+/* Sets the reader of all scenarios of the process; before, scenarios with arm.urdf are refused. */
+ARM3R_API int32_t arm3r_set_arm_reader(arm3r_arm_reader reader, void *user /* Nullable */);
 
 /* Read a scenario from text; `file` is the name used in messages and, without its suffix, the default of `name`. */
 ARM3R_API int32_t arm3r_scenario_create(const char *text, size_t text_size, const char *file, size_t file_size, arm3r_scenario **scenario);

@@ -106,7 +106,10 @@ int32_t arm3r_nearest_word(const char* word, const char* const* words, size_t n_
 }
 
 int32_t arm3r_set_arm_reader(arm3r_arm_reader reader, void* user) {
-    return guard([&] { set_arm_reader(reader, user); });
+    return guard([&] {
+        need(reinterpret_cast<const void*>(reader), "reader");
+        set_arm_reader(reader, user);
+    });
 }
 
 int32_t arm3r_scenario_create(const char* text, size_t text_size, const char* file, size_t file_size,

@@ -10,7 +10,6 @@
 
 namespace arm3r {
 
-// Null: none.
 void set_arm_reader(arm3r_arm_reader reader, void* user);
 
 // The tree with the keys of an elbow arm that the file gives; those beside arm.urdf stay. What is wrong is added to

@@ -245,7 +245,7 @@ private:
             if (!is_here || !key.decided_by) continue;
             if (key.decided_by != &primary && key.decided_by->path == join(path, last_name(key.decided_by->path)))
                 refused[key.decided_by][words_without(key)].push_back(last_name(key.path));
-            else if (key.required && std::isnan(default_of(key, params).front()))
+            else if (key.decided_by == &primary && key.required && std::isnan(default_of(key, params).front()))
                 required.push_back(last_name(key.path));
         }
         if (!required.empty()) members.push_back(member("required", json_words(required)));

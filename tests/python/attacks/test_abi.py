@@ -25,6 +25,9 @@ SIZE_MAX = 2 ** (8 * ffi.sizeof("size_t")) - 1
 # ---- the declarations -----------------------------------------------------------------------------------------------
 
 
+CALLBACKS = ("arm3r_progress", "arm3r_batch_progress", "arm3r_sink", "arm3r_law", "arm3r_arm_reader")
+
+
 @dataclass(frozen=True)
 class Argument:
     type: str
@@ -33,7 +36,7 @@ class Argument:
 
     @property
     def is_pointer(self) -> bool:
-        return "*" in self.type or self.type in ("arm3r_progress", "arm3r_batch_progress", "arm3r_sink", "arm3r_law")
+        return "*" in self.type or self.type in CALLBACKS
 
 
 @dataclass(frozen=True)
@@ -107,6 +110,8 @@ class Caller:
             return self.scenario(CONTROLLED) if controlled else getattr(self, handle[1])()
         if kind == "arm3r_law":
             return self.keep(ffi.callback("int32_t(void *, const arm3r_law_state *, double *)", _hold))
+        if kind == "arm3r_arm_reader":
+            return lib.arm3r_python_arm_reader  # the package's own: it stays for all tests that follow
         if kind == "arm3r_sink":
             return self.keep(ffi.callback("int32_t(void *, const char *, size_t)", lambda user, data, size: 0))
         if kind == "const arm3r_batch_law *":

@@ -381,7 +381,7 @@ def test_a_section_in_another_one_is_sent_to_the_top_level(refused):
 def test_the_controllers_copy_of_the_arm_belongs_to_controllers_that_use_it(refused):
     message = refused(HEAD + "controller: {model: {link2: {mass: 1}}}\n")
     assert "`mass` does not go with type none; take it out, or choose another controller.type" in message
-    assert "`model` belongs to controller" in refused(HEAD + "model: {link2: {mass: 1}}\n")
+    assert "`model` belongs to arm or controller" in refused(HEAD + "model: {link2: {mass: 1}}\n")
 
 
 def test_a_missing_key_names_its_parent(refused):
@@ -624,7 +624,7 @@ def test_every_value_names_its_origin(cli, tmp_path):
 def test_what_the_plant_has_not_is_not_printed_as_the_plants(cli):
     text = HEAD + "arm: {link2: {shape: cylinder, radius: 0.01}}\n"
     text += "controller: {type: gravity_compensation, model: {link2: {shape: brick, mass: 1}}}\n"
-    model = cli("check", "-", input=text).stdout.split("model:")[1]
+    model = cli("check", "-", input=text).stdout.split("\n  model:\n")[1]
     assert "length: as the plant" in model and "section" not in model
 
 

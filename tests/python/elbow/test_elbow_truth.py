@@ -1,4 +1,4 @@
-"""The truth that elbow arms are compared with, itself held against Pinocchio and against Lagrange's equations.
+"""The truth that elbow arms are compared with, itself compared with Pinocchio and with Lagrange's equations.
 
 Nothing here calls the library's arm. Random arms; a failure prints the seed and the keys, ARM3R_SEED sets the seed.
 """

@@ -45,6 +45,7 @@ def arm() -> arm3r.Arm:
 SHAPES = {
     "tip_position": (["q"], [(3,)]),
     "elbow_position": (["q"], [(3,)]),
+    "points": (["q"], [(7, 3)]),
     "centres": (["q"], [(3, 3)]),
     "jacobian": (["q"], [(3, 3)]),
     "geometric_jacobian": (["q"], [(6, 3)]),
@@ -76,7 +77,7 @@ def _results(function: Any, *arguments: Any) -> list[np.ndarray]:
 
 def test_every_function_is_in_the_table() -> None:
     public = {name for name in vars(arm3r.Arm) if not name.startswith("_")}
-    assert public == SHAPES.keys() | {"inverse_kinematics", "params"}
+    assert public == SHAPES.keys() | {"inverse_kinematics", "params", "reach", "from_urdf"}
 
 
 @each_function
