@@ -137,12 +137,11 @@ Node with_arm_file(Node root, const std::string& scenario_file, std::vector<Prob
     for (Node& node : arm->children)
         if (is_about_file(node)) node.type = Node::unset;
     const Reader reader = current_reader();
-    if (!reader.function) {
-        problems.push_back(refused(urdf, scenario_file, "a URDF is read by the Python package, which is not here",
-                                   "where it is: arm3r import " + visible(urdf.text) +
-                                       " > my_arm.yaml prints a scenario with the keys of its arm"));
-        return root;
-    }
+    if (!reader.function)
+        throw Error(ARM3R_E_FILE,
+                    {refused(urdf, scenario_file, "a URDF is read by the Python package, which is not here",
+                             "where it is: arm3r import " + visible(urdf.text) +
+                                 " > my_arm.yaml prints a scenario with the keys of its arm")});
     const char* text = nullptr;
     const std::int32_t status = call_back(reader.function, reader.user, request.c_str(), &text);
     const std::string answer = text ? text : "the reader gave no text";

@@ -25,24 +25,38 @@ ARM3R_INLINE FirstMoments<T> first_moments(const Arm<P>& arm, const Pose<T>& p) 
             l.G3 * p.S23 + e.Gy3 * p.C23};
 }
 
+// Products that the terms of the mass matrix and its derivatives share, kg m^2.
+template <class T>
+struct SharedProducts {
+    T D2S2, A2C2, D3S3, A3C3, aX3, aZ3;  // a: the length of link 2
+
+    template <class P>
+    ARM3R_INLINE SharedProducts(const Arm<P>& arm, const Pose<T>& p, const FirstMoments<T>& g)
+        : D2S2(arm.elbow.D2 * p.S2),
+          A2C2(arm.lumped.A2 * p.C2),
+          D3S3(arm.elbow.D3 * p.S23),
+          A3C3(arm.lumped.A3 * p.C23),
+          aX3(arm.link2.length * g.X3),
+          aZ3(arm.link2.length * g.Z3) {}
+};
+
 template <class P, class T>
 ARM3R_INLINE AngleInertia<T> angle_inertia(const Arm<P>& arm, const Pose<T>& p, const FirstMoments<T>& g) {
     const Lumped<P>& l = arm.lumped;
     const Elbow<P>& e = arm.elbow;
-    const P &a1 = e.shoulder_offset, &a2 = arm.link2.length;
-    const T C2 = p.C2, S2 = p.S2, C3 = p.C23, S3 = p.S23;
+    const SharedProducts<T> s(arm, p, g);
+    const T once = s.D2S2 + s.aX3, offset = e.shoulder_offset * (g.X2 + g.X3);
     AngleInertia<T> N;
-    N.N11 = l.A1 + (C2 * (l.A2 * C2 + (2.0 * e.D2) * S2) + C3 * (l.A3 * C3 + (2.0 * e.D3) * S3)) +
-            (2.0 * a1) * (g.X2 + g.X3) + (2.0 * a2) * (C2 * g.X3);
-    N.N12 = e.E2 * S2 + e.F2 * C2;
-    N.N13 = e.E3 * S3 + e.F3 * C3;
+    N.N11 = l.A1 + (p.C2 * ((s.A2C2 + once) + once) + p.C23 * ((s.A3C3 + s.D3S3) + s.D3S3)) + (offset + offset);
+    N.N12 = e.E2 * p.S2 + e.F2 * p.C2;
+    N.N13 = e.E3 * p.S23 + e.F3 * p.C23;
     if (e.has_skew_rotors) {
-        const T skew = e.E23 * S2 + e.F23 * C2;
+        const T skew = e.E23 * p.S2 + e.F23 * p.C2;
         N.N12 = N.N12 + (e.K12 - skew);
         N.N13 = N.N13 + skew;
     }
     N.N22 = T(l.B2 + l.J3);
-    N.N23 = a2 * (C2 * g.X3 + S2 * g.Z3) - l.J3;
+    N.N23 = (p.C2 * s.aX3 + p.S2 * s.aZ3) - l.J3;
     N.N33 = T(l.B3 + l.J3);
     return N;
 }
@@ -64,17 +78,17 @@ struct VelocityTerms {
 
 template <class P, class T>
 ARM3R_INLINE VelocityTerms<T> velocity_terms(const Arm<P>& arm, const Pose<T>& p, const FirstMoments<T>& g) {
-    const Lumped<P>& l = arm.lumped;
     const Elbow<P>& e = arm.elbow;
-    const P &a1 = e.shoulder_offset, &a2 = arm.link2.length;
-    const T C2 = p.C2, S2 = p.S2, C3 = p.C23, S3 = p.S23;
+    const P& a1 = e.shoulder_offset;
+    const SharedProducts<T> s(arm, p, g);
+    const T once = s.D2S2 + s.aX3, C2aZ3 = p.C2 * s.aZ3;
     VelocityTerms<T> v;
-    v.h2 = C2 * (e.D2 * C2) - S2 * (l.A2 * C2 + e.D2 * S2 + a2 * g.X3) - a1 * g.Z2;
-    v.h3 = C3 * (e.D3 * C3) - S3 * (l.A3 * C3 + e.D3 * S3) - (a1 + a2 * C2) * g.Z3;
-    v.k = a2 * (S2 * g.X3 - C2 * g.Z3);
-    v.m12 = e.E2 * C2 - e.F2 * S2;
-    v.m13 = e.E3 * C3 - e.F3 * S3;
-    v.x = e.has_skew_rotors ? T(e.E23 * C2 - e.F23 * S2) : T(0.0);
+    v.h2 = p.C2 * (e.D2 * p.C2) - p.S2 * (s.A2C2 + once) - a1 * g.Z2;
+    v.h3 = p.C23 * (e.D3 * p.C23) - p.S23 * (s.A3C3 + s.D3S3) - (a1 * g.Z3 + C2aZ3);
+    v.k = p.S2 * s.aX3 - C2aZ3;
+    v.m12 = e.E2 * p.C2 - e.F2 * p.S2;
+    v.m13 = e.E3 * p.C23 - e.F3 * p.S23;
+    v.x = e.has_skew_rotors ? T(e.E23 * p.C2 - e.F23 * p.S2) : T(0.0);
     return v;
 }
 
@@ -173,15 +187,15 @@ ARM3R_INLINE P weight_times_reach(const Arm<P>& arm) {
            (abs(arm.lumped.G2) + abs(e.Gy2) + abs(arm.lumped.G3) + abs(e.Gy3) + abs(e.Hu) + abs(e.Hv));
 }
 
-// The accelerations of the angles by the torques on them, velocity terms included: a Schur complement on q1 (10.11).
+// The accelerations of the angles by the torques on them, velocity terms included: a Schur complement on q1 (10.11), times
+// the determinant of the link angles, so that the two divisions do not wait for each other.
 template <class T>
 ARM3R_INLINE Vec3<T> solved(const AngleInertia<T>& N, const Vec3<T>& torque) {
-    const T inverse_det = 1.0 / (N.N22 * N.N33 - N.N23 * N.N23);
-    const T z2 = (N.N33 * N.N12 - N.N23 * N.N13) * inverse_det, z3 = (N.N22 * N.N13 - N.N23 * N.N12) * inverse_det;
-    const T y2 = (N.N33 * torque[1] - N.N23 * torque[2]) * inverse_det;
-    const T y3 = (N.N22 * torque[2] - N.N23 * torque[1]) * inverse_det;
-    const T first = (torque[0] - (z2 * torque[1] + z3 * torque[2])) / (N.N11 - (N.N12 * z2 + N.N13 * z3));
-    return {first, y2 - z2 * first, y3 - z3 * first};
+    const T det = N.N22 * N.N33 - N.N23 * N.N23, inverse_det = 1.0 / det;
+    const T z2 = N.N33 * N.N12 - N.N23 * N.N13, z3 = N.N22 * N.N13 - N.N23 * N.N12;
+    const T y2 = N.N33 * torque[1] - N.N23 * torque[2], y3 = N.N22 * torque[2] - N.N23 * torque[1];
+    const T first = (det * torque[0] - (z2 * torque[1] + z3 * torque[2])) / (det * N.N11 - (N.N12 * z2 + N.N13 * z3));
+    return {first, (y2 - z2 * first) * inverse_det, (y3 - z3 * first) * inverse_det};
 }
 
 // qdd from the torques on the three angles.
