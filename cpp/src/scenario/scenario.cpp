@@ -159,6 +159,7 @@ private:
         for (const Key& key : schema()) {
             const std::vector<double> fallback = default_of(key, result_.params);
             std::copy(fallback.begin(), fallback.end(), at(key));
+            if (key.kind != Kind::choice && key.kind != Kind::section) continue;
             const Node* node = find(root_, parse_path(key.path));
             if (node && key.kind == Kind::choice) read_word(key, *node);
             if (node && key.kind == Kind::section && (node->type == Node::map || node->type == Node::unset)) {

@@ -76,6 +76,8 @@ def test_every_room_is_in_the_order_and_has_a_page(root: Path) -> None:
     assert found == set(ROOMS)
     pages = {room for room in ROOMS if (root / "cpp" / room / "README.md").is_file()}
     assert pages == set(ROOMS)
+    titles = {room: (root / "cpp" / room / "README.md").read_text().split("\n")[0] for room in pages}
+    assert not {room: title for room, title in titles.items() if not title.startswith("# ")}
 
 
 def test_no_include_points_up(root: Path) -> None:

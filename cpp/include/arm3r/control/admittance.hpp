@@ -23,7 +23,7 @@ ARM3R_INLINE Vec3<T> joint_error(const Arm<P>& model, const Measurement<T>& sens
         return Vec3<T>(turned_between(q1, sensed.q[0]), turned_between(q2, sensed.q[1]),
                        turned_between(q3, sensed.q[2]));
     };
-    if (model.is_elbow) {
+    if (model.is_elbow) [[unlikely]] {
         const auto [q1, q2, q3, C3] = elbow_arm::angles_at(model, point, front, [&](const T&) { return bent; });
         return changes(q1, q2, q3);
     }

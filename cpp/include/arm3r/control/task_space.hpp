@@ -9,7 +9,8 @@ namespace arm3r {
 // J^-1 xd: the joint rates that move the tip with xd (7.4). Infinite at a singular pose.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_rates(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& xd) {
-    if (arm.is_elbow) return elbow_arm::joint_rates(arm, p, xd);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::joint_rates(arm, p, xd);
     const T radial = p.C1 * xd[0] + p.S1 * xd[1];
     const T around = p.C1 * xd[1] - p.S1 * xd[0];
     const T S3 = sin_q3(p);
@@ -23,7 +24,8 @@ ARM3R_INLINE Vec3<T> joint_rates(const Arm<P>& arm, const Pose<T>& p, const Vec3
 // Jdot(q, qd) rates: m/s^2 (2.6). Exchanging qd and `rates` does not change it.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> jacobian_dot_times(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& rates) {
-    if (arm.is_elbow) return elbow_arm::jacobian_dot_times(arm, p, qd, rates);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::jacobian_dot_times(arm, p, qd, rates);
     const P a2 = arm.link2.length, a3 = arm.link3.length;
     const T w2 = qd[1], w3 = qd[1] + qd[2], v2 = rates[1], v3 = rates[1] + rates[2];
     const T outward_w = -(a2 * p.S2 * w2 + a3 * p.S23 * w3);

@@ -10,7 +10,8 @@ namespace arm3r {
 // M: kg m^2, armature included (3.3).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> mass_matrix(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) return elbow_arm::mass_matrix(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::mass_matrix(arm, p);
     const Lumped<P>& l = arm.lumped;
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
     const T M11 = l.A1 + p.C2 * (l.A2 * p.C2 + l.B * p.C23) + p.C23 * (l.A3 * p.C23 + l.B * p.C2);
@@ -24,7 +25,8 @@ ARM3R_INLINE Mat3<T> mass_matrix(const Arm<P>& arm, const Pose<T>& p) {
 // C: the Christoffel choice, so that Mdot = C + C^T (3.4).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> coriolis_matrix(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
-    if (arm.is_elbow) return elbow_arm::coriolis_matrix(arm, p, qd);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::coriolis_matrix(arm, p, qd);
     const Lumped<P>& l = arm.lumped;
     const T h3 = -p.S23 * (l.A3 * p.C23 + l.B * p.C2);
     const T h2 = h3 - p.S2 * (l.A2 * p.C2 + l.B * p.C23);
@@ -36,7 +38,8 @@ ARM3R_INLINE Mat3<T> coriolis_matrix(const Arm<P>& arm, const Pose<T>& p, const 
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> velocity_product(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // C qd
-    if (arm.is_elbow) return elbow_arm::velocity_product(arm, p, qd);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::velocity_product(arm, p, qd);
     const Lumped<P>& l = arm.lumped;
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T row2 = p.S2 * (l.A2 * p.C2 + l.B * p.C23);
@@ -59,7 +62,8 @@ ARM3R_INLINE Vec3<T> link_weight(const Lumped<P>& l, const Vec3<G>& g, bool vert
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> link_weight(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) return elbow_arm::link_weight(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::link_weight(arm, p);
     return link_weight(arm.lumped, arm.gravity, arm.gravity_is_vertical, p);
 }
 
@@ -97,7 +101,8 @@ struct LinkInertia {
 
 template <class P, class T>
 ARM3R_INLINE T kinetic_energy(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {  // T (3.7)
-    if (arm.is_elbow) return elbow_arm::kinetic_energy(arm, p, qd);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::kinetic_energy(arm, p, qd);
     const Lumped<P>& l = arm.lumped;
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T C3 = p.C2 * p.C23 + p.S2 * p.S23;
@@ -120,7 +125,8 @@ ARM3R_INLINE T energy_of_gravity(const Arm<P>& arm, const Pose<T>& p, const P& f
 
 template <class P, class T>
 ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, zero at the base origin (3.7)
-    if (arm.is_elbow) return arm.elbow.fixed_energy + elbow_arm::potential_energy_of_pose(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return arm.elbow.fixed_energy + elbow_arm::potential_energy_of_pose(arm, p);
     const P fixed = arm.link1.mass * arm.link1.com + (arm.link2.mass + arm.link3.mass + arm.payload) * arm.base_height;
     return energy_of_gravity(arm, p, fixed);
 }
@@ -128,14 +134,16 @@ ARM3R_INLINE T potential_energy(const Arm<P>& arm, const Pose<T>& p) {  // U, ze
 // U, zero where links 2 and 3 are level: what its changes are computed from, without the rounding errors of a height.
 template <class P, class T>
 ARM3R_INLINE T potential_energy_of_pose(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) return elbow_arm::potential_energy_of_pose(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::potential_energy_of_pose(arm, p);
     return energy_of_gravity(arm, p, P(0.0));
 }
 
 // J: no change of U, from any pose to any other, is more than twice this.
 template <class P>
 ARM3R_INLINE P weight_times_reach(const Arm<P>& arm) {
-    if (arm.is_elbow) return elbow_arm::weight_times_reach(arm);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::weight_times_reach(arm);
     const Vec3<P>& g = arm.gravity;
     return sqrt(P(dot(g, g))) * (abs(arm.lumped.G2) + abs(arm.lumped.G3));
 }
@@ -143,7 +151,8 @@ ARM3R_INLINE P weight_times_reach(const Arm<P>& arm) {
 // The joint torques of a force at the tip: J^T f.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> tip_force_torque(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& f_on_tip) {
-    if (arm.is_elbow) return elbow_arm::tip_force_torque(arm, p, f_on_tip);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::tip_force_torque(arm, p, f_on_tip);
     const T radial = p.C1 * f_on_tip[0] + p.S1 * f_on_tip[1];
     const T around = p.C1 * f_on_tip[1] - p.S1 * f_on_tip[0];
     const T third = arm.link3.length * (p.C23 * f_on_tip[2] - p.S23 * radial);
@@ -181,7 +190,7 @@ template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive,
                                         const Vec3<T>& weight) {
     const Vec3<T> torque(drive[0] - weight[0], (drive[1] - drive[2]) - weight[1], drive[2] - weight[2]);
-    if (arm.is_elbow)
+    if (arm.is_elbow) [[unlikely]]
         return elbow_arm::acceleration_by_angle_torques(arm, p, elbow_arm::first_moments(arm, p), qd, torque);
     return acceleration_by_link_torques(arm.lumped, LinkInertia<P>(arm.lumped), p, qd, torque);
 }
@@ -210,7 +219,8 @@ ARM3R_INLINE Vec3<T> inverse_dynamics(const Arm<P>& arm, const Pose<T>& p, const
     const Vec3<T> tau_g = gravity_torque(arm, p);
     const Vec3<T> tau_f = friction_torque(arm, qd);
     const Vec3<T> tau_e = tip_force_torque(arm, p, f_on_tip);
-    if (arm.is_elbow) return minus(plus(plus(plus(times(M, qdd), v), tau_g), tau_f), tau_e);
+    if (arm.is_elbow) [[unlikely]]
+        return minus(plus(plus(plus(times(M, qdd), v), tau_g), tau_f), tau_e);
     return {M(0, 0) * qdd[0] + v[0] + tau_g[0] + tau_f[0] - tau_e[0],
             M(1, 1) * qdd[1] + M(1, 2) * qdd[2] + v[1] + tau_g[1] + tau_f[1] - tau_e[1],
             M(2, 1) * qdd[1] + M(2, 2) * qdd[2] + v[2] + tau_g[2] + tau_f[2] - tau_e[2]};
@@ -220,7 +230,8 @@ ARM3R_INLINE Vec3<T> inverse_dynamics(const Arm<P>& arm, const Pose<T>& p, const
 template <class P, class T>
 ARM3R_INLINE Mat3<T> tip_mobility(const Arm<P>& arm, const Pose<T>& p) {
     const Mat3<T> J = jacobian(arm, p);
-    if (arm.is_elbow) return elbow_arm::tip_mobility(arm, p, J);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::tip_mobility(arm, p, J);
     const Mat3<T> M = mass_matrix(arm, p);
     const T inverse_det = 1.0 / (M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2));
     Mat3<T> W;
@@ -248,7 +259,8 @@ template <class P, class T>
 ARM3R_INLINE Mat3<T> operational_space_inertia(const Arm<P>& arm, const Pose<T>& p) {
     const Mat3<T> M = mass_matrix(arm, p);
     const Mat3<T> K = inverse_jacobian(arm, p);
-    if (arm.is_elbow) return elbow_arm::transformed(M, K);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::transformed(M, K);
     Mat3<T> L;
     for (int i = 0; i < 3; ++i) {
         for (int j = i; j < 3; ++j) {
@@ -264,7 +276,7 @@ ARM3R_INLINE Mat3<T> operational_space_inertia(const Arm<P>& arm, const Pose<T>&
 template <class P, class T>
 ARM3R_INLINE auto is_well_conditioned(const Arm<P>& arm, const Pose<T>& p) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    if (arm.is_elbow) {
+    if (arm.is_elbow) [[unlikely]] {
         const elbow_arm::Pivots<T> pivots = elbow_arm::pivots(arm, p);
         return pivots.lower > T(8 * epsilon) && pivots.first > T(8 * epsilon * pivots.diagonal);
     }

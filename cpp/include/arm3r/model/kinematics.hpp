@@ -8,7 +8,8 @@ namespace arm3r {
 
 template <class P, class T>
 ARM3R_INLINE T radius(const Arm<P>& arm, const Pose<T>& p) {  // r (2.2)
-    if (arm.is_elbow) return elbow_arm::radius(arm, elbow_arm::reaches(arm, p));
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::radius(arm, elbow_arm::reaches(arm, p));
     return arm.link2.length * p.C2 + arm.link3.length * p.C23;
 }
 
@@ -25,25 +26,29 @@ ARM3R_INLINE Vec3<T> in_arm_plane(const Arm<P>& arm, const Pose<T>& p, const T& 
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> tip_position(const Arm<P>& arm, const Pose<T>& p) {  // (2.3)
-    if (arm.is_elbow) return elbow_arm::tip_position(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::tip_position(arm, p);
     return in_arm_plane(arm, p, radius(arm, p), height(arm, p));
 }
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> shoulder_position(const Arm<P>& arm, const Pose<T>& p) {  // of joint 2
-    if (arm.is_elbow) return elbow_arm::shoulder_position(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::shoulder_position(arm, p);
     return {T(0.0), T(0.0), T(arm.base_height)};
 }
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> elbow_position(const Arm<P>& arm, const Pose<T>& p) {  // (2.3)
-    if (arm.is_elbow) return elbow_arm::elbow_position(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::elbow_position(arm, p);
     return in_arm_plane(arm, p, T(arm.link2.length * p.C2), T(arm.link2.length * p.S2));
 }
 
 template <class P, class T>
 ARM3R_INLINE Mat3<T> centres_of_mass(const Arm<P>& arm, const Pose<T>& p) {  // (2.3), a row a link
-    if (arm.is_elbow) return elbow_arm::centres_of_mass(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::centres_of_mass(arm, p);
     return from_rows<T>({T(0.0), T(0.0), T(arm.link1.com)},
                         in_arm_plane(arm, p, T(arm.link2.com * p.C2), T(arm.link2.com * p.S2)),
                         in_arm_plane(arm, p, T(arm.link2.length * p.C2 + arm.link3.com * p.C23),
@@ -53,7 +58,8 @@ ARM3R_INLINE Mat3<T> centres_of_mass(const Arm<P>& arm, const Pose<T>& p) {  // 
 // J: m, tip velocity per joint rate (2.4).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> jacobian(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) return elbow_arm::jacobian(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::jacobian(arm, p);
     const T r = radius(arm, p);
     const T h = height(arm, p);
     const T r3 = arm.link3.length * p.C23;
@@ -66,7 +72,8 @@ ARM3R_INLINE Mat3<T> jacobian(const Arm<P>& arm, const Pose<T>& p) {
 // J^-1, singular where S3 = 0 or r = 0 (2.8).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> inverse_jacobian(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) return elbow_arm::inverse_jacobian(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::inverse_jacobian(arm, p);
     const T r = radius(arm, p);
     const T h = height(arm, p);
     const T inverse_r = 1.0 / r;
@@ -82,7 +89,8 @@ ARM3R_INLINE Mat3<T> inverse_jacobian(const Arm<P>& arm, const Pose<T>& p) {
 // J_w: angular velocity of link 3 per joint rate (2.5).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> angular_jacobian(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) return elbow_arm::angular_jacobian(arm, p);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::angular_jacobian(arm, p);
     return from_rows<T>({T(0.0), p.S1, p.S1},    //
                         {T(0.0), -p.C1, -p.C1},  //
                         {T(1.0), T(0.0), T(0.0)});
@@ -91,7 +99,8 @@ ARM3R_INLINE Mat3<T> angular_jacobian(const Arm<P>& arm, const Pose<T>& p) {
 // J-dot: m/s (2.6).
 template <class P, class T>
 ARM3R_INLINE Mat3<T> jacobian_dot(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
-    if (arm.is_elbow) return elbow_arm::jacobian_dot(arm, p, qd);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::jacobian_dot(arm, p, qd);
     const T w1 = qd[0], w2 = qd[1], w3 = qd[1] + qd[2];
     const T r = radius(arm, p);
     const T h = height(arm, p);
@@ -107,7 +116,8 @@ ARM3R_INLINE Mat3<T> jacobian_dot(const Arm<P>& arm, const Pose<T>& p, const Vec
 // J qd without the matrix.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> tip_velocity(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
-    if (arm.is_elbow) return elbow_arm::tip_velocity(arm, p, qd);
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::tip_velocity(arm, p, qd);
     const T w2 = qd[1], w3 = qd[1] + qd[2];
     const T radial = -(arm.link2.length * p.S2 * w2 + arm.link3.length * p.S23 * w3);
     const T up = arm.link2.length * p.C2 * w2 + arm.link3.length * p.C23 * w3;
@@ -118,7 +128,7 @@ ARM3R_INLINE Vec3<T> tip_velocity(const Arm<P>& arm, const Pose<T>& p, const Vec
 // The determinant of J, m^3 (2.8), (10.3): its sign changes where the arm is stretched or folded, or the tip meets axis 1.
 template <class P, class T>
 ARM3R_INLINE T jacobian_determinant(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) {
+    if (arm.is_elbow) [[unlikely]] {
         const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
         return -(elbow_arm::plane_determinant(m) * elbow_arm::radius(arm, m));
     }
@@ -148,7 +158,7 @@ ARM3R_INLINE T cosine_of_bend(const Arm<P>& arm, const Pose<T>& p) {
 // dr/dt, m/s
 template <class P, class T>
 ARM3R_INLINE T radius_rate(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd) {
-    if (arm.is_elbow) {
+    if (arm.is_elbow) [[unlikely]] {
         const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
         return -((m.h2 + m.h3) * qd[1] + m.h3 * qd[2]);
     }
@@ -188,7 +198,7 @@ struct IkResult {
 template <class P, class T, class BendSign>
 ARM3R_INLINE IkResult<T> inverse_kinematics_of_branch(const Arm<P>& arm, const Vec3<T>& tip, bool front,
                                                       BendSign bend_sign) {
-    if (arm.is_elbow) {
+    if (arm.is_elbow) [[unlikely]] {
         const auto [q1, q2, q3, C3] = elbow_arm::angles_at(arm, tip, T(front ? 1.0 : -1.0), bend_sign);
         return {{q1, q2, q3}, C3};
     }
