@@ -21,8 +21,8 @@ SIZE = 1e-7
 FLOOR = SIZE
 """of what may differ, in a column's unit and relative to its largest value: some columns feel no disturbance"""
 NOISY = {"tip_dv": 100.0, "f_estimate": 1000.0, "stiffness_sigma": 100.0}
-"""times the floor: the error of an interpolant's slope, a residual over a Jacobian that is singular to 1e-3, and without
-noise the rounding errors of a force over how little the depth has changed"""
+"""times the floor: the error of an interpolant's slope, a residual over a Jacobian that is singular to 1e-3, and,
+without noise, the rounding errors of a force over how little the depth has changed"""
 MEASURED_BY = {"stiffness_sigma": "stiffness_estimate"}
 """whose size says how large a column is: without noise a standard deviation is nothing but rounding errors"""
 TIMES_OWN_ERROR = 5.0

@@ -13,14 +13,11 @@ import pytest
 import yaml
 from arm3r_cpp import Arm, ScenarioWarning, UsageError
 from arm3r_cpp.commands.interchange.import_urdf import main
-from arm3r_cpp.core.params import places
 from arm3r_cpp.core.scenario import Scenario
 from arm3r_cpp.robots.choice import Choice
 from arm3r_cpp.robots.explicit import explicit_arm, own_arm
 from arm3r_cpp.robots.start_scenario import start_pose, start_scenario
 from elbow_keys import ElbowKeys
-
-needs_elbow = pytest.mark.skipif("arm.link2.offset" not in places(), reason="this library has planar arms alone")
 
 
 def inertial(mass: float, x: float, principal: str = "0.01 0.02 0.03") -> str:
@@ -275,7 +272,6 @@ def test_the_command_prints_a_scenario(tmp_path: Path, capsys: pytest.CaptureFix
     assert "NAME=ANGLE is needed, got 'wrist'" in capsys.readouterr().err
 
 
-@needs_elbow
 def test_the_scenario_runs_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
     run = Scenario(start_scenario(Choice.of({"urdf": tmp_path / "arm.urdf", **LOCKED}))).run()
@@ -283,7 +279,6 @@ def test_the_scenario_runs_as_it_is(tmp_path: Path) -> None:
     assert np.ptp(run["q"], axis=0).max() < 1e-6
 
 
-@needs_elbow
 def test_an_arm_comes_from_a_urdf(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
     arm = Arm.from_urdf(tmp_path / "arm.urdf", lock={"wrist": "30 deg"})
