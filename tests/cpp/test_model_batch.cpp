@@ -135,9 +135,7 @@ const Case cases[] = {
      in_groups::singularity,
      {1, 1},
      Kind::space,
-     [](const State1& s) {
-         return Numbers{std::abs(sine_of_bend(s.arm, s.p)), std::abs(radius(s.arm, s.p))};
-     }},
+     [](const State1& s) { return Numbers{std::abs(sine_of_bend(s.arm, s.p)), std::abs(radius(s.arm, s.p))}; }},
 };
 
 // A result in slide as the rows tell it.

@@ -30,9 +30,9 @@ inline constexpr double min_length = 1e-100;
 using GroupFunction = void(const Model& model, std::size_t groups, const StateRows& rows);
 
 namespace in_groups {
-GroupFunction tip_position, elbow_position, arm_points, centres_of_mass, jacobian, geometric_jacobian, jacobian_dot, mass_matrix,
-    coriolis_matrix, velocity_product, gravity_torque, operational_space_inertia, effective_mass, manipulability,
-    energy, forward_dynamics, inverse_dynamics, tip_sensor;
+GroupFunction tip_position, elbow_position, arm_points, centres_of_mass, jacobian, geometric_jacobian, jacobian_dot,
+    mass_matrix, coriolis_matrix, velocity_product, gravity_torque, operational_space_inertia, effective_mass,
+    manipulability, energy, forward_dynamics, inverse_dynamics, tip_sensor;
 
 // |sin q3|, and the tip's distance from the joint-1 axis: the pose is singular where either vanishes.
 GroupFunction singularity;
