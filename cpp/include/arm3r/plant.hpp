@@ -238,8 +238,7 @@ public:
     template <std::size_t N>
     ARM3R_INLINE void common_derivative(const T& t, const Pose<T>& p, const State<T, N>& y, State<T, N>& dy,
                                         Vec3<T>& tau) const {
-        if (plant_.arm.is_elbow) [[unlikely]]
-            return elbow_derivative(t, p, y, dy, tau);
+        if (plant_.arm.is_elbow) return elbow_derivative(t, p, y, dy, tau);
         const T o(0.0);
         const Vec3<T> qd(y[3], y[4], y[5]);
         Vec3<T> torque(o, common_.weight2 * p.C2, common_.weight3 * p.C23);  // on q1, q2, q2 + q3

@@ -62,8 +62,7 @@ ARM3R_INLINE Vec3<T> link_weight(const Lumped<P>& l, const Vec3<G>& g, bool vert
 
 template <class P, class T>
 ARM3R_INLINE Vec3<T> link_weight(const Arm<P>& arm, const Pose<T>& p) {
-    if (arm.is_elbow) [[unlikely]]
-        return elbow_arm::link_weight(arm, p);
+    if (arm.is_elbow) return elbow_arm::link_weight(arm, p);
     return link_weight(arm.lumped, arm.gravity, arm.gravity_is_vertical, p);
 }
 
@@ -190,7 +189,7 @@ template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_acceleration(const Arm<P>& arm, const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& drive,
                                         const Vec3<T>& weight) {
     const Vec3<T> torque(drive[0] - weight[0], (drive[1] - drive[2]) - weight[1], drive[2] - weight[2]);
-    if (arm.is_elbow) [[unlikely]]
+    if (arm.is_elbow)
         return elbow_arm::acceleration_by_angle_torques(arm, p, elbow_arm::first_moments(arm, p), qd, torque);
     return acceleration_by_link_torques(arm.lumped, LinkInertia<P>(arm.lumped), p, qd, torque);
 }
