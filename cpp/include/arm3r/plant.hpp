@@ -238,72 +238,35 @@ public:
     template <std::size_t N>
     ARM3R_INLINE void common_derivative(const T& t, const Pose<T>& p, const State<T, N>& y, State<T, N>& dy,
                                         Vec3<T>& tau) const {
-        if (plant_.arm.is_elbow) return elbow_derivative(t, p, y, dy, tau);
-        const T o(0.0);
+        if (plant_.arm.is_elbow) return common_derivative_of<true>(t, p, y, dy, tau);
+        common_derivative_of<false>(t, p, y, dy, tau);
+    }
+
+    template <bool is_elbow, std::size_t N>
+    ARM3R_INLINE void common_derivative_of(const T& t, const Pose<T>& p, const State<T, N>& y, State<T, N>& dy,
+                                           Vec3<T>& tau) const {
         const Vec3<T> qd(y[3], y[4], y[5]);
-        Vec3<T> torque(o, common_.weight2 * p.C2, common_.weight3 * p.C23);  // on q1, q2, q2 + q3
+        Vec3<T> torque = torque_of_weight<is_elbow>(p);  // on q1, q2, q2 + q3
         T power(0.0), outer_power(0.0);
         if (plant_.holds_torque) {
             tau = broadcast<T>(plant_.held_torque);
             torque = {tau[0], torque[1] + (tau[1] - tau[2]), torque[2] + tau[2]};
             power = dot(tau, qd);
         } else if (plant_.controller.type == ControllerType::gravity_compensation) {
-            const Vec3<T> assumed = vertical_weight(plant_.controller.model, p);
-            tau = {o, assumed[1] + assumed[2], assumed[2]};
+            const Vec3<T> assumed = vertical_weight<is_elbow>(plant_.controller.model, p);
+            tau = {T(0.0), assumed[1] + assumed[2], assumed[2]};
             power = tau[1] * qd[1] + tau[2] * qd[2];
         } else {
             tau = zero_vector<T>();
         }
         if (plant_.acts_on_arm) {
-            const PlateForce push = plate_force(t, p);
+            const PlateForce push = plate_force<is_elbow>(t, p);
             if (push.acts) {
                 for (int i = 0; i < 3; ++i) torque[i] = torque[i] + push.torque[i];
                 outer_power = push.power;
             }
         }
-        const Vec3<T> qdd = acceleration_by_link_torques(plant_.arm.lumped, common_.inertia, p, qd, torque);
-        for (int i = 0; i < 3; ++i) {
-            dy[i] = qd[i];
-            dy[3 + i] = qdd[i];
-        }
-        if constexpr (N >= state_size) {
-            dy[work_of_actuators] = power;
-            dy[work_of_wall] = outer_power;
-        }
-    }
-
-    // The same of an elbow arm.
-    template <std::size_t N>
-    ARM3R_INLINE void elbow_derivative(const T& t, const Pose<T>& p, const State<T, N>& y, State<T, N>& dy,
-                                       Vec3<T>& tau) const {
-        const Arm<P>& arm = plant_.arm;
-        const T o(0.0);
-        const Vec3<T> qd(y[3], y[4], y[5]);
-        const auto& g = common_.elbow;
-        Vec3<T> torque(o, g.weight_x2 * p.C2 - g.weight_y2 * p.S2, g.weight_x3 * p.C23 - g.weight_y3 * p.S23);
-        T power(0.0), outer_power(0.0);
-        if (plant_.holds_torque) {
-            tau = broadcast<T>(plant_.held_torque);
-            torque = {tau[0], torque[1] + (tau[1] - tau[2]), torque[2] + tau[2]};
-            power = dot(tau, qd);
-        } else if (plant_.controller.type == ControllerType::gravity_compensation) {
-            tau = elbow_arm::on_joints(elbow_arm::link_weight(plant_.controller.model, p));
-            power = tau[1] * qd[1] + tau[2] * qd[2];
-        } else {
-            tau = zero_vector<T>();
-        }
-        if (plant_.acts_on_arm) {
-            const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
-            const Vec3<T> n(p.C1 * g.normal[0] + p.S1 * g.normal[1], p.C1 * g.normal[1] - p.S1 * g.normal[0],
-                            T(g.normal[2]));
-            const T distance = n[0] * elbow_arm::radius(arm, m) + n[1] * arm.elbow.lateral + n[2] * (m.h2 + m.h3);
-            const T force = push_at(t, (common_.face + common_.speed * t) - distance, p);
-            const Vec3<T> push = elbow_arm::angle_torques(arm, m, n);
-            for (int i = 0; i < 3; ++i) torque[i] = torque[i] + push[i] * force;
-            outer_power = force * common_.speed;
-        }
-        const Vec3<T> qdd =
-            elbow_arm::acceleration_by_angle_torques(arm, p, elbow_arm::first_moments(arm, p), qd, torque);
+        const Vec3<T> qdd = acceleration_of<is_elbow>(p, qd, torque);
         for (int i = 0; i < 3; ++i) {
             dy[i] = qd[i];
             dy[3 + i] = qdd[i];
@@ -426,8 +389,10 @@ private:
         return result;
     }
 
+    template <bool is_elbow>
     ARM3R_INLINE static Vec3<T> vertical_weight(const Arm<P>& arm, const Pose<T>& p) {
-        return link_weight(arm.lumped, arm.gravity, true, p);
+        if constexpr (is_elbow) return elbow_arm::link_weight(arm, p);
+        else return link_weight(arm.lumped, arm.gravity, true, p);
     }
 
     // What the terms of a plant of common terms need and does not depend on the state.
@@ -473,16 +438,25 @@ private:
         }
     };
 
-    // N: the push of an even plate with a plain spring at this depth; 0 where the tip is not inside.
-    ARM3R_INLINE T push_at(const T& t, const T& depth, const Pose<T>& p) const {
-        auto where = depth > T(0.0);
-        if (!in_any_lane(where)) return T(0.0);
-        if (plant_.wall.has_outline) {
-            const WallState<T> state = even_wall_at(plant_.wall, t);
-            const Indentation<T> in = indentation_at_rest(plant_.wall, state, tip_position(plant_.arm, p));
-            where = where && inside_outline(plant_.wall, in) >= T(0.0);
+    // The torques on the three angles of the weight along axis 1 that is not compensated.
+    template <bool is_elbow>
+    ARM3R_INLINE Vec3<T> torque_of_weight(const Pose<T>& p) const {
+        const T o(0.0);
+        if constexpr (is_elbow) {
+            const auto& g = common_.elbow;
+            return {o, g.weight_x2 * p.C2 - g.weight_y2 * p.S2, g.weight_x3 * p.C23 - g.weight_y3 * p.S23};
+        } else {
+            return {o, common_.weight2 * p.C2, common_.weight3 * p.C23};
         }
-        return plant_.contact.stiffness[0] * select(where, depth, T(0.0));
+    }
+
+    // torque: on q1, q2, q2 + q3, N m.
+    template <bool is_elbow>
+    ARM3R_INLINE Vec3<T> acceleration_of(const Pose<T>& p, const Vec3<T>& qd, const Vec3<T>& torque) const {
+        const Arm<P>& arm = plant_.arm;
+        if constexpr (is_elbow)
+            return elbow_arm::acceleration_by_angle_torques(arm, p, elbow_arm::first_moments(arm, p), qd, torque);
+        else return acceleration_by_link_torques(arm.lumped, common_.inertia, p, qd, torque);
     }
 
     // The push of an even plate with a plain spring on q1, q2, q2 + q3, N m, and its power, W.
@@ -492,25 +466,42 @@ private:
         T power;
     };
 
-    // In the plane of the links, whose horizontal direction is the radial one: (2.1) and (4.3).
-    ARM3R_INLINE PlateForce plate_force(const T& t, const Pose<T>& p) const {
+    // distance: of the tip along the plate's normal, m; torques_of_one(): those of 1 N along it, asked for where it presses.
+    template <class F>
+    ARM3R_INLINE PlateForce plate_force_by(const T& t, const Pose<T>& p, const T& distance, F torques_of_one) const {
         const Wall<P>& wall = plant_.wall;
-        const Arm<P>& arm = plant_.arm;
-        const P &a2 = arm.link2.length, &a3 = arm.link3.length;
-        const T radial = p.C1 * wall.n[0] + p.S1 * wall.n[1], around = p.C1 * wall.n[1] - p.S1 * wall.n[0];
-        const T r = a2 * p.C2 + a3 * p.C23, h = a2 * p.S2 + a3 * p.S23;
-        const T depth = (common_.face + common_.speed * t) - (radial * r + wall.n[2] * h);
+        const T depth = (common_.face + common_.speed * t) - distance;
         auto where = depth > T(0.0);
         if (!in_any_lane(where)) return {false, {}, {}};
         if (wall.has_outline) {
             const WallState<T> state = even_wall_at(wall, t);
-            where = where && inside_outline(wall, indentation_at_rest(wall, state, tip_position(arm, p))) >= T(0.0);
+            where =
+                where && inside_outline(wall, indentation_at_rest(wall, state, tip_position(plant_.arm, p))) >= T(0.0);
         }
         const T force = plant_.contact.stiffness[0] * select(where, depth, T(0.0));
-        return {true,
-                {(r * around) * force, (a2 * (p.C2 * wall.n[2] - p.S2 * radial)) * force,
-                 (a3 * (p.C23 * wall.n[2] - p.S23 * radial)) * force},
-                force * common_.speed};
+        const Vec3<T> one = torques_of_one();
+        return {true, {one[0] * force, one[1] * force, one[2] * force}, force * common_.speed};
+    }
+
+    // In the plane of the links, whose horizontal direction is the radial one: (2.1) and (4.3), or (10.1).
+    template <bool is_elbow>
+    ARM3R_INLINE PlateForce plate_force(const T& t, const Pose<T>& p) const {
+        const Arm<P>& arm = plant_.arm;
+        const Vec3<P>& n = is_elbow ? common_.elbow.normal : plant_.wall.n;
+        const T radial = p.C1 * n[0] + p.S1 * n[1], around = p.C1 * n[1] - p.S1 * n[0];
+        if constexpr (is_elbow) {
+            const elbow_arm::Reaches<T> m = elbow_arm::reaches(arm, p);
+            const T distance = radial * elbow_arm::radius(arm, m) + around * arm.elbow.lateral + n[2] * (m.h2 + m.h3);
+            return plate_force_by(t, p, distance, [&]() ARM3R_INLINE_LAMBDA {
+                return elbow_arm::angle_torques(arm, m, Vec3<T>(radial, around, T(n[2])));
+            });
+        } else {
+            const P &a2 = arm.link2.length, &a3 = arm.link3.length;
+            const T r = a2 * p.C2 + a3 * p.C23, h = a2 * p.S2 + a3 * p.S23;
+            return plate_force_by(t, p, T(radial * r + n[2] * h), [&]() ARM3R_INLINE_LAMBDA {
+                return Vec3<T>(r * around, a2 * (p.C2 * n[2] - p.S2 * radial), a3 * (p.C23 * n[2] - p.S23 * radial));
+            });
+        }
     }
 
     // Whether the actuators only compensate the weight of the controller's model. Both weights are then subtracted from

@@ -118,14 +118,14 @@ void store_joints(const arm3r_arm& arm, const Vec3<double>& v, double* data, std
     store(arm.convention.flipped(v), data, i);
 }
 
-Error singular(std::size_t i, const char* what) {
+Error singular(std::size_t i, const std::string& what) {
     return Error(
         ARM3R_E_SINGULAR,
         {{.code = "argument.singular",
           .path = "q[" + std::to_string(i) + "]",
           .message = what,
           .hint =
-              "|sin q3| and the tip's distance from the joint-1 axis over the arm's length must be at least 1e-3"}});
+              "|sin q3| (of the bend) and |r|, the tip's radius about axis 1, over the reach must be at least 1e-3"}});
 }
 
 void refuse_singular(const Model& model, std::size_t n, const double* q) {
@@ -137,7 +137,7 @@ void refuse_singular(const Model& model, std::size_t n, const double* q) {
         for (std::size_t i = 0; i < count; ++i) {
             if (sine[i] < min_sine) throw singular(first + i, "the arm is stretched or folded: the pose is singular");
             if (radius[i] < min_sine * reach(model.arm))
-                throw singular(first + i, "the tip is on the axis of joint 1: the pose is singular");
+                throw singular(first + i, std::string(tip_at_axis_text(model.arm)) + ": the pose is singular");
         }
     }
 }

@@ -58,24 +58,18 @@ struct Group {
     ARM3R_INLINE void store(const Vec3<Eight>& v, int result = 0) const {
         store_columns({v[0] + 0.0, v[1] + 0.0, v[2] + 0.0}, row(result));
     }
-    // A point of every row, the `place`th of its points.
-    ARM3R_INLINE void store_point(const Vec3<Eight>& point, std::size_t place) const {
-        alignas(64) double columns[3][group];
-        for (int k = 0; k < 3; ++k) (point[k] + 0.0).store(columns[k]);
-        double* to = row(0) + 3 * place;
-        for (std::size_t lane = 0; lane < group; ++lane, to += rows.out[0].width)
-            for (int k = 0; k < 3; ++k) to[k] = columns[k][lane];
-    }
     ARM3R_INLINE void store_joints(const Vec3<Eight>& v) const { store(convention.flipped(v)); }
 
-    // Nine numbers of every row, from `offset` on.
-    ARM3R_INLINE void store(const Mat3<Eight>& m, std::size_t offset = 0) const {
-        alignas(64) double columns[9][group];
-        for (int k = 0; k < 9; ++k) (m.data()[k] + 0.0).store(columns[k]);
+    // Numbers of every row, from `offset` on.
+    template <int count>
+    ARM3R_INLINE void store_each(const Eight* numbers, std::size_t offset) const {
+        alignas(64) double columns[count][group];
+        for (int k = 0; k < count; ++k) (numbers[k] + 0.0).store(columns[k]);
         double* to = row(0) + offset;
         for (std::size_t lane = 0; lane < group; ++lane, to += rows.out[0].width)
-            for (int k = 0; k < 9; ++k) to[k] = columns[k][lane];
+            for (int k = 0; k < count; ++k) to[k] = columns[k][lane];
     }
+    ARM3R_INLINE void store(const Mat3<Eight>& m, std::size_t offset = 0) const { store_each<9>(m.data(), offset); }
     // J D: rows in space, columns in joints. D M D: both in joints.
     ARM3R_INLINE void store_in_joints(Mat3<Eight> J, std::size_t offset = 0) const {
         for (int i = 0; i < 3; ++i)
@@ -137,7 +131,7 @@ void elbow_position(const Model& model, std::size_t groups, const StateRows& row
 void arm_points(const Model& model, std::size_t groups, const StateRows& rows) {
     each(model, groups, rows, [](Here g, Parameters arm) ARM3R_INLINE_LAMBDA {
         const auto points = arm3r::arm_points(arm, g.pose());
-        for (std::size_t i = 0; i < points.size(); ++i) g.store_point(points[i], i);
+        for (std::size_t i = 0; i < points.size(); ++i) g.store_each<3>(points[i].data(), 3 * i);
     });
 }
 

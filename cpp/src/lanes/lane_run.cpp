@@ -6,11 +6,7 @@ namespace {
 
 // Whether the determinant of joints 2 and 3 can be as small as its rounding error in some pose.
 bool may_be_ill_conditioned(const Arm<double>& arm) {
-    if (arm.is_elbow) {
-        constexpr double far_from_rounding = 1e-3;
-        const LeastPivots least = least_pivots(arm);
-        return !(std::min(least.lower.value, least.first_over_diagonal) > far_from_rounding);
-    }
+    if (arm.is_elbow) return !arm.elbow.is_far_from_singular;
     const Lumped<double>& l = arm.lumped;
     const double largest = (l.B2 + l.B3 + 2 * std::abs(l.B)) * (l.B3 + l.J3);
     return !(min_lower_determinant(l).value > 64 * std::numeric_limits<double>::epsilon() * largest);

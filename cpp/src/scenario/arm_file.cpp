@@ -69,20 +69,19 @@ std::string request_of(const Node& arm, const std::string& scenario_file) {
     return "{" + listed(members) + "}";
 }
 
-// Adds what the file says beyond what stands there.
-void add_missing(Node& section, const Node& from_file, const SourceLocation& place) {
-    for (const Node& node : from_file.children) {
-        if (Node* given = section.find(node.key)) {
-            if (given->type == Node::map && node.type == Node::map) add_missing(*given, node, place);
-            continue;
-        }
-        section.children.push_back(node);
-        const auto mark = [&](Node& one, auto& self) -> void {
-            one.mark = one.key_mark = place;
-            for (Node& child : one.children) self(child, self);
-        };
-        mark(section.children.back(), mark);
-    }
+void place_at(Node& node, const SourceLocation& place) {
+    node.mark = node.key_mark = place;
+    for (Node& child : node.children) place_at(child, place);
+}
+
+// Adds what the file says, as far as nothing stands there.
+void add(Node& section, const Node& from_file, const SourceLocation& place) {
+    Node* given = section.find(from_file.key);
+    if (given && given->type == Node::map && from_file.type == Node::map)
+        for (const Node& child : from_file.children) add(*given, child, place);
+    if (given) return;
+    section.children.push_back(from_file);
+    place_at(section.children.back(), place);
 }
 
 // The comment above each key at the left says which joint or links it comes from.
@@ -109,9 +108,7 @@ void merge(Node& arm, const std::string& text, const std::string& file) {
         std::string origin = file;
         for (const auto& [key, source] : sources)
             if (key == node.key && !source.empty()) origin += ": " + source;
-        Node one = keys;
-        one.children = {node};
-        add_missing(arm, one, {0, 0, std::make_shared<const Edit>(Edit{visible(origin, 200), file})});
+        add(arm, node, {0, 0, std::make_shared<const Edit>(Edit{visible(origin, 200), file})});
     }
 }
 
@@ -144,8 +141,9 @@ Node with_arm_file(Node root, const std::string& scenario_file, std::vector<Prob
                                  " > my_arm.yaml prints a scenario with the keys of its arm")});
     const char* text = nullptr;
     const std::int32_t status = call_back(reader.function, reader.user, request.c_str(), &text);
-    const std::string answer = text ? text : "the reader gave no text";
-    if (status != 0 || !text) problems.push_back(refused(urdf, scenario_file, answer));
+    const std::string answer =
+        text && *text ? text : "the reader ended with " + std::to_string(status) + ", without a text";
+    if (status != 0 || !text || !*text) problems.push_back(refused(urdf, scenario_file, answer));
     else merge(*arm, answer, urdf.text);
     return root;
 }

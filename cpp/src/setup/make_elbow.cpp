@@ -1,7 +1,10 @@
 #include "setup/make_elbow.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "arm3r/model/elbow_dynamics.hpp"
 #include "schema/param_access.hpp"
 
 namespace arm3r {
@@ -26,8 +29,10 @@ Rotor<double> rotor_of(std::span<const double> params, double joint_sign, const 
     const Vec3<double> given = vector_at<rotor + ".axis">(params);
     const Vec3<double> axis = std::isnan(given[0]) ? along : in_slide(given, turned);
     const double length = std::sqrt(dot(axis, axis));
-    return {at<rotor + ".inertia">(params), at<rotor + ".ratio">(params) * joint_sign, at<rotor + ".mass">(params),
-            scaled(1 / length, axis)};
+    return {at<rotor + ".inertia">(params),
+            at<rotor + ".ratio">(params) * joint_sign,
+            at<rotor + ".mass">(params),
+            {axis[0] / length, axis[1] / length, axis[2] / length}};
 }
 
 // About the fixed axes x, y, z, one after the other.
@@ -62,16 +67,34 @@ void set_elbow(std::span<const double> params, Arm<double>& arm) {
     elbow.rotors = {rotor_of<"arm.rotor1">(params, sign[0], {0, 0, sign[0]}, 1),
                     rotor_of<"arm.rotor2">(params, sign[1], {0, -sign[1], 0}, 1),
                     rotor_of<"arm.rotor3">(params, sign[2], {0, 0, sign[2]}, sign[1])};
-    const auto is_skew = [](const Rotor<double>& rotor, double along) {
-        return rotor.inertia != 0 && std::abs(along) != 1;
-    };
-    elbow.has_skew_rotors =
-        is_skew(elbow.rotors[1], elbow.rotors[1].axis[1]) || is_skew(elbow.rotors[2], elbow.rotors[2].axis[2]);
     arm.base_height = elbow.position[2];
     arm.link1 = {elbow.links[0].mass, elbow.links[0].com[2], elbow.links[0].inertia[2]};
     arm.link2 = {at<"arm.link2.length">(params), elbow.links[1].mass, elbow.links[1].com[0], elbow.links[1].inertia};
     arm.link3 = {hypot2(elbow.tip[0], elbow.tip[1]), elbow.links[2].mass, elbow.links[2].com[0],
                  elbow.links[2].inertia};
+}
+
+LeastPivots least_pivots(const Arm<double>& arm) {
+    using std::numbers::pi;
+    constexpr int places = 16;  // of an angle: the mass matrix has its sines up to the second order
+    LeastPivots least{{infinite, 0, 0}, {infinite, 0, 0}, infinite};
+    const auto keep = [](WorstPose& worst, double value, double q2, double q3) {
+        if (!(value >= worst.value)) worst = {value, q2, q3};
+    };
+    for (int i = 0; i < places; ++i)
+        for (int j = 0; j < places; ++j) {
+            const double q2 = 2 * pi * i / places, q3 = 2 * pi * j / places;
+            const elbow_arm::Pivots<double> here = elbow_arm::pivots(arm, pose(Vec3<double>(0, q2, q3)));
+            keep(least.lower, here.lower, q2, q3);
+            keep(least.first, here.first, q2, q3);
+            least.first_over_diagonal = std::min(least.first_over_diagonal, here.first / here.diagonal);
+        }
+    return least;
+}
+
+bool is_far_from_singular(const LeastPivots& least) {
+    constexpr double far = 1e-3;  // many rounding errors
+    return least.lower.value > far && least.first_over_diagonal > far && least.first.value >= min_inertia;
 }
 
 }  // namespace arm3r

@@ -73,9 +73,11 @@ Link<double> link_of(std::span<const double> params) {
 bool any_above_zero(const Vec3<double>& v) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
 
 void finish(Arm<double>& arm) {
+    Elbow<double>& elbow = arm.elbow;
     if (arm.is_elbow) lump_elbow(arm);
     else arm.lumped = lump_planar(arm);
-    const Vec3<double>& g = arm.is_elbow ? arm.elbow.gravity : arm.gravity;
+    elbow.has_skew_rotors = arm.is_elbow && (elbow.K12 != 0 || elbow.E23 != 0 || elbow.F23 != 0);
+    const Vec3<double>& g = arm.is_elbow ? elbow.gravity : arm.gravity;
     arm.gravity_is_vertical = g[0] == 0 && g[1] == 0;
     arm.has_damping = any_above_zero(arm.damping);
     arm.has_dry_friction = any_above_zero(arm.friction);
@@ -255,6 +257,7 @@ Arm<double> make_arm(std::span<const double> params) {
     arm.friction_velocity = at<"arm.friction_velocity">(params);
     arm.torque_limit = vector_at<"arm.torque_limit">(params);
     finish(arm);
+    arm.elbow.is_far_from_singular = arm.is_elbow && is_far_from_singular(least_pivots(arm));
     return arm;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/number_text.hpp"
 #include "schema/param_access.hpp"
+#include "setup/make_elbow.hpp"
 #include "setup/setup.hpp"
 
 namespace arm3r {
@@ -16,23 +17,14 @@ void check_setup(std::span<const double> params, std::optional<Setup>& setup, Pr
 // The same where `setup` is that of parameters that differ in numbers of `initial` and `wall.contact` only, without a law.
 void check_start_and_contact(std::span<const double> params, std::optional<Setup>& setup, ProblemList& problem_list);
 
-// Smallest M11 and smallest determinant of the lower block over all poses, and the link angles where they occur (3.10).
-struct WorstPose {
-    double value;
-    double q2, q3;  // rad, slide
-};
 // How far a point out of reach is, and what is within reach: "2.5 m from joint 2", "0.1 to 2 m".
 std::string distance_from_reach(const Arm<double>& arm, const Vec3<double>& tip, bool front);
 std::string reach_text(const Arm<double>& arm);
+// Of the two factors of det J, where they are zero: "sin(q3)", and where the tip is then.
+const char* bend_text(const Arm<double>& arm);
+const char* tip_at_axis_text(const Arm<double>& arm);
 
-// Of an elbow arm, on a grid of poses: the least determinant of joints 2 and 3 over the product of their diagonal, the
-// least inertia of joint 1 while the others are free, kg m^2, and that over its diagonal.
-struct LeastPivots {
-    WorstPose lower, first;
-    double first_over_diagonal;
-};
-LeastPivots least_pivots(const Arm<double>& arm);
-
+// Of a planar arm: the least M11, and the least determinant of the lower block (3.10).
 WorstPose min_M11(const Lumped<double>& lumped);
 WorstPose min_lower_determinant(const Lumped<double>& lumped);
 

@@ -126,9 +126,11 @@ void check_pose(std::span<const double> params, const Setup& setup, ProblemList&
         });
     };
     if (std::abs(S3) < min_sine)
-        refuse("the elbow is straight or folded", "sin(q3) = " + shortest(S3), "|sin(q3)| >= " + shortest(min_sine));
+        refuse("the elbow is straight or folded", std::string(bend_text(model)) + " = " + shortest(S3),
+               "|" + std::string(bend_text(model)) + "| >= " + shortest(min_sine));
     if (std::abs(r) < min_r)
-        refuse("the tip stands on the axis of joint 1", shortest(std::abs(r)) + " m from the axis",
+        refuse(tip_at_axis_text(model),
+               shortest(std::abs(r)) + (model.is_elbow ? " m of the radius r" : " m from the axis"),
                "at least " + shortest(min_r) + " m");
 }
 

@@ -111,11 +111,13 @@ void warn_of_units(const Arm<double>& arm, std::vector<std::string>& warnings) {
     for (int i = 0; i < 2; ++i) {
         const Link<double>& link = *links[i];
         const std::string name = "arm.link" + std::to_string(i + 2);
+        const bool has_tip = arm.is_elbow && i == 1;
         const double largest = std::max({link.inertia[0], link.inertia[1], link.inertia[2]});
         const double whole_mass_at_the_end = link.mass * link.length * link.length;
         if (link.length > a_long_link)
-            warnings.push_back(name + ".length is " + shortest(link.length) + " m; was it given in millimetres?");
-        if (largest > whole_mass_at_the_end)
+            warnings.push_back(name + (has_tip ? ".tip is " : ".length is ") + shortest(link.length) +
+                               (has_tip ? " m from joint 3" : " m") + "; was it given in millimetres?");
+        if (!arm.is_elbow && largest > whole_mass_at_the_end)  // an elbow arm's bodies may be wider than their links
             warnings.push_back(name + ".inertia has " + shortest(largest) +
                                " kg m^2, more than mass*length^2 = " + shortest(whole_mass_at_the_end) +
                                ": no body within the link has as much; was it given in g cm^2 (1e-7 kg m^2)?");

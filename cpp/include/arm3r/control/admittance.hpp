@@ -19,23 +19,9 @@ template <class P, class T>
 ARM3R_INLINE Vec3<T> joint_error(const Arm<P>& model, const Measurement<T>& sensed, const Vec3<T>& point) {
     const Pose<T>& p = sensed.pose;
     const T front = copysign(T(1.0), radius(model, p)), bent = sine_of_bend(model, p);
-    const auto changes = [&](const T& q1, const T& q2, const T& q3) ARM3R_INLINE_LAMBDA {
-        return Vec3<T>(turned_between(q1, sensed.q[0]), turned_between(q2, sensed.q[1]),
-                       turned_between(q3, sensed.q[2]));
-    };
-    if (model.is_elbow) [[unlikely]] {
-        const auto [q1, q2, q3, C3] = elbow_arm::angles_at(model, point, front, [&](const T&) { return bent; });
-        return changes(q1, q2, q3);
-    }
-    const P a2 = model.link2.length, a3 = model.link3.length;
-    const T rho_2 = point[0] * point[0] + point[1] * point[1];
-    const T rho = front * sqrt(rho_2), zeta = point[2] - model.base_height;
-    const T C3 = (rho_2 + zeta * zeta - a2 * a2 - a3 * a3) / (2.0 * a2 * a3);
-    const T q3 = copysign(acos(T(min(max(C3, T(-1.0)), T(1.0)))), bent);
-    const SinCos<T> third = sincos(q3);
-    const T q1 = atan2(T(front * point[1]), T(front * point[0]));
-    const T q2 = atan2(zeta, rho) - atan2(T(a3 * third.sin), T(a2 + a3 * third.cos));
-    return changes(q1, q2, q3);
+    const Vec3<T> q =
+        inverse_kinematics_of_branch(model, point, front, [&](const T&) ARM3R_INLINE_LAMBDA { return bent; }).q;
+    return {turned_between(q[0], sensed.q[0]), turned_between(q[1], sensed.q[1]), turned_between(q[2], sensed.q[2])};
 }
 
 // The admittance: M (xdd_c - xdd_d) + B (xd_c - xd_d) + K (x_c - x_d) = f_on_tip + f_d p_in, solved for xdd_c, m/s^2

@@ -47,6 +47,7 @@ struct Elbow {
     P fixed_energy;            // J: of gravity, where u, v and the links are level
 
     bool base_is_turned = false, has_skew_rotors = false;
+    bool is_far_from_singular = false;  // in no pose is the mass matrix nearly singular
 };
 
 // The sum of a body and a point mass.

@@ -186,10 +186,11 @@ ARM3R_INLINE Vec3<T> from_base_position(const Arm<P>& arm, const Vec3<T>& tip) {
     return to_base(arm, Vec3<T>(tip[0] - o[0], tip[1] - o[1], tip[2] - o[2]));
 }
 
-// The joint angles at a tip position (10.5), for r of the sign of `front`; `bent` is the sign of sin(q3 + delta) that
-// `bend_sign` chooses for the distance rho of the tip from joint 2 along u.
+// The joint angles at a tip position on the branch where r has the sign of `front` and the bend that of `bend_sign(rho)`
+// (10.5); rho: of the tip from joint 2, along u.
 template <class P, class T, class BendSign>
-ARM3R_INLINE std::array<T, 4> angles_at(const Arm<P>& arm, const Vec3<T>& tip, const T& front, BendSign bend_sign) {
+ARM3R_INLINE IkResult<T> inverse_kinematics_of_branch(const Arm<P>& arm, const Vec3<T>& tip, const T& front,
+                                                      BendSign bend_sign) {
     const P &a2 = arm.link2.length, &a3 = arm.link3.length, &e = arm.elbow.lateral;
     const Vec3<T> x = from_base_position(arm, tip);
     const T R = x[0] * x[0] + x[1] * x[1] - e * e;
@@ -202,7 +203,7 @@ ARM3R_INLINE std::array<T, 4> angles_at(const Arm<P>& arm, const Vec3<T>& tip, c
     const T q2 = atan2(zeta, rho) - atan2(T(a3 * third.sin), T(a2 + a3 * third.cos));
     const T tip_angle(atan2(arm.elbow.tip[1], arm.elbow.tip[0]));
     constexpr double out_of_reach = 2;  // no cosine
-    return {q1, q2, bend - tip_angle, select(R < T(0.0), T(out_of_reach), C3)};
+    return {{q1, q2, bend - tip_angle}, select(R < T(0.0), T(out_of_reach), C3)};
 }
 
 }  // namespace arm3r::elbow_arm

@@ -187,30 +187,22 @@ double workspace_excess(const Arm<P>& arm, const Vec3<double>& tip) {
     return min(reach_excess(arm, tip, true), reach_excess(arm, tip, false));
 }
 
-template <class T>
-struct IkResult {
-    Vec3<T> q;
-    T cos_q3;  // outside [-1, 1] the point is out of reach; of an elbow arm: of the bend
-};
-
-// The joint angles at a tip position on one of the four branches: the sine of the bend (sine_of_bend) has the sign of
-// `bend_sign(rho)`, where rho is the tip's distance from joint 2 along u. The result is meaningless where |cos_q3| > 1.
+// The joint angles at a tip position on one of the four branches: the radius has the sign of `front`, 1 or -1, and the sine
+// of the bend (sine_of_bend) that of `bend_sign(rho)`, where rho is the tip's distance from joint 2 along u (2.7), (10.5).
+// The result is meaningless where |cos_q3| > 1: then the arm is stretched towards the point, or folded.
 template <class P, class T, class BendSign>
-ARM3R_INLINE IkResult<T> inverse_kinematics_of_branch(const Arm<P>& arm, const Vec3<T>& tip, bool front,
+ARM3R_INLINE IkResult<T> inverse_kinematics_of_branch(const Arm<P>& arm, const Vec3<T>& tip, const T& front,
                                                       BendSign bend_sign) {
-    if (arm.is_elbow) [[unlikely]] {
-        const auto [q1, q2, q3, C3] = elbow_arm::angles_at(arm, tip, T(front ? 1.0 : -1.0), bend_sign);
-        return {{q1, q2, q3}, C3};
-    }
+    if (arm.is_elbow) [[unlikely]]
+        return elbow_arm::inverse_kinematics_of_branch(arm, tip, front, bend_sign);
     const P a2 = arm.link2.length, a3 = arm.link3.length;
     const T rho_2 = tip[0] * tip[0] + tip[1] * tip[1];
-    const T rho = front ? T(sqrt(rho_2)) : T(-sqrt(rho_2));
-    const T zeta = tip[2] - arm.base_height;
+    const T rho = front * sqrt(rho_2), zeta = tip[2] - arm.base_height;
     const T C3 = (rho_2 + zeta * zeta - a2 * a2 - a3 * a3) / (2.0 * a2 * a3);
     const T bend = acos(T(min(max(C3, T(-1.0)), T(1.0))));
     const T q3 = copysign(bend, T(bend_sign(rho)));
     const SinCos<T> third = sincos(q3);
-    const T q1 = front ? atan2(tip[1], tip[0]) : atan2(T(-tip[1]), T(-tip[0]));
+    const T q1 = atan2(T(front * tip[1]), T(front * tip[0]));
     const T q2 = atan2(zeta, rho) - atan2(T(a3 * third.sin), T(a2 + a3 * third.cos));
     return {{q1, q2, q3}, C3};
 }
@@ -220,13 +212,15 @@ ARM3R_INLINE IkResult<T> inverse_kinematics_of_branch(const Arm<P>& arm, const V
 // |cos_q3| > 1.
 template <class P, class T>
 IkResult<T> inverse_kinematics(const Arm<P>& arm, const Vec3<T>& tip, bool front, bool up) {
-    return inverse_kinematics_of_branch(arm, tip, front, [up](const T& rho) { return up ? T(-rho) : rho; });
+    return inverse_kinematics_of_branch(arm, tip, T(front ? 1.0 : -1.0),
+                                        [up](const T& rho) { return up ? T(-rho) : rho; });
 }
 
 // The branch of a pose with this radius and sine of the bend.
 template <class P>
 IkResult<double> inverse_kinematics_near(const Arm<P>& arm, const Vec3<double>& tip, double radius, double bend) {
-    return inverse_kinematics_of_branch(arm, tip, radius >= 0, [bend](double) { return bend > 0 ? 1.0 : -1.0; });
+    return inverse_kinematics_of_branch(arm, tip, radius >= 0 ? 1.0 : -1.0,
+                                        [bend](double) { return bend > 0 ? 1.0 : -1.0; });
 }
 
 }  // namespace arm3r

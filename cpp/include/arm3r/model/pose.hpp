@@ -12,6 +12,12 @@ struct Pose {
     T S1, C1, S2, C2, S23, C23;
 };
 
+template <class T>
+struct IkResult {
+    Vec3<T> q;
+    T cos_q3;  // outside [-1, 1] the point is out of reach; of an elbow arm: of the bend
+};
+
 // sin q3
 template <class T>
 ARM3R_INLINE T sin_q3(const Pose<T>& p) {
