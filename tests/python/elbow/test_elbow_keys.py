@@ -242,3 +242,29 @@ def test_the_reference_reaches_no_pose_inside_the_cylinder() -> None:
         return
     assert np.isfinite(run["q"]).all()
     assert abs(run["energy_residual"]).max() <= 1e-3 * (1 + abs(run["work_actuators"]).max())
+
+
+# ---- sentences of an arm with offsets --------------------------------------------------------------------------------
+
+
+def test_a_straight_elbow_is_told_by_its_bend() -> None:
+    """q3 is no measure of it: the joint zero is the arm's own."""
+    arm = changed(WITH_OFFSETS, "link3.tip", [0.3, 0.0, 0.05])
+    scenario = scenario_of(
+        arm, initial={"q": joint_angles(arm, [0.5, 0.7, 0.0]).tolist()}, controller={"type": "hybrid"}
+    )
+    with pytest.raises(arm3r.ScenarioError) as raised:
+        scenario.validate()
+    words = str(raised.value)
+    assert "the elbow is straight or folded, got the sine of the bend = " in words
+    assert "sin(q3)" not in words
+
+
+def test_lengths_in_millimetres_are_warned_of_by_the_keys_that_hold_them() -> None:
+    for key, value, sentence in (
+        ("link2.length", 425.0, "link2.length is 425 m; was it given in millimetres?"),
+        ("link3.tip", [392.0, 0, 0], "link3.tip is 392 m from joint 3; was it given in millimetres?"),
+    ):
+        told = [message for message in warnings_of(changed(WITH_OFFSETS, key, value)) if "millimetres" in message]
+        assert len(told) == 1
+        assert sentence in told[0]

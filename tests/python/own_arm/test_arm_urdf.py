@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -101,3 +102,16 @@ def refusal() -> Callable[[Path], str]:
         return str(raised.value)
 
     return call
+
+
+def test_a_reader_that_says_nothing_is_told_by_its_status(scenario: Path) -> None:
+    """In a process of its own: the reader stays for all that follows."""
+    program = (
+        "from arm3r_cpp.core.scenario import Scenario\n"
+        "from arm3r_cpp._native.arm_files import read_arms_with\n"
+        "read_arms_with(lambda request: (7, ''))\n"
+        f"Scenario.load({str(scenario)!r}).validate()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=100)
+    assert done.returncode == 1
+    assert "own.yaml:3:" in done.stderr and "the reader ended with 7, without a text" in done.stderr
