@@ -161,10 +161,12 @@ Run RunRecorder::finish(const FullState& y, double theta, const EnergyTotals& to
                                                    : "; steps may miss torques that last for microseconds there: "
                                                      "compare with a small solver.max_step"));
     if (options_.rows && options_.judges) run_.at_end = end_values(y, theta);
-    if (is_running() && options_.judges) {
-        for (const auto& warning : {missed_contact(setup_, run_, contacts_.contacts),
-                                    friction_in_residual(setup_, run_), jump_at_contact(setup_, run_)})
-            if (warning) run_.warnings.push_back(*warning);
+    if (options_.judges) {
+        const auto warn = [this](const std::optional<std::string>& text) {
+            if (text) run_.warnings.push_back(*text);
+        };
+        if (is_running() || run_.outcome == ARM3R_RUN_DIVERGED) warn(missed_contact(setup_, run_, contacts_.contacts));
+        if (is_running()) warn(friction_in_residual(setup_, run_)), warn(jump_at_contact(setup_, run_));
     }
     if (run_.link_behind_wall_since >= 0)
         run_.warnings.push_back("a link other than at its tip is behind the wall from t = " +

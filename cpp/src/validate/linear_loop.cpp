@@ -54,8 +54,10 @@ Controller<double>& law_of(Setup& setup) {
     return setup.digital.sampling.on ? setup.digital.controller : setup.plant.controller;
 }
 
+// The law wants what is there: the force of the contact, none where the tip is free.
 Setup at_rest(Setup setup, TipPlace place) {
     Controller<double>& law = law_of(setup);
+    const double wanted = law.reference.force;
     leave_out(setup.plant.arm), leave_out(law.model), leave_out(setup.plant.controller.model);
     setup.qd = {0, 0, 0};
     setup.plant.external_force.on = false;
@@ -63,9 +65,13 @@ Setup at_rest(Setup setup, TipPlace place) {
     law.anti_windup = AntiWindup::none;
     law.reference.path = Path::hold;
     law.reference.from = law.reference.in_joints ? setup.q : tip_position(law.model, pose(setup.q));
-    const double wanted = tracks_force(law.type) ? std::max(1.0, std::abs(law.reference.force)) : touch;
-    if (place == TipPlace::in_contact)
-        place_wall(setup.plant, tip_position(setup.plant.arm, pose(setup.q)), depth_of(setup.plant.contact, wanted));
+    law.reference.force_profile = ForceProfile::constant;
+    law.reference.force = 0;
+    if (place == TipPlace::in_contact) {
+        law.reference.force = tracks_force(law.type) ? std::max(1.0, std::abs(wanted)) : touch;
+        place_wall(setup.plant, tip_position(setup.plant.arm, pose(setup.q)),
+                   depth_of(setup.plant.contact, law.reference.force));
+    }
     return setup;
 }
 

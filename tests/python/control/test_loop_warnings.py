@@ -170,6 +170,44 @@ def test_a_wanted_force_that_never_meets_a_wall_says_so() -> None:
     assert "no contact: reference.force wants 10 N" in said and "no nearer to the wall than 0.00" in said
 
 
+FORCES = (
+    "value: 10",
+    "type: step, value: 10, initial: 5, start: 0.1",
+    "type: sinusoid, value: 10, amplitude: 3, frequency: 1",
+)
+
+
+@pytest.mark.parametrize("force", FORCES)
+@pytest.mark.parametrize("sampling", ["", "sampling: {rate: 1000}\n"])
+@pytest.mark.parametrize("law", ["hybrid", "operational_space", "parallel", "adaptive_reference"])
+def test_a_law_that_presses_into_free_space_has_no_unstable_loop_for_that(law: str, sampling: str, force: str) -> None:
+    """It comes to no rest there; linearised where it does not rest, a good loop seems to grow."""
+    q = random.Random(sample_seed()).choices([-0.7, -0.2, 0.5, 0.8], k=2)
+    text = (
+        f"format: 1\ninitial: {{q: [{q[0]}, {q[1]}, 1.0]}}\ntime: {{stop: 0.5}}\n"
+        f"wall: {{point: [5, 0, 0], acts_on_arm: true, motion: {{type: fixed}}}}\n"
+        f"controller: {{type: {law}, switching: always}}\nreference: {{type: hold, force: {{{force}}}}}\n{sampling}"
+    )
+    run = run_anyway(arm3r.Scenario(text))
+    said = " ".join(run.summary["warnings"])
+    assert "unstable" not in said + run.summary["message"]
+    assert "no contact: reference.force wants 10 N" in said
+
+
+def test_a_law_that_presses_into_free_space_until_it_is_stretched_is_told_that_there_is_no_contact() -> None:
+    text = """format: 1
+initial: {q: [0.2, -0.5, 1.0]}
+wall: {point: [5, 0, 0], normal: [-1, 0, 0], acts_on_arm: true, motion: {type: fixed}}
+controller: {type: hybrid, switching: always}
+reference: {type: hold, force: {value: 10}}
+time: {stop: 5}
+"""
+    run = run_anyway(arm3r.Scenario(text))
+    assert str(run.outcome) == "diverged"
+    assert "singular pose" in run.summary["message"] and "unstable" not in run.summary["message"]
+    assert any("no contact: reference.force wants 10 N" in warning for warning in run.summary["warnings"])
+
+
 def test_an_adaptive_reference_that_always_controls_the_force_leaves_for_the_wall() -> None:
     run = run_anyway(arm3r.Scenario(HELD + "controller: {type: adaptive_reference, switching: always}\n"))
     assert run.summary["contacts"] == 1
