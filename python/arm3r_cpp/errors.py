@@ -49,12 +49,14 @@ class UnreadError(UnjudgedError):
     Attributes:
         line: of the file, where it is known.
         reason: what is not read.
+        name: without a value.
     """
 
-    def __init__(self, message: str, *, line: int | None, reason: str) -> None:
+    def __init__(self, message: str, *, line: int | None, reason: str, name: str = "") -> None:
         super().__init__(message)
         self.line = line
         self.reason = reason
+        self.name = name
 
 
 class ColumnError(UsageError, KeyError):

@@ -13,7 +13,7 @@ import numpy as np
 
 from .._native import Floats
 from ..core.scenario import Scenario
-from ..errors import BudgetError, ControllerError, UsageError
+from ..errors import BudgetError, ControllerError, UnjudgedError, UsageError
 from ..user_functions.programs import Call, ProgramError, Unjudged, Unread
 from ..user_functions.python_process import PythonProcess
 from ..verify.comparison import scales
@@ -48,7 +48,7 @@ def judge_function(task: FunctionTask, path: Path, *, forbid_own_package: bool =
         values, again = _values(task, formula, states), _values(task, formula, states)
         mark = _mark(task, values, again, states)
         return _in_the_loop(task, formula, mark) if task.loop and mark.word != UNCLEAR else mark
-    except Unread as error:
+    except (Unread, UnjudgedError) as error:
         return replace(_failed(error, path), word=UNCLEAR)
     except Unjudged as error:
         return Mark(UNCLEAR, str(error).split(":")[0], message=one_line(str(error), 400))

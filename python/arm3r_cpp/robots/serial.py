@@ -28,6 +28,10 @@ class Serial(NamedTuple):
     tip: str
     held: list[str]
     """The joints beside the way that move, and stand on what moves."""
+    without_inertial: list[str]
+    """The links that joints move, and of which the file says nothing."""
+    unknown: list[str]
+    """Those of them on which no link with an inertial is fixed."""
 
     def tip_position(self, q: Floats) -> Floats:
         """Of a chain of revolute joints, in the root link's axes: (S, n) -> (S, 3), m."""
@@ -79,7 +83,9 @@ def serial_chain(urdf: Urdf, tip: str | None, positions: Mapping[str, float]) ->
         rotation, origin = np.eye(3), np.zeros(3)
     for part, body in zip(parts, bodies, strict=True):
         part.mass, part.centre, part.inertia = body
-    return Serial(moving, parts, links, origin, rotation, urdf.tip(tip), held)
+    bare = [names[0] for names in links if not urdf.has_inertial(names[0])]
+    unknown = [names[0] for names in links if not any(map(urdf.has_inertial, names))]
+    return Serial(moving, parts, links, origin, rotation, urdf.tip(tip), held, bare, unknown)
 
 
 def _with_branches(

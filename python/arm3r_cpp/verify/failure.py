@@ -35,7 +35,8 @@ def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progre
         _mend_failure(verdict, formula, kind, truth, progress)
     if isinstance(error, Unread) and not _is_renamed(finding, error.name):
         place = f"{formula.file}:{error.line}" if error.line else formula.file
-        raise UnreadError(f"{place}: cannot be judged: {error}", line=error.line, reason=str(error)) from None
+        words = f"{place}: cannot be judged: {error}"
+        raise UnreadError(words, line=error.line, reason=str(error), name=error.name) from None
     return verdict
 
 

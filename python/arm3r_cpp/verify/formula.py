@@ -166,7 +166,9 @@ class Formula:
             return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {}, self.output)
         slots: list[Any] = []
         arguments = self._given(kind, parameters)
-        for vector, joint in slots_of(arguments, kind, joints, [*parameters, *self.given]):
+        for vector, joint in slots_of(
+            arguments, kind, joints, [*parameters, *self.given], self.text or ""
+        ):
             if vector == TIME:
                 slots.append(Given(0.0))
             elif vector in self.given:
@@ -287,6 +289,8 @@ def by_octave(path: str | os.PathLike[str], refusal: UnreadError) -> Formula | N
     name = function or next(iter(headers), "")
     if name not in headers or not headers[name].outputs:
         return None
+    if refusal.name and re.search(rf"^\s*global\b[^;\n%]*\b{refusal.name}\b", text, re.M):
+        return None  # for Octave it is empty, and no error
     if (octave := installed()) is None:
         remedy = "GNU Octave, where it is installed, evaluates such a file"
         raise UnreadError(f"{refusal}; {remedy}", line=refusal.line, reason=refusal.reason)
@@ -409,7 +413,7 @@ def _with_object(source: PythonText, file: str, name: str) -> str:
     """A method by the name of an object that the text makes, where its class needs numbers.
 
     Raises:
-        UsageError: the class needs them, and the text makes no object.
+        UnjudgedError: the class needs them, and the text makes no object.
     """
     of_class, _, method = name.partition(".")
     if name not in source.functions or not (needed := needed_by(source.tree, of_class)):
@@ -417,7 +421,7 @@ def _with_object(source: PythonText, file: str, name: str) -> str:
     if objects := objects_of(source.tree, of_class):
         return f"{objects[0]}.{method}" if method else objects[0]
     lower = of_class.lower()
-    raise UsageError(
+    raise UnjudgedError(
         f"{file}: {of_class} takes {', '.join(needed)}: make one in the file, {lower} = {of_class}(...), and name "
         f"{lower}{method and '.'}{method}"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from ..errors import UsageError
+from ..errors import UnjudgedError
 from .kinds import Kind
 from .samples import STATE
 
@@ -121,12 +121,15 @@ def takes_state_and_torque(arguments: Sequence[str]) -> bool:
 
 
 def slots_of(
-    arguments: Sequence[str], kind: Kind, joints: int, parameters: Iterable[str]
+    arguments: Sequence[str], kind: Kind, joints: int, parameters: Iterable[str], text: str = ""
 ) -> list[tuple[str, int | None]]:
     """What each argument is given: ("q", 0), ("q", None), or ("parameter name", -1).
 
+    Args:
+        text: of the function; it shows which fields an argument has.
+
     Raises:
-        UsageError: the names do not say it.
+        UnjudgedError: the names do not say it.
     """
     found: list[tuple[str, int | None] | None] = []
     has_state = "qd" in kind.inputs and any(_STATE.fullmatch(name) for name in arguments)
@@ -152,11 +155,18 @@ def slots_of(
             return meant
     unknown = [name for name, slot in zip(arguments, found, strict=True) if slot is None]
     if unknown:
-        raise UsageError(
+        settings = " ".join(f"--set {name}=VALUE" for name in settable(unknown[0], text))
+        raise UnjudgedError(
             f"the argument {unknown[0]} is not understood; a {kind.words} takes {', '.join(kind.inputs)}, or "
             f"{', '.join(f'{kind.inputs[0]}{n + 1}' for n in range(joints))}, and parameters such as a2, m3, g; "
-            f"--args {','.join(kind.inputs)},... says what the arguments are, --set {unknown[0]}=VALUE gives it a value"
+            f"--args {','.join(kind.inputs)},... says what the arguments are, {settings} gives it a value"
         )
     if has_state and "tau" in kind.inputs and not any(slot and slot[0] == "tau" for slot in found):
-        raise UsageError(f"{', '.join(arguments)}: a {kind.words} takes the torque, too, such as f(t, x, u)")
+        raise UnjudgedError(f"{', '.join(arguments)}: a {kind.words} takes the torque, too, such as f(t, x, u)")
     return [slot for slot in found if slot is not None]
+
+
+def settable(name: str, text: str) -> list[str]:
+    """The names that `--set` can give values: those of its fields that a text reads, or itself."""
+    fields = re.findall(rf"\b{re.escape(name)}(?:\.(\w+)\b(?!\s*\(\s*\))|\[[\"'](\w+)[\"']\])", text)
+    return [f"{name}.{dotted or keyed}" for dotted, keyed in dict.fromkeys(fields)] or [name]

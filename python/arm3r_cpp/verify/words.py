@@ -12,17 +12,25 @@ from .explain.terms import difference_words
 from .finding import Finding, Judgement
 from .kinds import KINDS
 
+_MOST_NAMES = 4
+"""Of entries that one sentence is about."""
+
 
 def report(verdict: Judgement) -> str:
-    """What `arm3r verify` prints of a formula: a line for the whole, then each finding."""
+    """What `arm3r verify` prints of a formula: a line for the whole, then each finding; what explains several first."""
     lines = [f"{verdict.file}: {_head(verdict)}"]
-    findings = sorted(verdict.findings, key=_edit_of)
-    for _, same in groupby(findings, key=_edit_of):
-        lines += [f"  {line}" for line in _block(verdict, list(same))]
+    blocks = [list(same) for _, same in groupby(sorted(verdict.findings, key=_edit_of), key=_edit_of)]
+    for same in sorted(blocks, key=lambda one: not _is_of_several(one)):
+        lines += [f"  {line}" for line in _block(verdict, same)]
     lines += [f"  also possible: {words}" for words in verdict.alternatives]
     lines += [f"  note: {words}" for words in verdict.warnings]
     lines += [f"  {_covered(verdict, name)}" for name in verdict.coverage]
     return "\n".join(map(shown, lines))
+
+
+def _is_of_several(findings: list[Finding]) -> bool:
+    """Whether one sentence, and no edit, explains several entries."""
+    return len(findings) > 1 and findings[0].old is None
 
 
 def _head(verdict: Judgement) -> str:
@@ -60,27 +68,39 @@ def _edit_of(finding: Finding) -> tuple[int, int, str, str]:
 
 
 def _block(verdict: Judgement, findings: list[Finding]) -> list[str]:
-    first = findings[0]
-    kind = KINDS[verdict.kind]
-    lines = []
-    for one in findings:
-        if one.entry and one.reads is not None:
-            said = difference_words(one.reads, one.due) if one.due is not None else f"reads {one.reads}"
-            lines.append(f"{kind.entry_name(one.entry)} {said}")
-    names = ", ".join(kind.entry_name(one.entry) for one in findings if one.entry)
-    if (
-        not lines
-        or first.reads is None
-        or (first.old is None and not first.cause.startswith(f"{kind.entry_name(first.entry or [])} "))
-    ):
-        own = f"{kind.entry_name(first.entry)}: " if first.entry else ""
-        said = first.cause.removeprefix(own)
-        cause = first.cause if not names or first.cause.startswith(f"{names} ") else f"{names}: {_lower(said)}"
-        if first.old is None or not lines:
-            lines.append(cause)
+    first, read = findings[0], _readings(verdict, findings)
+    if _is_of_several(findings):
+        lines = [_cause(verdict, findings), *(f"  {line}" for line in read)]
+    else:
+        is_said = bool(read) and (first.old is not None or _begins_with_entry(verdict, first))
+        lines = read if is_said and first.reads is not None else [*read, _cause(verdict, findings)]
     lines += [f"  {line}" for line in _place(verdict, first)]
     lines += [f"  {name} cannot see it{f': {why}' if why else ''}" for name, why in _unseen(findings).items()]
     return lines
+
+
+def _readings(verdict: Judgement, findings: list[Finding]) -> list[str]:
+    """ "t2 reads m3 g C2, should be -m3 g C2"."""
+    found = []
+    for one in findings:
+        if one.entry and one.reads is not None:
+            said = difference_words(one.reads, one.due) if one.due is not None else f"reads {one.reads}"
+            found.append(f"{KINDS[verdict.kind].entry_name(one.entry)} {said}")
+    return found
+
+
+def _begins_with_entry(verdict: Judgement, finding: Finding) -> bool:
+    return finding.cause.startswith(f"{KINDS[verdict.kind].entry_name(finding.entry or [])} ")
+
+
+def _cause(verdict: Judgement, findings: list[Finding]) -> str:
+    """The sentence, after the entries that it is about."""
+    first, name_of = findings[0], KINDS[verdict.kind].entry_name
+    entries = [one.entry for one in findings if one.entry]
+    names = ", ".join(map(name_of, entries)) if len(entries) <= _MOST_NAMES else f"{len(entries)} entries"
+    if not names or first.cause.startswith(f"{names} "):
+        return first.cause
+    return f"{names}: {_lower(first.cause.removeprefix(f'{name_of(entries[0])}: '))}"
 
 
 def _unseen(findings: list[Finding]) -> dict[str, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -352,6 +353,26 @@ def test_what_hangs_beside_the_chain_is_counted(branched: Path) -> None:
         pin.framesForwardKinematics(model, data, q[row])
         place = turn @ data.oMf[model.getFrameId("tool")].translation
         assert chain.values(KINDS["kinematics"], "", given, {})[row] == pytest.approx(place, abs=1e-14)
+
+
+def test_a_link_of_which_nothing_is_said_is_no_link_without_mass(branched: Path, command: Any) -> None:
+    gravity = branched.with_name("gravity.py")
+    gravity.write_text("def gravity(q):\n    return [1.0 for _ in q]\n")
+
+    def told(removed: int, mass: str = "") -> tuple[int, str]:
+        """With the first inertials replaced: the link's own, or also the one of what is fixed on it."""
+        branched.write_text(re.sub(r"(?s)<inertial>.*?</inertial>", mass, BRANCHED, count=removed))
+        done = command(gravity, "--urdf", branched, "--tip", "tool")
+        return done.returncode, done.stdout + done.stderr
+
+    code, said = told(1, '<inertial><mass value="1"/></inertial>')
+    assert code == 11 and "without mass" not in said
+    code, said = told(1)  # the camera has one
+    assert code == 11 and "upper without mass, as the file gives none" in said
+    code, said = told(3)  # with fore's, on which a hand is fixed
+    assert code == 12 and "the link upper moves and has no <inertial>; write it into the file, with the mass 0" in said
+    code, said = told(3, '<inertial><mass value="0"/></inertial>')
+    assert code == 11 and "<inertial>" not in said and "without mass" not in said
 
 
 def test_a_tree_asks_for_the_tip(branched: Path, command: Any) -> None:

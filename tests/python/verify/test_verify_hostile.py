@@ -114,16 +114,17 @@ def test_a_package_can_be_forbidden(tmp_path: Path, monkeypatch: Any) -> None:
     assert "raises ModuleNotFoundError" in verify.jacobian(path).findings[0].cause
 
 
-def test_a_symbol_of_a_library(tmp_path: Path) -> None:
+@pytest.mark.parametrize("order", ["const double *q, double *out", "double *out, const double *q"])
+def test_a_symbol_of_a_library(order: str, tmp_path: Path) -> None:
     source, library = tmp_path / "arm.c", tmp_path / "arm.so"
     text = """#include <math.h>
-    void gravity(const double *q, double *out) {
+    void gravity(ORDER) {
         double g = 9.80665, c2 = cos(q[1]), c23 = cos(q[1] + q[2]);
         out[0] = EXTRA; out[2] = -0.785*g*0.5*c23; out[1] = -0.785*g*1.5*c2 + out[2];
     }
     """
     for extra, is_right in (("0", True), ("q[0]", False)):
-        source.write_text(text.replace("EXTRA", extra))
+        source.write_text(text.replace("EXTRA", extra).replace("ORDER", order))
         subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source, "-lm"], check=True)
         verdict = verify.gravity(f"{library}:gravity")
         assert verdict.ok == is_right, str(verdict)

@@ -58,7 +58,7 @@ def test_values_that_are_said_are_used(name: str, tmp_path: Path, command: Any) 
 def test_arguments_are_what_is_said(tmp_path: Path, command: Any) -> None:
     path = tmp_path / "gravity.py"
     path.write_text((PLAIN % ("param, z", "param", "1", "param", "param", "1")).replace("q[", "z["))
-    assert command(path).returncode == 2
+    assert command(path).returncode == 12
     assert command(path, "--args", "m,q", "--set", "m=0.785", "--set", "g=9.80665").returncode == 0
     verdict = arm3r.verify.gravity(path, args=["m", "q"], given={"m": 0.785, "g": 9.80665})
     assert verdict.ok
@@ -78,7 +78,24 @@ def test_what_is_not_understood_is_asked_for(arguments: str, tmp_path: Path, com
     path = tmp_path / "gravity.py"
     path.write_text(f"def gravity({arguments}):\n    return [0, 0, 0]\n")
     done = command(path)
-    assert done.returncode == 2 and "--args q,... says what the arguments are" in done.stderr, done.stderr
+    assert done.returncode == 12 and "--args q,... says what the arguments are" in done.stderr, done.stderr
+
+
+def test_globals_are_asked_for_by_every_reader(tmp_path: Path, command: Any) -> None:
+    """For Octave a `global` without a value is empty, and no error."""
+    path = tmp_path / "gravity.m"
+    path.write_text("function t = gravity(q)\n  global m2 g\n  t = [0; -m2*g*cos(q(2)); 0];\nend\n")
+    for values, asked in (((), "m2"), (("--set", "m2=1"), "g")):
+        done = command(path, *values)
+        assert done.returncode == 12 and f"say it by --set {asked}=NUMBER" in done.stderr, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("read", ["p.m3 * p.a", "p['m3'] * p[\"a\"]"])
+def test_what_a_structure_needs_is_named_by_its_fields(read: str, tmp_path: Path, command: Any) -> None:
+    path = tmp_path / "gravity.py"
+    path.write_text(f"def gravity(q, p):\n    return [0, 0, {read} * p.copy()]\n")
+    done = command(path)
+    assert done.returncode == 12 and "--set p.m3=VALUE --set p.a=VALUE gives it a value" in done.stderr, done.stderr
 
 
 REFUSED = {

@@ -278,10 +278,33 @@ def _cause(
 
 
 def _other_edits(case: Comparison, repairs: list[Repair], shown: Repair) -> list[str]:
-    same = [one for one in repairs if one is not shown and one.mended == shown.mended]
-    text, said = case.formula.text or "", []
-    for one in same[:3]:
+    """The edits that do the same, each once: one that only writes another with more brackets or signs is none."""
+    text, different = case.formula.text or "", [shown]
+    for one in repairs:
+        if one.mended == shown.mended and not any(_is_same(one.edit, other.edit, text) for other in different):
+            different.append(one)
+    said = []
+    for one in different[1:]:
         line, _ = line_and_column(text, one.edit.start)
-        old = text[one.edit.start : one.edit.end]
-        said.append(f"in line {line} `{old}` as `{one.edit.new}` would be right, too")
+        said.append(f"in line {line} `{text[one.edit.start : one.edit.end]}` as `{one.edit.new}` would be right, too")
     return said
+
+
+def _is_same(one: Edit, other: Edit, text: str) -> bool:
+    """Whether two edits write the same, or change a sign of the same product."""
+    meet = one.start <= other.end and other.start <= one.end
+    are_signs = _is_of_sign(one, text) and _is_of_sign(other, text)
+    return (meet and are_signs) or _plain(one.apply(text)) == _plain(other.apply(text))
+
+
+def _is_of_sign(edit: Edit, text: str) -> bool:
+    """Whether it changes nothing but a sign."""
+    return re.sub(r"[-+\s()]", "", edit.new) == re.sub(r"[-+\s()]", "", text[edit.start : edit.end])
+
+
+def _plain(text: str) -> str:
+    """A text without blanks and brackets, and with one sign where several meet."""
+    bare = re.sub(r"[\s()]", "", text)
+    while (fewer := re.sub(r"\+\+|--", "+", re.sub(r"\+-|-\+", "-", bare))) != bare:
+        bare = fewer
+    return re.sub(r"(?<=[=,;:*/\[{])\+", "", bare)

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..._native import Floats
-from ...errors import UsageError
+from ...errors import UnjudgedError, UsageError
 from ...robots.bodies import Joint, rotation_about
 from ..kinds import SPATIAL, Kind, Rows
 
@@ -38,6 +38,8 @@ class SerialChain:
         states_gravity: bool = False,
         tip: str = "",
         held: Sequence[str] = (),
+        without_inertial: Sequence[str] = (),
+        unknown: Sequence[str] = (),
         named_numbers: Mapping[str, float] | None = None,
     ) -> None:
         """
@@ -46,6 +48,8 @@ class SerialChain:
             gravity: in the base frame, m/s^2.
             tip: what the tip's frame is called; "" where it has no name.
             held: joints beside the chain, which are taken at zero.
+            without_inertial: links that have no mass because their file gives none.
+            unknown: those of them whose body has none at all.
             states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
 
@@ -67,7 +71,7 @@ class SerialChain:
         """Whether its size is what a formula says, as the chain's file does not."""
         self.takes_direction = False
         """Whether its direction is."""
-        self.held = tuple(held)
+        self.held, self.without_inertial, self.unknown = tuple(held), tuple(without_inertial), tuple(unknown)
         self.named_numbers = dict(named_numbers or {})
 
     @property
@@ -254,9 +258,20 @@ class SerialChain:
         """What is right at the states, (S, ...).
 
         Raises:
-            UsageError: the chain has no masses, which the kind needs.
+            UnjudgedError: the chain has not all masses, which the kind needs.
         """
-        if kind.needs_masses and not self._has_masses():
-            raise UsageError(f"{self.name} has no masses, which a {kind.name} formula needs")
+        if kind.needs_masses:
+            self._require_masses(kind)
         chain = self.with_gravity(quantities["gravity"]) if "gravity" in quantities else self
         return kind.due(chain, states, rows)
+
+    def _require_masses(self, kind: Kind) -> None:
+        if self.unknown:
+            *others, last = self.unknown
+            links = f"links {', '.join(others)} and {last} move and have" if others else f"link {last} moves and has"
+            why = f"the {links} no <inertial>; write it into the file, with the mass 0 where there is none"
+        elif not self._has_masses():
+            why = "no link has a mass; a DH table has columns for it, see `arm3r docs verify`"
+        else:
+            return
+        raise UnjudgedError(f"{self.name}: a {kind.words} cannot be judged: {why}")

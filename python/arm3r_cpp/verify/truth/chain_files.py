@@ -40,6 +40,8 @@ class Chain(SerialChain):
             name=os.path.basename(os.fspath(path)),
             tip=found.tip,
             held=found.held,
+            without_inertial=found.without_inertial,
+            unknown=found.unknown,
         )
 
     @classmethod
@@ -86,6 +88,8 @@ class Chain(SerialChain):
             states_gravity=self.states_gravity or gravity is not None,
             tip=self.tip,
             held=self.held,
+            without_inertial=self.without_inertial,
+            unknown=self.unknown,
             named_numbers=self.named_numbers,
         )
 
@@ -161,6 +165,8 @@ class Chain(SerialChain):
             found += [f"third row about {'xyz'[rows[2] - 3]}"] if len(rows) == 3 and rows[2] > 2 else []
         if self.held and not kind.depends_on_base:
             found.append(f"{', '.join(self.held)} at zero")
+        if self.without_inertial and not kind.depends_on_base:
+            found.append(f"{', '.join(self.without_inertial)} without mass, as the file gives none")
         if kind.depends_on_gravity:
             size = self.gravity_size
             down = np.allclose(self.gravity, [0, 0, -size], atol=1e-9 * size)
