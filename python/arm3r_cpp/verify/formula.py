@@ -166,9 +166,7 @@ class Formula:
             return Call(tuple(c for vector in kind.inputs for c in columns(vector, joints)), {}, self.output)
         slots: list[Any] = []
         arguments = self._given(kind, parameters)
-        for vector, joint in slots_of(
-            arguments, kind, joints, [*parameters, *self.given], self.text or ""
-        ):
+        for vector, joint in slots_of(arguments, kind, joints, [*parameters, *self.given], self.text or ""):
             if vector == TIME:
                 slots.append(Given(0.0))
             elif vector in self.given:
