@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from .comparison import Comparison
 from .explain.reader import read_entries
@@ -80,9 +81,11 @@ def _compare_with_other_convention(verdict: Verdict, case: Comparison) -> None:
     """Say that a formula is right in the convention that the scenario does not state."""
     other = case.truth.in_other_convention()
     if other is not None and wrong_count(case.formula, case.kind, other) == 0:
-        verdict.alternatives.append(
-            f"it is right in the convention {other.convention}; the scenario states {case.truth.convention}"
-        )
+        verdict.alternatives.append(right_elsewhere(other, case.truth))
+
+
+def right_elsewhere(other: Any, truth: Any) -> str:
+    return f"it is right in the convention {other.convention}; the scenario states {truth.convention}"
 
 
 def few(alternatives: Sequence[str]) -> list[str]:

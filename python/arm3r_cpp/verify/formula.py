@@ -476,6 +476,13 @@ def kind_of(formula: Formula) -> Kind | None:
         kind = kind_of_name(name)
         if kind:
             return KINDS[kind]
-    if outputs and outputs[0].rstrip("123").lower() in ("t", "tau", "torque", "g"):
-        return KINDS["gravity"]
+    if outputs and outputs[0].rstrip("123") in ("t", "tau", "Tau", "torque", "g", "G"):
+        return _torque_of({slot[0] for name in formula.arguments if (slot := slot_of(name))})
     return None
+
+
+def _torque_of(vectors: set[str]) -> Kind | None:
+    """The kind of torque that depends on these joint vectors; None where it may be one of several."""
+    if "qdd" in vectors:
+        return KINDS["inverse"]
+    return KINDS["gravity"] if "qd" not in vectors else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
@@ -205,8 +206,14 @@ def _parameters(formula: Formula, kind: Kind, truth: Any) -> dict[str, str]:
     return {
         name: quantity
         for name, quantity in formula.parameters(kind, truth.joints).items()
-        if quantity in truth.values_of_quantities and kind.is_of_arm
+        if quantity in truth.values_of_quantities and kind.is_of_arm and not _is_of_other_axis(name, quantity, truth)
     }
+
+
+def _is_of_other_axis(name: str, quantity: str, truth: Any) -> bool:
+    """Whether a link's Iy stands for itself, as its Iz is another number."""
+    is_y = quantity.startswith("inertia") and re.fullmatch(r"I_?yy?_?\d", name.rpartition(".")[2], re.I) is not None
+    return is_y and not truth.is_round(int(quantity[-1]))
 
 
 def _is_opposite(number: float | None, own: float) -> bool:

@@ -115,7 +115,8 @@ def hold_to_pinocchio(worst: Worst, told: str, keys: Keys, arm: arm3r.Arm, state
         worst.hold("Jacobian of Pinocchio", arm.geometric_jacobian(q), J, LENGTHS, told)
         worst.hold("its rate", arm.jacobian_dot(q, qd), rate, LENGTHS * max(1, abs(rate).max()), told)
         worst.hold("M of Pinocchio", arm.mass_matrix(q), M, MASSES * abs(M).max(), told)
-        worst.hold("C qd of Pinocchio", arm.velocity_product(q, qd), bias, TORQUES * max(abs(bias).max(), 1e-2), told)
+        terms = (abs(arm.coriolis_matrix(q, qd)) @ abs(qd)).max()  # which may all but cancel where the rates are apart
+        worst.hold("C qd of Pinocchio", arm.velocity_product(q, qd), bias, TORQUES * max(terms, 1e-2), told)
         worst.hold("gravity of Pinocchio", arm.gravity_torque(q), gravity, TORQUES * max(abs(gravity).max(), 1), told)
 
 

@@ -154,3 +154,88 @@ def test_what_has_nothing_to_do_with_the_arm_is_not_judged(tmp_path: Path) -> No
     path = written(tmp_path / "log.csv", "gravity", at, rng.uniform(-20, 20, (300, 3)))
     with pytest.raises(arm3r.UnjudgedError, match=r"follows no term of a gravity torque; is this the arm"):
         formula_verdict(path)
+
+
+# ---- what a log cannot tell ------------------------------------------------------------------------------------------
+
+
+def motion(rows: int = 800) -> tuple[Floats, dict[str, Floats]]:
+    """Times, and the states along a smooth motion."""
+    t = np.linspace(0, 8, rows)
+    rate, phase = np.array([1.3, 1.9, 2.3]), np.array([0.2, 1.1, 2.0])
+    angle = rate * t[:, None] + phase
+    return t, {"q": np.sin(angle), "qd": rate * np.cos(angle), "qdd": -(rate**2) * np.sin(angle)}
+
+
+@pytest.mark.parametrize("noise", [1e-4, 2e-4])
+def test_torques_of_measured_motion_are_right_where_their_states_are_noisy(noise: float, tmp_path: Path) -> None:
+    """The torques are exact; rates and accelerations are differences of angles with noise."""
+    rng = np.random.default_rng(sample_seed())
+    t, at = motion()
+    due = TRUTH.values(KINDS["inverse"], TRUTH.convention, at, {})
+    q = white(at["q"], noise, rng)
+    qd = np.gradient(q, t, axis=0)
+    seen = {"q": q, "qd": qd, "qdd": np.gradient(qd, t, axis=0)}
+    verdict = formula_verdict(written(tmp_path / "log.csv", "inverse", seen, due), "inverse")
+    assert verdict.ok, str(verdict)
+    assert "as the noise of the states explains" in str(verdict)
+    wrong = formula_verdict(written(tmp_path / "log.csv", "inverse", at, due * [1, 1, 1.02]), "inverse")
+    assert [one.entry for one in wrong.findings] == [[3]], str(wrong)
+
+
+def test_a_torque_without_its_accelerations_is_right_at_rest_and_else_not_judged(tmp_path: Path) -> None:
+    _, at = motion()
+    still = {"q": at["q"], "qd": 0 * at["qd"], "qdd": 0 * at["qdd"]}
+    for states_, is_judged in ((still, True), (at, False)):
+        due = TRUTH.values(KINDS["inverse"], TRUTH.convention, states_, {})
+        path = written(tmp_path / "log.csv", "inverse", states_, due)
+        rows = np.loadtxt(path, delimiter=",", skiprows=1)
+        names = ["q1", "q2", "q3", "qd1", "qd2", "qd3", "tau1", "tau2", "tau3"]
+        np.savetxt(path, np.delete(rows, [6, 7, 8], axis=1), delimiter=",", header=",".join(names), comments="")
+        if is_judged:
+            verdict = formula_verdict(path)
+            assert verdict.ok and "with qdd = 0, as the log has no columns of them" in str(verdict)
+        else:
+            with pytest.raises(arm3r.UnjudgedError, match=r"depends on qdd, and the log has no columns qdd1\.\.; add"):
+                formula_verdict(path)
+
+
+@pytest.mark.parametrize("held, judged", [((0,), False), ((1, 2), False), ((), True)])
+def test_rows_in_which_a_joint_stands_still_are_not_judged(held: tuple[int, ...], judged: bool, tmp_path: Path) -> None:
+    _, at = motion(300)
+    at["q"][:, list(held)] = 0.4
+    due = TRUTH.values(KINDS["jacobian"], TRUTH.convention, at, {}).reshape(300, -1)
+    path = written(tmp_path / "log.csv", "jacobian", at, due)
+    if judged:
+        assert formula_verdict(path).ok
+        return
+    with pytest.raises(arm3r.UnjudgedError, match=r"the same in all rows, .* log rows in which every joint moves"):
+        formula_verdict(path)
+    due[:, 4] += 0.1  # what is wrong is wrong all the same
+    assert not formula_verdict(written(path, "jacobian", at, due)).ok
+
+
+def test_torques_that_cancel_leave_no_mistake(tmp_path: Path) -> None:
+    run = arm3r.Scenario("{format: 1, initial: {qd: [0.4, 0.7, -0.5]}, time: {stop: 1, log_every: 0.05}}").run()
+    run.to_csv(tmp_path / "run.csv")
+    assert formula_verdict(tmp_path / "run.csv", "inverse").ok
+
+
+def test_a_small_entry_beside_large_ones_of_the_same_noise_is_read(tmp_path: Path) -> None:
+    rng = np.random.default_rng(sample_seed())
+    at = states(400, moves=False, rng=rng)
+    due = TRUTH.values(KINDS["gravity"], TRUTH.convention, at, {})
+    verdict = formula_verdict(written(tmp_path / "log.csv", "gravity", at, white(due * [1, 1, -1], 0.05, rng)))
+    assert [one.entry for one in verdict.findings] == [[3]], str(verdict)
+    assert str(verdict.findings[0].reads).endswith(" C23") and verdict.findings[0].reads != verdict.findings[0].due
+
+
+def test_a_log_of_the_other_convention_is_named_so(tmp_path: Path) -> None:
+    scenario = arm3r.Scenario("format: 1\narm: {convention: slide, link2: {length: 0.8}}\n")
+    rng = np.random.default_rng(sample_seed())
+    at = states(300, moves=False, rng=rng)
+    other = arm3r.Scenario("format: 1\narm: {convention: simscape, link2: {length: 0.8}}\n").arm
+    values = white(other.gravity_torque(at["q"]), 0.01, rng)
+    verdict = formula_verdict(written(tmp_path / "log.csv", "gravity", at, values), arm=scenario)
+    assert not verdict.ok
+    assert "it is right in the convention simscape; the scenario states slide" in verdict.alternatives

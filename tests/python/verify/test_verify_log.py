@@ -72,7 +72,7 @@ def test_what_is_below_the_noise_is_no_finding(tmp_path: Path) -> None:
 
 
 def test_a_run_is_a_log_of_its_inverse_dynamics(tmp_path: Path) -> None:
-    scenario = arm3r.Scenario("{format: 1, controller: {type: gravity_compensation}, time: {stop: 1, log_every: 0.1}}")
+    scenario = arm3r.Scenario("{format: 1, initial: {qd: [0.4, 0.7, -0.5]}, time: {stop: 1, log_every: 0.1}}")
     path = tmp_path / "run.csv"
     scenario.run().to_csv(path)
     assert verify.inverse(path).ok

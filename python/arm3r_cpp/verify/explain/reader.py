@@ -68,7 +68,8 @@ class _Reader:
         known = self.case.known
         if self.kind.quantities:
             varied = [name for name in self.kind.quantities if self.own.get(name) or name in known]
-            if self.kind.needs_masses and "com" not in self.case.follows:  # a centre that keeps its number has a name
+            keeps_centres = "com" not in self.case.follows or (not known and self.case.truth.states_centres)
+            if self.kind.needs_masses and keeps_centres:  # a centre that keeps its number has a name
                 varied += [name for name in ("com2", "com3") if self.own.get(name)]
             return varied, [name for name in known if name in varied or name in ("com2", "com3")]
         varied = list(known) or [name for name in _DYNAMIC if self.own.get(name)]
@@ -123,11 +124,12 @@ class _Reader:
             read_ones = self._read(index, part, monomials_due, names)
             terms = None if read_ones is None or terms is None else terms + _like(read_ones, due or [])
         due_words = sum_words(due_terms) if due_terms is not None else None
-        if terms is None or not self._is_whole(place):
+        words = sum_words(terms) if terms is not None and self._is_whole(place) else None
+        if terms is None or words is None or words == due_words:  # the difference is below what words say
             return Reading(None, due_words)
         units = {self._units(term.powers) for term in (*terms, *(due_terms or []))}
         is_simple = all(is_simple_number(term.number) for term in (*terms, *(due_terms or [])))
-        return Reading(sum_words(terms), due_words, self._note(), is_simple and len(units) == 1)
+        return Reading(words, due_words, self._note(), is_simple and len(units) == 1)
 
     def _units(self, powers: Iterable[tuple[str, int]]) -> tuple[int, ...]:
         """Of names with their powers: kilograms, m/s^2 and metres."""
@@ -173,10 +175,10 @@ class _Reader:
         values = {self.shown[name]: np.array([arm[name] for arm in self.arms]) for name in known}
         parameters = Parameters(values, fixed, len(self.arms))
         parameters.candidates = self._candidates(part, known, parameters)
-        units = {self._units(powers.items()) for found in monomials_due.values() for _, powers in found}
+        units = self._units_in(monomials_due) or self._units_of(part)
         if self.case.truth.named_numbers:  # lengths of a table; what stands beside them has no name
             parameters.may_stand = partial(self._has_few_lengths, part)
-        elif units:
+        else:
             parameters.may_stand = lambda names: self._units((name, 1) for name in names) in units
         spectrum = self._spectrum(index, False)
         if spectrum is None or self._scale(index, False) > _ROUNDING * self._scale(index, True):
@@ -185,6 +187,16 @@ class _Reader:
             spectrum, parameters, _hints(monomials_due, parameters, fixed), self._scale(index, False), part.words
         )
         return result[0] if result else None
+
+    def _units_in(self, monomials_due: Any) -> set[tuple[int, ...]]:
+        return {self._units(powers.items()) for found in monomials_due.values() for _, powers in found}
+
+    def _units_of(self, part: Part) -> set[tuple[int, ...]]:
+        """The units of what is due before this part's waves in any entry; where nothing is, numbers stand alone."""
+        number = self.parts.index(part)
+        places = range(int(np.prod(self.case.due(self.case.first).shape[1:])))
+        found = (self._due(place * len(self.parts) + number, part)[1] for place in places)
+        return set().union(*map(self._units_in, found))
 
     def _has_few_lengths(self, part: Part, names: Iterable[str]) -> bool:
         """Whether so many lengths may stand in one term: two where a mass stands before them, which moves."""

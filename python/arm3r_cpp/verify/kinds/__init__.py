@@ -51,6 +51,8 @@ def kind_of_name(name: str) -> str | None:
         return "kinematics"
     if re.search(r"dot_?q", lower):  # the product of a rate and the rates
         return None
+    if "kinetic" in lower or re.search(r"inverse_?kin|inv_?kin|(?<![a-z])ik(?![a-z])", lower):  # of an energy, of poses
+        return None
     for kind in (KINDS[one] for one in _BY_NAME):
         for word in kind.called:
             if (len(word) > 2 and word in lower) or lower == word or lower.startswith(f"{word}_"):

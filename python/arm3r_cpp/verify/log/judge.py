@@ -10,15 +10,19 @@ import numpy as np
 from ..._native import Floats
 from ...errors import UnjudgedError, UsageError
 from ..comparison import TOLERANCE, scales
+from ..doubts import right_elsewhere
 from ..explain.regression import SIGNIFICANT, Fit, columns_of, design, fits
 from ..finding import Finding
 from ..kinds import Kind
 from ..names import SHORT, quantities_of
 from ..verdict import Verdict
-from .noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, quantum
+from .noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, noise_of, quantum
 from .reading import Log
 
 _LARGER = 4.0  # than the noise of the other entries: then an entry holds what is no such sum
+_OF_STATES = 2.0  # times what the noise of the states makes of an entry: nothing smaller is told from it
+_OF_TYPICAL = 1e-4  # of an entry's size at any states: torques that cancel leave rounding of that
+_STILL = 1e-3  # rad or m: less is no motion
 _NO_NOISE = 0.1  # of the largest entry: no measurement is meant to be as bad
 
 
@@ -43,8 +47,8 @@ class _Case:
 @dataclass
 class _Candidate:
     verdict: Verdict
-    undecided: list[str] = field(default_factory=list)
-    """The entries that are far off, by what follows nothing."""
+    undecided: dict[str, float] = field(default_factory=dict)
+    """The entries that are far off, by what follows nothing, and how far."""
 
     @property
     def doubt(self) -> int:
@@ -73,12 +77,65 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
             f"{log.file}: cannot be judged: {FEWEST_ROWS} rows or more are needed, at poses that differ in every joint"
         )
     if best.undecided:
+        names = list(best.undecided)[:3]
+        off = max(best.undecided[name] for name in names)
         raise UnjudgedError(
-            f"{log.file}: cannot be judged: {', '.join(best.undecided[:3])} is off by up to {verdict.residual:.2g} and "
+            f"{log.file}: cannot be judged: {', '.join(names)} is off by up to {off:.2g} and "
             f"follows no term of a {kind.words}; is this the arm, and are q1, q2, ... its angles?"
         )
+    _require_motion(log, kind, truth, verdict)
+    _compare_with_other_convention(verdict, log, kind, truth, noise)
     verdict.warnings += log.notes()
     return verdict
+
+
+def _compare_with_other_convention(verdict: Verdict, log: Log, kind: Kind, truth: Any, noise: float | None) -> None:
+    """Say that a log is right in the convention that the scenario does not state."""
+    other = None if verdict.ok else truth.in_other_convention()
+    if other is not None and not _judged(log, kind, other, noise).doubt:
+        verdict.alternatives.append(right_elsewhere(other, truth))
+
+
+def _require_motion(log: Log, kind: Kind, truth: Any, verdict: Verdict) -> None:
+    """Rows in which the arm moves as the kind needs it, or words that say in what they are plain.
+
+    Raises:
+        UnjudgedError: too little moves to judge the entries.
+    """
+    missing = [name for name in ("qd", "qdd", "tau") if name in kind.inputs and log.vector(name, truth.joints) is None]
+    if missing and not verdict.ok:
+        raise UnjudgedError(
+            f"{log.file}: cannot be judged: {kind.words} depends on {' and '.join(missing)}, and the log has no "
+            f"columns {', '.join(f'{name}1..' for name in missing)}; add them"
+        )
+    if missing:
+        verdict.found.append(f"with {' and '.join(missing)} = 0, as the log has no columns of them")
+    states = log.states(truth.joints)
+    still = [joint for joint in range(truth.joints) if np.ptp(states["q"][:, joint]) < _STILL]
+    idle = [f"q{joint + 1}" for joint in still if _depends(kind, truth, joint)]
+    if kind.is_product and not states["qd"].any():
+        idle = [f"qd{joint + 1}" for joint in range(truth.joints)]
+    if verdict.ok and idle:
+        is_one = len(idle) == 1
+        raise UnjudgedError(
+            f"{log.file}: cannot be judged: {', '.join(idle)} {'stays' if is_one else 'stay'} the same in all rows, "
+            f"and {kind.words} depends on {'it' if is_one else 'them'}; log rows in which every joint moves"
+        )
+
+
+def _typical(truth: Any, kind: Kind, turned: int | None = None) -> Floats:
+    """What is right at a few states drawn at random, with one of the joints perhaps turned."""
+    random = np.random.default_rng(7)
+    states = {name: random.uniform(-1, 1, (4, truth.joints)) for name in ("q", "qd", "qdd", "tau")}
+    if turned is not None:
+        states["q"][:, turned] += 0.7
+    return np.asarray(truth.values(kind, truth.convention, states, {}))
+
+
+def _depends(kind: Kind, truth: Any, joint: int) -> bool:
+    """Whether what is due changes with a joint."""
+    first, second = _typical(truth, kind), _typical(truth, kind, joint)
+    return bool(np.abs(first - second).max() > TOLERANCE * np.abs(first).max())
 
 
 def _judged(log: Log, kind: Kind, truth: Any, noise: float | None) -> _Candidate:
@@ -137,23 +194,36 @@ def _candidate(case: _Case, convention: str) -> _Candidate:
     verdict.found = [f"convention {convention}"] if convention else []
     found = _Candidate(verdict)
     flat = scales(due.reshape(len(due), -1)).reshape(due.shape[1:])
+    flat = np.maximum(flat, _OF_TYPICAL * np.abs(_typical(case.truth, kind)).max())
     rights = {place: np.array([row[place] for row in due]) for place in case.entries}
     left = {place: values - rights[place] for place, values in case.entries.items()}
     sizes = {place: case.fitted[place].noise if place in case.fitted else _rms(one) for place, one in left.items()}
     level = float(np.median([size / flat[place] for place, size in sizes.items()]))
+    same = float(np.median(list(sizes.values())))
+    by_states = _spread(case, convention, due)
     is_exact = any(size <= TOLERANCE * flat[place] < np.ptp(rights[place]) for place, size in sizes.items())
     verdict.residual = float(max(np.abs(one).max() for one in left.values()))
+    quiet: list[float] = []
     for place, one in sorted(left.items()):
         if np.abs(one).max() <= max((noise or 0.0) * SIGNIFICANT, TOLERANCE) * flat[place]:
             continue
         if noise is None and not is_exact and (words := _excuse(case, place, one)) is not None:
             verdict.warnings += [words] if words else []
+            quiet += [] if words else [sizes[place] / flat.max()]
             if not words and _rms(one) > _NO_NOISE * flat.max():
-                found.undecided.append(kind.entry_name([index + 1 for index in place]))
+                found.undecided[kind.entry_name([index + 1 for index in place])] = float(np.abs(one).max())
             continue
-        size = float(flat[place]) * (level if noise is None else noise)
-        verdict.findings.append(_finding(kind, place, case.fitted.get(place), rights[place], size))
+        if noise is None and not is_exact and _rms(one) <= _OF_STATES * by_states[place]:
+            name = kind.entry_name([index + 1 for index in place])
+            off = f"{np.abs(one).max():.2g} {kind.unit}"
+            verdict.warnings.append(
+                f"{name} is off by up to {off}, as the noise of the states explains: no smaller mistake can be judged"
+            )
+            continue
+        size = max(float(flat[place]) * level, same) if noise is None else float(flat[place]) * noise
+        verdict.findings.append(_finding(kind, place, case.fitted.get(place), rights[place], left[place], size))
     verdict.unexplained = [one.entry for one in verdict.findings if one.reads is None and one.entry]
+    level = level if case.fitted else max(quiet, default=0.0)
     if level > TOLERANCE:
         verdict.warnings.append(f"noise of {level:.1e} of the entries' scale; what is smaller cannot be judged")
     verdict.ok = not verdict.findings
@@ -173,6 +243,19 @@ def _excuse(case: _Case, place: tuple[int, ...], left: Floats) -> str | None:
         f"t{place[0] + 1} leaves up to {np.abs(by_friction).max():.2g} N m that follow the rate of joint "
         f"{place[0] + 1}, as friction does: a mistake that looks like friction cannot be judged"
     )
+
+
+def _spread(case: _Case, convention: str, due: Floats) -> Floats:
+    """By how much the noise of the states spreads what is due, where they are logged along a motion: an entry each."""
+    sizes = noise_of({name: values for name, values in case.states.items() if name in case.kind.inputs})
+    if not any(size.any() for size in sizes.values()):
+        return np.zeros(due.shape[1:])
+    random = np.random.default_rng(5)
+    other = {
+        name: case.states[name] + size * random.standard_normal(case.states[name].shape) for name, size in sizes.items()
+    }
+    moved = _due(case.truth, case.kind, convention, {**case.states, **other}, case.given)
+    return np.asarray(np.sqrt(np.mean((moved - due) ** 2, axis=0)))
 
 
 def _rms(values: Floats) -> float:
@@ -198,23 +281,26 @@ def _fits(
     return fits(columns, matrix, entries)
 
 
-def _finding(kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floats, noise: float) -> Finding:
+def _finding(
+    kind: Kind, place: tuple[int, ...], fitted: Fit | None, right: Floats, left: Floats, noise: float
+) -> Finding:
     """The finding on an entry that is wrong."""
     entry = [one + 1 for one in place]
     name = kind.entry_name(entry)
+    off = f"{name} is wrong, by up to {np.abs(left).max():.2g} {kind.unit}"
     if fitted is None:
-        return Finding(entry, f"{name} is wrong; its terms cannot be read from these rows.")
+        return Finding(entry, f"{off}; its terms cannot be read from these rows.")
     due = fitted.inverse @ right
     due += fitted.inverse @ (right - fitted.matrix @ due)
     if fitted.noise > _LARGER * noise and fitted.noise > TOLERANCE * np.abs(right).max():
-        return Finding(entry, f"{name} is wrong, and it is no sum of sines and cosines of first order.")
+        return Finding(entry, f"{off}, and it is no sum of sines and cosines of first order.")
     coloured = inflation(fitted.left)
     fitted = replace(fitted, deviations=fitted.deviations * coloured)
     due[np.abs(due) < 1e-9 * np.abs(due).max(initial=1e-9)] = 0.0
     due = np.where(np.abs(due - np.round(due * 24) / 24) < 1e-9, np.round(due * 24) / 24, due)
     read, right_words = fitted.read(due), fitted.words(due, due, SHORT)
     if (read == due).all() or _is_off(fitted, read, right):
-        return Finding(entry, f"{name} is wrong, with terms that are smaller than the noise.", None, right_words)
+        return Finding(entry, f"{off}; these rows do not tell by which term.", None, right_words)
     reads = fitted.words(read, due, SHORT)
     return Finding(entry, f"{name} reads {reads}; it should be {right_words}.", reads, right_words)
 

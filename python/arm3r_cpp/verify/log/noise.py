@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -15,6 +16,8 @@ FEWEST_ROWS = 8
 _MOST_FEATURES = 4000
 _MOST_CHOSEN = 6
 _HALF = 0.5 * (1 + 1e-6)  # of a step: the largest error of rounding
+_DIFFERENCES = 6  # the order of those in which a smooth motion vanishes
+_SMOOTH = 0.3  # of its own size: what has more is no motion in the order of its rows
 _ORDERS = 3  # of the autoregressive model of the noise
 _SLIPS = (0.01, 0.1, 0.5)  # rad/s, by which friction has come to its sign
 
@@ -37,6 +40,19 @@ def _waves(order: int, groups: Sequence[Sequence[int]], revolute: Sequence[bool]
 def friction_of(qd: Floats) -> Floats:
     """(rows, columns): what the friction of a joint of these rates is made of."""
     return np.stack([qd, qd * np.abs(qd), *(np.tanh(qd / slip) for slip in _SLIPS)], axis=1)
+
+
+def noise_of(states: Mapping[str, Floats]) -> dict[str, Floats]:
+    """The noise of each number of the states along a smooth motion, from sixth differences; none of random poses."""
+    if len(states["q"]) < 4 * _DIFFERENCES:
+        return {}
+    gain = np.sqrt(float(math.comb(2 * _DIFFERENCES, _DIFFERENCES)))
+    sizes = {
+        name: np.sqrt(np.mean(np.diff(values, _DIFFERENCES, axis=0) ** 2, axis=0)) / gain
+        for name, values in states.items()
+    }
+    moves = np.std(states["q"], axis=0)
+    return sizes if (sizes["q"] <= _SMOOTH * moves).all() else {}
 
 
 def quantum(values: Floats) -> float:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._messages import place
+from ..._messages import place, shown
 from ..._native import Floats
 from ...errors import UsageError
 from ...logs.arrays import ENDINGS as ARRAYS
@@ -121,7 +121,8 @@ class Log(NamedTuple):
 
     def _hint(self) -> str:
         """What to say of the columns that are not known."""
-        return f"; --columns NAME=q1,... says which they are: {', '.join(self.others)[:200]}" if self.others else ""
+        names = shown(", ".join(self.others)[:200])
+        return f"; --columns NAME=q1,... says which they are: {names}" if names else ""
 
 
 def is_known(name: str) -> bool:

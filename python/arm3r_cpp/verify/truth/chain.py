@@ -25,7 +25,7 @@ class SerialChain:
 
     conventions: tuple[str, ...] = ("",)
     convention = ""
-    is_default = False
+    is_default = states_centres = False
 
     def __init__(
         self,

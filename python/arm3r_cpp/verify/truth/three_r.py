@@ -69,6 +69,8 @@ class ThreeR:
     """Joints with parallel axes: their angles occur as sums."""
     named_numbers: Mapping[str, float] = {}
     states_gravity = True
+    states_centres = False
+    """Whether centres of mass are given as numbers, and not by the shapes of links."""
 
     def __init__(self, scenario: Scenario | Arm | None = None) -> None:
         """By default the lecture's arm.
@@ -88,6 +90,7 @@ class ThreeR:
         """Those that a formula may be meant in: the one that the scenario states, else both."""
         self._arms: dict[tuple[Any, ...], Arm] = {}
         self.values_of_quantities = self._measure()
+        self.states_centres = not all(np.isnan(self._params[param_index(f"arm.link{link}.com")]) for link in (2, 3))
 
     def _measure(self) -> dict[str, float]:
         """The arm's own quantities, from its functions: a shape in the scenario does not tell mass and centre."""
@@ -155,8 +158,20 @@ class ThreeR:
         drawn = {}
         for name in sorted(names):
             low, high = _RANGES.get(name.rstrip("0123456789"), (4.0, 13.0) if name == "gravity" else (0.2, 1.0))
+            if name.startswith("inertia") and not self.is_round(int(name[-1])):
+                low, high = self._possible_inertias(int(name[-1]))
             drawn[name] = float(random.uniform(low, high))
         return drawn
+
+    def is_round(self, link: int) -> bool:
+        """Whether a link's inertias about the axes across it are equal."""
+        return bool(np.isclose(self._ratio(link), 1.0, rtol=1e-9))
+
+    def _possible_inertias(self, link: int) -> tuple[float, float]:
+        """About the joint's axis, with which a link's other two inertias are still those of a body."""
+        axial, other = self._axial(link), self.values_of_quantities[f"inertia{link}"] * self._ratio(link)
+        least, most = abs(other - axial), other + axial
+        return least + 0.1 * (most - least), most - 0.1 * (most - least)
 
     def arm(self, convention: str, quantities: Mapping[str, float], follows: tuple[str, ...] = FOLLOWING[0]) -> Arm:
         """The arm with some quantities changed.
@@ -208,17 +223,20 @@ class ThreeR:
             params[at["com"]] = own[f"com{link}"]
         elif has_own_com:
             params[at["com"]] = own[f"com{link}"] * length / own[f"length{link}"]
-        across = own[f"inertia{link}"]
-        axial, ratio = self._axial(link), self._ratio(link)
+        across, axial = own[f"inertia{link}"], self._axial(link)
+        other = across * self._ratio(link)
         if f"inertia{link}" in given:
-            across, axial = value[f"inertia{link}"], min(axial, value[f"inertia{link}"])
+            across = value[f"inertia{link}"]
+            if self.is_round(link):
+                other, axial = across, min(axial, across)
         elif "inertia" in follows and not has_own_inertia:
             return  # the library derives it from the shape, for any length and mass
         elif "inertia" in follows:
             old_mass, old_length = own[f"mass{link}"], own[f"length{link}"]
-            across = mass / old_mass * (across + old_mass * (length**2 - old_length**2) / 12)
+            across, other = (mass / old_mass * (one + old_mass * (length**2 - old_length**2) / 12)
+                             for one in (across, other))  # fmt: skip
             axial *= mass / old_mass
-        params[axes] = (axial, across * ratio, across)
+        params[axes] = (axial, other, across)
 
     def _axial(self, link: int) -> float:
         """The inertia about the link's own axis: what it adds to M11 where the links stand upright."""
