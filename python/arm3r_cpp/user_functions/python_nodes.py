@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 
 from ..errors import UsageError
@@ -112,7 +113,8 @@ class PythonText:
                 if number is not None and count[target.id] == 1 and target.id not in changed:
                     found.append(Constant(target.id, number, *self._span(value)))
         names_of = Counter(one.start for one in found)
-        return [one for one in found if names_of[one.start] == 1]  # `a2 = a3 = 1` is one number for both
+        ends = re.compile(r"[ \t]*([\n;#]|$)")  # so that `a2 = a3 = 1` can be two numbers
+        return [one for one in found if names_of[one.start] == 1 or ends.match(self.text, one.end)]
 
     def returned_names(self, function: str) -> list[str]:
         """The names in `return t3, t2, t1`."""

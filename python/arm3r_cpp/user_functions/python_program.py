@@ -128,8 +128,8 @@ class PythonProgram:
             tree = ast.parse(self.text)
             self._spans = self._lifted_spans(tree, set(lifted)) if lifted else []
             self._lifted_text = self.text
-            for start, end, name in reversed(self._spans):
-                self._lifted_text = f"{self._lifted_text[:start]}{LIFTED}[{name!r}]{self._lifted_text[end:]}"
+            for start, end, code in reversed(self._spans):
+                self._lifted_text = f"{self._lifted_text[:start]}{code}{self._lifted_text[end:]}"
             self.names = set(lifted)
             spans = [self._span(node) for node in tree.body]
             self._body = [(start, end, self._compiled(start, end, None)) for start, end in spans]
@@ -139,21 +139,30 @@ class PythonProgram:
             ) from None
 
     def _lifted_spans(self, tree: ast.Module, names: set[str]) -> list[tuple[int, int, str]]:
-        """Where the numbers of lifted constants stand."""
-        found = {}
+        """Where the numbers of lifted constants stand, and what is to stand there."""
+        found: dict[tuple[int, int], list[str]] = {}
         for statement in ast.walk(tree):
             for target, value in pairs(statement):
-                if target.id in names and number_in(value) is not None:
+                if number_in(value) is not None:
                     start = self.offset(value.lineno, value.col_offset)
-                    found[start] = (self.offset(value.end_lineno or 0, value.end_col_offset or 0), target.id)
-        return [(start, *rest) for start, rest in sorted(found.items())]
+                    end = self.offset(value.end_lineno or 0, value.end_col_offset or 0)
+                    found.setdefault((start, end), []).append(target.id)
+        return [
+            (*span, self._look_up(span, assigned, names))
+            for span, assigned in sorted(found.items())
+            if names & set(assigned)
+        ]
+
+    def _look_up(self, span: tuple[int, int], assigned: list[str], names: set[str]) -> str:
+        """The code for a number; `a2 = a3 = 1` goes on as `a2 = a3 = 1; a2 = ...; a3 = ...`."""
+        if len(assigned) == 1:
+            return f"{LIFTED}[{assigned[0]!r}]"
+        each = (f"; {name} = {LIFTED}[{name!r}]" for name in assigned if name in names)
+        return self.text[slice(*span)] + "".join(each)
 
     def _moved(self, place: int) -> int:
         """A place of the text in the text with lifted constants."""
-        shift = sum(
-            len(LIFTED) + len(repr(name)) + 2 - (end - start) for start, end, name in self._spans if end <= place
-        )
-        return place + shift
+        return place + sum(len(code) - (end - start) for start, end, code in self._spans if end <= place)
 
     def _span(self, node: ast.stmt) -> tuple[int, int]:
         first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", []))])

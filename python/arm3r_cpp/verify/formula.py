@@ -374,7 +374,7 @@ def _of_matlab(program: MatlabProgram) -> Formula:
         program.file,
         program.function,
         program,
-        program.arguments,
+        ["*"] if program.arguments == ["varargin"] else program.arguments,
         {one.name: one for one in program.constants()},
         {},
         program.nodes(),

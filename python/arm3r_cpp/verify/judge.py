@@ -25,7 +25,7 @@ from .explain.differences import only_structured
 from .explain.repair import Progress
 from .failure import failed
 from .formula import Formula
-from .kinds import KINDS, Kind
+from .kinds import KINDS, Kind, kind_of_name
 from .meaning import as_called, assumed, doubted, meant
 from .names import slot_of
 from .verdict import Verdict
@@ -131,6 +131,7 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     verdict = Verdict(True, case.kind.name, case.convention, 0.0, file=formula.file, text=formula.text)
     values, due = case.values(case.second), case.due(case.second)
     case.shape = due.shape[1:]
+    verdict.warnings += _not_judged(formula)
     verdict.shape, verdict.found = list(case.shape), _found(case)
     wrong = case.wrong(values, case.second, due)
     own_due, own_values = _own(case)
@@ -145,6 +146,15 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
         verdict.residual = _largest(values - due) if is_rounding else verdict.residual
         explain(verdict, case, wrong, progress, budget)
     return verdict
+
+
+def _not_judged(formula: Formula) -> list[str]:
+    """Of a function that returns several kinds of formula, those that are left."""
+    if formula.output is None:
+        return []
+    kinds = {name: kind_of_name(name) for place, name in enumerate(formula.outputs) if place != formula.output}
+    left = [f"{name} (--kind {kind})" for name, kind in kinds.items() if kind]
+    return [f"not judged here: {', '.join(left)}"] if left else []
 
 
 def _note_skewness(verdict: Verdict, case: Comparison) -> None:

@@ -166,7 +166,7 @@ def test_gravity_by_the_potential_energy(tmp_path: Path) -> None:
 REFUSED = {
     "syms q1(t)\nx = diff(q1, t);\n": "script.m:1:6: a symbol that is a function or a matrix, such as q1.t., is not",
     HEAD + "x = diff(q1^2);\n": "script.m:2: cannot be judged: diff is read with the symbols",
-    HEAD + "x = jacobian(q1^2, q1+q2);\n": "holds what is no symbol",
+    HEAD + "x = jacobian(q1^2, q1+q2);\n": "is no symbol that `syms` or sym",
     HEAD + "x = solve(q1^2 == 2, q1);\n": "'solve' is not known",
     HEAD + "x = 0;\nif q1 > 0\n  x = q2;\nend\n": "a condition or an index depends on a symbol",
     HEAD + "x = cos(q1);\n": "script.m: there is no variable y; it has x",
@@ -178,3 +178,42 @@ def test_what_is_not_read_is_said(text: str, tmp_path: Path) -> None:
     name = "y" if "there is no" in REFUSED[text] else "x"
     with pytest.raises(arm3r.Arm3rError, match=REFUSED[text]):
         verdict_of(text, tmp_path, name, kind="kinematics")
+
+
+# ---- symbols that numbers are put for, and symbols at once -----------------------------------------------------------
+
+SUBSTITUTED = """syms q1 q2 q3 m2 m3 g a2 l2 l3 h real
+V = m2*g*(h + l2*sin(q2)) + m3*g*(h + a2*sin(q2) + l3*sin(q2+q3));
+G = -[diff(V,q1); diff(V,q2); diff(V,q3)];
+G = subs(G, %s, %s);
+"""
+LISTS = {
+    "a row": ("[m2 m3 g a2 l2 l3 h]", "[0.785 0.785 9.80665 1 0.5 0.5 0.3]"),
+    "cells": ("{m2, m3, g, a2, l2, l3, h}", "{0.785, 0.785, 9.80665, 1, 0.5, 0.5, 0.3}"),
+}
+
+
+@pytest.mark.parametrize("how", LISTS)
+def test_symbols_that_numbers_are_put_for_are_no_arguments(how: str, tmp_path: Path) -> None:
+    path = tmp_path / "gravity.m"
+    path.write_text(SUBSTITUTED % LISTS[how])
+    verdict = formula_verdict(path, "gravity")
+    assert verdict.ok, str(verdict)
+    path.write_text((SUBSTITUTED % LISTS[how]).replace("a2*sin(q2) +", "2*a2*sin(q2) +"))
+    verdict = formula_verdict(path, "gravity")
+    assert [one.entry for one in verdict.findings] == [[2]], str(verdict)
+
+
+@pytest.mark.parametrize("size, separator", [("[3 1]", "column"), ("[1, 3]", "row")])
+def test_symbols_are_made_at_once(size: str, separator: str, tmp_path: Path) -> None:
+    path = tmp_path / "jacobian.m"
+    text = f"q = sym('q', {size}, 'real');\n" + POINT.replace(
+        "a2*sin(q2) + a3*sin(q2+q3)", "-a2*sin(q2) - a3*sin(q2+q3)"
+    )
+    for name in ("q1", "q2", "q3"):
+        text = text.replace(name, f"q({name[1]})")
+    path.write_text(text + "J = jacobian(p, q);\n")
+    assert formula_verdict(path, "jacobian").ok
+    path.write_text("q = sym('q', 3);\nJ = jacobian(q, q);\n")
+    with pytest.raises(arm3r.UnjudgedError, match="a column or a row is read"):
+        formula_verdict(path, "jacobian")

@@ -25,16 +25,30 @@ def _wrapped(angle: Floats) -> Floats:
     return np.where((rest == 0) & (angle > 0), 2 * np.pi, rest)
 
 
+def _real(function: Callable[..., Any], least: float, most: float = np.inf) -> Callable[..., Any]:
+    """A function that is complex below and above two bounds."""
+
+    def of(x: Floats) -> Any:
+        if np.any((x < least) | (x > most)):
+            name = function.__name__.replace("arc", "a")
+            raise Unread(f"{name} of {x[(x < least) | (x > most)][0]:.3g} is a complex number, and real ones are read")
+        return function(x)
+
+    return of
+
+
+_ARCSINE, _ARCCOSINE = _real(np.arcsin, -1, 1), _real(np.arccos, -1, 1)
+
 ELEMENTWISE: dict[str, Callable[..., Any]] = {
     "sin": np.sin,
     "cos": np.cos,
     "tan": np.tan,
-    "sqrt": np.sqrt,
+    "sqrt": _real(np.sqrt, 0),
     "abs": np.abs,
     "exp": np.exp,
-    "log": np.log,
-    "asin": np.arcsin,
-    "acos": np.arccos,
+    "log": _real(np.log, 0),
+    "asin": _ARCSINE,
+    "acos": _ARCCOSINE,
     "atan": np.arctan,
     "atan2": np.arctan2,
     "sign": np.sign,
@@ -57,12 +71,12 @@ ELEMENTWISE: dict[str, Callable[..., Any]] = {
     "cot": lambda x: 1 / np.tan(x),
     "sinh": np.sinh,
     "cosh": np.cosh,
-    "asind": lambda x: np.rad2deg(np.arcsin(x)),
-    "acosd": lambda x: np.rad2deg(np.arccos(x)),
+    "asind": lambda x: np.rad2deg(_ARCSINE(x)),
+    "acosd": lambda x: np.rad2deg(_ARCCOSINE(x)),
     "atand": lambda x: np.rad2deg(np.arctan(x)),
     "atan2d": lambda y, x: np.rad2deg(np.arctan2(y, x)),
-    "log10": np.log10,
-    "log2": np.log2,
+    "log10": _real(np.log10, 0),
+    "log2": _real(np.log2, 0),
     "wrapToPi": lambda x: np.where(np.abs(x) > np.pi, _wrapped(x + np.pi) - np.pi, x),
     "wrapTo2Pi": lambda x: _wrapped(x),
     "isnan": np.isnan,

@@ -10,8 +10,10 @@ value       = number | text | name | "(" expression ")" | matrix | cell | handle
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 from ...errors import UnjudgedError, UnreadError
 from ..expressions import (
@@ -95,6 +97,11 @@ def read_expression(text: str, file: str = "expression") -> Node:
     if reader.peek().kind != "end":
         raise reader.refusal("the expression does not end here")
     return node
+
+
+def _at(place: Node, node: Node) -> Node:
+    """A node with all in it at the place of another one."""
+    return replace(node, start=place.start, end=place.end, parts=tuple(_at(place, one) for one in node.parts))
 
 
 class _Reader:
@@ -210,7 +217,7 @@ class _Reader:
                 self.symbols.append(token.text)
 
     def makes_symbol(self, statement: Statement) -> bool:
-        """`q1 = sym('q1')`"""
+        """`q1 = sym('q1')`; `q = sym('q', [3 1])` becomes `q = [q1; q2; q3]`."""
         assert self.symbols is not None
         if not isinstance(statement, Assignment) or len(statement.targets) != 1:
             return False
@@ -218,6 +225,14 @@ class _Reader:
         if not (isinstance(value, FunctionCall) and value.word == "sym" and not target.way):
             return False
         is_own = bool(value.parts) and isinstance(value.parts[0], Text) and value.parts[0].word == target.name
+        if is_own and len(value.parts) > 1 and not isinstance(value.parts[1], Text):
+            size = re.fullmatch(r"\[ *(\d)(?: +| *, *)(\d) *\]", self.text[value.parts[1].start : value.parts[1].end])
+            if size is None or "1" not in size.groups():
+                raise self.refusal("of several symbols at once a column or a row is read, sym('q', [3 1])")
+            names = [f"{target.name}{number + 1}" for number in range(max(map(int, size.groups())))]
+            self.symbols += names
+            statement.value = _at(value, read_expression(f"[{(';' if size[2] == '1' else ' ').join(names)}]"))
+            return False
         if is_own:
             self.symbols.append(target.name)
         return is_own
@@ -520,6 +535,8 @@ class _Reader:
             return Text(token.start, token.end, (), token.text[1:-1].replace(2 * quote, quote))
         if token.kind == "number":
             return Number(token.start, token.end, (), token.text)
+        if token.kind == "imaginary":
+            raise self.refusal(f"`{token.text}` is a complex number, and real ones are read", token)
         if token.text == "(":
             self.inside.append("(")
             inner = self.expression()

@@ -17,6 +17,8 @@ from .symbols import MOST_STATES, WEIGHTS, Stencil
 from .syntax import Function, Statement
 from .values import Floats, as_numbers, stacked
 
+_GOLDEN = 0.6180339887498949
+
 
 def program_of(
     text: str, file: str, function: str | None, folder: str | None, likely: Callable[[list[str]], str]
@@ -63,8 +65,11 @@ class SymbolicScript(MatlabProgram):
         """Of the statement that is evaluated, among those of the script."""
         self._differentiated: set[tuple[str, ...]] = set()
         """By which symbols together."""
+        self._substituted: set[str] = set()
+        """The symbols that other values are put for."""
         self._differentiated_away: list[str] = []
-        """Symbols on which the result does not depend, as the rates in the second derivatives of the kinetic energy."""
+        """Symbols on which the result does not depend: rates in the second derivatives of the kinetic energy, and those
+        that numbers are put for."""
         if self.functions[self.function].is_script:
             self._differentiated_away = self._without_effect()
 
@@ -73,7 +78,8 @@ class SymbolicScript(MatlabProgram):
         return [name for name in super().arguments if name not in self._differentiated_away]
 
     def _without_effect(self) -> list[str]:
-        """Of the lists of symbols by which the script differentiates, those of which none matters."""
+        """Of the lists of symbols by which the script differentiates, those of which none matters; and all that others
+        are put for and that do not matter."""
         names = super().arguments
         values = np.random.default_rng(1).uniform(0.3, 0.9, (1, len(names)))
         call = Call(tuple(range(len(names))), {})
@@ -85,6 +91,7 @@ class SymbolicScript(MatlabProgram):
         try:
             result = self._evaluate(call, values)
             lists = [symbols for symbols in sorted(self._differentiated) if not any(map(has_effect, symbols))]
+            lists += [(name,) for name in names if name in self._substituted and not has_effect(name)]
         except (ProgramError, ArithmeticError, ValueError):
             return []  # what fails here fails again where it is judged
         return list(dict.fromkeys(name for symbols in lists for name in symbols))
@@ -150,7 +157,8 @@ class SymbolicScript(MatlabProgram):
             width + hidden.index(name) if name in hidden else next(given)
             for name in self.functions[self.function].inputs
         )
-        return call._replace(slots=slots), np.hstack([table, np.full((len(table), len(hidden)), 0.5)])
+        apart = 0.3 + 0.6 * (np.arange(1, len(hidden) + 1) * _GOLDEN % 1)  # each symbol is known by its values
+        return call._replace(slots=slots), np.hstack([table, np.tile(apart, (len(table), 1))])
 
     def _outputs(self, function: Function, inputs: list[Any], variables: Workspace, *given: Any) -> list[Any]:
         if function.is_script:
@@ -196,7 +204,8 @@ class SymbolicScript(MatlabProgram):
         for element in self._elements(node, variables):
             name = next((name for name, own in self._symbols.items() if np.array_equal(own, element)), None)
             if name is None:
-                raise Unread(f"{self.text[node.start : node.end]!r} holds what is no symbol")
+                words = "an element is no symbol that `syms` or sym('name') declares by its own name"
+                raise Unread(f"in {self.text[node.start : node.end]!r} {words}")
             found.append(name)
         return found
 
@@ -244,6 +253,7 @@ class SymbolicScript(MatlabProgram):
         values = values * len(symbols) if len(values) == 1 else values
         if len(values) != len(symbols):
             raise ProgramError(f"subs has {len(symbols)} symbols and {len(values)} values")
+        self._substituted |= set(symbols)
         before, place = self._symbols, self._place
         self._symbols = before | dict(zip(symbols, values, strict=True))
         others = Workspace(self.functions[self.function])

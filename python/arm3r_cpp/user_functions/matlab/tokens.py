@@ -11,6 +11,7 @@ from ..programs import line_and_column
 _TOKEN = re.compile(
     r"(?P<blank>[ \t\f]+|\.\.\.[^\n]*\n)|(?P<comment>[%#][^\n]*)|(?P<newline>\n)"
     r"|(?P<number>(?:\d+(?:\.(?![*/\\^'])\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?)(?![A-Za-z_])"
+    r"|(?P<imaginary>(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?[ij])(?!\w)"
     r"|(?P<name>[A-Za-z]\w*(?:\.[A-Za-z]\w*)*)"  # p.a2 is the name of a field
     r"|(?P<field>\.[A-Za-z]\w*)"  # behind an index, as in link(2).m
     r"|(?P<operator>\.\*|\./|\.\\|\.\^|\.'|==|~=|!=|<=|>=|&&|\|\||[-+*/\\^'=(),;:\[\]{}@<>&|~!])"

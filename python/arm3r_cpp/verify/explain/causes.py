@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -177,8 +178,23 @@ def repairs_of(
             raise ProgramError("the edit takes away the names that tell the order of the outputs")
         return evaluate(edit, everywhere)
 
-    found = tried(editor.all(statements), evaluate_in_order, wrong_at(False), wrong_at(True), wrong, progress, budget)
+    edits = [one for one in editor.all(statements) if not _takes_own_number(case, one)]
+    found = tried(edits, evaluate_in_order, wrong_at(False), wrong_at(True), wrong, progress, budget)
     return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
+
+
+def _takes_own_number(case: Comparison, edit: Edit) -> bool:
+    """Whether it puts another number for the arm's own, where the text gives that to a name or into a list."""
+    text = case.formula.text or ""
+    try:
+        old = float(text[edit.start : edit.end])
+        float(edit.new)
+    except ValueError:
+        return False
+    is_own = any(math.isclose(old, abs(own), rel_tol=1e-9) for own in case.truth.values_of_quantities.values())
+    before = re.search(r"(=|[\[({,;])[ \t]*$", text[: edit.start])
+    after = re.match(r"[ \t]*([,;\])}]|[#%\n]|$)", text[edit.end :])
+    return is_own and old not in (0.0, 0.5, 1.0, 2.0) and before is not None and after is not None
 
 
 def _hold_together(case: Comparison, chosen: list[Repair], wrong: frozenset[int]) -> bool:

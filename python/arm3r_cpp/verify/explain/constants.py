@@ -30,7 +30,8 @@ def judge_constants(verdict: Verdict, case: Comparison) -> None:
         places = _depending(case, str(quantity), constant.value)
         text = case.formula.text or ""
         line, column = line_and_column(text, constant.start)
-        old = text[constant.start : constant.end]
+        is_shared = sum(one.start == constant.start for one in case.formula.constants.values()) > 1  # a2 = a3 = 1
+        old = None if is_shared else text[constant.start : constant.end]
         words = "millimetres? " if own and abs(constant.value / own - 1000) < 1e-6 else ""
         arm = "the lecture's arm" if case.truth.is_default else "the arm"
         due = f"{arm} has {own:.10g}"
@@ -46,7 +47,7 @@ def judge_constants(verdict: Verdict, case: Comparison) -> None:
                     line,
                     column,
                     old,
-                    f"{own:.12g}",
+                    None if is_shared else f"{own:.12g}",
                 )
             )
 

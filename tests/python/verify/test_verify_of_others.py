@@ -1,0 +1,191 @@
+"""What people write beside the lecture's way: names that mean another kind, idioms, and numbers that are the arm's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from arm3r_cpp import Scenario, UnjudgedError, UsageError, verify
+from arm3r_cpp.verify.functions import formula_verdict
+
+UNEQUAL = Scenario("""format: 1
+arm:
+  convention: slide
+  link2: {length: 0.45, mass: 3.2, com: 0.2, inertia: [0.004, 0.06, 0.062]}
+  link3: {length: 0.38, mass: 1.9, com: 0.15, inertia: [0.002, 0.025, 0.026]}
+""")
+GRAVITY = "t2 = -0.785*9.80665*1.5*cos(q(2)) - 0.785*9.80665/2*cos(q(2)+q(3));"
+LAST = "t3 = -0.785*9.80665/2*cos(q(2)+q(3));"
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Any:
+    def write(name: str, text: str) -> Path:
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+# ---- which kind ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("output, is_told", [("tau", True), ("T", False)])
+def test_an_output_tells_the_kind_with_the_arguments(output: str, is_told: bool, written: Any) -> None:
+    torque = f"function {output} = f(q, qd, qdd)\n{output} = [0; qdd(1); 0] + qd(1);\nend\n"
+    if is_told:
+        assert formula_verdict(written("f.m", torque)).kind == "inverse"
+    else:
+        with pytest.raises(UsageError, match="not clear"):
+            formula_verdict(written("f.m", torque))
+    alone = written("f.m", f"function {output} = f(q)\n{LAST} {GRAVITY} {output} = [0; t2; t3];\nend\n")
+    if is_told:
+        assert formula_verdict(alone).ok and formula_verdict(alone).kind == "gravity"
+    else:  # a transform, as often as a torque
+        with pytest.raises(UsageError, match="not clear"):
+            formula_verdict(alone)
+
+
+@pytest.mark.parametrize("name", ["inverse_kinematics", "ik", "ik_solver", "kinetic_energy"])
+def test_names_of_what_is_no_kind_tell_none(name: str, written: Any) -> None:
+    with pytest.raises(UsageError, match="not clear"):
+        formula_verdict(written(f"{name}.py", f"def {name}(p):\n    return [p[0], p[1], p[2]]\n"))
+
+
+def test_of_several_outputs_those_that_are_left_are_named(written: Any) -> None:
+    text = """from math import cos
+
+
+def dynamics(q, qd):
+    M = [[1.0, 0, 0], [0, 1, 0], [0, 0, 1]]
+    C = M
+    g3 = -0.785*9.80665/2*cos(q[1] + q[2])
+    G = [0, g3 - 0.785*9.80665*1.5*cos(q[1]), g3]
+    return M, C, G
+"""
+    verdict = verify.gravity(written("dynamics.py", text))
+    assert verdict.ok, str(verdict)
+    assert "not judged here: M (--kind mass), C (--kind coriolis)" in verdict.warnings
+
+
+# ---- numbers ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("numbers", ["a2 = a3 = 1.0\nm2 = m3 = 0.785", "a2, a3 = 1.0, 1.0\nm2, m3 = 0.785, 0.785"])
+def test_a_number_that_is_given_to_two_names_hides_no_mistake(numbers: str, written: Any) -> None:
+    text = f"""from math import cos
+
+{numbers}
+g = 9.80665
+
+
+def gravity(q):
+    t3 = -m3*g*a3/2*cos(q[1] + q[2])
+    return [0, -(m2/2 + m3)*g*a2*cos(q[1]) + t3, t3]
+"""
+    assert verify.gravity(written("right.py", text)).ok
+    for old, new in (("-m3*g*a3/2", "-m3*g*a2/2"), ("-m3*g*a3", "-m2*g*a3")):
+        verdict = verify.gravity(written("wrong.py", text.replace(old, new)))
+        assert [one.line for one in verdict.findings] == [text[: text.index("t3 = -m3")].count("\n") + 1] * 2, str(
+            verdict
+        )
+
+
+def test_a_number_of_two_names_that_is_not_the_arms_has_no_edit(written: Any) -> None:
+    arm = Scenario("format: 1\narm: {convention: simscape, link3: {length: 0.8}}\n")
+    text = "from math import sin, cos\na2 = a3 = 1.0\n\n\ndef fk(q):\n    r = a2*cos(q[1]) + a3*cos(q[1] + q[2])\n"
+    text += "    return [r*cos(q[0]), r*sin(q[0]), -a2*sin(q[1]) - a3*sin(q[1] + q[2])]\n"
+    verdict = verify.kinematics(written("fk.py", text), arm)
+    assert {(one.line, one.old, one.new) for one in verdict.findings} == {(2, None, None)}, str(verdict)
+    assert "a3 is 1 in line 2; the arm has 0.8" in verdict.findings[0].cause
+
+
+def test_no_edit_takes_away_a_number_that_is_the_arms(written: Any) -> None:
+    """With the mass of link 2 doubled the torque would be right, too; that mass is the arm's."""
+    text = """from math import cos
+
+m = [0.785, 0.785]
+
+
+def gravity(q):
+    t3 = -m[1]*9.80665*0.5*cos(q[1] + q[2])
+    return [0, -m[1]*9.80665*cos(q[1]) - m[0]*9.80665*COM*cos(q[1]) + t3, t3]
+"""
+    assert verify.gravity(written("right.py", text.replace("COM", "0.5"))).ok
+    verdict = verify.gravity(written("wrong.py", text.replace("COM", "0.25")))
+    assert [one.entry for one in verdict.findings] == [[2]]
+    assert verdict.findings[0].line != 3, str(verdict)
+    assert not any("in line 3" in words for words in verdict.alternatives), str(verdict)
+
+
+INERTIAS = """function M = mass(q)
+m2 = 3.2; m3 = 1.9; l2 = 0.45; lc2 = 0.2; lc3 = 0.15;
+Ix2 = 0.004; Iy2 = 0.06; Iz2 = 0.062; Ix3 = 0.002; Iy3 = 0.025; Iz3 = 0.026; I1 = 1.3083333333333334e-5;
+s2 = sin(q(2)); c2 = cos(q(2)); s23 = sin(q(2)+q(3)); c23 = cos(q(2)+q(3)); c3 = cos(q(3));
+r = l2*c2 + lc3*c23;
+M = zeros(3);
+M(1,1) = I1 + Ix2*s2^2 + (Iy2 + m2*lc2^2)*c2^2 + Ix3*s23^2 + Iy3*c23^2 + m3*r^2;
+M(2,2) = Iz2 + m2*lc2^2 + Iz3 + m3*(l2^2 + lc3^2 + 2*l2*lc3*c3);
+M(2,3) = Iz3 + m3*(lc3^2 + l2*lc3*c3);
+M(3,2) = M(2,3);
+M(3,3) = Iz3 + m3*lc3^2;
+end
+"""
+
+
+def test_an_arm_whose_inertias_across_its_links_differ(written: Any) -> None:
+    verdict = verify.mass(written("mass.m", INERTIAS), UNEQUAL)
+    assert verdict.ok, str(verdict)
+    verdict = verify.mass(written("mass.m", INERTIAS.replace("2*l2*lc3*c3", "l2*lc3*c3")), UNEQUAL)
+    assert [one.entry for one in verdict.findings] == [[2, 2]], str(verdict)
+
+
+def test_centres_that_a_scenario_gives_are_no_shares_of_lengths() -> None:
+    verdict = verify.gravity(lambda q: 1.1 * UNEQUAL.arm.gravity_torque(q), UNEQUAL)
+    assert {one.due for one in verdict.findings} == {"m3 g a2 C2 + m2 g l2 C2 + m3 g l3 C23", "m3 g l3 C23"}, str(
+        verdict
+    )
+
+
+def test_a_letter_stands_only_where_its_units_do() -> None:
+    """0.3 is twice this arm's I2, and no torque by a rate is an inertia."""
+    links = "link2: {length: 0.8, mass: 1, com: 0.4, inertia: [0.1, 0.15, 0.15]}"
+    arm = Scenario(f"format: 1\narm: {{convention: slide, {links}}}\n")
+    verdict = verify.inverse(lambda q, qd, qdd: arm.arm.inverse_dynamics(q, qd, qdd) + [0.3 * qd[0], 0, 0], arm)
+    assert [one.entry for one in verdict.findings] == [[1]]
+    assert "3/10 qd1" in str(verdict.findings[0].reads) + verdict.findings[0].cause, str(verdict)
+
+
+# ---- idioms of MATLAB ------------------------------------------------------------------------------------------------
+
+TIP = "[r*cos(q(1)); r*sin(q(1)); -sin(q(2)) - sin(q(2)+q(3))]"
+IDIOMS = {
+    "all arguments at once": (
+        f"function p = fk(varargin)\nq = [varargin{{:}}];\nr = cos(q(2)) + cos(q(2)+q(3));\np = {TIP};\nend\n"
+    ),
+    "a default by nargin": (
+        "function p = fk(q, scale)\nif nargin < 2\n  scale = 1;\nend\nr = cos(q(2)) + cos(q(2)+q(3));\n"
+        f"p = scale*{TIP};\nend\n"
+    ),
+    "a default by exist": (
+        "function p = fk(q, scale)\nif ~exist('scale', 'var')\n  scale = 1;\nend\nr = cos(q(2)) + cos(q(2)+q(3));\n"
+        f"p = scale*{TIP};\nend\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("idiom", IDIOMS)
+def test_arguments_that_may_be_left_out(idiom: str, written: Any) -> None:
+    verdict = verify.kinematics(written("fk.m", IDIOMS[idiom]))
+    assert verdict.ok, str(verdict)
+    assert not verify.kinematics(written("fk.m", IDIOMS[idiom].replace("r*sin", "r*cos"))).ok
+
+
+@pytest.mark.parametrize("value", ["real(1i*1i)", "real(sqrt(-1)^2)", "real(acos(2))", "real(log(-1))"])
+def test_complex_numbers_are_left_to_octave(value: str, written: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("arm3r_cpp.verify.formula.installed", lambda: None)
+    text = f"function p = fk(q)\nr = cos(q(2)) + cos(q(2)+q(3)) + {value};\np = {TIP};\nend\n"
+    with pytest.raises(UnjudgedError, match="complex number, and real ones are read; GNU Octave"):
+        verify.kinematics(written("fk.m", text))
