@@ -468,7 +468,7 @@ TEST_CASE(the_impulse_of_a_contact_that_ends_among_rounding_errors_is_that_of_it
         params.choose("wall.motion.type", "fixed");
         const Setup setup = make_setup(params);
         const double way = std::pow(10, random.in(-13, -10));
-        DenseOutput dense;
+        DenseOutput dense{};
         dense.h = 0.01, dense.order = 1;
         for (int joint = 0; joint < 3; ++joint) {
             const double turned = way * random.in(-1, 1);

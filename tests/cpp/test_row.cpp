@@ -11,7 +11,7 @@ namespace {
 
 // A step of random numbers: an interpolant, or a power series as the Taylor method has it.
 DenseOutput random_step(Random& random, bool is_series) {
-    DenseOutput dense;
+    DenseOutput dense{};
     if (!is_series) {
         FullState y0, f0, y1, f1;
         for (FullState* state : {&y0, &f0, &y1, &f1})

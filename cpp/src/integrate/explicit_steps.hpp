@@ -52,13 +52,16 @@ public:
         return may_heat ? rhs_.touching : Mask(false);
     }
 
-    // A law that cancels the force of a moving wall leaves the arm at rest. Its motion has no error to choose the steps
-    // by, and only the work of the wall has one. In units of the tolerance of the largest work so far. error_of(i): the
-    // estimate of component i.
+    // A law that cancels the force of a moving wall leaves the arm to its own motion, or at rest. That has no error to
+    // choose the steps by, and only the work of the wall has one. In units of the tolerance of the largest work so far.
+    // error_of(i): the estimate of component i.
     template <class ErrorOf>
     ARM3R_INLINE T with_work_of_wall(const T& error, const Y& y, const Y& y1, ErrorOf error_of) const {
         if (!plant_.acts_on_arm || rhs_.force_mode != ContactForceMode::pressed) return error;
-        const Mask counts = rhs_.touching && !rhs_.separated && is_quiet(y, y1, error_of);
+        const Mask shows_no_work = may_cancel_force(plant_.controller.type) && plant_.controller.cancels_force
+                                       ? Mask(true)
+                                       : is_quiet(y, y1, error_of);
+        const Mask counts = rhs_.touching && !rhs_.separated && shows_no_work;
         if (!in_any_lane(counts)) return error;
         const T most = max(max(most_work_, abs(y[work_of_wall])), abs(y1[work_of_wall]));
         return select(counts, max(error, T(error_of(work_of_wall) / tolerance.of(most))), error);

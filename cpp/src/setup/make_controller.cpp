@@ -19,9 +19,7 @@ void set_choices(std::span<const double> params, Controller<double>& controller)
     controller.adaptation = choice_at<"controller.adaptation", Adaptation>(params);
     controller.compensates_gravity =
         controller.type != ControllerType::joint_pd || flag_at<"controller.compensate_gravity">(params);
-    const bool may_leave_force =
-        controller.type == ControllerType::computed_torque || controller.type == ControllerType::resolved_acceleration;
-    controller.cancels_force = !may_leave_force || flag_at<"controller.cancel_force">(params);
+    controller.cancels_force = !may_cancel_force(controller.type) || flag_at<"controller.cancel_force">(params);
     controller.ideal_cancellation = flag_at<"controller.ideal_cancellation">(params);
     controller.has_tank = flag_at<"controller.tank">(params);
     controller.controls_passivity = flag_at<"controller.passivity_control">(params);

@@ -115,9 +115,7 @@ bool uses_force(const Controller<double>& controller) {
     switch (controller.type) {
         case ControllerType::shaped_impedance:
         case ControllerType::admittance: return true;
-        case ControllerType::computed_torque:
-        case ControllerType::resolved_acceleration: return controller.cancels_force;
-        default: return tracks_force(controller.type);
+        default: return may_cancel_force(controller.type) ? controller.cancels_force : tracks_force(controller.type);
     }
 }
 

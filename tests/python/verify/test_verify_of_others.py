@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from arm3r_cpp import Scenario, UnjudgedError, UsageError, verify
 from arm3r_cpp.verify.functions import formula_verdict
@@ -153,7 +154,9 @@ def test_a_letter_stands_only_where_its_units_do() -> None:
     """0.3 is twice this arm's I2, and no torque by a rate is an inertia."""
     links = "link2: {length: 0.8, mass: 1, com: 0.4, inertia: [0.1, 0.15, 0.15]}"
     arm = Scenario(f"format: 1\narm: {{convention: slide, {links}}}\n")
-    verdict = verify.inverse(lambda q, qd, qdd: arm.arm.inverse_dynamics(q, qd, qdd) + [0.3 * qd[0], 0, 0], arm)
+    verdict = verify.inverse(
+        lambda q, qd, qdd: arm.arm.inverse_dynamics(q, qd, qdd) + np.array([0.3 * qd[0], 0, 0]), arm
+    )
     assert [one.entry for one in verdict.findings] == [[1]]
     assert "3/10 qd1" in str(verdict.findings[0].reads) + verdict.findings[0].cause, str(verdict)
 

@@ -108,6 +108,10 @@ constexpr bool tracks_path(ControllerType type) { return properties(type).follow
 constexpr bool is_in_joints(ControllerType type) { return properties(type).in_joints; }
 constexpr bool tracks_force(ControllerType type) { return properties(type).controls_force; }
 constexpr bool integrates_force(ControllerType type) { return properties(type).integrates_force; }
+// Whether controller.cancel_force says if the law cancels the contact force, which then moves nothing.
+constexpr bool may_cancel_force(ControllerType type) {
+    return type == ControllerType::computed_torque || type == ControllerType::resolved_acceleration;
+}
 constexpr std::size_t memory_size(ControllerType type) { return properties(type).memory; }
 
 }  // namespace arm3r
