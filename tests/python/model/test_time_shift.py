@@ -179,8 +179,8 @@ def hold_together(scenario: Scenario, by: float) -> tuple[int, int] | None:
     later = run_of(moved(scenario, by))
     assert same_course(run, later), (run.outcome, later.outcome, later.summary["message"])
     assert np.abs(later.t - run.t - by).max() < 1e-12
-    # A shift weighs no more than a nudge: it begins as rounding, and grows to what the tolerance of all steps allows. Two
-    # nudges tell how large that is, but not the largest of it.
+    # A shift weighs no more than a nudge: it begins as rounding, and grows to what the tolerance of all steps allows.
+    # Two nudges tell how large that is, but not the largest of it.
     for a, c, *nudges in zip(run.events, later.events, *(other.events for other in others), strict=True):
         assert abs(c.t - by - a.t) < 1e-8 + _OF_TWO * max(abs(b.t - a.t) for b in nudges), (a, c)
     for name in COLUMNS.split():
