@@ -1,0 +1,172 @@
+"""The trees of real robots: their chains against Pinocchio's, and what a file leaves open is refused with the remedy.
+
+robots/trees.csv has the published numbers of their URDFs, a row a joint: Universal Robots (ur_description), Franka
+Emika (franka_description), KUKA and ABB (ROS-Industrial's support packages, MathWorks' and Drake's descriptions), Kinova
+(kinova-ros, ros_kortex), Rethink's Sawyer, PUMA 560 (Robotics Toolbox); angles that mean right angles have all digits.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from arm3r_cpp import UnjudgedError, UsageError, verify
+from arm3r_cpp.verify import Chain
+from arm3r_cpp.verify.kinds import KINDS
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Row = dict[str, str]
+with (Path(__file__).parents[1] / "robots" / "trees.csv").open() as file:
+    ROWS = list(csv.DictReader(file))
+TREES = {name: [row for row in ROWS if row["robot"] == name] for name in dict.fromkeys(row["robot"] for row in ROWS)}
+TIPS = {
+    "ur3": "tool0",
+    "ur5": "ee_link",
+    "ur10": "tool0",
+    "ur5e": "tool0",
+    "panda": "panda_hand",
+    "panda_fingers": "panda_rightfinger",
+    "panda_bodies": "end_effector_frame",
+    "fr3": "fr3_link8",
+    "iiwa7": "iiwa_link_ee",
+    "iiwa14": "iiwa_link_ee",
+    "kr16": "tool0",
+    "kr210": "tool0",
+    "irb120": "tool0",
+    "irb2400": "tool0",
+    "irb6640": "tool0",
+    "kinova_j2n6s300": "j2n6s300_end_effector",
+    "kinova_gen3": None,
+    "sawyer": "right_hand",
+    "puma560": None,
+}
+TOO_LONG = {"panda_fingers": "a chain has 1 to 7 joints, got 8"}  # a finger's joint is one
+WITHOUT_BODIES = ("panda", "fr3", "irb2400", "irb6640", "puma560")
+
+
+def urdf_of(rows: Iterable[Row]) -> str:
+    links: dict[str, Row | None] = {}
+    joints = []
+    for row in rows:
+        links.setdefault(row["parent"], None)
+        links[row["child"]] = row
+        limit = (
+            '<limit lower="-3" upper="3" effort="9" velocity="3"/>' if row["type"] in ("revolute", "prismatic") else ""
+        )
+        joints.append(
+            f'<joint name="{row["joint"]}" type="{row["type"]}"><parent link="{row["parent"]}"/>'
+            f'<child link="{row["child"]}"/><origin xyz="{row["xyz"]}" rpy="{row["rpy"]}"/>'
+            f'<axis xyz="{row["axis"]}"/>{limit}</joint>'
+        )
+    bodies = [f'<link name="{name}">{inertial_of(row) if row else ""}</link>' for name, row in links.items()]
+    return f'<robot name="tree">{"".join(bodies)}{"".join(joints)}</robot>'
+
+
+def inertial_of(row: Row) -> str:
+    if not row["mass"]:
+        return ""
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    inertia = " ".join(f'{name}="{value}"' for name, value in zip(names, row["inertia"].split(), strict=True))
+    return (
+        f'<inertial><origin xyz="{row["centre"]}" rpy="{row["turn"]}"/><mass value="{row["mass"]}"/>'
+        f"<inertia {inertia}/></inertial>"
+    )
+
+
+@pytest.fixture
+def chain_of(tmp_path: Path) -> Any:
+    def make(name: str) -> tuple[Chain, str]:
+        path = tmp_path / f"{name}.urdf"
+        path.write_text(urdf_of(TREES[name]))
+        return Chain.from_urdf(path, tip=TIPS[name]), path.read_text()
+
+    return make
+
+
+def moving(name: str, tip: str) -> list[str]:
+    """The joints from the base to the tip."""
+    by_child = {row["child"]: row for row in TREES[name]}
+    found: list[str] = []
+    while tip in by_child:
+        row = by_child[tip]
+        found += [row["joint"]] if row["type"] != "fixed" else []
+        tip = row["parent"]
+    return found[::-1]
+
+
+@pytest.mark.parametrize("name", sorted(TREES.keys() - TOO_LONG.keys()))
+def test_a_tree_is_pinocchios(name: str, chain_of: Any) -> None:
+    chain, text = chain_of(name)
+    whole = pin.buildModelFromXML(text)
+    on_way = moving(name, chain.tip)
+    still = [joint for joint in range(1, whole.njoints) if whole.names[joint] not in on_way]
+    model = pin.buildReducedModel(whole, still, pin.neutral(whole)) if still else whole
+    assert [joint for joint in model.names if joint != "universe"] == on_way
+    model.gravity.linear = chain.gravity
+    data, frame = model.createData(), model.getFrameId(chain.tip)
+    rng = np.random.default_rng(7)
+    states = {word: rng.uniform(-2.5, 2.5, (8, chain.joints)) for word in ("q", "qd", "qdd", "tau")}
+    ours = {word: chain.values(KINDS[word], "", states, {}) for word in ("kinematics",)}
+    ours["jacobian"] = chain.values(KINDS["jacobian"], "", states, {}, rows=tuple(range(6)))
+    if name not in WITHOUT_BODIES:
+        ours |= {word: chain.values(KINDS[word], "", states, {}) for word in ("mass", "gravity", "inverse")}
+    for row in range(8):
+        q = pin.integrate(model, pin.neutral(model), states["q"][row])  # of a continuous joint a sine and a cosine
+        inertia = pin.crba(model, data, q).copy()
+        theirs = {
+            "jacobian": pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED).copy(),
+            "mass": np.triu(inertia) + np.triu(inertia, 1).T,
+            "gravity": pin.computeGeneralizedGravity(model, data, q).copy(),
+            "inverse": pin.rnea(model, data, q, states["qd"][row], states["qdd"][row]).copy(),
+        }
+        pin.framesForwardKinematics(model, data, q)
+        theirs["kinematics"] = data.oMf[frame].translation.copy()
+        for word, values in ours.items():
+            scale = 1 + np.abs(theirs[word]).max()
+            assert np.abs(values[row] - theirs[word]).max() < 1e-12 * scale, word
+
+
+@pytest.mark.parametrize("name", TOO_LONG)
+def test_a_chain_of_more_joints_is_refused(name: str, chain_of: Any) -> None:
+    with pytest.raises(UsageError, match=TOO_LONG[name]):
+        chain_of(name)
+
+
+@pytest.mark.parametrize("name", WITHOUT_BODIES)
+def test_of_a_file_without_bodies_what_needs_none_is_judged(name: str, chain_of: Any) -> None:
+    chain, _ = chain_of(name)
+    right = chain.values
+
+    def tip(q: Any) -> Any:
+        return right(KINDS["kinematics"], "", {"q": np.atleast_2d(q)}, {})[0]
+
+    assert verify.kinematics(tip, chain).ok
+    with pytest.raises(
+        UnjudgedError, match=r"no <inertial>; write it into the file, with the mass 0 where there is none"
+    ):
+        verify.gravity(lambda q: 0 * np.asarray(q), chain)
+
+
+def test_an_inertia_that_no_body_has_is_still_compared(tmp_path: Path) -> None:
+    """A published PUMA 560 has one: the recursion takes it as it is, and so does Pinocchio's model of its numbers."""
+    row = next(one for one in TREES["ur5"] if one["joint"] == "elbow_joint")
+    odd = [one | {"inertia": "0.01 0 0 -0.002 0 0.3"} if one is row else one for one in TREES["ur5"]]
+    path = tmp_path / "odd.urdf"
+    path.write_text(urdf_of(odd))
+    chain = Chain.from_urdf(path, tip="ee_link")
+    q = np.array([[0.2, -0.7, 1.1, 0.4, -0.3, 0.6]])
+    plain = Chain.from_urdf(_plain(tmp_path), tip="ee_link")
+    change = chain.values(KINDS["mass"], "", {"q": q}, {})[0] - plain.values(KINDS["mass"], "", {"q": q}, {})[0]
+    assert np.abs(change[3:, 3:]).max() < 1e-14 < np.abs(change[:3, :3]).max()
+
+
+def _plain(folder: Path) -> Path:
+    path = folder / "plain.urdf"
+    path.write_text(urdf_of(TREES["ur5"]))
+    return path
