@@ -1,8 +1,8 @@
 """The trees of real robots: their chains against Pinocchio's, and what a file leaves open is refused with the remedy.
 
 robots/trees.csv has the published numbers of their URDFs, a row a joint: Universal Robots (ur_description), Franka
-Emika (franka_description), KUKA and ABB (ROS-Industrial's support packages, MathWorks' and Drake's descriptions), Kinova
-(kinova-ros, ros_kortex), Rethink's Sawyer, PUMA 560 (Robotics Toolbox); angles that mean right angles have all digits.
+Emika (franka_description), KUKA and ABB (support packages of ROS-Industrial, descriptions of MathWorks and Drake),
+Kinova (kinova-ros, ros_kortex), Rethink's Sawyer, PUMA 560 (Robotics Toolbox); right angles have all digits.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def test_a_tree_is_pinocchios(name: str, chain_of: Any) -> None:
     model = pin.buildReducedModel(whole, still, pin.neutral(whole)) if still else whole
     assert [joint for joint in model.names if joint != "universe"] == on_way
     model.gravity.linear = chain.gravity
-    data, frame = model.createData(), model.getFrameId(chain.tip)
+    data, frame = model.createData(), model.getFrameId(chain.tip, pin.FrameType.BODY)
     rng = np.random.default_rng(7)
     states = {word: rng.uniform(-2.5, 2.5, (8, chain.joints)) for word in ("q", "qd", "qdd", "tau")}
     ours = {word: chain.values(KINDS[word], "", states, {}) for word in ("kinematics",)}
