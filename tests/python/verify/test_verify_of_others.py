@@ -71,6 +71,35 @@ def dynamics(q, qd):
     assert "not judged here: M (--kind mass), C (--kind coriolis)" in verdict.warnings
 
 
+# ---- lines that do not go on -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("comment", ["", "  # of link 3"])
+@pytest.mark.parametrize("ending", ["py", "m"])
+def test_a_line_that_is_not_continued_is_named(ending: str, comment: str, written: Any) -> None:
+    if ending == "py":
+        text = f"""from math import cos
+
+
+def gravity(q):
+    t3 = -0.785*9.80665/2*cos(q[1] + q[2])
+    t2 = -0.785*9.80665*1.5*cos(q[1]){comment}
+    + t3
+    return [0, t2, t3]
+"""
+        lines = 7, 6
+    else:
+        text = f"function t = gravity(q)\n{LAST}\nt2 = -0.785*9.80665*1.5*cos(q(2)){comment.replace('#', '%')}\n"
+        text += "   + t3;\nt = [0; t2; t3];\nend\n"
+        lines = 4, 3
+    verdict = verify.gravity(written(f"gravity.{ending}", text))
+    said = (
+        f"line {lines[0]} begins with a sign and is a statement of its own, which nothing uses: it does not go on with"
+    )
+    assert f"{said} line {lines[1]}" in verdict.warnings, str(verdict)
+    assert [one.entry for one in verdict.findings] == [[2]]
+
+
 # ---- numbers ---------------------------------------------------------------------------------------------------------
 
 

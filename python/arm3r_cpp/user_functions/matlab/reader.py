@@ -362,8 +362,6 @@ class _Reader:
         if not self.is_at_end_of_statement():
             what = "the expression goes on with" if targets else "an assignment or a call is needed here, got"
             raise self.refusal(f"{what} {self.peek().text!r}, which is not read")
-        if not targets and not isinstance(value, (FunctionCall, Name)):
-            raise self.refusal("only assignments are read: a name, `=` and a value are needed here", start)
         return Assignment(start.start, value.end, value, targets=targets)
 
     def targets(self) -> list[Target]:

@@ -25,6 +25,8 @@ from .reader import read_entries
 from .repair import Progress, Repair, cover, influential, tried, wrong_entries
 from .terms import difference_words
 
+_MOST_JOINTS_READ, _MOST_ENTRIES_READ = 4, 3
+"""Terms of more entries of more joints are too many to read, and take seconds; edits that mend them say all."""
 _MOST_PARTS = 3000
 """Of a statement that is edited: what programs write in one is read back, and not mended."""
 
@@ -35,13 +37,14 @@ def explain(
     whole = _hypotheses(case)
     causes = [one.cause for one in whole]
     repairs = repairs_of(case, wrong, progress, budget=budget)
-    reads = read_entries(case, wrong)
     chosen = cover(repairs, wrong)
     if len(chosen) > 1 and not _hold_together(case, chosen, wrong):
         chosen = chosen[:1]
     left = wrong - frozenset(place for one in chosen for place in one.mended)
     if whole and (left or (whole[0].is_of_result and len(chosen) > 1)):  # one sentence says more than these edits
         chosen, left = [], frozenset()
+    has_long_terms = case.truth.joints > _MOST_JOINTS_READ and len(wrong) > _MOST_ENTRIES_READ
+    reads = {} if has_long_terms and chosen and not left else read_entries(case, wrong)
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):
         joint, chosen = chosen[0].edit, [*chosen, *more]
@@ -61,9 +64,25 @@ def explain(
         verdict.warnings += _unsearched(case, budget)
     if "tau" in case.kind.inputs and verdict.unexplained:
         _read_torque(verdict, case)
+    verdict.warnings += _not_continued(case.formula)
     verdict.alternatives += causes[1:]
     for repair in chosen:
         verdict.alternatives += _other_edits(case, repairs, repair)
+
+
+def _not_continued(formula: Formula) -> list[str]:
+    """The lines that begin with a sign and are statements of their own, which nothing uses."""
+    text, found = formula.text or "", []
+    for node in formula.nodes:
+        end = max((one.end for one in formula.nodes if one.end <= node.start), default=len(text))
+        is_next = re.fullmatch(r"[ \t;]*([#%][^\n]*)?\n\s*", text[end : node.start])
+        if is_next and node.start == node.parts[0].start and text[node.start] in "+-":
+            line, last = (line_and_column(text, place)[0] for place in (node.start, end))
+            found.append(
+                f"line {line} begins with a sign and is a statement of its own, which nothing uses: "
+                f"it does not go on with line {last}"
+            )
+    return found
 
 
 def _unsearched(case: Comparison, budget: Budget) -> list[str]:

@@ -29,7 +29,7 @@ export class Checks {
     return make("p", { className: "outcome" }, make("b", {}, name), " ",
       make("span", { className: good ? "passed" : "failed" }, summary.outcome), ` · ${time}`,
       summary.message ? make("span", { className: "failed" }, ` · ${summary.message}`) : "",
-      make("code", { title: "hash over all columns: the same on every machine" }, ` ${summary.hash ?? ""}`)); // prettier-ignore
+      make("code", { title: "hash over all columns: the same on Linux, Windows and in the browser" }, ` ${summary.hash ?? ""}`)); // prettier-ignore
   }
 
   #band() {
