@@ -31,6 +31,7 @@ _QUANTITIES = {  # of a joint: what others call them, in small letters
 _OF_WORD = {word: quantity for quantity, words in _QUANTITIES.items() for word in words.split()}
 _WORDS = "|".join(sorted(_OF_WORD, key=len, reverse=True))
 _INDEXED = re.compile(rf"(?:actual_|measured_|meas_)?({_WORDS})_?[\[({{]?(\d)[\])}}]?")
+_ENTRY = re.compile(r"([A-Za-z]+)_?[\[({]?(\d)(?:[,_ ]|\]\[|, )?(\d)?[\])}]?")
 _DOTTED = re.compile(r"(q|theta)_?(\d)_?(d?)dot")
 _OF_JOINT = re.compile(rf"(.*?)[_ ]?({_WORDS})")
 
@@ -73,7 +74,9 @@ def columns_of(
         for place, (bare, _) in enumerate(parted)
         if names[place] not in called and not is_known(bare) and (joint := _joint(bare))
     }
-    meant = _numbered(joints)
+    meant = _numbered(joints) | _entries(
+        {place: bare for place, (bare, _) in enumerate(parted) if place not in joints}, is_known
+    )
     often = Counter(meant.values())
     found = []
     for place, (name, (bare, unit)) in enumerate(zip(names, parted, strict=True)):
@@ -109,6 +112,21 @@ def _joint(name: str) -> _Joint | None:
     if not match or not (len(parts) > 1 or re.search(r"joint|\d", match[1])):
         return None
     return _Joint(_OF_WORD[match[2]], match[1] or parts[-2])
+
+
+def _entries(names: Mapping[int, str], is_known: Callable[[str], bool]) -> dict[int, str]:
+    """J12 for J(1,2), J_1_2 or J[0][1], and g1 for g(1): of a vector or a matrix that may be counted from 0."""
+    indexed = {place: found for place, name in names.items() if (found := _ENTRY.fullmatch(name))}
+    from_0 = {found[1] for found in indexed.values() if "0" in found.groups()[1:]}
+    meant = {
+        place: found[1] + "".join(str(int(one) + (found[1] in from_0)) for one in found.groups()[1:] if one)
+        for place, found in indexed.items()
+    }
+    return {
+        place: name
+        for place, name in meant.items()
+        if is_known(name) and (indexed[place][1] in from_0 or not is_known(names[place]))
+    }
 
 
 def _numbered(joints: Mapping[int, _Joint]) -> dict[int, str]:

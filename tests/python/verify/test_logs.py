@@ -259,3 +259,21 @@ def test_no_mutation_of_a_log_is_more_than_a_line(tmp_path: Path) -> None:
             formula_verdict(path)
         except arm3r.Arm3rError as error:
             assert len(str(error).splitlines()) == 1, (seed, number, str(error))
+
+
+@pytest.mark.parametrize("vector, matrix", [("g(%d)", "J(%d,%d)"), ("g_%d", "J_%d_%d"), ("g[%d]", "J[%d][%d]")])
+@pytest.mark.parametrize("first", [0, 1])
+def test_entries_by_their_indices_are_entries(first: int, vector: str, matrix: str, tmp_path: Path) -> None:
+    rng = np.random.default_rng(3)
+    q, arm = rng.uniform(-2, 2, (40, 3)), arm3r.Scenario().arm
+    places = range(first, first + 3)
+    for names, values in (
+        ([vector % one for one in places], arm.gravity_torque(q)),
+        ([matrix % (one, two) for one in places for two in places], arm.jacobian(q).reshape(-1, 9)),
+    ):
+        path = tmp_path / "log.csv"
+        header = ",".join(["q1", "q2", "q3", *(f'"{name}"' for name in names)])
+        np.savetxt(path, np.hstack([q, values]), delimiter=",", fmt="%.17g", header=header, comments="")
+        assert formula_verdict(path).ok
+        np.savetxt(path, np.hstack([q, 1.1 * values]), delimiter=",", fmt="%.17g", header=header, comments="")
+        assert not formula_verdict(path).ok
