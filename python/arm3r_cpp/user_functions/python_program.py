@@ -295,8 +295,12 @@ def _numbers(result: Any, output: int | None) -> Floats:
     """An array of real numbers, of one of several results where an output is given.
 
     Raises:
+        Unread: it is a function, which another call would have to evaluate.
         ProgramError: the result is none.
     """
+    if callable(result) and not hasattr(result, "__array__"):
+        made = getattr(result, "__name__", type(result).__name__)
+        raise Unread(f"returns a function, {made}: name an object that the file makes of it, FILE:OBJECT")
     if output is not None:
         if not _has_results(result) or output >= len(result):
             raise ProgramError(f"returns no output {output + 1}")

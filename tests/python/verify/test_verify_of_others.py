@@ -100,6 +100,25 @@ def gravity(q):
     assert [one.entry for one in verdict.findings] == [[2]]
 
 
+def test_what_makes_a_function_is_no_formula(written: Any) -> None:
+    text = """from math import cos
+
+
+def gravity(scale):
+    def torque(q):
+        t3 = -0.785*9.80665/2*scale*cos(q[1] + q[2])
+        return [0, t3 - 0.785*9.80665*1.5*scale*cos(q[1]), t3]
+    return torque
+
+
+model = gravity(1.0)
+"""
+    path = written("model.py", text.replace("gravity(scale)", "gravity(q)").replace("gravity(1.0)", "gravity([1])"))
+    with pytest.raises(UnjudgedError, match="returns a function, torque: name an object that the file makes of it"):
+        verify.gravity(written("other.py", path.read_text().replace("scale*", "")))
+    assert verify.gravity(f"{written('model.py', text)}:model").ok
+
+
 # ---- numbers ---------------------------------------------------------------------------------------------------------
 
 
