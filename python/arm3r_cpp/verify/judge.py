@@ -8,6 +8,7 @@ of the text against the arm's; what tests would have seen.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from .failure import failed
 from .formula import Formula
 from .kinds import KINDS, Kind, kind_of_name
 from .meaning import as_called, assumed, doubted, meant
-from .names import slot_of
+from .names import reference_of, slot_of
 from .verdict import Verdict
 
 REPAIR_EDITS = 10_000  # of all that a formula may mean
@@ -50,6 +51,8 @@ def judge(
     """
     kind = truth.allowing(kind)
     try:
+        if not kind.is_of_arm:
+            formula = _with_references(formula, truth)
         formula = as_called(formula, kind, truth)
         truth = assumed(formula, kind, truth)
         cases = meant(formula, kind, truth)
@@ -68,6 +71,13 @@ def judge(
     verdict.ok = not verdict.findings
     seen_by_tests(verdict, case, seen_by)
     return verdict
+
+
+def _with_references(formula: Formula, truth: Any) -> Formula:
+    """A law whose arguments such as q_des have what the scenario's reference is."""
+    stated = truth.references()
+    found = {name: stated[what] for name in formula.arguments if (what := reference_of(name)) in stated}
+    return replace(formula, given={**found, **formula.given})
 
 
 def _require_numbers(case: Comparison) -> None:
@@ -197,7 +207,7 @@ def _found(case: Comparison) -> list[str]:
     if formula.as_columns:
         found.append("with vectors as columns")
     if formula.given:
-        found.append(f"with {', '.join(sorted(formula.given))} as it is given")
+        found.append(f"with {', '.join(sorted(formula.given))} as given")
     if case.degrees:
         found.append("angles in degrees")
     if formula.engine:

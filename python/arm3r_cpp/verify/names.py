@@ -111,6 +111,15 @@ def quantities_of(names: Iterable[str]) -> dict[str, str]:
     return meaning
 
 
+def reference_of(name: str) -> str:
+    """ "q" for q_des and theta_ref, "qd" for qd_des, "x" for x_des and p_target; "" for what is no reference."""
+    found = re.fullmatch(r"(\w+?)_?(?:des|desired|ref|target|goal|star)", name)
+    slot = slot_of(found[1]) if found else None
+    if slot and slot[1] is None:
+        return slot[0]
+    return {"x": "x", "p": "x", "xd": "xd", "dx": "xd", "xdot": "xd"}.get(found[1], "") if found else ""
+
+
 def takes_state_and_torque(arguments: Sequence[str]) -> bool:
     """Whether they are those of a right-hand side, and no others: f(t, x, u), f(q, qd, tau)."""
     untimed = [name for name in arguments if not _TIME.fullmatch(name)]

@@ -240,3 +240,39 @@ def test_complex_numbers_are_left_to_octave(value: str, written: Any, monkeypatc
     text = f"function p = fk(q)\nr = cos(q(2)) + cos(q(2)+q(3)) + {value};\np = {TIP};\nend\n"
     with pytest.raises(UnjudgedError, match="complex number, and real ones are read; GNU Octave"):
         verify.kinematics(written("fk.m", text))
+
+
+# ---- laws ------------------------------------------------------------------------------------------------------------
+
+LAWS = {
+    "in joints": (
+        "controller: {type: joint_pd, joint_stiffness: [200, 200, 100], joint_damping: [20, 20, 10], "
+        "compensate_gravity: false}\nreference: {type: point, q: [0.1, 0.5, -0.6]}\n",
+        "def controller(q, qd, q_des, qd_des):\n    return K*(q_des - q) + D*(qd_des - qd)\n",
+    ),
+    "from where it starts": (
+        "controller: {type: joint_pd, joint_stiffness: [200, 200, 100], joint_damping: [20, 20, 10], "
+        "compensate_gravity: false}\nreference: {type: hold}\n",
+        "def controller(q, qd, theta_ref):\n    return K*(theta_ref - q) - D*qd\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_references_as_arguments_are_the_scenarios(law: str, written: Any) -> None:
+    keys, function = LAWS[law]
+    scenario = Scenario(f"format: 1\narm: {{convention: simscape}}\ninitial: {{q: [0.2, 0.4, -0.3]}}\n{keys}")
+    text = "import numpy as np\n\nK, D = np.array([200, 200, 100]), np.array([20, 20, 10])\n\n\n" + function
+    verdict = verify.controller(written("law.py", text), scenario)
+    assert verdict.ok and " as given" in str(verdict), str(verdict)
+    assert not verify.controller(written("law.py", text.replace("K*(", "-K*(")), scenario).ok
+
+
+def test_a_law_is_judged_by_a_scenario_that_can_start_everywhere(written: Any) -> None:
+    law = written("law.py", "def controller(q, qd):\n    return [0, 0, 0]\n")
+    with pytest.raises(UsageError, match="a controller is judged by the law of a scenario: name one by --arm"):
+        verify.controller(law, verify.Chain.from_dh(Path(__file__).parents[1] / "robots" / "ur5.csv"))
+    with pytest.raises(
+        UnjudgedError, match="cannot start at each state that is tried: the tip starts deep inside the wall"
+    ):
+        verify.controller(law, Scenario.example("robots/ur5_hybrid"))

@@ -50,7 +50,7 @@ def test_values_that_are_said_are_used(name: str, tmp_path: Path, command: Any) 
     path.write_text(text)
     options = [word for value in values for word in ("--set", value)]
     done = command(path, *options)
-    assert done.returncode == 0 and "as it is given" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 0 and "as given" in done.stdout, done.stdout + done.stderr
     wrong = command(path, *(one.replace("g=9.80665", "g=4") for one in options))
     assert wrong.returncode == 11
 

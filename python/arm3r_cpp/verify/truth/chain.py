@@ -265,6 +265,13 @@ class SerialChain:
         chain = self.with_gravity(quantities["gravity"]) if "gravity" in quantities else self
         return kind.due(chain, states, rows)
 
+    def references(self) -> dict[str, list[float]]:
+        """
+        Raises:
+            UsageError: a chain has no law.
+        """
+        raise UsageError(f"{self.name}: a controller is judged by the law of a scenario: name one by --arm")
+
     def _require_masses(self, kind: Kind) -> None:
         if self.unknown:
             *others, last = self.unknown

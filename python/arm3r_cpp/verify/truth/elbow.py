@@ -15,7 +15,7 @@ from ...robots.arm_bodies import arm_of
 from ...robots.bodies import with_mass
 from ..kinds import SPATIAL, Kind, Rows
 from .chain_files import Chain
-from .three_r import ThreeR, law_torque
+from .three_r import ThreeR, law_torque, references_of
 
 
 def truth_of_arm(arm: Scenario | Arm | None) -> ThreeR | ElbowArm:
@@ -66,6 +66,10 @@ class ElbowArm(Chain):
     def law_torque(self, q: Floats, qd: Floats) -> Floats:
         """The torque of the scenario's law at the start, from each state."""
         return law_torque(self._scenario, q, qd)
+
+    def references(self) -> dict[str, list[float]]:
+        """What the scenario's law is to reach and keep."""
+        return references_of(self._scenario)
 
     def values(self, kind: Kind, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],
                *, follows: tuple[str, ...] = (), rows: Rows = SPATIAL) -> Floats:  # fmt: skip

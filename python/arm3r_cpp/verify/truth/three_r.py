@@ -14,7 +14,7 @@ from ..._native import Floats
 from ...core.arm import Arm
 from ...core.params import param_index
 from ...core.scenario import Scenario
-from ...errors import UnjudgedError, UsageError
+from ...errors import ScenarioError, UnjudgedError, UsageError
 from ..kinds import KINDS, SPATIAL, Kind, Rows
 
 CONVENTIONS = ("simscape", "slide")
@@ -270,6 +270,10 @@ class ThreeR:
         signs = np.array([1.0, -1.0, -1.0]) if convention != self._own_convention else np.ones(3)
         return signs * law_torque(self._scenario, signs * q, signs * qd)
 
+    def references(self) -> dict[str, list[float]]:
+        """What its scenario's law is to reach and keep."""
+        return references_of(self._scenario)
+
     def variants(self, kind: Kind) -> list[tuple[str, ThreeR]]:
         """Arms with a mistake that its quantities do not tell."""
         return []
@@ -288,6 +292,19 @@ class ThreeR:
         )
 
 
+def references_of(scenario: Scenario | None) -> dict[str, list[float]]:
+    """What a law is to reach and keep: q, qd, qdd, and x, xd of the tip; of a reference that moves, nothing."""
+    word = "" if scenario is None else str(scenario["reference.type"])
+    if scenario is None or word not in ("hold", "point"):
+        return {}
+    still = [0.0, 0.0, 0.0]
+    if word == "point" and "reference.tip" in scenario:
+        return {"x": list(scenario["reference.tip"]), "xd": still}
+    q = scenario["reference.q"] if word == "point" and "reference.q" in scenario else scenario["initial.q"]
+    tip = scenario.arm.tip_position(q)
+    return {"q": list(q), "qd": still, "qdd": still, "x": list(map(float, tip)), "xd": still}
+
+
 def law_torque(scenario: Scenario | None, q: Floats, qd: Floats) -> Floats:
     """The torque of a scenario's law at the start, from each state.
 
@@ -303,7 +320,14 @@ def law_torque(scenario: Scenario | None, q: Floats, qd: Floats) -> Floats:
     torques = []
     for angles, rates in zip(q, qd, strict=True):
         here["initial.q"], here["initial.qd"] = angles, rates
-        torques.append(here.run()["tau"][0])
+        try:
+            torques.append(here.run()["tau"][0])
+        except ScenarioError as error:  # such as a tip that starts deep inside the wall
+            words = error.problems[0]["message"] if error.problems else str(error)
+            raise UnjudgedError(
+                f"cannot be judged: the scenario cannot start at each state that is tried: {words}; judge the law in a "
+                "scenario without a wall"
+            ) from None
     return np.array(torques)
 
 
