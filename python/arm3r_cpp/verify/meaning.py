@@ -77,7 +77,8 @@ def wrong_count(formula: Formula, kind: Kind, truth: Any) -> int:
 def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
     """Of the arms that a file may mean, the one by which fewest entries are wrong.
 
-    Of equals it is one on which the formula's gravity acts, with a size that stands in its text; then the nearest.
+    Of equals it is one on which the formula's gravity acts, with a size that stands in its text; then the nearest. Of
+    equal frames it is the base's.
     """
     others = truth.open_to(kind)
     if not others:
@@ -102,7 +103,7 @@ def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
             sum(not np.isclose(*pair, rtol=1e-9) for pair in given),
             is_written and not has_size(one),
             one.takes_gravity,
-            _apart_but_for_the_sign(values, due),
+            _apart_but_for_the_sign(values, due) if kind.depends_on_gravity else 0.0,  # of frames the base's
         )
 
     return min([truth, *others], key=distance)

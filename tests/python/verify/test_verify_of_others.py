@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from arm3r_cpp import Scenario, UnjudgedError, UsageError, verify
 from arm3r_cpp.verify.functions import formula_verdict
+from arm3r_cpp.verify.kinds import KINDS
 
 UNEQUAL = Scenario("""format: 1
 arm:
@@ -276,3 +277,16 @@ def test_a_law_is_judged_by_a_scenario_that_can_start_everywhere(written: Any) -
         UnjudgedError, match="cannot start at each state that is tried: the tip starts deep inside the wall"
     ):
         verify.controller(law, Scenario.example("robots/ur5_hybrid"))
+
+
+def test_of_frames_in_which_all_is_wrong_the_bases_is_meant() -> None:
+    chain = verify.Chain.from_dh(Path(__file__).parents[1] / "robots" / "ur5.csv")
+
+    def wrong(q: Any, shift: float = 0.0) -> Any:
+        tip = chain.values(KINDS["kinematics"], "", {"q": np.atleast_2d(q)}, {})[0]
+        return tip + 0.3 * np.cos(q[1]) - np.array([0, 0, shift])
+
+    for shift in (0.0, 0.089159):  # with it the frame of joint 1 is the nearer one
+        assert "the frame of joint 1" not in str(verify.kinematics(lambda q, by=shift: wrong(q, by), chain))
+    moved = verify.kinematics(lambda q: wrong(q, 0.089159) - 0.3 * np.cos(q[1]), chain)
+    assert moved.ok and "the frame of joint 1" in str(moved)
