@@ -39,6 +39,8 @@ class Judgement:
     convention: str
     residual: float
     """The largest difference from what is right, in the entry's unit."""
+    is_angular: bool = field(default=False, kw_only=True)
+    """Whether that entry is in an angular row of a Jacobian: it has no unit."""
     findings: list[Finding] = field(default_factory=list)
     alternatives: list[str] = field(default_factory=list)
     """Explanations that are equally true."""

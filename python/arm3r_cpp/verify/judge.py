@@ -154,6 +154,8 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     if wrong:
         is_rounding = verdict.residual <= TOLERANCE * _largest(own_due)
         verdict.residual = _largest(values - due) if is_rounding else verdict.residual
+        worst = np.abs(values - due if is_rounding else own_values - own_due).reshape(-1, *case.shape).max(axis=0)
+        verdict.is_angular = case.shape[0] == 6 and case.kind.is_derivative and int(worst.max(axis=1).argmax()) > 2
         explain(verdict, case, wrong, progress, budget)
     return verdict
 

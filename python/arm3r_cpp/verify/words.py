@@ -42,12 +42,18 @@ def _head(verdict: Judgement) -> str:
     wrong = len({tuple(one.entry) for one in verdict.findings if one.entry})
     if wrong and count:
         size = (
-            f"by up to {verdict.residual:.3g} {KINDS[verdict.kind].unit}"
+            f"by up to {verdict.residual:.3g} {_unit(verdict)}".rstrip()
             if np.isfinite(verdict.residual)
             else "some NaN"
         )
         parts.append(f"{wrong} of {count} entries wrong, {size}")
     return ", ".join(parts)
+
+
+def _unit(verdict: Judgement) -> str:
+    """Of the residual: m, and of an angular row none; m/s, and of an angular row 1/s."""
+    unit = KINDS[verdict.kind].unit
+    return unit.removeprefix("m").replace("/", "1/") if verdict.is_angular else unit
 
 
 def _covered(verdict: Judgement, name: str) -> str:

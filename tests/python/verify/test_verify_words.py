@@ -53,3 +53,11 @@ def test_an_edit_is_not_possible_twice(ending: str, tmp_path: Path) -> None:
     verdict = verify.gravity(path)
     assert {(one.old, one.new) for one in verdict.findings} <= {("-", ""), ("+", "-")}, str(verdict)
     assert verdict.alternatives == [], str(verdict)
+
+
+@pytest.mark.parametrize("row, unit", [(1, " m"), (4, "")])
+def test_an_angular_entry_has_no_unit_of_length(row: int, unit: str) -> None:
+    error = np.zeros((6, 3))
+    error[row, 1] = 0.25
+    verdict = verify.jacobian(lambda q: SCENARIO.arm.geometric_jacobian(np.asarray(q)) + error, SCENARIO)
+    assert str(verdict).splitlines()[0].endswith(f"1 of 18 entries wrong, by up to 0.25{unit}")
