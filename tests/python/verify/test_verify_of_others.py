@@ -56,6 +56,14 @@ def test_names_of_what_is_no_kind_tell_none(name: str, written: Any) -> None:
         formula_verdict(written(f"{name}.py", f"def {name}(p):\n    return [p[0], p[1], p[2]]\n"))
 
 
+@pytest.mark.parametrize("name", ["urdf_fk", "end_effector_pose", "fk_deg", "EndEffector"])
+def test_names_of_poses_tell_kinematics(name: str, written: Any) -> None:
+    text = f"from math import cos, sin\n\n\ndef {name}(q):\n    r = cos(q[1]) + cos(q[1] + q[2])\n"
+    text += "    return [r*cos(q[0]), r*sin(q[0]), -sin(q[1]) - sin(q[1] + q[2])]\n"
+    verdict = formula_verdict(written("x.py", text))
+    assert verdict.kind == "kinematics" and verdict.ok, str(verdict)
+
+
 def test_of_several_outputs_those_that_are_left_are_named(written: Any) -> None:
     text = """from math import cos
 

@@ -11,7 +11,7 @@ class Kinematics(Kind):
 
     name, words, letter = "kinematics", "tip position", "p"
     inputs, unit, shapes, planar_shape = ("q",), "m", ("3", "4x4"), "2"
-    called = ("kin", "fk", "tip", "position")
+    called = ("kin", "fk", "tip", "position", "pose", "effector")
     columns, columns_words = r"(?:p_?|tip_)([123xyz])", "p1.."
     is_logged_anyway = True
     needs_masses, depends_on_base = False, True
