@@ -207,18 +207,11 @@ def _candidate(case: _Case, convention: str) -> _Candidate:
     for place, one in sorted(left.items()):
         if np.abs(one).max() <= max((noise or 0.0) * SIGNIFICANT, TOLERANCE) * flat[place]:
             continue
-        if noise is None and not is_exact and (words := _excuse(case, place, one)) is not None:
+        if noise is None and not is_exact and (words := _excuse(case, place, one, by_states[place])) is not None:
             verdict.warnings += [words] if words else []
             quiet += [] if words else [sizes[place] / flat.max()]
             if not words and _rms(one) > _NO_NOISE * flat.max():
-                found.undecided[kind.entry_name([index + 1 for index in place])] = float(np.abs(one).max())
-            continue
-        if noise is None and not is_exact and _rms(one) <= _OF_STATES * by_states[place]:
-            name = kind.entry_name([index + 1 for index in place])
-            off = f"{np.abs(one).max():.2g} {kind.unit}"
-            verdict.warnings.append(
-                f"{name} is off by up to {off}, as the noise of the states explains: no smaller mistake can be judged"
-            )
+                found.undecided[_name(kind, place)] = float(np.abs(one).max())
             continue
         size = max(float(flat[place]) * level, same) if noise is None else float(flat[place]) * noise
         verdict.findings.append(_finding(kind, place, case.fitted.get(place), rights[place], left[place], size))
@@ -230,18 +223,33 @@ def _candidate(case: _Case, convention: str) -> _Candidate:
     return found
 
 
-def _excuse(case: _Case, place: tuple[int, ...], left: Floats) -> str | None:
-    """Why what is left of an entry is no mistake: "" for noise, else what is to be said; None: it is one."""
+def _name(kind: Kind, place: tuple[int, ...]) -> str:
+    return kind.entry_name([index + 1 for index in place])
+
+
+def _excuse(case: _Case, place: tuple[int, ...], left: Floats, by_states: float) -> str | None:
+    """Why what is left of an entry is no mistake: "" for noise, else what is to be said; None: it is one.
+
+    Args:
+        by_states: how far the noise of the states spreads the entry.
+    """
+    words, rest = "", left
     rates = case.log.vector("qd", case.truth.joints) if case.kind.has_friction else None
-    columns = np.zeros((len(left), 0)) if rates is None else friction_of(rates[:, place[0]])
-    if not follows(left, columns, case.step):
-        return None if follows(left, case.features, case.step) else ""
-    by_friction = columns @ np.linalg.lstsq(columns, left, rcond=None)[0]
-    if follows(left - by_friction, case.features, case.step):
+    if rates is not None and follows(left, columns := friction_of(rates[:, place[0]]), case.step):
+        by_friction = columns @ np.linalg.lstsq(columns, left, rcond=None)[0]
+        rest = left - by_friction
+        words = (
+            f"t{place[0] + 1} leaves up to {np.abs(by_friction).max():.2g} N m that follow the rate of joint "
+            f"{place[0] + 1}, as friction does: a mistake that looks like friction cannot be judged"
+        )
+    if not follows(rest, case.features, case.step):
+        return words
+    if _rms(left) > _OF_STATES * by_states:
         return None
+    off = f"{np.abs(left).max():.2g} {case.kind.unit}"
     return (
-        f"t{place[0] + 1} leaves up to {np.abs(by_friction).max():.2g} N m that follow the rate of joint "
-        f"{place[0] + 1}, as friction does: a mistake that looks like friction cannot be judged"
+        f"{_name(case.kind, place)} is off by up to {off}, as the noise of the states explains: "
+        "no smaller mistake can be judged"
     )
 
 
