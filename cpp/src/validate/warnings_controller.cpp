@@ -112,11 +112,9 @@ void warn_of_light_mass(const Controller<double>& controller, const Loop& loop, 
 
 // Whether the torque depends on the measured contact force: to track a force, to yield to it, or to cancel it.
 bool uses_force(const Controller<double>& controller) {
-    switch (controller.type) {
-        case ControllerType::shaped_impedance:
-        case ControllerType::admittance: return true;
-        default: return may_cancel_force(controller.type) ? controller.cancels_force : tracks_force(controller.type);
-    }
+    if (may_cancel_force(controller.type)) return controller.cancels_force;
+    return controller.type == ControllerType::shaped_impedance || controller.type == ControllerType::admittance ||
+           tracks_force(controller.type);
 }
 
 void warn_of_contact(const Setup& setup, Warnings& warnings) {

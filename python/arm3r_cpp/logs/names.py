@@ -68,7 +68,6 @@ def columns_of(
     if missing := [name for name in called if name not in names]:
         raise UsageError(f"no column is called {missing[0]!r}; there are {', '.join(names)[:200]}", code="usage")
     parted = [_parted(called.get(name, name)) for name in names]
-    own = {bare for bare, _ in parted if is_known(bare)} | set(called.values())
     joints = {
         place: joint
         for place, (bare, _) in enumerate(parted)
@@ -77,6 +76,8 @@ def columns_of(
     meant = _numbered(joints) | _entries(
         {place: bare for place, (bare, _) in enumerate(parted) if place not in joints}, is_known
     )
+    own = {bare for place, (bare, _) in enumerate(parted) if place not in meant and is_known(bare)}
+    own |= set(called.values())
     often = Counter(meant.values())
     found = []
     for place, (name, (bare, unit)) in enumerate(zip(names, parted, strict=True)):

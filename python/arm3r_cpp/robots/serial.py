@@ -30,7 +30,7 @@ class Serial(NamedTuple):
     """The joints beside the way that move, and stand on what moves."""
     without_inertial: list[str]
     """The links that joints move, and of which the file says nothing."""
-    unknown: list[str]
+    without_any_inertial: list[str]
     """Those of them on which no link with an inertial is fixed."""
 
     def tip_position(self, q: Floats) -> Floats:
@@ -83,9 +83,10 @@ def serial_chain(urdf: Urdf, tip: str | None, positions: Mapping[str, float]) ->
         rotation, origin = np.eye(3), np.zeros(3)
     for part, body in zip(parts, bodies, strict=True):
         part.mass, part.centre, part.inertia = body
-    bare = [names[0] for names in links if not urdf.has_inertial(names[0])]
-    unknown = [names[0] for names in links if not any(map(urdf.has_inertial, names))]
-    return Serial(moving, parts, links, origin, rotation, urdf.tip(tip), held, bare, unknown)
+    without = [names for names in links if not urdf.has_inertial(names[0])]
+    without_any = [names for names in without if not any(map(urdf.has_inertial, names))]
+    first = [[names[0] for names in some] for some in (without, without_any)]
+    return Serial(moving, parts, links, origin, rotation, urdf.tip(tip), held, *first)
 
 
 def _with_branches(

@@ -214,7 +214,7 @@ def _parameters(formula: Formula, kind: Kind, truth: Any) -> dict[str, str]:
 def _is_of_other_axis(name: str, quantity: str, truth: Any) -> bool:
     """Whether a link's Iy stands for itself, as its Iz is another number."""
     is_y = quantity.startswith("inertia") and re.fullmatch(r"I_?yy?_?\d", name.rpartition(".")[2], re.I) is not None
-    return is_y and not truth.is_round(int(quantity[-1]))
+    return is_y and not truth.is_axisymmetric(int(quantity[-1]))
 
 
 def _is_opposite(number: float | None, own: float) -> bool:

@@ -261,7 +261,9 @@ def test_no_mutation_of_a_log_is_more_than_a_line(tmp_path: Path) -> None:
             assert len(str(error).splitlines()) == 1, (seed, number, str(error))
 
 
-@pytest.mark.parametrize("vector, matrix", [("g(%d)", "J(%d,%d)"), ("g_%d", "J_%d_%d"), ("g[%d]", "J[%d][%d]")])
+@pytest.mark.parametrize(
+    "vector, matrix", [("g(%d)", "J(%d,%d)"), ("g_%d", "J_%d_%d"), ("g[%d]", "J[%d][%d]"), ("g%d", "J%d%d")]
+)
 @pytest.mark.parametrize("first", [0, 1])
 def test_entries_by_their_indices_are_entries(first: int, vector: str, matrix: str, tmp_path: Path) -> None:
     rng = np.random.default_rng(3)

@@ -33,13 +33,15 @@ enum : std::size_t { law_memory = 6 };  // numbers that a law remembers at most
 
 struct LawProperties {
     ControllerType type;
-    std::string_view word;          // of controller.type
-    bool has_model = false;         // a copy of the arm, and a gravity that it compensates
-    bool has_gains = false;         // more than a formula without gains: a file of its own
-    bool follows_path = false;      // a reference
-    bool in_joints = false;         // in joint angles, else in positions of the tip
-    bool takes_force = false;       // reference.force
-    bool controls_force = false;    // it brings the contact force to reference.force
+    std::string_view word;        // of controller.type
+    bool has_model = false;       // a copy of the arm, and a gravity that it compensates
+    bool has_gains = false;       // more than a formula without gains: a file of its own
+    bool follows_path = false;    // a reference
+    bool in_joints = false;       // in joint angles, else in positions of the tip
+    bool takes_force = false;     // reference.force
+    bool controls_force = false;  // it brings the contact force to reference.force
+    bool may_cancel_force =
+        false;  // controller.cancel_force says if it cancels the contact force, which moves nothing then
     bool integrates_force = false;  // the integral of the force error is the first number that it remembers
     std::size_t memory = 0;         // numbers that it remembers; what each of them is, its formula says
 };
@@ -60,6 +62,10 @@ inline constexpr std::array law_table = [] {
                              .follows_path = true,
                              .in_joints = in_joints};
     };
+    constexpr auto cancelling = [](LawProperties law) {
+        law.may_cancel_force = true;
+        return law;
+    };
     constexpr auto remembering = [](LawProperties law, std::size_t memory) {
         law.memory = memory;
         return law;
@@ -78,8 +84,8 @@ inline constexpr std::array law_table = [] {
         basic(constant, "constant"),
         with_model(gravity_compensation, "gravity_compensation"),
         motion(joint_pd, "joint_pd", true),
-        motion(computed_torque, "computed_torque", true),
-        motion(resolved_acceleration, "resolved_acceleration", false),
+        cancelling(motion(computed_torque, "computed_torque", true)),
+        cancelling(motion(resolved_acceleration, "resolved_acceleration", false)),
         motion(stiffness, "stiffness", false),
         motion(joint_stiffness, "joint_stiffness", true),
         motion(impedance, "impedance", false),
@@ -108,10 +114,7 @@ constexpr bool tracks_path(ControllerType type) { return properties(type).follow
 constexpr bool is_in_joints(ControllerType type) { return properties(type).in_joints; }
 constexpr bool tracks_force(ControllerType type) { return properties(type).controls_force; }
 constexpr bool integrates_force(ControllerType type) { return properties(type).integrates_force; }
-// Whether controller.cancel_force says if the law cancels the contact force, which then moves nothing.
-constexpr bool may_cancel_force(ControllerType type) {
-    return type == ControllerType::computed_torque || type == ControllerType::resolved_acceleration;
-}
+constexpr bool may_cancel_force(ControllerType type) { return properties(type).may_cancel_force; }
 constexpr std::size_t memory_size(ControllerType type) { return properties(type).memory; }
 
 }  // namespace arm3r

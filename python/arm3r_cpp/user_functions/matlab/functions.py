@@ -13,6 +13,8 @@ from .values import MAX_SIZE, Floats, Pages, Structures, as_numbers, check_size,
 
 def _power(base: Floats, exponent: Floats) -> Floats:
     """Element by element; at one state with the bits of Python's `**`, which np.power does not always have."""
+    if np.any((base < 0) & (exponent != np.round(exponent))):
+        raise Unread("a negative number to a power that is not whole is a complex number, and real ones are read")
     if len(base) > 1 or len(exponent) > 1 or exponent.size > 1:
         return np.power(base, exponent)
     power = exponent.item()

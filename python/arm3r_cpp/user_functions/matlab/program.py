@@ -129,16 +129,13 @@ class MatlabProgram:
     def optional(self) -> list[str]:
         """The arguments that have a value without being given one: by default, or by a test of `nargin` or `exist`."""
         function = self.functions[self.function]
-        text = re.split(r"\n\s*function\b", self.text[self.text.find("\n", self._start_of(function)) :])[0]
+        values = [one.value for top in function.body for one in top.walk() if one.value]
+        text = "\n".join(self.text[value.start : value.end] for value in values)
         fewest = [int(count) - (word == "<") for word, count in re.findall(r"\bnargin\s*(<=?|==)\s*(\d+)", text)]
         tested = re.findall(r"\bexist\s*\(\s*['\"](\w+)['\"]", text)
         left_out = function.inputs[min(fewest) :] if fewest else []
         left_out += [name for name in function.inputs if name in tested or name == "varargin"]
         return list(dict.fromkeys([*function.defaults, *left_out]))
-
-    def _start_of(self, function: Function) -> int:
-        lines = self.text.split("\n")[: function.line - 1]
-        return sum(len(line) + 1 for line in lines)
 
     @property
     def outputs(self) -> list[str]:

@@ -17,7 +17,7 @@ from .symbols import MOST_STATES, WEIGHTS, Stencil
 from .syntax import Function, Statement
 from .values import Floats, as_numbers, stacked
 
-_GOLDEN = 0.6180339887498949
+_GOLDEN = 0.6180339887498949  # its multiples modulo 1 are apart
 
 
 def program_of(

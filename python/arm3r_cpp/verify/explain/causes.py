@@ -25,6 +25,8 @@ from .reader import read_entries
 from .repair import Progress, Repair, cover, influential, tried, wrong_entries
 from .terms import difference_words
 
+_MOST_OTHERS = 3  # edits that are named beside one
+_NEAR = 2000  # characters between edits that may write the same
 _MOST_JOINTS_READ, _MOST_ENTRIES_READ = 4, 3
 """Terms of more entries of more joints are too many to read, and take seconds; edits that mend them say all."""
 _MOST_PARTS = 3000
@@ -73,10 +75,10 @@ def explain(
 def _not_continued(formula: Formula) -> list[str]:
     """The lines that begin with a sign and are statements of their own, which nothing uses."""
     text, found = formula.text or "", []
-    for node in formula.nodes:
+    signed = [one for one in formula.nodes if one.start == one.parts[0].start and text[one.start] in "+-"]
+    for node in signed:
         end = max((one.end for one in formula.nodes if one.end <= node.start), default=len(text))
-        is_next = re.fullmatch(r"[ \t;]*([#%][^\n]*)?\n\s*", text[end : node.start])
-        if is_next and node.start == node.parts[0].start and text[node.start] in "+-":
+        if re.fullmatch(r"[ \t;]*([#%][^\n]*)?\n\s*", text[end : node.start]):
             line, last = (line_and_column(text, place)[0] for place in (node.start, end))
             found.append(
                 f"line {line} begins with a sign and is a statement of its own, which nothing uses: "
@@ -211,9 +213,11 @@ def _takes_own_number(case: Comparison, edit: Edit) -> bool:
     except ValueError:
         return False
     is_own = any(math.isclose(old, abs(own), rel_tol=1e-9) for own in case.truth.values_of_quantities.values())
-    before = re.search(r"(=|[\[({,;])[ \t]*$", text[: edit.start])
-    after = re.match(r"[ \t]*([,;\])}]|[#%\n]|$)", text[edit.end :])
-    return is_own and old not in (0.0, 0.5, 1.0, 2.0) and before is not None and after is not None
+    if not is_own or old in (0.0, 0.5, 1.0, 2.0):
+        return False
+    before = text[text.rfind("\n", 0, edit.start) + 1 : edit.start].rstrip()
+    after = re.compile(r"[ \t]*([,;\])}]|[#%\n]|$)").match(text, edit.end)
+    return before[-1:] in tuple("=[({,;") and after is not None
 
 
 def _hold_together(case: Comparison, chosen: list[Repair], wrong: frozenset[int]) -> bool:
@@ -313,23 +317,32 @@ def _cause(
 
 
 def _other_edits(case: Comparison, repairs: list[Repair], shown: Repair) -> list[str]:
-    """The edits that do the same, each once: one that only writes another with more brackets or signs is none."""
-    text, different = case.formula.text or "", [shown]
+    """A few edits that do the same, each once: one that only writes another with more brackets or signs is none."""
+    text, different = case.formula.text or "", [shown.edit]
     for one in repairs:
-        if one.mended == shown.mended and not any(_is_same(one.edit, other.edit, text) for other in different):
-            different.append(one)
+        if one.mended == shown.mended and not any(_is_same(one.edit, other, text) for other in different):
+            different.append(one.edit)
+        if len(different) > _MOST_OTHERS:
+            break
     said = []
-    for one in different[1:]:
-        line, _ = line_and_column(text, one.edit.start)
-        said.append(f"in line {line} `{text[one.edit.start : one.edit.end]}` as `{one.edit.new}` would be right, too")
+    for edit in different[1:]:
+        line, _ = line_and_column(text, edit.start)
+        said.append(f"in line {line} `{text[edit.start : edit.end]}` as `{edit.new}` would be right, too")
     return said
 
 
 def _is_same(one: Edit, other: Edit, text: str) -> bool:
     """Whether two edits write the same, or change a sign of the same product."""
+    first, last = min(one.start, other.start), max(one.end, other.end)
+    if last - first > _NEAR:
+        return False
     meet = one.start <= other.end and other.start <= one.end
-    are_signs = _is_of_sign(one, text) and _is_of_sign(other, text)
-    return (meet and are_signs) or _plain(one.apply(text)) == _plain(other.apply(text))
+    if meet and _is_of_sign(one, text) and _is_of_sign(other, text):
+        return True
+    around = slice(text.rfind("\n", 0, first) + 1, last)
+    moved = (edit._replace(start=edit.start - around.start, end=edit.end - around.start) for edit in (one, other))
+    first_text, second_text = (_plain(edit.apply(text[around])) for edit in moved)
+    return first_text == second_text
 
 
 def _is_of_sign(edit: Edit, text: str) -> bool:

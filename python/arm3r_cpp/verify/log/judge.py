@@ -83,7 +83,9 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
             f"{log.file}: cannot be judged: {', '.join(names)} is off by up to {off:.2g} and "
             f"follows no term of a {kind.words}; is this the arm, and are q1, q2, ... its angles?"
         )
-    _require_motion(log, kind, truth, verdict)
+    _require_columns(log, kind, truth, verdict)
+    if verdict.ok:
+        _require_motion(log, kind, truth)
     _compare_with_other_convention(verdict, log, kind, truth, noise)
     verdict.warnings += log.notes()
     return verdict
@@ -96,11 +98,11 @@ def _compare_with_other_convention(verdict: Verdict, log: Log, kind: Kind, truth
         verdict.alternatives.append(right_elsewhere(other, truth))
 
 
-def _require_motion(log: Log, kind: Kind, truth: Any, verdict: Verdict) -> None:
-    """Rows in which the arm moves as the kind needs it, or words that say in what they are plain.
+def _require_columns(log: Log, kind: Kind, truth: Any, verdict: Verdict) -> None:
+    """What is right without the columns of its rates is right at rest, and says so.
 
     Raises:
-        UnjudgedError: too little moves to judge the entries.
+        UnjudgedError: it is wrong without them.
     """
     missing = [name for name in ("qd", "qdd", "tau") if name in kind.inputs and log.vector(name, truth.joints) is None]
     if missing and not verdict.ok:
@@ -110,12 +112,19 @@ def _require_motion(log: Log, kind: Kind, truth: Any, verdict: Verdict) -> None:
         )
     if missing:
         verdict.found.append(f"with {' and '.join(missing)} = 0, as the log has no columns of them")
+
+
+def _require_motion(log: Log, kind: Kind, truth: Any) -> None:
+    """
+    Raises:
+        UnjudgedError: a joint on which the entries depend stands still in all rows.
+    """
     states = log.states(truth.joints)
     still = [joint for joint in range(truth.joints) if np.ptp(states["q"][:, joint]) < _STILL]
     idle = [f"q{joint + 1}" for joint in still if _depends(kind, truth, joint)]
     if kind.is_product and not states["qd"].any():
         idle = [f"qd{joint + 1}" for joint in range(truth.joints)]
-    if verdict.ok and idle:
+    if idle:
         is_one = len(idle) == 1
         raise UnjudgedError(
             f"{log.file}: cannot be judged: {', '.join(idle)} {'stays' if is_one else 'stay'} the same in all rows, "

@@ -39,7 +39,7 @@ class SerialChain:
         tip: str = "",
         held: Sequence[str] = (),
         without_inertial: Sequence[str] = (),
-        unknown: Sequence[str] = (),
+        without_any_inertial: Sequence[str] = (),
         named_numbers: Mapping[str, float] | None = None,
     ) -> None:
         """
@@ -49,7 +49,7 @@ class SerialChain:
             tip: what the tip's frame is called; "" where it has no name.
             held: joints beside the chain, which are taken at zero.
             without_inertial: links that have no mass because their file gives none.
-            unknown: those of them whose body has none at all.
+            without_any_inertial: those of them on which nothing with a mass is fixed.
             states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
 
@@ -71,7 +71,8 @@ class SerialChain:
         """Whether its size is what a formula says, as the chain's file does not."""
         self.takes_direction = False
         """Whether its direction is."""
-        self.held, self.without_inertial, self.unknown = tuple(held), tuple(without_inertial), tuple(unknown)
+        self.held = tuple(held)
+        self.without_inertial, self.without_any_inertial = tuple(without_inertial), tuple(without_any_inertial)
         self.named_numbers = dict(named_numbers or {})
 
     @property
@@ -273,8 +274,8 @@ class SerialChain:
         raise UsageError(f"{self.name}: a controller is judged by the law of a scenario: name one by --arm")
 
     def _require_masses(self, kind: Kind) -> None:
-        if self.unknown:
-            *others, last = self.unknown
+        if self.without_any_inertial:
+            *others, last = self.without_any_inertial
             links = f"links {', '.join(others)} and {last} move and have" if others else f"link {last} moves and has"
             why = f"the {links} no <inertial>; write it into the file, with the mass 0 where there is none"
         elif not self._has_masses():

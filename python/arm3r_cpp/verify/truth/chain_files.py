@@ -41,7 +41,7 @@ class Chain(SerialChain):
             tip=found.tip,
             held=found.held,
             without_inertial=found.without_inertial,
-            unknown=found.unknown,
+            without_any_inertial=found.without_any_inertial,
         )
 
     @classmethod
@@ -89,7 +89,7 @@ class Chain(SerialChain):
             tip=self.tip,
             held=self.held,
             without_inertial=self.without_inertial,
-            unknown=self.unknown,
+            without_any_inertial=self.without_any_inertial,
             named_numbers=self.named_numbers,
         )
 

@@ -158,13 +158,13 @@ class ThreeR:
         drawn = {}
         for name in sorted(names):
             low, high = _RANGES.get(name.rstrip("0123456789"), (4.0, 13.0) if name == "gravity" else (0.2, 1.0))
-            if name.startswith("inertia") and not self.is_round(int(name[-1])):
+            if name.startswith("inertia") and not self.is_axisymmetric(int(name[-1])):
                 low, high = self._possible_inertias(int(name[-1]))
             drawn[name] = float(random.uniform(low, high))
         return drawn
 
-    def is_round(self, link: int) -> bool:
-        """Whether a link's inertias about the axes across it are equal."""
+    def is_axisymmetric(self, link: int) -> bool:
+        """Whether a link has the same inertia about all axes across it."""
         return bool(np.isclose(self._ratio(link), 1.0, rtol=1e-9))
 
     def _possible_inertias(self, link: int) -> tuple[float, float]:
@@ -227,7 +227,7 @@ class ThreeR:
         other = across * self._ratio(link)
         if f"inertia{link}" in given:
             across = value[f"inertia{link}"]
-            if self.is_round(link):
+            if self.is_axisymmetric(link):
                 other, axial = across, min(axial, across)
         elif "inertia" in follows and not has_own_inertia:
             return  # the library derives it from the shape, for any length and mass
