@@ -115,17 +115,18 @@ class Comparison:
         samples: Samples,
         states: Mapping[str, Floats] | None = None,
         changes: Mapping[str, Floats] | None = None,
+        rows: Rows | None = None,
     ) -> Floats:
-        """What is right of any kind of formula."""
+        """What is right of any kind of formula, by default in the rows of this one."""
         count = len(samples.states["q"])
         results = []
         for number, arm in enumerate(samples.arms):
-            rows = slice(number * count, (number + 1) * count)
-            here = samples.states | {name: values[rows] for name, values in (states or {}).items()}
-            new = {name: float(values[rows][0]) for name, values in (changes or {}).items()}
+            part = slice(number * count, (number + 1) * count)
+            here = samples.states | {name: values[part] for name, values in (states or {}).items()}
+            new = {name: float(values[part][0]) for name, values in (changes or {}).items()}
             quantities = {**arm, **new}
             results.append(
-                self.truth.values(kind, self.convention, here, quantities, follows=self.follows, rows=self.rows)
+                self.truth.values(kind, self.convention, here, quantities, follows=self.follows, rows=rows or self.rows)
             )
         return np.concatenate(results)
 

@@ -18,10 +18,10 @@ _MOST_NAMES = 4
 
 def report(verdict: Judgement) -> str:
     """What `arm3r verify` prints of a formula: a line for the whole, then each finding; what explains several first."""
-    lines = [f"{verdict.file}: {_head(verdict)}"]
+    lines, told = [f"{verdict.file}: {_head(verdict)}"], set[str]()
     blocks = [list(same) for _, same in groupby(sorted(verdict.findings, key=_edit_of), key=_edit_of)]
     for same in sorted(blocks, key=lambda one: not _is_of_several(one)):
-        lines += [f"  {line}" for line in _block(verdict, same)]
+        lines += [f"  {line}" for line in _block(verdict, same, told)]
     lines += [f"  also possible: {words}" for words in verdict.alternatives]
     lines += [f"  note: {words}" for words in verdict.warnings]
     lines += [f"  {_covered(verdict, name)}" for name in verdict.coverage]
@@ -73,13 +73,17 @@ def _edit_of(finding: Finding) -> tuple[int, int, str, str]:
     return (finding.line or 0, finding.column or 0, finding.old, finding.new or "")
 
 
-def _block(verdict: Judgement, findings: list[Finding]) -> list[str]:
+def _block(verdict: Judgement, findings: list[Finding], told: set[str]) -> list[str]:
+    """What entries read that have one explanation, and the explanation, where it is not among those `told` before."""
     first, read = findings[0], _readings(verdict, findings)
-    if _is_of_several(findings):
-        lines = [_cause(verdict, findings), *(f"  {line}" for line in read)]
+    if _is_about_entry(verdict, first):
+        lines = read or [_cause(verdict, findings)]
+    elif first.cause in told:
+        lines = [f"  {line}" for line in read]
     else:
-        is_said = bool(read) and (first.old is not None or _begins_with_entry(verdict, first))
-        lines = read if is_said and first.reads is not None else [*read, _cause(verdict, findings)]
+        told.add(first.cause)
+        same = [one for one in verdict.findings if one.cause == first.cause]
+        lines = [_cause(verdict, same), *(f"  {line}" for line in read)]
     lines += [f"  {line}" for line in _place(verdict, first)]
     lines += [f"  {name} cannot see it{f': {why}' if why else ''}" for name, why in _unseen(findings).items()]
     return lines
@@ -95,8 +99,12 @@ def _readings(verdict: Judgement, findings: list[Finding]) -> list[str]:
     return found
 
 
-def _begins_with_entry(verdict: Judgement, finding: Finding) -> bool:
-    return finding.cause.startswith(f"{KINDS[verdict.kind].entry_name(finding.entry or [])} ")
+def _is_about_entry(verdict: Judgement, finding: Finding) -> bool:
+    """Whether the sentence is about its entry alone."""
+    if not finding.entry:
+        return False
+    name = KINDS[verdict.kind].entry_name(finding.entry)
+    return finding.cause.startswith((f"{name} ", f"{name}: "))
 
 
 def _cause(verdict: Judgement, findings: list[Finding]) -> str:

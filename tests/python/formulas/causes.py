@@ -86,16 +86,74 @@ def _signed(due: Floats, axis: int, number: str) -> Floats:
     return due * signs
 
 
-def _twice(known: Known, words: Words) -> Floats:
+def _twice(known: Known, links: str) -> Floats:
     n = known.numbers
-    across = {link: n[f"I{link}"] + n[f"m{link}"] * n[f"l{link}"] ** 2 for link in "23"}
+    across = {link: n[f"I{link}"] + n[f"m{link}"] * n[f"l{link}"] ** 2 for link in links}
     return known.of_arm(**{f"link{link}_inertia": [n[f"axial{link}"], one, one] for link, one in across.items()})
 
 
+def _parallel_axes(known: Known, words: Words) -> Floats:
+    twice = _twice(known, words[2] or "23")
+    return twice if "twice" in words[1] else 2 * known.due - twice
+
+
+def _centres(known: Known, words: Words) -> Floats:
+    """Of one link or of both, at the end or in the middle."""
+    part = 1.0 if "end" in words[2] else 0.5
+    return known.of_arm(**{f"link{link}_com": part * known.numbers[f"a{link}"] for link in re.findall(r"\d", words[1])})
+
+
+def _without_q(known: Known, words: Words) -> Floats:
+    return known.with_angle(int(words[1]) - 1, lambda q: 0 * q[:, 0])
+
+
+def _christoffel(known: Known, words: Words) -> Floats:
+    """The sums from the symbols Gamma_ijk, which the torques of unit rates tell: dM_ij/dq_k = Gamma_ijk + Gamma_jik."""
+    units = np.eye(3)
+
+    def torque(qd: Floats) -> Floats:
+        return known.due_of({**known.states, "qd": np.broadcast_to(qd, known.states["q"].shape)}, {})
+
+    symbols = np.stack([[(torque(j + k) - torque(j) - torque(k)) / 2 for k in units] for j in units])  # (j, k, S, i)
+    rates = np.einsum("jksi->sijk", symbols) + np.einsum("iksj->sijk", symbols)
+    qd = known.states["qd"]
+    terms = {
+        "dM/dt qd": np.einsum("sijk,sj,sk->si", rates, qd, qd),
+        "d(qd^T M qd)/dq": np.einsum("sjki,sj,sk->si", rates, qd, qd),
+    }
+    total = np.zeros_like(qd)
+    for sign, half, word in re.findall(r"(-?) ?(1/2 )?(dM/dt qd|d\(qd\^T M qd\)/dq)", words[1]):
+        total = total + (-1 if sign else 1) * (0.5 if half else 1) * terms[word]
+    return total
+
+
+def _lever(known: Known, words: Words) -> Floats:
+    """Columns of the parallel joints 2 and 3 with levers from another joint, or from the base, d1 below joint 2."""
+    values, q1 = known.due.copy(), known.states["q"][:, 0]
+    reach = np.cos(q1) * values[:, 1, 0] - np.sin(q1) * values[:, 0, 0]
+    turn = np.sign(values[:, 2, 1] / reach)  # whether joint 2 raises
+    from_base = values[:, :, 1].copy()
+    from_base[:, :2] -= (turn * known.numbers["d1"] * np.array([np.cos(q1), np.sin(q1)])).T
+    for column in re.findall(r"\d", words[1]):
+        begin = {"the base's origin": from_base, "joint 2": known.due[:, :, 1], "joint 3": known.due[:, :, 2]}[words[2]]
+        values[:, :, int(column) - 1] = begin
+    return values
+
+
+def _about_joint2(known: Known, words: Words) -> Floats:
+    carried = known.of_arm(link2_mass=1e-9)[:, 1]
+    return np.column_stack([known.due[:, :2], carried])
+
+
 def _for(known: Known, *places: tuple[str, str]) -> Floats:
-    """With the value of one quantity, a2, in the place of another, a3."""
-    keys = {"a": "length", "m": "mass", "l": "com"}
-    return known.of_arm(**{f"link{other[1]}_{keys[other[0]]}": known.numbers[one] for one, other in places})
+    """With the value of one quantity, a2, in the place of another, a3; c: centre of mass, i: inertia across a link."""
+    keys = {"a": "length", "m": "mass", "c": "com", "i": "inertia"}
+    changes: dict[str, Any] = {}
+    for one, other in places:
+        what, link = other
+        value: Any = known.numbers[{"c": "l", "i": "I"}.get(what, what) + one[1]]
+        changes[f"link{link}_{keys[what]}"] = [known.numbers[f"axial{link}"], value, value] if what == "i" else value
+    return known.of_arm(**changes)
 
 
 _FACTORS = {"twice": 2.0, "half": 0.5, "1000 times": 1e3, "a thousandth": 1e-3, "1e6 times": 1e6}
@@ -122,10 +180,34 @@ _SENTENCES: tuple[tuple[str, Callable[[Known, Words], Floats]], ...] = (
     ("the matrix is transposed", lambda known, words: np.swapaxes(known.due, 1, 2)),
     ("(..) and (..) are exchanged", lambda known, words: _for(known, (words[1], words[2]), (words[2], words[1]))),
     ("(..) stands in the place of (..)", lambda known, words: _for(known, (words[1], words[2]))),
-    (r"the centre of mass of link (\d) is .*", lambda known, words: _for(known, (f"a{words[1]}", f"l{words[1]}"))),
-    ("the centres of mass of links 2 and 3 are .*", lambda known, words: _for(known, ("a2", "l2"), ("a3", "l3"))),
+    (r"the centres? of mass of (links? [23 and]+) (?:is|are) taken at the link(?:'s|s') (\w+)", _centres),
+    (
+        "the (centre of mass|inertia) of link (.) stands in the place of that of link (.)",
+        lambda known, words: _for(known, (words[1][0] + words[2], words[1][0] + words[3])),
+    ),
+    (
+        "that of link (.) stands in the place of the (centre of mass|inertia) of link (.)",
+        lambda known, words: _for(known, (words[2][0] + words[1], words[2][0] + words[3])),
+    ),
+    (
+        "the (centre of mass|inertia) of link 2 and that of link 3 are exchanged",
+        lambda known, words: _for(
+            known, (words[1][0] + "2", words[1][0] + "3"), (words[1][0] + "3", words[1][0] + "2")
+        ),
+    ),
+    (
+        "the point is the centre of mass of link 3; .*",
+        lambda known, words: known.of_arm(link3_length=known.numbers["l3"]),
+    ),
+    ("the third moment is taken about joint 2; .*", _about_joint2),
+    (r"q(\d) is left out of all angles: .*", _without_q),
+    ("the Christoffel symbols have other indices or signs: the result is (.*); it should be .*", _christoffel),
+    (r"the levers? of columns? ([23 and]+) begins? at (.*); (?:it|they) should begin at .*", _lever),
     (r"the mass m(\d) is missing", lambda known, words: known.of_arm(**{f"link{words[1]}_mass": 1e-9})),
-    ("the parallel-axis term m l.2 is counted twice.*", _twice),
+    (
+        r"the parallel-axis term m l.2 is (missing|counted twice): the inertia(?:s are| of link (\d) is) about .*",
+        _parallel_axes,
+    ),
     ("g is missing", lambda known, words: known.of_arm(gravity=[0, 0, -1])),
     ("g is multiplied in twice", lambda known, words: known.of_arm(gravity=[0, 0, -(known.numbers["g"] ** 2)])),
     ("gravity is left out", lambda known, words: known.of_arm(gravity=[0, 0, 0])),

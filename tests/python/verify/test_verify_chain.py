@@ -121,7 +121,7 @@ def test_a_table_is_read_as_the_textbooks_write_it(name: str) -> None:
             whole = whole @ transform(lines[0], row, value, line[0] != "P")
         tip = chain.values(KINDS["kinematics"], "", {"q": state[None], "qd": state[None]}, {})[0]
         assert np.allclose(tip, whole[:3, 3], rtol=0, atol=1e-12)
-        assert np.allclose(chain.pose("", state[None])[0][0], whole[:3, :3], rtol=0, atol=1e-12)
+        assert np.allclose(chain.rotation("", state[None])[0], whole[:3, :3], rtol=0, atol=1e-12)
 
 
 # ---- formulas -------------------------------------------------------------------------------------------------------

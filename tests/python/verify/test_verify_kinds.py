@@ -14,7 +14,7 @@ import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.robots.bodies import Joint, rotation_about, rotation_of
 from arm3r_cpp.verify import Chain, kinds
-from arm3r_cpp.verify.explain.frames import of_other_frames
+from arm3r_cpp.verify.explain.frames import Pose, of_other_frames
 from arm3r_cpp.verify.kinds import KINDS
 from arm3r_cpp.verify.truth.three_r import ThreeR
 
@@ -412,7 +412,7 @@ def test_the_rates_of_euler_angles_are_those_of_a_rotation() -> None:
         angles, rates = random.uniform(-1.2, 1.2, (2, 3))
         change = (turn(angles + step * rates) - turn(angles - step * rates)) / (2 * step) @ turn(angles).T
         jacobian = np.array([0, 0, 0, change[2, 1], change[0, 2], change[1, 0]])[None, :, None]
-        whole = of_other_frames(jacobian, turn(angles)[None], np.zeros((1, 3)))
+        whole = of_other_frames(jacobian, Pose(turn(angles)[None], np.zeros((1, 3)), np.zeros((1, 3, 1))))
         found = [values()[0, 3:, 0] for words, values, weight in whole if "(XYZ)" in words and weight == 1]
         assert any(np.allclose(one, rates, rtol=0, atol=1e-7) for one in found)
 

@@ -15,11 +15,13 @@ from ...user_functions.programs import Edit, ProgramError, line_and_column
 from ..comparison import Comparison, Solved, scales
 from ..finding import Finding
 from ..formula import Formula
-from ..kinds import SPATIAL
+from ..kinds import ANGULAR, KINDS, SPATIAL
 from ..names import slot_of
+from ..samples import Samples
 from ..verdict import Verdict
 from .budget import Budget
 from .edits import Editor
+from .frames import Pose
 from .hypotheses import Hypothesis, hypotheses
 from .reader import read_entries
 from .repair import Progress, Repair, cover, influential, tried, wrong_entries
@@ -147,7 +149,7 @@ def _hypotheses(case: Comparison) -> list[Hypothesis]:
             truth,
             states,
             case.truth.joints,
-            (lambda: case.truth.pose(case.convention, states["q"])) if is_spatial else None,
+            (lambda: _pose(case, samples)) if is_spatial else None,
             case.given(samples),
             in_degrees=case.degrees,
         )
@@ -160,6 +162,13 @@ def _hypotheses(case: Comparison) -> list[Hypothesis]:
         except (ProgramError, ValueError, ArithmeticError):
             continue
     return sorted(found, key=lambda one: one.weight)
+
+
+def _pose(case: Comparison, samples: Samples) -> Pose:
+    """Of the tip and the joints' axes."""
+    rotation = case.truth.rotation(case.convention, samples.tiled("q"))
+    position = case.due_of(KINDS["kinematics"], samples, rows=SPATIAL)
+    return Pose(rotation, position, case.due_of(KINDS["jacobian"], samples, rows=ANGULAR))
 
 
 def repairs_of(

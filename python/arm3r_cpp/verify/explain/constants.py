@@ -34,7 +34,7 @@ def judge_constants(verdict: Verdict, case: Comparison) -> None:
         old = None if is_shared else text[constant.start : constant.end]
         words = "millimetres? " if own and abs(constant.value / own - 1000) < 1e-6 else ""
         arm = "the lecture's arm" if case.truth.is_default else "the arm"
-        due = f"{arm} has {own:.10g}"
+        due = f"{arm} has {own:.10g}{_meaning(case, str(quantity), constant.value)}"
         if quantity == "gravity" and not case.truth.states_gravity:
             due = f"standard gravity is {own:.10g} m/s^2, --gravity X,Y,Z gives another"
         for place in places:
@@ -50,6 +50,23 @@ def judge_constants(verdict: Verdict, case: Comparison) -> None:
                     None if is_shared else f"{own:.12g}",
                 )
             )
+
+
+def _meaning(case: Comparison, quantity: str, value: float) -> str:
+    """What a number is of the arm that stands in the place of another."""
+    own, what, link = case.truth.values_of_quantities, quantity[:-1], quantity[-1]
+    other = {"2": "3", "3": "2"}.get(link, "")
+    meanings = {f"that of link {other}": own.get(what + other)}
+    if what == "com":
+        meanings |= {"the link's end": own[f"length{link}"], "the link's middle": own[f"length{link}"] / 2}
+    if what == "inertia":
+        meanings["its inertia about the joint, with m l^2"] = (
+            own[quantity] + own[f"mass{link}"] * own[f"com{link}"] ** 2
+        )
+    for words, number in meanings.items():
+        if number is not None and np.isclose(value, number, rtol=1e-6, atol=0):
+            return f"; {value:.10g} is {words}"
+    return ""
 
 
 def stated_numbers(formula: Formula) -> list[Constant]:

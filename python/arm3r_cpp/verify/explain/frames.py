@@ -1,10 +1,11 @@
-"""Jacobians that are right in another frame, of another point, or for the rates of Euler angles."""
+"""Jacobians that are right in another frame, of another point, with other levers, or for the rates of Euler angles."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import permutations, product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,12 +17,23 @@ Mistake = tuple[str, Callable[[], Floats], int]
 """Its words, what is returned with it, how far-fetched it is."""
 
 
-def of_other_frames(values: Floats, rotation: Floats, position: Floats) -> Iterator[Mistake]:
+class Pose(NamedTuple):
+    """Where a chain is, in S rows."""
+
+    rotation: Floats
+    """(S, 3, 3), of the tip's frame in the base"""
+    position: Floats
+    """(S, 3), of the tip, m"""
+    axes: Floats
+    """(S, 3, n), of the joints; zero for prismatic ones"""
+
+
+def of_other_frames(values: Floats, pose: Pose) -> Iterator[Mistake]:
     """
     Args:
         values: what is right, (S, 3, n) or (S, 6, n).
-        rotation, position: of the tip's frame in the base, (S, 3, 3) and (S, 3).
     """
+    rotation, position = pose.rotation, pose.position
     turned = [("", values)]
     if values.shape[1] == 6:
         turned.append((", and the angular rows stand above the linear ones", np.roll(values, 3, axis=1)))
@@ -35,6 +47,30 @@ def of_other_frames(values: Floats, rotation: Floats, position: Floats) -> Itera
         words = "the linear rows are of the last link's point at the base's origin; they should be those of the tip"
         yield words, lambda: whole, 1
         yield from _of_euler_rates(values, rotation)
+
+
+def of_other_points(values: Floats, pose: Pose) -> Iterator[Mistake]:
+    """Columns J_j = z_j x (p - o_j) whose lever begins at another point than joint j."""
+    turning = [joint for joint in range(1, pose.axes.shape[2]) if pose.axes[:, :, joint].any()]
+    across = np.cross(pose.axes, pose.position[:, :, None], axis=1)
+    for joints in [*([one] for one in turning), *([turning] if len(turning) > 1 else [])]:
+        moved = values.copy()
+        moved[:, :3, joints] = across[:, :, joints]
+        numbers = " and ".join(str(joint + 1) for joint in joints)
+        if len(joints) == 1:
+            words = f"the lever of column {numbers} begins at the base's origin; it should begin at joint {numbers}"
+        else:
+            words = f"the levers of columns {numbers} begin at the base's origin; they should begin at their joints"
+        yield words, partial(np.copy, moved), 2
+    for joint in turning:
+        for other in (joint - 1, joint + 1):
+            if other in turning and np.allclose(pose.axes[:, :, joint], pose.axes[:, :, other], atol=1e-9):
+                moved = values.copy()
+                moved[:, :3, joint] = values[:, :3, other]
+                words = (
+                    f"the lever of column {joint + 1} begins at joint {other + 1}; it should begin at joint {joint + 1}"
+                )
+                yield words, partial(np.copy, moved), 2
 
 
 def _of_euler_rates(values: Floats, rotation: Floats) -> Iterator[Mistake]:

@@ -11,15 +11,9 @@ import numpy as np
 
 from ..._native import Floats
 from ..kinds import Kind
-from .frames import of_other_frames
-
-States = dict[str, Floats]
-Truth = Callable[[States, dict[str, float]], Floats]
-"""What is right at the joint vectors of all rows, with factors or replacements of quantities: (rows, ...)."""
-
-
-STEINER_MISSING = "the parallel-axis term m l^2 is missing: the inertias are about the centres of mass"
-STEINER_TWICE = "the parallel-axis term m l^2 is counted twice: the inertias are about the joints already"
+from .christoffel import of_other_indices
+from .frames import Pose, of_other_frames, of_other_points
+from .quantities import States, Truth, of_other_quantities
 
 
 class Hypothesis(NamedTuple):
@@ -36,20 +30,24 @@ def hypotheses(
     truth: Truth,
     states: States,
     joints: int,
-    pose: Callable[[], tuple[Floats, Floats]] | None,
-    scales: dict[str, Floats],
+    pose: Callable[[], Pose] | None,
+    given: dict[str, Floats],
     *,
     in_degrees: bool = False,
 ) -> Iterator[Hypothesis]:
     """All of them, each to be evaluated when it is asked for.
 
     Args:
-        pose: the rotation of the tip's frame and the tip's position, in all rows; None where it is not known.
+        pose: of the tip and of the joints' axes, in all rows; None where it is not known.
+        given: the values of each quantity in all rows.
         in_degrees: whether the formula is given angles in degrees; `states` are in radians.
     """
     yield from _inputs(truth, states, joints, kind, in_degrees)
     yield from _outputs(kind, lambda: truth(states, {}), joints, pose)
-    yield from _quantities(truth, states, scales)
+    if kind.is_product:
+        for words, values in of_other_indices(lambda qd: truth({**states, "qd": qd}, {}), states["qd"]):
+            yield Hypothesis(words, values, 2)
+    yield from (Hypothesis(*one) for one in of_other_quantities(kind, truth, states, given))
 
 
 def _inputs(truth: Truth, states: States, joints: int, kind: Kind, in_degrees: bool) -> Iterator[Hypothesis]:
@@ -76,6 +74,11 @@ def _inputs(truth: Truth, states: States, joints: int, kind: Kind, in_degrees: b
         units = ("radians", "degrees") if in_degrees else ("degrees", "radians")
         yield Hypothesis(f"q{joint + 1} is taken in {units[0]}; it should be in {units[1]}", with_q(turned), 2)
     for joint in range(1, joints):
+        stale = q.copy()
+        stale[:, joint] = 0.0
+        yield Hypothesis(
+            f"q{joint + 1} is left out of all angles: link {joint + 1} turns with link {joint}", with_q(stale), 2
+        )
         absolute = q.copy()
         absolute[:, joint] -= absolute[:, joint - 1]
         words = (
@@ -101,7 +104,7 @@ def _absolute_columns(due: Callable[[], Floats], joint: int) -> Floats:
 
 
 def _outputs(
-    kind: Kind, due: Callable[[], Floats], joints: int, pose: Callable[[], tuple[Floats, Floats]] | None
+    kind: Kind, due: Callable[[], Floats], joints: int, pose: Callable[[], Pose] | None
 ) -> Iterator[Hypothesis]:
     values = due()
     rows = values.shape[1]
@@ -142,43 +145,7 @@ def _outputs(
                 partial(np.take, values, order, axis=2),
             )
     if kind.is_derivative and pose is not None and rows in (3, 6):
-        yield from (Hypothesis(*one) for one in of_other_frames(values, *pose()))
-
-
-def _quantities(truth: Truth, states: States, given: dict[str, Floats]) -> Iterator[Hypothesis]:
-    """One quantity in the place of another; `given` has the values of each quantity in all rows."""
-    words = {"length2": "a2", "length3": "a3", "mass2": "m2", "mass3": "m3", "gravity": "g"}
-
-    def changed(**new: Floats) -> Callable[[], Floats]:
-        return lambda: truth(states, new)  # type: ignore[arg-type]
-
-    for first, second in (("length2", "length3"), ("mass2", "mass3")):
-        if first in given and second in given and not np.allclose(given[first], given[second]):
-            one, other = words[first], words[second]
-            yield Hypothesis(
-                f"{one} and {other} are exchanged", changed(**{first: given[second], second: given[first]})
-            )
-            yield Hypothesis(f"{one} stands in the place of {other}", changed(**{second: given[first]}))
-            yield Hypothesis(f"{other} stands in the place of {one}", changed(**{first: given[second]}))
-    for link in (2, 3):
-        if f"length{link}" in given and f"mass{link}" in given:
-            at_end = changed(**{f"com{link}": given[f"length{link}"]})
-            yield Hypothesis(f"the centre of mass of link {link} is taken at the link's end", at_end)
-            yield Hypothesis(
-                f"the mass m{link} is missing", changed(**{f"mass{link}": 0 * given[f"mass{link}"] + 1e-12}), 2
-            )
-    if {"length2", "length3"} <= set(given):
-        yield Hypothesis(
-            "the centres of mass of links 2 and 3 are taken at the links' ends",
-            changed(com2=given["length2"], com3=given["length3"]),
-        )
-    if {"inertia2", "mass2", "com2", "inertia3", "mass3", "com3"} <= set(given):
-        doubled = {f"inertia{link}": given[f"inertia{link}"] + given[f"mass{link}"] * given[f"com{link}"] ** 2
-                   for link in (2, 3)}  # fmt: skip
-        yield Hypothesis(STEINER_TWICE, changed(**doubled))
-    if "gravity" in given:
-        g = given["gravity"]
-        yield Hypothesis("g is missing", changed(gravity=np.ones_like(g)))
-        yield Hypothesis("g is multiplied in twice", changed(gravity=g**2))
-        yield Hypothesis("gravity is left out", changed(gravity=0 * g))
-        yield Hypothesis("gravity has the wrong direction", changed(gravity=-g))
+        here = pose()
+        yield from (Hypothesis(*one) for one in of_other_frames(values, here))
+        if kind.inputs == ("q",):
+            yield from (Hypothesis(*one) for one in of_other_points(values, here))

@@ -16,7 +16,7 @@ from .gravity import Gravity
 from .inverse import Inverse
 from .jacobian import Jacobian
 from .jacobian_dot import JacobianDot
-from .kind import SPATIAL, Kind, Rows
+from .kind import ANGULAR, SPATIAL, Kind, Rows
 from .kinematics import Kinematics
 from .mass import Mass
 
@@ -36,7 +36,7 @@ KINDS: dict[str, Kind] = {
 }
 """By their names, in the order in which they are listed, and looked for in a log."""
 
-__all__ = ["KINDS", "SPATIAL", "Kind", "Rows", "kind_of_name"]
+__all__ = ["ANGULAR", "KINDS", "SPATIAL", "Kind", "Rows", "kind_of_name"]
 
 _BY_NAME = (
     "jacobian_dot", "controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics",

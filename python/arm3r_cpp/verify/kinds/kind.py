@@ -16,6 +16,7 @@ from ...errors import UsageError
 Rows = tuple[int, ...]
 """Rows of a Jacobian, linear ones first, or of a position: 0 to 2 along the base's axes, 3 to 5 about them."""
 SPATIAL: Rows = (0, 1, 2)
+ANGULAR: Rows = (3, 4, 5)
 States = Mapping[str, Floats]
 """Joint vectors "q", "qd", "qdd", "tau", each (S, n)."""
 AnyKind = TypeVar("AnyKind", bound="Kind")

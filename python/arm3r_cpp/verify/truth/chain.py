@@ -171,10 +171,9 @@ class SerialChain:
                 columns.append(np.concatenate([change, np.zeros_like(change)], axis=1))
         return np.stack(columns, axis=2)
 
-    def pose(self, convention: str, q: Floats) -> tuple[Floats, Floats]:
-        """The rotation of the tip's frame in the base frame, and its position."""
-        rotations, origins = self.frames(q)
-        return rotations[-1], origins[-1]
+    def rotation(self, convention: str, q: Floats) -> Floats:
+        """The axes of the tip's frame as columns, in the base frame, (S, 3, 3)."""
+        return self.frames(q)[0][-1]
 
     def tip_position(self, q: Floats) -> Floats:
         """(S, 6): the tip in the base, and behind it the sums of the joint angles about the base's axes."""

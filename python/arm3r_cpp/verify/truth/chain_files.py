@@ -11,10 +11,10 @@ import numpy as np
 
 from ..._native import Floats
 from ...errors import UsageError
-from ...robots.bodies import LARGEST, pose_words, rotation_of, vector_words, with_mass
+from ...robots.bodies import LARGEST, Joint, pose_words, rotation_of, vector_words, with_mass
 from ...robots.serial import serial_chain
 from ...robots.urdf import Urdf
-from ..explain.hypotheses import STEINER_MISSING, STEINER_TWICE
+from ..explain.quantities import centre_words, steiner_words
 from ..kinds import SPATIAL, Kind, Rows
 from .chain import SerialChain
 from .dh import read_dh
@@ -130,16 +130,31 @@ class Chain(SerialChain):
         return [self.in_frame_of_first_joint()] if kind.depends_on_base and stands_apart else []
 
     def variants(self, kind: Kind) -> list[tuple[str, Chain]]:
-        """Chains with a mistake in their masses, in words."""
-        if not kind.depends_on_inertia or not self._has_masses():
+        """Chains with a mistake in the masses of all links, or of one, in words."""
+        if not kind.needs_masses or not self._has_masses():
             return []
-        twice, without = copy.copy(self), copy.copy(self)
+        own = self.parts
+        ends = [*(joint.origin for joint in own[1:]), self.tool]
         shifts = [joint.mass * (joint.centre @ joint.centre * np.eye(3) - np.outer(joint.centre, joint.centre))
-                  for joint in self.parts]  # fmt: skip
-        for other, sign in ((twice, 1), (without, -1)):
-            other.parts = [replace(joint, inertia=joint.inertia + sign * shift)
-                           for joint, shift in zip(self.parts, shifts, strict=True)]  # fmt: skip
-        return [(STEINER_TWICE, twice), (STEINER_MISSING, without)]
+                  for joint in own]  # fmt: skip
+        bodies = [link for link, joint in enumerate(own) if joint.mass]
+        found = []
+        for links in [bodies, *([link] for link in bodies if len(bodies) > 1)]:
+            numbers = [link + 1 for link in links]
+            for place, factor in (("end", 1.0), ("middle", 0.5)):
+                changes = {link: replace(own[link], centre=factor * ends[link]) for link in links}
+                found.append((centre_words(numbers, place), self._with_parts(changes)))
+            for sign in (1, -1) if kind.depends_on_inertia else ():
+                changes = {link: replace(own[link], inertia=own[link].inertia + sign * shifts[link]) for link in links}
+                words = steiner_words([] if links == bodies else numbers, twice=sign > 0)
+                found.append((words, self._with_parts(changes)))
+        return found
+
+    def _with_parts(self, changes: dict[int, Joint]) -> Chain:
+        """The chain with other joints, and what they carry, in some places."""
+        other = copy.copy(self)
+        other.parts = [changes.get(place, joint) for place, joint in enumerate(self.parts)]
+        return other
 
     def rows_of(self, kind: Kind, count: int) -> list[Rows]:
         """Which rows of what is right a formula may return that has so many: of a planar chain those in its plane.

@@ -15,7 +15,7 @@ from ...core.arm import Arm
 from ...core.params import param_index
 from ...core.scenario import Scenario
 from ...errors import ScenarioError, UnjudgedError, UsageError
-from ..kinds import KINDS, SPATIAL, Kind, Rows
+from ..kinds import SPATIAL, Kind, Rows
 
 CONVENTIONS = ("simscape", "slide")
 FOLLOWING = (("com", "inertia"), ("com",), (), ("com", "inertia", "mass"))
@@ -233,9 +233,8 @@ class ThreeR:
             return  # the library derives it from the shape, for any length and mass
         elif "inertia" in follows:
             old_mass, old_length = own[f"mass{link}"], own[f"length{link}"]
-            across, other = (mass / old_mass * (one + old_mass * (length**2 - old_length**2) / 12)
-                             for one in (across, other))  # fmt: skip
-            axial *= mass / old_mass
+            across, other = (max(axial, one + old_mass * (length**2 - old_length**2) / 12) for one in (across, other))
+            across, other, axial = (mass / old_mass * one for one in (across, other, axial))
         params[axes] = (axial, other, across)
 
     def _axial(self, link: int) -> float:
@@ -278,11 +277,8 @@ class ThreeR:
         """Arms with a mistake that its quantities do not tell."""
         return []
 
-    def pose(self, convention: str, q: Floats) -> tuple[Floats, Floats]:
-        """The rotation from the tip's axes to the base, x along link 3, y across the arm's plane; and its position."""
-        return self._rotation(convention, q), self.values(KINDS["kinematics"], convention, {"q": q, "qd": q}, {})
-
-    def _rotation(self, convention: str, q: Floats) -> Floats:
+    def rotation(self, convention: str, q: Floats) -> Floats:
+        """The axes of the tip's frame as columns, x along link 3, y across the arm's plane, in the base, (S, 3, 3)."""
         sign = 1.0 if convention == "simscape" else -1.0
         pitch = sign * (q[:, 1] + q[:, 2])
         c1, s1, c, s = np.cos(q[:, 0]), np.sin(q[:, 0]), np.cos(pitch), np.sin(pitch)
