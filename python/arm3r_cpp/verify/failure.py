@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import UnreadError
+from ..errors import UnjudgedError, UnreadError
+from ..user_functions.expressions import FunctionCall, Index, Name, Number
 from ..user_functions.programs import ProcessEnded, ProgramError, Unread, line_and_column
 from .explain.budget import Budget
 from .explain.causes import put_edit, repairs_of
@@ -17,6 +18,7 @@ from .finding import Finding
 from .formula import Formula
 from .kinds import Kind
 from .meaning import ways
+from .names import slot_of
 from .verdict import Verdict
 
 MENDING_EDITS = 3000
@@ -27,6 +29,7 @@ def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progre
 
     Raises:
         UnreadError: it holds what is not read, which no edit mends.
+        UnjudgedError: it is a formula of an arm with more joints.
     """
     finding = Finding(None, f"the formula fails: {error}", line=error.line)
     verdict = Verdict(False, kind.name, truth.convention, float("inf"), [finding], file=formula.file, text=formula.text)
@@ -37,7 +40,31 @@ def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progre
         place = f"{formula.file}:{error.line}" if error.line else formula.file
         words = f"{place}: cannot be judged: {error}"
         raise UnreadError(words, line=error.line, reason=str(error), name=error.name) from None
+    if finding.old is None and (read := _element_beyond(formula, truth.joints)):
+        joints = "1 joint" if truth.joints == 1 else f"{truth.joints} joints"
+        raise UnjudgedError(
+            f"{formula.file}: cannot be judged: it reads {read}, where the arm has {joints}; "
+            "--urdf, --dh, --arm name the arm that it is of, --tip where a chain ends"
+        )
     return verdict
+
+
+def _element_beyond(formula: Formula, joints: int) -> str:
+    """An element of a joint vector that an arm of so many joints has not: "q(3)"."""
+    text = formula.text or ""
+    vectors = {name for name in formula.arguments if (slot := slot_of(name)) and slot[1] is None}
+    first = 1 if formula.language == "matlab" else 0
+    for node in (part for top in formula.nodes for part in top.walk()):
+        match node:
+            case FunctionCall(word=name, parts=(Number() as index,)) if name in vectors:
+                pass
+            case Index(parts=(Name(word=name), Number() as index)) if name in vectors:
+                pass
+            case _:
+                continue
+        if index.value >= joints + first:
+            return text[node.start : node.end]
+    return ""
 
 
 def _is_renamed(finding: Finding, name: str) -> bool:

@@ -28,7 +28,7 @@ from .failure import failed
 from .formula import Formula
 from .kinds import KINDS, Kind, kind_of_name
 from .meaning import as_called, assumed, doubted, meant
-from .names import reference_of, slot_of
+from .names import line_of_own_torque, reference_of, slot_of, vectors_of
 from .verdict import Verdict
 
 REPAIR_EDITS = 10_000  # of all that a formula may mean
@@ -49,7 +49,7 @@ def judge(
         UnjudgedError: it holds what is not read, is too slow, needs too much memory, or breaks the connection to its
             judge.
     """
-    kind = truth.allowing(kind)
+    kind = truth.allowing(kind).taking(vectors_of(formula.arguments))
     try:
         if not kind.is_of_arm:
             formula = _with_references(formula, truth)
@@ -64,6 +64,11 @@ def judge(
     except ProgramError as error:
         return failed(error, formula, kind, truth, progress)
     verdict, case = min(verdicts, key=lambda one: one[0].complexity)
+    if verdict.findings and _is_left_alone(kind) and (line := line_of_own_torque(formula.text or "")):
+        raise UnjudgedError(
+            f"{formula.file}:{line}: cannot be judged: it sets a torque, and is not that of an arm without one; "
+            "make the torque an argument, f(t, x, tau)"
+        )
     leave_open(verdict, case, verdicts)
     look_at_others(verdict, case, verdicts)
     judge_constants(verdict, case)
@@ -195,6 +200,11 @@ def _own(case: Comparison) -> tuple[Floats, Floats]:
     return case.due(type(samples)(samples.states, [case.own])), case.values(here)
 
 
+def _is_left_alone(kind: Kind) -> bool:
+    """Whether the arm of a formula has no torque, though its kind has one."""
+    return "tau" in KINDS[kind.name].inputs and "tau" not in kind.inputs
+
+
 def _found(case: Comparison) -> list[str]:
     """What was found out rather than asked for."""
     formula, found = case.formula, []
@@ -210,6 +220,8 @@ def _found(case: Comparison) -> list[str]:
         found.append("with vectors as columns")
     if formula.given:
         found.append(f"with {', '.join(sorted(formula.given))} as given")
+    if _is_left_alone(case.kind):
+        found.append("without a torque")
     if case.degrees:
         found.append("angles in degrees")
     if formula.engine:

@@ -18,7 +18,7 @@ from ..user_functions.programs import ProcessEnded, ProgramError
 from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
 from .kinds import KINDS, Kind, kind_of_name
-from .names import takes_state_and_torque
+from .names import is_right_hand_side, vectors_of
 from .samples import Samples
 from .truth.three_r import FOLLOWING
 
@@ -127,18 +127,18 @@ def _feels_gravity(formula: Formula, kind: Kind, truth: Any) -> bool:
 
 
 def kind_by_arguments(formula: Formula, truth: Any) -> Kind | None:
-    """Forward dynamics, where a function takes a state and a torque and returns what depends on the torque."""
-    kind = truth.allowing(KINDS["forward"])
-    if not takes_state_and_torque(formula.arguments):
+    """Forward dynamics, where a function takes a state, and a torque on which its result depends or none."""
+    if not is_right_hand_side(formula.arguments):
         return None
+    kind = truth.allowing(KINDS["forward"]).taking(vectors_of(formula.arguments))
     try:
         case = Comparison(formula, truth, kind, _parameters(formula, kind, truth))
         states = case.second.states
         other = Samples({**states, "tau": states["tau"] + 1.0}, case.second.arms)
-        changed = case.values(other) != case.values(case.second)
+        values, changed = case.values(case.second), case.values(other)
     except (ProgramError, UsageError):
         return None
-    return kind if changed.any() else None
+    return kind if "tau" not in kind.inputs or (changed != values).any() else None
 
 
 def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:

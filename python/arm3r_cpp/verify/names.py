@@ -55,6 +55,8 @@ _GRAVITY = re.compile(r"g0?|grav|gravity|G|g_?acc")
 _STATE = re.compile(r"x|X|z|s|y|state|states|xs|x_?vec")
 _TIME = re.compile(r"t|time")
 TIME = "time"
+_SETS_TORQUE = re.compile(r"^[ \t]*(?:tau|taus|torques?|u)[ \t]*=(?!=)[ \t]*(\[[^\]]*\]|[^;%#\n]*)", re.M)
+_ZEROS = re.compile(r"(?:np\.|numpy\.)?(?:zeros(?:_like)?\([^()]*\)|array)")
 _RATE_OR_TORQUE = re.compile(r"(d{0,2}(q|th)|tau|torque).*")
 """What a function that returns several kinds takes for the others of them: `M, C, g = dynamics(q, qd)`."""
 
@@ -120,13 +122,30 @@ def reference_of(name: str) -> str:
     return {"x": "x", "p": "x", "xd": "xd", "dx": "xd", "xdot": "xd"}.get(found[1], "") if found else ""
 
 
-def takes_state_and_torque(arguments: Sequence[str]) -> bool:
-    """Whether they are those of a right-hand side, and no others: f(t, x, u), f(q, qd, tau)."""
+def vectors_of(arguments: Sequence[str]) -> set[str]:
+    """The joint vectors that arguments are named for; a state is q and qd."""
+    untimed = [name for name in arguments if not _TIME.fullmatch(name)]
+    found = {slot[0] for name in untimed if (slot := slot_of(name))}
+    return found | ({"q", "qd"} if any(map(_STATE.fullmatch, untimed)) else set())
+
+
+def line_of_own_torque(text: str) -> int | None:
+    """The line in which a text gives a torque another value than zero."""
+    for found in _SETS_TORQUE.finditer(text):
+        if re.search(r"[1-9a-zA-Z]", _ZEROS.sub("", found[1])):
+            return text.count("\n", 0, found.start(1)) + 1
+    return None
+
+
+def is_right_hand_side(arguments: Sequence[str]) -> bool:
+    """Whether they are those of one, and no others: f(t, x, u), f(q, qd, tau), or f(t, x) without a torque."""
     untimed = [name for name in arguments if not _TIME.fullmatch(name)]
     states = [name for name in untimed if _STATE.fullmatch(name)]
     vectors = [slot[0] for name in untimed if name not in states and (slot := slot_of(name))]
     is_whole = len(states) + len(vectors) == len(untimed)
-    return is_whole and (set(vectors) == {"q", "qd", "tau"} or (set(vectors) == {"tau"} and len(states) == 1))
+    if len(states) == 1:
+        return is_whole and (set(vectors) == {"tau"} or (not vectors and len(untimed) < len(arguments)))
+    return is_whole and set(vectors) == {"q", "qd", "tau"}
 
 
 def slots_of(
@@ -170,8 +189,6 @@ def slots_of(
             f"{', '.join(f'{kind.inputs[0]}{n + 1}' for n in range(joints))}, and parameters such as a2, m3, g; "
             f"--args {','.join(kind.inputs)},... says what the arguments are, {settings} gives it a value"
         )
-    if has_state and "tau" in kind.inputs and not any(slot and slot[0] == "tau" for slot in found):
-        raise UnjudgedError(f"{', '.join(arguments)}: a {kind.words} takes the torque, too, such as f(t, x, u)")
     return [slot for slot in found if slot is not None]
 
 

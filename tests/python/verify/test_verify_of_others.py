@@ -290,3 +290,17 @@ def test_of_frames_in_which_all_is_wrong_the_bases_is_meant() -> None:
         assert "the frame of joint 1" not in str(verify.kinematics(lambda q, by=shift: wrong(q, by), chain))
     moved = verify.kinematics(lambda q: wrong(q, 0.089159) - 0.3 * np.cos(q[1]), chain)
     assert moved.ok and "the frame of joint 1" in str(moved)
+
+
+# ---- another arm -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("language", ["m", "py"])
+def test_a_formula_of_more_joints_cannot_be_judged(language: str, written: Any) -> None:
+    chain = verify.Chain.from_dh(written("one.csv", "standard\ntype,a,alpha,d,theta\nR,1,0,0,0\n"))
+    text = {
+        "m": "function J = jacobian(q)\nJ = [-sin(q(1)+q(2)); cos(q(1)+q(2))];\nend\n",
+        "py": "from math import *\ndef jacobian(q):\n    return [-sin(q[0] + q[1]), cos(q[0] + q[1])]\n",
+    }[language]
+    with pytest.raises(UnjudgedError, match=r"cannot be judged: it reads q.[12]., where the arm has 1 joint; --urdf"):
+        formula_verdict(written(f"two.{language}", text), "jacobian", chain)

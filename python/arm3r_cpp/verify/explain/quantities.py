@@ -78,7 +78,6 @@ def _of_links(kind: Kind, changed: Changed, given: dict[str, Floats]) -> Iterato
     if not kind.needs_masses:
         yield "the point is the centre of mass of link 3; it should be the tip", changed(length3=given["com3"]), 1
         return
-    is_linear = "tau" not in kind.inputs  # in masses and inertias
     for links in _LINKS:
         for place, factor in (("end", 1.0), ("middle", 0.5)):
             moved = {f"com{link}": factor * given[f"length{link}"] for link in links}
@@ -88,9 +87,9 @@ def _of_links(kind: Kind, changed: Changed, given: dict[str, Floats]) -> Iterato
                        for link in links}  # fmt: skip
             named = list(links) if len(links) == 1 else []
             yield steiner_words(named, twice=True), changed(**doubled), 1
-            if is_linear:
+            if kind.is_linear:
                 yield steiner_words(named, twice=False), partial(_mirrored, changed(), changed(**doubled)), 1
-    if not is_linear:
+    if not kind.is_linear:
         return
     for link in (2, 3):
         without = partial(_mirrored, changed(), changed(**{f"mass{link}": 2 * given[f"mass{link}"]}))

@@ -96,6 +96,8 @@ class Kind(ABC):
     """The joint vectors of which they are polynomials."""
     is_derivative = False
     """Whether its columns are derivatives with respect to the angles, and its rows components of vectors."""
+    is_linear = True
+    """Whether it is linear in masses and inertias."""
     is_product = False
     """Whether a matrix of it is judged by its product with the rates."""
     comes_with_others = False
@@ -137,6 +139,10 @@ class Kind(ABC):
         other = copy(self)
         other.shapes = (*self.shapes, *([self.planar_shape] if self.planar_shape else []))
         return other
+
+    def taking(self, vectors: set[str]) -> Kind:
+        """The kind of a formula whose arguments are these joint vectors."""
+        return self
 
     def entry_name(self, entry: Sequence[int]) -> str:
         """J(2,3), t1, M(1,2) ..."""
