@@ -217,3 +217,17 @@ def test_symbols_are_made_at_once(size: str, separator: str, tmp_path: Path) -> 
     path.write_text("q = sym('q', 3);\nJ = jacobian(q, q);\n")
     with pytest.raises(arm3r.UnjudgedError, match="a column or a row is read"):
         formula_verdict(path, "jacobian")
+
+
+def test_a_script_of_many_derivatives_is_judged_without_its_terms(
+    written: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To read them takes hundreds of evaluations, each of thousands of states."""
+    file = written("slow.m", HEAD + POINT + "J = jacobian(2*p, [q1 q2 q3]);\n")
+    arm = arm3r.Scenario()
+    told = formula_verdict(f"{file}:J", "jacobian", arm)
+    assert "take too long" not in str(told) and all(one.reads for one in told.findings)
+    monkeypatch.setattr("arm3r_cpp.verify.explain.causes._MOST_STATES_READ", 10)
+    slow = formula_verdict(f"{file}:J", "jacobian", arm)
+    assert [one.entry for one in slow.findings] == [one.entry for one in told.findings]
+    assert not any(one.reads for one in slow.findings) and "take too long" in str(slow)

@@ -77,6 +77,11 @@ class SymbolicScript(MatlabProgram):
     def arguments(self) -> list[str]:
         return [name for name in super().arguments if name not in self._differentiated_away]
 
+    @property
+    def states(self) -> int:
+        """How many states are computed for each that is asked for."""
+        return Stencil(self._levels or []).states
+
     def _without_effect(self) -> list[str]:
         """Of the lists of symbols by which the script differentiates, those of which none matters; and all that others
         are put for and that do not matter."""

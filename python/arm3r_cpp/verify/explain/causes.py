@@ -31,6 +31,8 @@ _MOST_OTHERS = 3  # edits that are named beside one
 _NEAR = 2000  # characters between edits that may write the same
 _MOST_JOINTS_READ, _MOST_ENTRIES_READ = 4, 3
 """Terms of more entries of more joints are too many to read, and take seconds; edits that mend them say all."""
+_MOST_STATES_READ = 3000
+"""That a script of symbols computes for each state: for more, its terms would take minutes."""
 _MOST_PARTS = 3000
 """Of a statement that is edited: what programs write in one is read back, and not mended."""
 
@@ -48,7 +50,10 @@ def explain(
     if whole and (left or (whole[0].is_of_result and len(chosen) > 1)):  # one sentence says more than these edits
         chosen, left = [], frozenset()
     has_long_terms = case.truth.joints > _MOST_JOINTS_READ and len(wrong) > _MOST_ENTRIES_READ
-    reads = {} if has_long_terms and chosen and not left else read_entries(case, wrong)
+    is_too_slow = getattr(case.formula.program, "states", 1) > _MOST_STATES_READ
+    reads = {} if is_too_slow or (has_long_terms and chosen and not left) else read_entries(case, wrong)
+    if is_too_slow:
+        verdict.warnings.append("its derivatives take too long for its terms to be read")
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):
         joint, chosen = chosen[0].edit, [*chosen, *more]
