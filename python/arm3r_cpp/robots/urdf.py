@@ -127,25 +127,40 @@ class Urdf:
             UsageError: there is no such link, or there are several that have no child, or the joints make a ring.
         """
         name = self.tip(tip)
-        found: list[UrdfJoint] = []
-        while name in self._by_child and len(found) <= len(self._links):
-            found.insert(0, self._by_child[name])
-            name = found[0].parent
-        if name in self._by_child:
+        found = self._way_to(name)
+        if found and found[0].parent in self._by_child:
             raise UsageError(
-                f"{self.file}: the joints make a ring through {name!r}; a chain begins at a link that is no child"
+                f"{self.file}: the joints make a ring through {found[0].parent!r}; "
+                "a chain begins at a link that is no child"
             )
         return found
+
+    def _way_to(self, link: str) -> list[UrdfJoint]:
+        """The joints from the root to a link; of a ring, as many as there are links."""
+        found: list[UrdfJoint] = []
+        while link in self._by_child and len(found) <= len(self._links):
+            found.insert(0, self._by_child[link])
+            link = found[0].parent
+        return found
+
+    def ends(self) -> list[str]:
+        """The links that have no child and that joints move, or where none moves, all that have no child."""
+        every = [link for link in self._links if link not in self._by_parent]
+        return [end for end in every if any(joint.kind != "fixed" for joint in self._way_to(end))] or every
+
+    def without_tip(self) -> str:
+        """What to do where the tip is one of several ends."""
+        return (
+            f"{self.file}: the tree ends in {', '.join(self.ends()) or 'no link'}; name the tip's link: "
+            "--tip LINK, in a scenario arm.tip, in Python tip="
+        )
 
     def tip(self, name: str | None) -> str:
         """The name of the tip's link."""
         if name is None:
-            ends = [link for link in self._links if link not in self._by_parent]
+            ends = self.ends()
             if len(ends) != 1:
-                raise UsageError(
-                    f"{self.file}: the tree ends in {', '.join(ends) or 'no link'}; name the tip's link: "
-                    "--tip LINK, in a scenario arm.tip, in Python tip="
-                )
+                raise UsageError(self.without_tip())
             (name,) = ends
         if name not in self._links:
             raise UsageError(f"{self.file}: there is no link {name!r}; it has {', '.join(self._links)}")

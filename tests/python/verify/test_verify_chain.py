@@ -601,3 +601,30 @@ def test_a_term_of_a_table_has_the_units_of_its_entry(written: Any) -> None:
         "function G = gravity(q)\nG = [2.0*9.81*cos(q(1)) - 0.3*9.81*cos(q(1)+q(2)); -0.3*9.81*cos(q(1)+q(2))];\nend\n"
     )
     assert "a1 a2" not in str(verify.gravity(written("gravity.m", text), chain))
+
+
+TWO_ENDS = """<robot name="pendulum"><link name="base"/><link name="plate"/>
+<link name="rod"><inertial><origin xyz="0.3 0 0"/><mass value="2"/>
+  <inertia ixx="0.001" iyy="0.06" izz="0.06" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="flange"/><link name="tool0"/>
+<joint name="jp" type="fixed"><parent link="base"/><child link="plate"/></joint>
+<joint name="j1" type="continuous"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/></joint>
+<joint name="jf" type="fixed"><parent link="rod"/><child link="flange"/><origin xyz="0.6 0 0"/></joint>
+<joint name="jt" type="fixed"><parent link="rod"/><child link="tool0"/><origin xyz="0.7 0 0"/></joint></robot>
+"""
+
+
+def test_what_does_not_depend_on_the_tip_is_judged_without_it(written: Any) -> None:
+    """A link that stands on the base is no end; two on the last link are moved by the same joints."""
+    path = written("pendulum.urdf", TWO_ENDS)
+    chain = Chain.from_urdf(path)
+    assert verify.gravity(lambda q: [-2 * 9.80665 * 0.3 * np.cos(q[0])], chain).ok
+    assert verify.mass(lambda q: [[0.06 + 2 * 0.3**2]], chain.placed(gravity=[0, 0, -9.81])).ok
+    words = "the tree ends in flange, tool0; name the tip's link: --tip LINK"
+    with pytest.raises(UsageError, match=words):
+        verify.jacobian(lambda q: [-0.7 * np.sin(q[0]), 0, -0.7 * np.cos(q[0])], chain)
+    with pytest.raises(UsageError, match=words):
+        chain.placed(payload=1.0)
+    path = written("one_end.urdf", re.sub('<link name="flange"/>|<joint name="jf".*</joint>\n', "", TWO_ENDS))
+    tip = verify.kinematics(lambda q: [0.7 * np.cos(q[0]), 0, -0.7 * np.sin(q[0])], Chain.from_urdf(path))
+    assert tip.ok and "tip tool0" in tip.found

@@ -37,6 +37,7 @@ class SerialChain:
         name: str = "the chain",
         states_gravity: bool = False,
         tip: str = "",
+        without_tip: str = "",
         held: Sequence[str] = (),
         without_inertial: Sequence[str] = (),
         without_any_inertial: Sequence[str] = (),
@@ -47,6 +48,7 @@ class SerialChain:
             tool: the tip in the frame of the last link, m.
             gravity: in the base frame, m/s^2.
             tip: what the tip's frame is called; "" where it has no name.
+            without_tip: what to do where one of several links is the tip and none is named.
             held: joints beside the chain, which are taken at zero.
             without_inertial: links that have no mass because their file gives none.
             without_any_inertial: those of them on which nothing with a mass is fixed.
@@ -71,6 +73,7 @@ class SerialChain:
         """Whether its size is what a formula says, as the chain's file does not."""
         self.takes_direction = False
         """Whether its direction is."""
+        self.without_tip = without_tip
         self.held = tuple(held)
         self.without_inertial, self.without_any_inertial = tuple(without_inertial), tuple(without_any_inertial)
         self.named_numbers = dict(named_numbers or {})
@@ -259,9 +262,12 @@ class SerialChain:
 
         Raises:
             UnjudgedError: the chain has not all masses, which the kind needs.
+            UsageError: the kind needs the tip, and none of several ends is named.
         """
         if kind.needs_masses:
             self._require_masses(kind)
+        elif self.without_tip:
+            raise UsageError(self.without_tip)
         chain = self.with_gravity(quantities["gravity"]) if "gravity" in quantities else self
         return kind.due(chain, states, rows)
 

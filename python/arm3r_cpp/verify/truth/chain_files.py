@@ -31,14 +31,22 @@ class Chain(SerialChain):
 
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], *, tip: str | None = None) -> Chain:
-        """The chain from the base link of a URDF to a link, by default the last one."""
-        found = serial_chain(Urdf(path), tip, {})
+        """The chain from the base link of a URDF to a link, by default to its only end.
+
+        Where the same joints move several ends, what does not depend on the tip is judged without it.
+        """
+        urdf = Urdf(path)
+        ends = urdf.ends() if tip is None else []
+        moving = {tuple(joint.name for joint in urdf.way(end) if joint.kind != "fixed") for end in ends}
+        is_open = len(ends) > 1 and len(moving) == 1
+        found = serial_chain(urdf, ends[0] if is_open else tip, {})
         return cls(
             found.parts,
             tool=found.tool,
             tool_rotation=found.tool_rotation,
             name=os.path.basename(os.fspath(path)),
             tip=found.tip,
+            without_tip=urdf.without_tip() if is_open else "",
             held=found.held,
             without_inertial=found.without_inertial,
             without_any_inertial=found.without_any_inertial,
@@ -69,11 +77,13 @@ class Chain(SerialChain):
             payload: a mass at the tip, kg.
 
         Raises:
-            UsageError: the payload is negative or no number.
+            UsageError: the payload is negative or no number, or no tip is named that carries it.
         """
         if payload is not None and not 0 <= payload <= LARGEST:
             rule = "none is negative" if payload < 0 else f"at most {LARGEST:g} kg are known"
             raise UsageError(f"{self.name}: the payload is {payload:g} kg; {rule}")
+        if payload and self.without_tip:
+            raise UsageError(self.without_tip)
         parts, turn = list(self.parts), rotation_of(base_rotation or (0.0, 0.0, 0.0))
         if base_rotation is not None:
             parts[0] = replace(parts[0], rotation=turn @ parts[0].rotation, origin=turn @ parts[0].origin)
@@ -87,6 +97,7 @@ class Chain(SerialChain):
             name=self.name,
             states_gravity=self.states_gravity or gravity is not None,
             tip=self.tip,
+            without_tip=self.without_tip,
             held=self.held,
             without_inertial=self.without_inertial,
             without_any_inertial=self.without_any_inertial,
