@@ -64,7 +64,7 @@ CASES: list[tuple[str, list[tuple[str, str]], str]] = [
     ("gravity", [("m3*g*l3*c23]", "m3*g*(a2*c2 + l3*c23)]")],
      "the third moment is taken about joint 2; it should be about joint 3"),
     ("gravity", [("m2*g*l2*c2 + ", "")], "the mass m2 is missing"),
-    ("gravity", [("cos(q[1] + q[2])", "c2")], "q3 is left out of all angles: link 3 turns with link 2"),
+    ("gravity", [("cos(q[1] + q[2])", "cos(q[1])")], "q3 is left out of all angles: link 3 turns with link 2"),
     ("mass", [("I3 + m3*l3**2", "I3 + 2*m3*l3**2"), ("l3**2*c23**2", "2*l3**2*c23**2")],
      "the parallel-axis term m l^2 is counted twice: the inertia of link 3 is about the joint already"),
     ("mass", [("I3 + m3*l3**2", "I3"), ("+ l3**2*c23**2", "")],
@@ -114,7 +114,7 @@ def test_the_formulas_are_right_before_they_are_changed(kind: str, tmp_path: Pat
     assert verify.formula_verdict(tmp_path / "own.py", kind, own_arm()).ok
 
 
-@pytest.mark.sample(7)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("kind", "changes", "words"), CASES, ids=[words[:60] for _, _, words in CASES])
 def test_a_mistake_of_understanding_has_its_name(
     kind: str, changes: list[tuple[str, str]], words: str, tmp_path: Path

@@ -153,7 +153,7 @@ def _hypotheses(case: Comparison) -> list[Hypothesis]:
             case.kind,
             truth,
             states,
-            case.truth.joints,
+            case.truth.revolute,
             (lambda: _pose(case, samples)) if is_spatial else None,
             case.given(samples),
             in_degrees=case.degrees,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import permutations
 from typing import NamedTuple
@@ -29,7 +29,7 @@ def hypotheses(
     kind: Kind,
     truth: Truth,
     states: States,
-    joints: int,
+    revolute: Sequence[bool],
     pose: Callable[[], Pose] | None,
     given: dict[str, Floats],
     *,
@@ -38,58 +38,67 @@ def hypotheses(
     """All of them, each to be evaluated when it is asked for.
 
     Args:
+        revolute: of each joint.
         pose: of the tip and of the joints' axes, in all rows; None where it is not known.
         given: the values of each quantity in all rows.
         in_degrees: whether the formula is given angles in degrees; `states` are in radians.
     """
-    yield from _inputs(truth, states, joints, kind, in_degrees)
-    yield from _outputs(kind, lambda: truth(states, {}), joints, pose)
+    yield from _angles(truth, states, revolute, kind, in_degrees)
+    yield from _order(truth, states, len(revolute))
+    yield from _outputs(kind, lambda: truth(states, {}), len(revolute), pose)
     if kind.is_product:
         for words, values in of_other_indices(lambda qd: truth({**states, "qd": qd}, {}), states["qd"]):
             yield Hypothesis(words, values, 2)
     yield from (Hypothesis(*one) for one in of_other_quantities(kind, truth, states, given))
 
 
-def _inputs(truth: Truth, states: States, joints: int, kind: Kind, in_degrees: bool) -> Iterator[Hypothesis]:
+def _angles(
+    truth: Truth, states: States, revolute: Sequence[bool], kind: Kind, in_degrees: bool
+) -> Iterator[Hypothesis]:
     q = states["q"]
+    turning = [joint for joint, is_revolute in enumerate(revolute) if is_revolute]
 
-    def with_q(new: Floats, **other: Floats) -> Callable[[], Floats]:
-        return lambda: truth({**states, "q": new, **other}, {})
+    def with_q(change: Callable[[Floats], Floats], joints: Sequence[int] = turning) -> Callable[[], Floats]:
+        """What is right at other values of some joints."""
+        new = q.copy()
+        new[:, joints] = change(q[:, joints])
+        return lambda: truth({**states, "q": new}, {})
 
     if in_degrees:
         words = "the angles are taken in radians, while the arguments' names or the comments say degrees"
-        yield Hypothesis(words, with_q(np.rad2deg(q)))
-        yield Hypothesis("the angles are turned from degrees into radians twice", with_q(np.deg2rad(q)))
+        yield Hypothesis(words, with_q(np.rad2deg))
+        yield Hypothesis("the angles are turned from degrees into radians twice", with_q(np.deg2rad))
     else:
-        yield Hypothesis("the angles are taken in degrees; they should be in radians", with_q(np.deg2rad(q)))
+        yield Hypothesis("the angles are taken in degrees; they should be in radians", with_q(np.deg2rad))
         words = "the angles are turned into degrees before they are used; they should stay in radians"
-        yield Hypothesis(words, with_q(np.rad2deg(q)))
-    yield Hypothesis("all joint angles have the wrong sign", with_q(-q))
-    for joint in range(joints):
-        turned = q.copy()
-        turned[:, joint] *= -1
-        yield Hypothesis(f"q{joint + 1} has the wrong sign", with_q(turned), 2)
-        turned = q.copy()
-        turned[:, joint] = (np.rad2deg if in_degrees else np.deg2rad)(turned[:, joint])
-        units = ("radians", "degrees") if in_degrees else ("degrees", "radians")
-        yield Hypothesis(f"q{joint + 1} is taken in {units[0]}; it should be in {units[1]}", with_q(turned), 2)
-    for joint in range(1, joints):
-        stale = q.copy()
-        stale[:, joint] = 0.0
-        yield Hypothesis(
-            f"q{joint + 1} is left out of all angles: link {joint + 1} turns with link {joint}", with_q(stale), 2
-        )
-        absolute = q.copy()
-        absolute[:, joint] -= absolute[:, joint - 1]
-        words = (
-            f"q{joint + 1} is taken as the absolute angle of its link; it should be the angle relative to link {joint}"
-        )
-        yield Hypothesis(words, with_q(absolute))
-        if kind.is_derivative:
-            yield Hypothesis(
-                words + " (and in the derivatives, too)",
-                partial(_absolute_columns, with_q(absolute), joint),
-            )
+        yield Hypothesis(words, with_q(np.rad2deg))
+    yield Hypothesis("all joint angles have the wrong sign", with_q(np.negative))
+    units, change = (("radians", "degrees"), np.rad2deg) if in_degrees else (("degrees", "radians"), np.deg2rad)
+    for joint in range(len(revolute)):
+        yield Hypothesis(f"q{joint + 1} has the wrong sign", with_q(np.negative, [joint]), 2)
+        if revolute[joint]:
+            words = f"q{joint + 1} is taken in {units[0]}; it should be in {units[1]}"
+            yield Hypothesis(words, with_q(change, [joint]), 2)
+    for joint in turning:
+        if joint - 1 in turning:
+            yield from _of_two_links(partial(with_q, joints=[joint]), q, joint, kind)
+
+
+def _of_two_links(
+    with_angle: Callable[[Callable[[Floats], Floats]], Callable[[], Floats]], q: Floats, joint: int, kind: Kind
+) -> Iterator[Hypothesis]:
+    """The angle between a link and the one before is left out, or taken for that to the base."""
+    number = joint + 1
+    words = f"q{number} is left out of all angles: link {number} turns with link {joint}"
+    yield Hypothesis(words, with_angle(np.zeros_like), 2)
+    absolute = with_angle(lambda angle: angle - q[:, [joint - 1]])
+    words = f"q{number} is taken as the absolute angle of its link; it should be the angle relative to link {joint}"
+    yield Hypothesis(words, absolute)
+    if kind.is_derivative:
+        yield Hypothesis(f"{words} (and in the derivatives, too)", partial(_absolute_columns, absolute, joint))
+
+
+def _order(truth: Truth, states: States, joints: int) -> Iterator[Hypothesis]:
     for order in list(permutations(range(joints)))[1:] if joints <= 4 else [tuple(range(joints))[::-1]]:
         names = ", ".join(f"q{joint + 1}" for joint in np.argsort(order))
         moved = {vector: values[:, order] for vector, values in states.items()}
