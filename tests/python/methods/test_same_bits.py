@@ -147,6 +147,7 @@ def cores_of_this_worker() -> int:
 
 
 @pytest.mark.gate
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("flags", "lanes"),
     [(CALLS, "all"), ("-O1", "all")],
