@@ -28,7 +28,7 @@ public:
 
     void load_lane(int lane) {
         for (T* zero : {&now_.touches, &now_.counts, &last_position_, &last_force_, &lagged_position_, &free_until_,
-                        &now_.variance, &now_.force_variance, &before_last_position_})
+                        &now_.variance, &now_.force_variance, &before_last_position_, &in_contact_})
             Lanes<T>::set(*zero, lane, 0.0);
     }
 
@@ -37,14 +37,14 @@ public:
 
     // Without sensors: in the contact that `seen` tells, with all that acts on the tip.
     ARM3R_INLINE void take(const Mask& due, const Arm<T>& arm, const Measurement<T>& seen) {
-        store(due, seen.contact > T(0.0), seen.t, position_of(arm, seen), dot(seen.n, seen.f_on_tip));
+        store(due, seen.contact > T(0.0), seen.t, position_of(due, arm, seen), dot(seen.n, seen.f_on_tip));
     }
 
     // The sample of this number by the sensors of a controller; `force`: N, before the digital low-pass and the delay.
     ARM3R_INLINE void take_sensed(const Mask& due, const T& number, const DigitalController<T>& digital,
                                   const Measurement<T>& seen, const Vec3<T>& force) {
         const Sensors<T>& sensors = digital.sensors;
-        const T o(0.0), position = position_of(digital.controller.model, seen), pressing = dot(seen.n, force);
+        const T o(0.0), position = position_of(due, digital.controller.model, seen), pressing = dot(seen.n, force);
         T felt = pressing, doubt = 2.0 * sensors.noise;  // N: the force before the analog low-pass
         if (sensors.has_analog_filter) {
             felt = last_force_ + (pressing - last_force_) / sensors.analog_share;
@@ -65,8 +65,19 @@ public:
     }
 
 private:
-    ARM3R_INLINE static T position_of(const Arm<T>& arm, const Measurement<T>& seen) {
-        return -dot(seen.n, tip_position(arm, seen.pose));
+    // Along the pressing direction. Where the normal turns, the way is that from where the contact began, so that it is
+    // the same whatever the origin: -n . (x - x0), but for a constant.
+    ARM3R_INLINE T position_of(const Mask& due, const Arm<T>& arm, const Measurement<T>& seen) {
+        const T o(0.0);
+        const Vec3<T> tip = tip_position(arm, seen.pose);
+        const Mask begins = due && !(in_contact_ > o);
+        for (int i = 0; i < 3; ++i) {
+            began_at_[i] = select(begins, tip[i], began_at_[i]);
+            began_with_[i] = select(begins, seen.n[i], began_with_[i]);
+        }
+        in_contact_ = select(due, select(seen.contact > o, T(1.0), o), in_contact_);
+        const Vec3<T> turned = seen.n - began_with_;
+        return dot(turned, began_at_) - dot(seen.n, tip);
     }
 
     ARM3R_INLINE void store(const Mask& due, const Mask& touches, const T& time, const T& position, const T& force) {
@@ -137,7 +148,9 @@ private:
     static constexpr double uneven = 0.25;
 
     Sample now_;
-    T before_last_position_{0.0};                                                      // m
+    Vec3<T> began_at_{T(0.0), T(0.0), T(0.0)}, began_with_ = began_at_;  // m: the tip, and the normal, as contact began
+    T in_contact_{0.0};                                                  // 1: at the sample before
+    T before_last_position_{0.0};                                        // m
     T last_position_{0.0}, last_force_{0.0}, lagged_position_{0.0}, free_until_{0.0};  // m, N, m, s
     std::array<DelayLine<max_force_delay + 2>, Lanes<T>::count> samples_;  // position, force, force before the low-pass
 };

@@ -31,7 +31,7 @@ LIMITS = {
     "tip": 1e-14, "Jacobian": 1e-14, "rate of the Jacobian": 1e-14, "M": 1e-14, "C qd": 1e-13, "gravity": 1e-13,
     "kinetic energy": 1e-14, "potential energy": 1e-13, "acceleration": 1e-13,
 }  # fmt: skip
-"""Ten to a hundred times the rounding of sums of seven bodies; Pinocchio turns the rotors by angles of hundreds of rad."""
+"""Ten to a hundred times the rounding of sums of seven bodies; Pinocchio turns rotors by angles of hundreds of rad."""
 
 
 def drawn_arms(numbers: range) -> Iterator[tuple[int, Keys, dict[str, np.ndarray]]]:

@@ -16,7 +16,8 @@ import arm3r_cpp as arm3r
 import numpy as np
 import pytest
 from agreement import ADAPTIVE, SIZE, Band, Gap, OwnError, disturbed, instants, kinds, rk4, run_of
-from elbow_arms import moved, random_elbow_scenario, random_turn, told_in
+from elbow_arms import WITH_OFFSETS, moved, random_elbow_scenario, random_turn, told_in
+from elbow_truth import Truth
 from random_scenarios import Keys, random_scenario, sample_seed, yaml_of
 
 SEED = sample_seed()
@@ -309,6 +310,39 @@ def check_moved(numbers: range, longest: float) -> None:
 
 def test_a_world_of_an_elbow_arm_that_is_turned_and_moved_gives_the_moved_run() -> None:
     check_moved(range(25), longest=0.3)
+
+
+def test_a_stiffness_on_a_plate_that_turns_does_not_depend_on_the_origin() -> None:
+    """The way of the tip along a normal that turns is that from where the contact began."""
+    arm = {**WITH_OFFSETS, "gravity": [0, 0, 0]}
+    tip = Truth(arm).tip_position(np.array([0.3, 0.4, -0.7]))
+    normal = np.array([-0.6, -0.3, 0.74])
+    plate = {
+        "point": (tip + 0.02 * np.array([0.74, 0, 0.6]) + 0.001 * normal).tolist(),
+        "normal": normal.tolist(),
+        "size": "infinite",
+        "motion": {"type": "fixed"},
+        "rotation": {"type": "sinusoid", "axis": [0.2, 1.0, 0.1], "amplitude": 0.02, "frequency": 1.0},
+        "contact": {"law": "spring", "stiffness": 1500.0},
+        "acts_on_arm": True,
+    }
+    scenario = {
+        "format": 1,
+        "arm": arm,
+        "initial": {"q": [0.3, 0.4, -0.7]},
+        "wall": plate,
+        "controller": {"type": "hybrid", "gravity": [0, 0, 0]},
+        "reference": {"force": {"type": "sinusoid", "value": 20.0, "amplitude": 12.0, "frequency": 4.0}},
+        "estimator": {},
+        "time": {"stop": 1.0},
+    }
+    here, there = (
+        run_of(keys, ADAPTIVE["dopri5"])
+        for keys in (scenario, moved_in_space(scenario, np.eye(3), np.array([3.0, -2.0, 5.0])))
+    )
+    assert here is not None and there is not None
+    assert here["identifiable"].any() and np.array_equal(here["identifiable"], there["identifiable"])
+    assert abs(here["stiffness_estimate"] - there["stiffness_estimate"]).max() <= 1e-4
 
 
 @pytest.mark.gate
