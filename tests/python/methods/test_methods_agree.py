@@ -80,11 +80,20 @@ def worst_gap(
     return max(band.gap(other), band.event_gap(other))
 
 
+def hangs_on_tolerance(scenario: Keys, band: Band) -> bool:
+    """Whether dopri5 has quite another motion with another tolerance."""
+    tolerances = ({"rtol": rtol, "atol": 1e-3 * rtol} for rtol in (1e-8, 1e-12, 1e-13))
+    others = [run_of(scenario, {**ADAPTIVE["dopri5"], **tolerance}) for tolerance in tolerances]
+    return any(other is not None and band.gap(other).ratio > 1e3 for other in others)
+
+
 def disagreements(number: int, longest: float, methods: tuple[str, ...], draw: Callable[..., Keys]) -> list[str]:
     """What is wrong in a scenario, one text for each method that leaves the band.
 
     Behind a singular pose that a law inverts, steps that do not end there may pass over torques of microseconds at any
-    tolerance, as the run says: those of rk4 on its grid, and all where the torques have no limit. A contact that
+    tolerance, as the run says: those of rk4 on its grid, and all where the torques have no limit. Where the torques
+    have limits, what is left of the error may change its sign just there: then both motions that leave the pose solve
+    the equations, and dopri5 itself takes the one or the other with its tolerance. A contact that
     chatters adds up the errors of a thousand steps, and no single disturbance tells how much that is: what a hundredth
     of the tolerance takes away is such an error.
     """
@@ -104,7 +113,7 @@ def disagreements(number: int, longest: float, methods: tuple[str, ...], draw: C
             is_own = gap is not None and (gap.ratio < LARGEST_OWN or len(band.run.events) > MANY_EVENTS)
             if gap and gap.ratio > MARGIN and is_own and not method.startswith("rk4"):
                 gap = worst_gap(scenario, band, method, tolerances=0.01)
-        if gap and gap.ratio > MARGIN:
+        if gap and gap.ratio > MARGIN and not (passed and hangs_on_tolerance(scenario, band)):
             found.append(f"# seed {SEED}, scenario {number}: {method} against dopri5: {gap}\n{yaml_of(scenario)}")
     return found
 
