@@ -114,8 +114,13 @@ def test_the_formulas_are_right_before_they_are_changed(kind: str, tmp_path: Pat
     assert verify.formula_verdict(tmp_path / "own.py", kind, own_arm()).ok
 
 
+SLOW = ("coriolis",)
+"""The kinds whose edits take ten seconds to try."""
+PARAMETERS = [pytest.param(*case, marks=[pytest.mark.gate] * (case[0] in SLOW), id=case[2][:60]) for case in CASES]
+
+
 @pytest.mark.sample(3)
-@pytest.mark.parametrize(("kind", "changes", "words"), CASES, ids=[words[:60] for _, _, words in CASES])
+@pytest.mark.parametrize(("kind", "changes", "words"), PARAMETERS)
 def test_a_mistake_of_understanding_has_its_name(
     kind: str, changes: list[tuple[str, str]], words: str, tmp_path: Path
 ) -> None:
