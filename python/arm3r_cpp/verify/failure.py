@@ -56,14 +56,11 @@ def _element_beyond(formula: Formula, joints: int) -> str:
     first = 1 if formula.language == "matlab" else 0
     for node in (part for top in formula.nodes for part in top.walk()):
         match node:
-            case FunctionCall(word=name, parts=(Number() as index,)) if name in vectors:
-                pass
-            case Index(parts=(Name(word=name), Number() as index)) if name in vectors:
-                pass
-            case _:
-                continue
-        if index.value >= joints + first:
-            return text[node.start : node.end]
+            case (
+                FunctionCall(word=name, parts=(Number() as index,)) | Index(parts=(Name(word=name), Number() as index))
+            ):
+                if name in vectors and index.value >= joints + first:
+                    return text[node.start : node.end]
     return ""
 
 

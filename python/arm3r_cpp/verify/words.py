@@ -77,7 +77,7 @@ def _block(verdict: Judgement, findings: list[Finding], told: set[str]) -> list[
     """What entries read that have one explanation, and the explanation, where it is not among those `told` before."""
     first, read = findings[0], _readings(verdict, findings)
     if _is_about_entry(verdict, first):
-        lines = read or [_cause(verdict, findings)]
+        lines = read if first.reads is not None else [*read, _cause(verdict, findings)]
     elif first.cause in told:
         lines = [f"  {line}" for line in read]
     else:

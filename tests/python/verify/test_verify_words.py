@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arm3r_cpp import Scenario, verify
+from arm3r_cpp.verify.finding import Finding, Judgement
+from arm3r_cpp.verify.words import report
 
 GRAVITY = """from math import cos
 
@@ -61,3 +63,16 @@ def test_an_angular_entry_has_no_unit_of_length(row: int, unit: str) -> None:
     error[row, 1] = 0.25
     verdict = verify.jacobian(lambda q: SCENARIO.arm.geometric_jacobian(np.asarray(q)) + error, SCENARIO)
     assert str(verdict).splitlines()[0].endswith(f"1 of 18 entries wrong, by up to 0.25{unit}")
+
+
+def test_an_entry_that_is_not_read_stands_beside_those_that_are() -> None:
+    """One edit mends both: t2, which is not read, is named by its sentence."""
+    edit = {"line": 1, "column": 1, "old": "a2", "new": "a3"}
+    findings = [
+        Finding([2], "t2: in line 1 `a2` should be `a3`; this line spoils 2 entries.", **edit),
+        Finding([3], "t3: in line 1 `a2` should be `a3`; this line spoils 2 entries.", "m3 g a2", "m3 g a3", **edit),
+    ]
+    verdict = Judgement(False, "gravity", "slide", 1.0, findings=findings, shape=[3], text="a2", file="f.m")
+    lines = [line.strip() for line in report(verdict).split("\n")]
+    assert lines[1] == "t3 reads m3 g a2, should be m3 g a3"
+    assert lines[2] == "t2, t3: in line 1 `a2` should be `a3`; this line spoils 2 entries."

@@ -33,15 +33,14 @@ enum : std::size_t { law_memory = 6 };  // numbers that a law remembers at most
 
 struct LawProperties {
     ControllerType type;
-    std::string_view word;        // of controller.type
-    bool has_model = false;       // a copy of the arm, and a gravity that it compensates
-    bool has_gains = false;       // more than a formula without gains: a file of its own
-    bool follows_path = false;    // a reference
-    bool in_joints = false;       // in joint angles, else in positions of the tip
-    bool takes_force = false;     // reference.force
-    bool controls_force = false;  // it brings the contact force to reference.force
-    bool may_cancel_force =
-        false;  // controller.cancel_force says if it cancels the contact force, which moves nothing then
+    std::string_view word;          // of controller.type
+    bool has_model = false;         // a copy of the arm, and a gravity that it compensates
+    bool has_gains = false;         // more than a formula without gains: a file of its own
+    bool follows_path = false;      // a reference
+    bool in_joints = false;         // in joint angles, else in positions of the tip
+    bool takes_force = false;       // reference.force
+    bool controls_force = false;    // it brings the contact force to reference.force
+    bool may_cancel_force = false;  // the contact moves nothing, if controller.cancel_force says so
     bool integrates_force = false;  // the integral of the force error is the first number that it remembers
     std::size_t memory = 0;         // numbers that it remembers; what each of them is, its formula says
 };

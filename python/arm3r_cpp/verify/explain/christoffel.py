@@ -11,8 +11,12 @@ import numpy as np
 from ..._native import Floats
 
 _RIGHT = (1.0, -0.5)
-_WRONG = [one for one in product((0.0, 0.5, 1.0), (-1.0, -0.5, 0.0, 0.5, 1.0))]
 """Factors of (dM/dt) qd and of d(qd^T M qd)/dq."""
+_WRONG = [
+    (first, second)
+    for first, second in product((0.0, 0.5, 1.0), (-1.0, -0.5, 0.0, 0.5, 1.0))
+    if first != -2 * second  # else it is a multiple of what is right
+]
 
 
 def of_other_indices(torque: Callable[[Floats], Floats], qd: Floats) -> Iterator[tuple[str, Callable[[], Floats]]]:
@@ -30,10 +34,9 @@ def of_other_indices(torque: Callable[[Floats], Floats], qd: Floats) -> Iterator
         of_energy[:, joint] = 2 * np.einsum("si,si->s", qd, mixed)
     of_momentum = due + of_energy / 2  # (dM/dt) qd
     for first, second in _WRONG:
-        if first != -2 * second:  # else it is a multiple of what is right
-            words = f"the result is {_sum(first, second)}; it should be {_sum(*_RIGHT)}"
-            values = partial(np.add, first * of_momentum, second * of_energy)
-            yield f"the Christoffel symbols have other indices or signs: {words}", values
+        words = f"the result is {_sum(first, second)}; it should be {_sum(*_RIGHT)}"
+        values = partial(np.add, first * of_momentum, second * of_energy)
+        yield f"the Christoffel symbols have other indices or signs: {words}", values
 
 
 def _sum(first: float, second: float) -> str:

@@ -61,7 +61,7 @@ def of_other_points(values: Floats, pose: Pose) -> Iterator[Mistake]:
             words = f"the lever of column {numbers} begins at the base's origin; it should begin at joint {numbers}"
         else:
             words = f"the levers of columns {numbers} begin at the base's origin; they should begin at their joints"
-        yield words, partial(np.copy, moved), 2
+        yield words, moved.copy, 2
     for joint in turning:
         for other in (joint - 1, joint + 1):
             if other in turning and np.allclose(pose.axes[:, :, joint], pose.axes[:, :, other], atol=1e-9):
@@ -70,7 +70,7 @@ def of_other_points(values: Floats, pose: Pose) -> Iterator[Mistake]:
                 words = (
                     f"the lever of column {joint + 1} begins at joint {other + 1}; it should begin at joint {joint + 1}"
                 )
-                yield words, partial(np.copy, moved), 2
+                yield words, moved.copy, 2
 
 
 def _of_euler_rates(values: Floats, rotation: Floats) -> Iterator[Mistake]:

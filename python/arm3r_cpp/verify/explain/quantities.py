@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -16,15 +16,15 @@ Truth = Callable[[States, dict[str, Floats]], Floats]
 """What is right at the joint vectors of all rows, with other values of quantities: (rows, ...)."""
 
 
-def steiner_words(links: list[int], *, twice: bool) -> str:
-    """What is said of a formula with the parallel axes of these links twice, or without them; []: of all links."""
+def steiner_words(links: Sequence[int], *, twice: bool) -> str:
+    """What is said of a formula with the parallel axes of one link twice, or without them; or of several links."""
     one = f"the inertia of link {links[0]} is about the " if len(links) == 1 else "the inertias are about the "
     if twice:
         return f"the parallel-axis term m l^2 is counted twice: {one}{'joint' if len(links) == 1 else 'joints'} already"
     return f"the parallel-axis term m l^2 is missing: {one}{'centre' if len(links) == 1 else 'centres'} of mass"
 
 
-def centre_words(links: list[int], place: str) -> str:
+def centre_words(links: Sequence[int], place: str) -> str:
     """What is said of a formula with the centres of mass at the links' ends, or in their middles."""
     if len(links) == 1:
         return f"the centre of mass of link {links[0]} is taken at the link's {place}"
@@ -81,14 +81,13 @@ def _of_links(kind: Kind, changed: Changed, given: dict[str, Floats]) -> Iterato
     for links in _LINKS:
         for place, factor in (("end", 1.0), ("middle", 0.5)):
             moved = {f"com{link}": factor * given[f"length{link}"] for link in links}
-            yield centre_words(list(links), place), changed(**moved), 1
+            yield centre_words(links, place), changed(**moved), 1
         if kind.depends_on_inertia:
             doubled = {f"inertia{link}": given[f"inertia{link}"] + given[f"mass{link}"] * given[f"com{link}"] ** 2
                        for link in links}  # fmt: skip
-            named = list(links) if len(links) == 1 else []
-            yield steiner_words(named, twice=True), changed(**doubled), 1
+            yield steiner_words(links, twice=True), changed(**doubled), 1
             if kind.is_linear:
-                yield steiner_words(named, twice=False), partial(_mirrored, changed(), changed(**doubled)), 1
+                yield steiner_words(links, twice=False), partial(_mirrored, changed(), changed(**doubled)), 1
     if not kind.is_linear:
         return
     for link in (2, 3):

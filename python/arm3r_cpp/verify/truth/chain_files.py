@@ -157,8 +157,7 @@ class Chain(SerialChain):
                 found.append((centre_words(numbers, place), self._with_parts(changes)))
             for sign in (1, -1) if kind.depends_on_inertia else ():
                 changes = {link: replace(own[link], inertia=own[link].inertia + sign * shifts[link]) for link in links}
-                words = steiner_words([] if links == bodies else numbers, twice=sign > 0)
-                found.append((words, self._with_parts(changes)))
+                found.append((steiner_words(numbers, twice=sign > 0), self._with_parts(changes)))
         return found
 
     def _with_parts(self, changes: dict[int, Joint]) -> Chain:
