@@ -277,8 +277,10 @@ class PythonProgram:
         return f"raises {type(error).__name__}{f': {message}' if message else ''}", self._line(error)
 
     def _line(self, error: BaseException) -> int | None:
-        frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == self.file]
-        return frames[-1].lineno if frames else None
+        lines = [
+            line for frame, line in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == self.file
+        ]
+        return lines[-1] if lines else None
 
 
 def _has_results(result: Any) -> bool:

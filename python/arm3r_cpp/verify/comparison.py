@@ -53,7 +53,7 @@ class Comparison:
     def _samples(self, random: np.random.Generator, states: int) -> Samples:
         """The arm itself, unless all of its states are in the other samples, and random arms."""
         if not self.known:
-            return Samples(random_states(random, 2 * states, self.truth.joints), [{}])
+            return Samples(random_states(random, states if states == 1 else 2 * states, self.truth.joints), [{}])
         count = 1 if states == 1 else _ARMS
         arms = [self.truth.random_quantities(set(self.known), random) for _ in range(count)]
         return Samples(random_states(random, states, self.truth.joints), arms)

@@ -273,10 +273,12 @@ def test_a_law_is_judged_by_a_scenario_that_can_start_everywhere(written: Any) -
     law = written("law.py", "def controller(q, qd):\n    return [0, 0, 0]\n")
     with pytest.raises(UsageError, match="a controller is judged by the law of a scenario: name one by --arm"):
         verify.controller(law, verify.Chain.from_dh(Path(__file__).parents[1] / "robots" / "ur5.csv"))
+    scenario = Scenario.example("robots/ur5_hybrid")
+    scenario["wall.normal"] = [0, 0, 1]  # all that is more than 0.1 m below it is too deep in it
     with pytest.raises(
         UnjudgedError, match="cannot start at each state that is tried: the tip starts deep inside the wall"
     ):
-        verify.controller(law, Scenario.example("robots/ur5_hybrid"))
+        verify.controller(law, scenario)
 
 
 def test_of_frames_in_which_all_is_wrong_the_bases_is_meant() -> None:

@@ -46,11 +46,13 @@ from .functions import COMPARISONS, FUNCTIONS, OPERATORS, result_of
 from .indexing import Places, flat, part_of, with_element, with_part, without
 from .reader import read, read_expression
 from .syntax import Assignment, For, Function, If, Kept, Leave, Statement, Switch, Target, Try, While
+from .trace import Trace, can_be_traced
 from .values import Floats, Pages, Structures, as_numbers, check_size, integer, number, stacked, text_in
 
 _MAX_CALLS, _MAX_DEPTH = 2000, 30
 _MAX_STEPS = 20_000  # statements and turns of loops of one evaluation
 _MOST_BYTES = 1 << 20  # of a file beside the program's
+_MOST_TRACES = 4
 _NOTHING = np.zeros((1, 0, 0))
 
 
@@ -90,6 +92,8 @@ class MatlabProgram:
 
     of_program: tuple[str, ...] = ("exist", "feval", "cellfun", "arrayfun")
     """Functions that look at variables or call functions, each a method."""
+    can_trace = True
+    """Whether what a statement writes depends on its states alone, and not on others around them."""
 
     def __init__(
         self,
@@ -120,6 +124,9 @@ class MatlabProgram:
         self._outside: dict[str, Any] = {}
         self._beside: dict[str, MatlabProgram | None] = {Path(file).stem: self} if beside is None else beside
         self._replaced: tuple[Statement, Node] | None = None
+        self._traces: list[tuple[Call, Floats, Trace | None]] = []
+        """Of calls at tables, the latest ones; None: it depends on more than its inputs, or fails."""
+        self._trace: Trace | None = None
 
     @property
     def arguments(self) -> list[str]:
@@ -177,16 +184,35 @@ class MatlabProgram:
         Raises:
             ProgramError: the function failed.
         """
-        self._replaced = self._edited(edit) if edit else None
+        replaced = self._edited(edit) if edit else None
+        self._trace = self._trace_of(call, table) if edit else None
+        self._replaced = replaced
         try:
             return self._evaluate(call, table)
         except Divided:
+            self._trace = None
             rows = [self._evaluate(call, row[None]) for row in table]
         finally:
-            self._replaced = None
+            self._replaced = self._trace = None
         if len({row.shape for row in rows}) > 1:
             raise ProgramError("returns arrays of different shapes at different states")
         return np.concatenate(rows)
+
+    def _trace_of(self, call: Call, table: Floats) -> Trace | None:
+        """What the statements write without an edit."""
+        for known_call, known_table, trace in self._traces:
+            if known_call == call and np.array_equal(known_table, table):
+                return trace
+        found = self._trace = Trace(self.functions[self.function]) if self.can_trace else None
+        try:
+            if found:
+                self._evaluate(call, table)
+        except (ProgramError, Divided, ValueError):
+            found = None
+        if not can_be_traced(one for program in self._programs for one in program.functions.values()):
+            found = None
+        self._traces = [*self._traces[1 - _MOST_TRACES :], (call, table.copy(), found)]
+        return found
 
     def _evaluate(self, call: Call, table: Floats) -> Floats:
         """
@@ -321,7 +347,7 @@ class MatlabProgram:
             if name not in variables:
                 _put_variable(variables, name, self._value(default, variables))
         try:
-            self._execute(function.body, variables)
+            self._execute_body(function, variables)
         except _Left as left:
             if left.word != "return":
                 raise ProgramError(f"`{left.word}` stands outside of a loop", function.line) from None
@@ -362,6 +388,14 @@ class MatlabProgram:
                 raise type(error)(f"{error} (in {place})") from None
 
     # ---- statements --------------------------------------------------------------------------------------------------
+
+    def _execute_body(self, function: Function, variables: dict[str, Any]) -> None:
+        if not self._trace or self._depth > 1:
+            self._execute(function.body, variables)
+        elif self._replaced:
+            self._trace.replay(self._replaced[0], self.functions, variables, self._execute)
+        else:
+            self._trace.record(variables, self._execute)
 
     def _execute(self, statements: list[Statement], variables: dict[str, Any]) -> None:
         for statement in statements:

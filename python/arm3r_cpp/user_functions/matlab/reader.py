@@ -121,7 +121,8 @@ class _Reader:
         """The variables that it writes into files by matlabFunction."""
 
     def peek(self, ahead: int = 0) -> Token:
-        return self.tokens[min(self.at + ahead, len(self.tokens) - 1)]
+        place = self.at + ahead
+        return self.tokens[place] if place < len(self.tokens) else self.tokens[-1]
 
     def next(self) -> Token:
         token = self.peek()

@@ -53,6 +53,8 @@ class SymbolicScript(MatlabProgram):
         *("rewrite", "simplifyFraction", "vpa", "sym", "formula", "matlabFunction"),
     )
 
+    can_trace = False
+
     def __init__(self, *given: Any, functions: dict[str, Function]) -> None:
         super().__init__(*given, functions=functions)
         self.functions = {

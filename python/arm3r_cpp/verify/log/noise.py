@@ -97,9 +97,9 @@ def follows(left: Floats, features: Floats, step: float = 0.0) -> bool:
 def _chosen(left: Floats, columns: Floats) -> list[int]:
     """The columns that explain the most, one after the other."""
     found: list[int] = []
-    rest = left
+    rest, squares = left, np.sum(columns**2, axis=0)
     while len(found) < min(_MOST_CHOSEN, len(left) // 30 + 1):
-        scores = _scores(rest, columns)
+        scores = _scores(rest, columns, squares)
         best = int(np.argmax(scores))
         if scores[best] < SUSPECT or best in found:
             break
@@ -118,9 +118,8 @@ def inflation(noise: Floats) -> float:
     return max(white / max(abs(float(filtered.sum())), 1e-3) / size, 1.0)
 
 
-def _scores(left: Floats, columns: Floats) -> Floats:
-    """How many standard deviations the coefficient of each column alone is from zero."""
-    squares = np.sum(columns**2, axis=0)
+def _scores(left: Floats, columns: Floats, squares: Floats) -> Floats:
+    """How many standard deviations the coefficient of each column, with its sum of squares, alone is from zero."""
     coefficients = columns.T @ left / np.where(squares > 0, squares, 1.0)
     spread = np.sqrt(np.maximum(np.sum(left**2) - coefficients**2 * squares, 1e-24 * np.sum(left**2)) / len(left))
     return np.abs(coefficients) * np.sqrt(squares) / np.maximum(spread, 1e-300)
@@ -151,7 +150,8 @@ def _filter_of(noise: Floats) -> Floats:
 
 def _apply(filtered: Floats, values: Floats) -> Floats:
     last = len(filtered) - 1
-    found = np.zeros((len(values) - last, *values.shape[1:]))
-    for lag, one in enumerate(filtered):
-        found += one * values[last - lag : len(values) - lag]
+    found = filtered[0] * values[last:]
+    part = np.empty_like(found)
+    for lag, one in enumerate(filtered[1:], 1):
+        found += np.multiply(one, values[last - lag : len(values) - lag], out=part)
     return found
