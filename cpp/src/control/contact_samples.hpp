@@ -26,10 +26,12 @@ public:
         T variance{0.0}, force_variance{0.0};    // m^2, N^2: of position and force
     };
 
-    void load_lane(int lane) {
-        for (T* zero : {&now_.touches, &now_.counts, &last_position_, &last_force_, &lagged_position_, &free_until_,
-                        &now_.variance, &now_.force_variance, &before_last_position_, &in_contact_})
+    // start: s, of the first sample; the tip was free before.
+    void load_lane(int lane, double start) {
+        for (T* zero : {&now_.touches, &now_.counts, &last_position_, &last_force_, &lagged_position_, &now_.variance,
+                        &now_.force_variance, &before_last_position_, &in_contact_})
             Lanes<T>::set(*zero, lane, 0.0);
+        Lanes<T>::set(free_until_, lane, start);
     }
 
     const Sample& now() const { return now_; }
@@ -118,14 +120,16 @@ private:
     }
 
     // How long after contact began a sample is the first to count, s: eight time constants of the analog low-pass have
-    // forgotten where exactly it began.
+    // forgotten where exactly it began. Rounding of the instants, which depends on time.start, does not add a sample.
     ARM3R_INLINE static T settling_time(const DigitalController<T>& digital) {
         const Sensors<T>& sensors = digital.sensors;
-        T time(0.0);
-        if (sensors.has_delay) time = digital.sampling.period;
-        if (sensors.has_analog_filter)
-            time = 8.0 / sensors.analog_rate + (sensors.force_delay + 2.0) * digital.sampling.period;
-        return time;
+        T samples(-1e-6), time(0.0);
+        if (sensors.has_delay) samples = T(1.0 - 1e-6);
+        if (sensors.has_analog_filter) {
+            samples = sensors.force_delay + (2.0 - 1e-6);
+            time = 8.0 / sensors.analog_rate;
+        }
+        return time + samples * digital.sampling.period;
     }
 
     // Noise, and roundings to steps of the sensors; that of numbers comes with every position. Behind the analog low-pass

@@ -45,7 +45,7 @@ void SampledController<T>::load_lane(int lane, const DigitalController<double>& 
     set(estimation_.damping, estimation.damping), set(estimation_.dissipation, estimation.dissipation);
     set(next_estimate_, estimation.on ? estimation.start : never);
     set(estimation_.assumed, estimation.assumed), set(state_.assumed_stiffness, estimation.assumed);
-    contact_samples_.load_lane(lane);
+    contact_samples_.load_lane(lane, from.sampling.start);
     estimator_.reset(estimation.wall_moves, [&](T& x) { set(x, 0.0); });
     for (T* zero : {&count_, &outputs_done_, &state_.contact, &state_.force_phase, &state_.collision, &state_.stiffness,
                     &state_.stiffness_sigma, &state_.wall_speed, &state_.identifiable, &quiet_since_, &reacts_,
