@@ -21,6 +21,14 @@ TOLERANCE = 1e-9  # of an entry's scale
 _ARMS, _STATES = 5, 8
 
 
+class OtherShape(ProgramError):
+    """The formula returned numbers in a shape that its kind has not."""
+
+    def __init__(self, message: str, shape: tuple[int, ...]) -> None:
+        super().__init__(message)
+        self.shape = shape
+
+
 @dataclass
 class Comparison:
     """What a formula returns and what is due, for one kind of formula.
@@ -75,7 +83,7 @@ class Comparison:
         try:
             return self.kind.standard_form(raw, self.truth.joints, samples.tiled("qd"))
         except UsageError as error:
-            raise ProgramError(str(error)) from None
+            raise OtherShape(str(error), raw.shape[1:]) from None
 
     def calls(self) -> int:
         """How many functions the formula calls at the first samples."""

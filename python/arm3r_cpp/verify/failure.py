@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import math
+import re
 from itertools import product
 from typing import Any
 
@@ -11,6 +13,7 @@ import numpy as np
 from ..errors import UnjudgedError, UnreadError
 from ..user_functions.expressions import FunctionCall, Index, Name, Number
 from ..user_functions.programs import ProcessEnded, ProgramError, Unread, line_and_column
+from .comparison import OtherShape
 from .explain.budget import Budget
 from .explain.causes import put_edit, repairs_of
 from .explain.repair import Progress
@@ -29,7 +32,7 @@ def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progre
 
     Raises:
         UnreadError: it holds what is not read, which no edit mends.
-        UnjudgedError: it is a formula of an arm with more joints.
+        UnjudgedError: it is a formula of an arm with more or fewer joints.
     """
     finding = Finding(None, f"the formula fails: {error}", line=error.line)
     verdict = Verdict(False, kind.name, truth.convention, float("inf"), [finding], file=formula.file, text=formula.text)
@@ -40,28 +43,52 @@ def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progre
         place = f"{formula.file}:{error.line}" if error.line else formula.file
         words = f"{place}: cannot be judged: {error}"
         raise UnreadError(words, line=error.line, reason=str(error), name=error.name) from None
-    if finding.old is None and (read := _element_beyond(formula, truth.joints)):
-        joints = "1 joint" if truth.joints == 1 else f"{truth.joints} joints"
+    if finding.old is None and (words := _of_other_arm(error, formula, kind, truth.joints)):
         raise UnjudgedError(
-            f"{formula.file}: cannot be judged: it reads {read}, where the arm has {joints}; "
+            f"{formula.file}: cannot be judged: {words}; "
             "--urdf, --dh, --arm name the arm that it is of, --tip where a chain ends"
         )
     return verdict
 
 
-def _element_beyond(formula: Formula, joints: int) -> str:
-    """An element of a joint vector that an arm of so many joints has not: "q(3)"."""
+def _of_other_arm(error: ProgramError, formula: Formula, kind: Kind, joints: int) -> str:
+    """What tells that a formula is of an arm with more or fewer joints; "" where nothing does."""
+    elements, where = _elements(formula), f"where the arm has {joints} joint{'s' * (joints != 1)}"
+    if beyond := next((read for read, place in elements if place >= joints), ""):
+        return f"it reads {beyond}, {where}"
+    unpacked = re.search(r"values to unpack \(expected (\d+)", str(error))
+    if unpacked and int(unpacked[1]) != joints and _takes_a_vector_apart(formula, error.line):
+        return f"line {error.line} takes {unpacked[1]} elements from a joint vector, {where}"
+    if not isinstance(error, OtherShape) or any(place == joints - 1 for _, place in elements):
+        return ""
+    returned = f"it returns {'x'.join(map(str, error.shape))} numbers, as {kind.a_words}"
+    if other := kind.joints_of(error.shape):
+        return f"{returned} of {other} joint{'s' * (other != 1)}, {where}"
+    return f"{returned} in a plane, where the arm moves in space" if kind.is_planar(error.shape) else ""
+
+
+def _elements(formula: Formula) -> list[tuple[str, int]]:
+    """The elements of joint vectors that a formula reads by their places, "q(3)", with these from 0."""
     text = formula.text or ""
-    vectors = {name for name in formula.arguments if (slot := slot_of(name)) and slot[1] is None}
+    slots = {name: slot for name in formula.arguments if (slot := slot_of(name))}
+    found = [(name, slot[1]) for name, slot in slots.items() if slot[1] is not None]
     first = 1 if formula.language == "matlab" else 0
     for node in (part for top in formula.nodes for part in top.walk()):
         match node:
             case (
                 FunctionCall(word=name, parts=(Number() as index,)) | Index(parts=(Name(word=name), Number() as index))
-            ):
-                if name in vectors and index.value >= joints + first:
-                    return text[node.start : node.end]
-    return ""
+            ) if name in slots and slots[name][1] is None and math.isfinite(index.value):
+                found.append((text[node.start : node.end], int(index.value) - first))
+    return found
+
+
+def _takes_a_vector_apart(formula: Formula, line: int | None) -> bool:
+    """Whether a line of Python gives the elements of a joint vector to names: `q1, q2 = q`."""
+    lines = (formula.text or "").splitlines()
+    if line is None or line > len(lines):
+        return False
+    vector = re.fullmatch(r".*=\s*(\w+)(\.\w+\(\))*\s*(#.*)?", lines[line - 1])
+    return vector is not None and vector[1] in formula.arguments and slot_of(vector[1]) is not None
 
 
 def _is_renamed(finding: Finding, name: str) -> bool:

@@ -185,7 +185,7 @@ def slots_of(
     if unknown:
         settings = " ".join(f"--set {name}=VALUE" for name in settable(unknown[0], text))
         raise UnjudgedError(
-            f"the argument {unknown[0]} is not understood; a {kind.words} takes {', '.join(kind.inputs)}, or "
+            f"the argument {unknown[0]} is not understood; {kind.a_words} takes {', '.join(kind.inputs)}, or "
             f"{', '.join(f'{kind.inputs[0]}{n + 1}' for n in range(joints))}, and parameters such as a2, m3, g; "
             f"--args {','.join(kind.inputs)},... says what the arguments are, {settings} gives it a value"
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -306,3 +307,33 @@ def test_a_formula_of_more_joints_cannot_be_judged(language: str, written: Any) 
     }[language]
     with pytest.raises(UnjudgedError, match=r"cannot be judged: it reads q.[12]., where the arm has 1 joint; --urdf"):
         formula_verdict(written(f"two.{language}", text), "jacobian", chain)
+
+
+PLANAR = {
+    "mass.m": "function M = mass(q)\nM = [3 + 2*cos(q(2)), 1 + cos(q(2)); 1 + cos(q(2)), 1];\nend\n",
+    "jacobian.py": "from math import *\ndef jacobian(q):\n    q1, q2 = q\n    return [[sin(q1), 0], [cos(q2), 0]]\n",
+    "gravity.py": "from math import *\ndef gravity(q1, q2):\n    return [9.81*cos(q1), cos(q1 + q2)]\n",
+    "kinematics.m": "function p = kinematics(q)\np = [cos(q(1)) + cos(q(1)+q(2)); sin(q(1)) + sin(q(1)+q(2))];\nend\n",
+    "inverse.py": "import numpy as np\ndef inverse(q, qd, qdd):\n    return np.array(q)[:2] + np.array(qdd)[:2]\n",
+}
+"""Of an arm with two joints in a plane."""
+SAYS = {
+    "mass.m": "it returns 2x2 numbers, as a mass matrix of 2 joints, where the arm has 3 joints; --urdf",
+    "jacobian.py": "line 3 takes 2 elements from a joint vector, where the arm has 3 joints; --urdf",
+    "gravity.py": "it returns 2 numbers, as a gravity torque of 2 joints, where the arm has 3 joints; --urdf",
+    "kinematics.m": "it returns 2 numbers, as a tip position in a plane, where the arm moves in space; --urdf",
+    "inverse.py": "it returns 2 numbers, as inverse dynamics of 2 joints, where the arm has 3 joints; --urdf",
+}
+
+
+@pytest.mark.parametrize("name", PLANAR)
+def test_a_formula_of_fewer_joints_cannot_be_judged(name: str, written: Any) -> None:
+    with pytest.raises(UnjudgedError, match=re.escape(f"cannot be judged: {SAYS[name]}")):
+        formula_verdict(written(name, PLANAR[name]), name.partition(".")[0])
+
+
+def test_a_formula_of_three_joints_that_returns_two_numbers_is_wrong(written: Any) -> None:
+    """It reads the third angle, and so is of this arm."""
+    text = PLANAR["mass.m"].replace("3 + 2*cos(q(2))", "3 + 2*cos(q(3))")
+    verdict = formula_verdict(written("mass.m", text), "mass")
+    assert not verdict.ok and "returns 2x2 numbers, where a mass matrix has 3x3" in str(verdict)

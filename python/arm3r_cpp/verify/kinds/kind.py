@@ -105,6 +105,11 @@ class Kind(ABC):
     planted: tuple[str, ...] = ()
     """The lecture's own formulas of its entries, row by row, of a2, a3, m2, m3, g, c(...), s(...), q1 to q3."""
 
+    @property
+    def a_words(self) -> str:
+        """`words` with their article."""
+        return self.words if self.words.endswith("dynamics") else f"a {self.words}"
+
     @abstractmethod
     def due(self, arm: Any, states: States, rows: Rows) -> Floats:
         """What is right at the states, (S, ...).
@@ -165,8 +170,17 @@ class Kind(ABC):
         if flat is None:
             names = " or ".join("x".join(map(str, one)) for one in allowed)
             got = "x".join(map(str, shape)) or "1"
-            raise UsageError(f"returns {got} numbers, where a {self.words} has {names}")
+            raise UsageError(f"returns {got} numbers, where {self.a_words} has {names}")
         return values.reshape(len(values), *flat)
+
+    def joints_of(self, shape: tuple[int, ...]) -> int:
+        """How many joints an arm has whose formulas have this shape; 0: none of up to ten, or any."""
+        words = [word for word in (*self.shapes, self.planar_shape) if "n" in word]
+        return next((n for n in range(1, 11) if any(_numbers(word, n) == shape for word in words)), 0)
+
+    def is_planar(self, shape: tuple[int, ...]) -> bool:
+        """Whether it is that of an arm that moves in a plane, whatever its joints."""
+        return bool(self.planar_shape) and _numbers(self.planar_shape, 0) == shape
 
     def _compared(self, values: Floats, qd: Floats | None) -> Floats:
         """What is compared of values in one of the kind's shapes."""

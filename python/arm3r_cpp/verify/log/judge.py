@@ -81,7 +81,7 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
         off = max(best.undecided[name] for name in names)
         raise UnjudgedError(
             f"{log.file}: cannot be judged: {', '.join(names)} is off by up to {off:.2g} and "
-            f"follows no term of a {kind.words}; is this the arm, and are q1, q2, ... its angles?"
+            f"follows no term of {kind.a_words}; is this the arm, and are q1, q2, ... its angles?"
         )
     _require_columns(log, kind, truth, verdict)
     if verdict.ok:
@@ -198,7 +198,7 @@ def _candidate(case: _Case, convention: str) -> _Candidate:
     due = _due(case.truth, kind, convention, case.states, case.given)
     missing = [place for place in case.entries if len(place) != due.ndim - 1 or any(np.array(place) >= due.shape[1:])]
     if missing:
-        raise UsageError(f"{log.file}: a {kind.words} has no entry {[one + 1 for one in missing[0]]}")
+        raise UsageError(f"{log.file}: {kind.a_words} has no entry {[one + 1 for one in missing[0]]}")
     verdict = Verdict(True, kind.name, convention, 0.0, file=log.file, shape=list(due.shape[1:]))
     verdict.found = [f"convention {convention}"] if convention else []
     found = _Candidate(verdict)

@@ -111,11 +111,11 @@ class Log(NamedTuple):
             UsageError: the log has none.
         """
         if not kind.columns:
-            raise UsageError(f"{self.file}: a {kind.words} is judged as a function, and not by a log")
+            raise UsageError(f"{self.file}: {kind.a_words} is judged as a function, and not by a log")
         found = self.entries(kind)
         if not found:
             raise UsageError(
-                f"{self.file}: no column is that of a {kind.words}; name them {kind.columns_words}{self._hint()}"
+                f"{self.file}: no column is that of {kind.a_words}; name them {kind.columns_words}{self._hint()}"
             )
         return found
 

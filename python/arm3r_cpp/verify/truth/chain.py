@@ -287,4 +287,4 @@ class SerialChain:
             why = "no link has a mass; a DH table has columns for it, see `arm3r docs verify`"
         else:
             return
-        raise UnjudgedError(f"{self.name}: a {kind.words} cannot be judged: {why}")
+        raise UnjudgedError(f"{self.name}: {kind.a_words} cannot be judged: {why}")
