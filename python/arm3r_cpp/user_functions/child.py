@@ -67,9 +67,9 @@ def program_of(head: dict[str, Any]) -> PythonProgram | OctaveProgram:
 def say_what_is_barred(event: str, _: object) -> None:
     """In words what the system refuses without any."""
     if event in _STARTS:
-        raise PermissionError("a formula may not start processes")
+        raise PermissionError("a process is started")
     if event == "socket.__new__":
-        raise PermissionError("a formula may not open sockets")
+        raise PermissionError("a socket is opened")
 
 
 def answer(program: PythonProgram | OctaveProgram, requests: IO[bytes], answers: IO[bytes]) -> None:

@@ -70,6 +70,10 @@ class PythonText:
         numbers = {name: number_in(value) for name, value in given.defaults.items()}
         return given.names, {name: value for name, value in numbers.items() if value is not None}
 
+    def keywords(self, function: str) -> list[str]:
+        """The names of the arguments that are given by keyword alone."""
+        return [one.arg for one in self.functions[function].node.args.kwonlyargs]
+
     def optional(self, function: str) -> list[str]:
         """The names of the arguments that have a default."""
         return list(self.functions[function].defaults)

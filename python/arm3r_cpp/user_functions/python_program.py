@@ -11,6 +11,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Iterator, Mapping
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,9 @@ from .sympy_expressions import function_of, is_expression
 
 Floats = NDArray[np.float64]
 LIFTED = "__arm3r_lifted__"
+_MODULE = "__formula__"
+_BARRED = "a formula reads no files but its folder's, writes none, opens no sockets and starts no processes"
+_APART = 'put what only a run of the file needs under `if __name__ == "__main__":`'
 _NUMBER = (ast.Constant, ast.UnaryOp, ast.BinOp)
 _ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.UAdd, ast.USub)  # no power or shift: they can be endless
 
@@ -182,7 +186,7 @@ class PythonProgram:
         self, values: dict[str, float], outside: Mapping[str, Any], replaced: tuple[int, Any] | None = None
     ) -> None:
         if self.given is None:
-            self.namespace = {"__name__": "__formula__", "__file__": self.file, "__builtins__": builtins}
+            self.namespace = _new_module(self.file)
         else:
             self.namespace = dict(self.given)
             self.namespace.update({name: value for name, value in values.items() if name in self.given})
@@ -245,7 +249,11 @@ class PythonProgram:
             if sys.modules.get((error.name or "").partition(".")[0], error) is None:  # it is hidden from this file
                 raise ProgramError(*self._describe(error)) from None
             raise Unread(f"imports {error.name}, which is not installed here", self._line(error)) from None
+        except PermissionError as error:
+            raise Unread(f"does what is barred, {_first_line(error)}: {_BARRED}; {_APART}", self._line(error)) from None
         except BaseException as error:
+            if isinstance(error, EOFError) and str(error) == "EOF when reading a line":
+                raise Unread(f"asks for input, and nobody answers here; {_APART}", self._line(error)) from None
             if isinstance(error, MemoryError) and not str(error):  # of the interpreter's own
                 raise ProgramError("needs too much memory") from None
             raise ProgramError(*self._describe(error)) from None
@@ -273,7 +281,7 @@ class PythonProgram:
         raise ProgramError("the edit gives no Python")
 
     def _describe(self, error: BaseException) -> tuple[str, int | None]:
-        message = str(error).split("\n")[0][:200]
+        message = _first_line(error)
         return f"raises {type(error).__name__}{f': {message}' if message else ''}", self._line(error)
 
     def _line(self, error: BaseException) -> int | None:
@@ -281,6 +289,17 @@ class PythonProgram:
             line for frame, line in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == self.file
         ]
         return lines[-1] if lines else None
+
+
+def _first_line(error: BaseException) -> str:
+    return str(error).split("\n")[0][:200]
+
+
+def _new_module(file: str) -> dict[str, Any]:
+    """The names of a module that is found by its name: `dataclass` looks for that of a class, to read annotations."""
+    module = sys.modules[_MODULE] = ModuleType(_MODULE)
+    module.__dict__.update({"__file__": file, "__builtins__": builtins})
+    return module.__dict__
 
 
 def _has_results(result: Any) -> bool:
@@ -312,6 +331,8 @@ def _numbers(result: Any, output: int | None) -> Floats:
         raise ProgramError("returns None instead of numbers")
     if hasattr(result, "tolist") and kind.endswith("Matrix"):  # sympy's
         result = result.tolist()
+    if isinstance(result, dict):
+        result = list(result.values())
     try:
         array = np.asarray(result)
         if array.dtype == object:

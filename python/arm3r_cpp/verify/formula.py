@@ -335,6 +335,7 @@ def from_text(
 
     Raises:
         UsageError: the text cannot be read, or has no such function.
+        UnjudgedError: it takes no argument by its position.
     """
     if file.endswith(MATLAB):
         return _of_matlab(program_of(text, file, function, folder, lambda names: _likely_variable(names, kind)))
@@ -344,6 +345,11 @@ def from_text(
     if name in source.functions:
         arguments, defaults = source.arguments(name)
         optional = source.optional(name)
+        if not arguments and (keywords := source.keywords(name)):
+            raise UnjudgedError(
+                f"{file}:{source.line(name)}: cannot be judged: {name} takes {keywords[0]} by keyword alone; "
+                "leave out the `*` of its arguments"
+            )
     else:
         arguments, optional, defaults = *_arguments_of(program, file, name, source), {}
     return Formula(

@@ -48,7 +48,13 @@ def test_a_right_program_is_right(name: str, judged) -> None:
 @pytest.mark.parametrize("name", sorted(FILES))
 def test_a_mistake_in_it_is_found(name: str, judged) -> None:
     need(name)
-    changes = (("cos(", "cos(0.1+"), ('"y", -q', '"y", q'), ("st*ca", "st*sa"), ("sin(", "sin(0.1+"))
+    changes = (
+        ("cos(", "cos(0.1+"),
+        ('"y", -q', '"y", q'),
+        ("st*ca", "st*sa"),
+        ("sin(", "sin(0.1+"),
+        ("exp(-1j", "exp(1j"),
+    )
     right, wrong = next(one for one in changes if one[0] in FILES[name])
     before, _, behind = FILES[name].rpartition(right)
     text = before + wrong + behind
@@ -89,6 +95,24 @@ def test_what_is_no_function_of_the_state_says_what_to_write(judged, text: str, 
 def test_what_is_not_installed_is_no_mistake(judged, head: str) -> None:
     with pytest.raises(UnjudgedError, match=r":1: cannot be judged: imports \w+, which is not installed here"):
         judged(f"{head}\ndef gravity(q):\n    return [0, 0, 0]\n", "gravity")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "open('out.txt', 'w')\ndef gravity(q): return q\n",
+            r"robot.py:1: .*Operation not permitted|Permission denied",
+        ),
+        ("import subprocess\nsubprocess.run('ls')\ndef gravity(q): return q\n", r"robot.py:2: .*a process is started"),
+        ("import socket\ndef gravity(q):\n    socket.socket()\n    return q\n", r"robot.py:3: .*a socket is opened"),
+        ("x = float(input('angle? '))\ndef gravity(q): return q\n", r"robot.py:1: .*asks for input"),
+        ("def gravity(*, q): return q\n", r"robot.py:1: .*takes q by keyword alone"),
+    ],
+)
+def test_what_the_judge_bars_is_no_mistake(judged, text: str, words: str) -> None:
+    with pytest.raises(UnjudgedError, match=words):
+        judged(text, "gravity")
 
 
 def test_what_needs_columns_gets_them(judged) -> None:

@@ -25,6 +25,13 @@ def test_right_formulas_raise_no_alarm(path: Path) -> None:
     assert found is not None and wrong_entries(path, found, verdict.convention) == set()
 
 
+def test_right_programs_by_hand_are_over_two_hundred() -> None:
+    """Each of them is judged right by a test of its own: the test above, and those of the idioms."""
+    folders = [FOLDER / "unequal", FOLDER / "lecture", FOLDER.parent / "idioms", FOLDER.parent / "python_idioms"]
+    counts = {folder.name: sum(one.suffix in (".m", ".py") for one in folder.iterdir()) for folder in folders}
+    assert sum(counts.values()) >= 200, counts
+
+
 def counted(count: int, seed: int, folder: Path, files: list[Path] = FILES) -> Counter[str]:
     """The outcomes for random mutants that differ from what is right and run."""
     outcomes: Counter[str] = Counter()
