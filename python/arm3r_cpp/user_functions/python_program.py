@@ -250,7 +250,7 @@ class PythonProgram:
                 raise ProgramError(*self._describe(error)) from None
             raise Unread(f"imports {error.name}, which is not installed here", self._line(error)) from None
         except PermissionError as error:
-            raise Unread(f"does what is barred, {_first_line(error)}: {_BARRED}; {_APART}", self._line(error)) from None
+            raise Unread(f"does what is barred: {_first_line(error)}; {_BARRED}; {_APART}", self._line(error)) from None
         except BaseException as error:
             if isinstance(error, EOFError) and str(error) == "EOF when reading a line":
                 raise Unread(f"asks for input, and nobody answers here; {_APART}", self._line(error)) from None

@@ -300,7 +300,7 @@ def tip_velocity(q_deg, qd_deg):
     )
     marks = [line.split(",")[:3] for line in table.read_text().splitlines()[1:]]
     assert ["first", "first_joint", "right"] in marks and ["second", "first_joint", "right"] in marks
-    assert "first,degrees,cannot be judged,does what is barred" in table.read_text()
+    assert "first,degrees,unclear,does what is barred in line 6" in table.read_text()
 
 
 def exercise_given(name: str) -> str:
