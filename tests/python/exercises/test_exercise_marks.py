@@ -57,7 +57,7 @@ HOSTILE = {
     "impedance.py": (
         "import os\nos.environ['PATH'] = ''\nopen('FOLDER/new', 'w').write('x')\n"
         "def controller(q, qd):\n    return q\n",
-        "raises",
+        "does what is barred",
     ),
     "admittance.py": ("def acceleration(*a):\n    return bytearray(8 << 30)\n", ""),
     "hybrid_selection.py": ("def command(x, v, x_d, f, f_d):\n    return [float('nan')] * 3\n", "returns NaN"),
