@@ -364,7 +364,7 @@ def axis_of(base: Scenario, key: str, value: Any) -> Axis:
     return Axis(key, indices, array + 0.0)
 
 
-_WORDS = {"choice": "words", "flag": "true or false", "file": "names of files"}
+_WORDS = {"choice": "words", "flag": "true or false", "file": "names of files", "arm_file": "words"}
 
 
 def same_places(key: str, other: str) -> list[str]:

@@ -81,7 +81,7 @@ def _read_value(reader: Reader, node: Node, path: str, kind: str) -> Any:
         return None if None in numbers else numbers
     if kind == "flag" and node.get("text") in ("true", "false") and not node["quoted"]:
         return node["text"] == "true"
-    if kind in ("choice", "flag", "file") or (node.get("text") == "infinite"):
+    if kind in ("choice", "flag", "file", "arm_file") or node.get("text") == "infinite":
         return reader.word(node, path)
     return reader.number(node, path, degrees=kind == "angle")
 

@@ -18,10 +18,12 @@ from ..core.scenario import flow as flow_of
 from ..errors import Arm3rError, IncompatibleError, ScenarioError, UsageError
 from .axes import MODES, SweepAxis, values_of
 from .axis_reader import MAX_RUNS, read_axes
-from .shard import STATISTICS, Statistic
+from .shard import STATISTICS, Statistic, is_of_arm
 from .yaml_reader import Node, Reader, below, flow, position, quoted
 
 FORMAT = 1
+FILE = "arm.urdf"
+ARM_ERROR = "scenario.arm_file"
 MAX_COMBINATIONS_TRIED = 256
 KEYS = {
     "format": "Version of this format.",
@@ -106,6 +108,23 @@ class Sweep:
         """The values of every axis in `count` runs from run `first`: arrays by key, a row a run."""
         count = self.runs - first if count is None else count
         return values_of(self.axes, self.mode, self.seed, self.runs, first, count)
+
+    def arms(self) -> dict[tuple[str, ...], Scenario]:
+        """The scenario with each arm, by the values of the axes that tell it; empty where none does.
+
+        An arm's file lies beside that of the sweep.
+        """
+        axes = [axis for axis in self.axes if is_of_arm(axis.key)]
+        combined = zip(*(axis.items for axis in axes), strict=True) if self.mode == "list" else product(
+            *(axis.items for axis in axes)
+        )  # fmt: skip
+        found = {}
+        for words in combined if axes else ():
+            found[words] = scenario = self.scenario.copy()
+            scenario["checks"] = []
+            for axis, word in zip(axes, words, strict=True):
+                scenario[axis.key] = str(Path(self.file).parent.absolute() / word) if axis.key == FILE else word
+        return found
 
 
 # ---- the file's keys ------------------------------------------------------------------------------------------------
@@ -273,7 +292,7 @@ def _check_axes(reader: Reader, top: dict[str, Node], sweep: Sweep) -> None:
             scenario.validate()
         except ScenarioError as error:
             for problem in error.problems:
-                if problem["code"] in AXIS_ERRORS:
+                if problem["code"] in (*AXIS_ERRORS, ARM_ERROR):
                     at = next((node for key, node in nodes.items() if _same(key, problem["path"])), top["axes"])
                     more = {name: problem[name] for name in ("got", "allowed", "hint")}
                     reader.problem(at, problem["code"], problem["path"], problem["message"], **more)
@@ -284,8 +303,9 @@ def _combinations(sweep: Sweep, first: dict[str, Any]) -> Iterator[Scenario]:
     """The scenario with every combination of words and flags, and the first of all numbers."""
     words = [axis for axis in sweep.axes if axis.rule == "values" and isinstance(axis.items[0], (str, bool))]
     numbers = {axis.key: first[axis.key][0] for axis in sweep.axes if axis not in words}
-    for chosen in product(*(axis.items for axis in words)):
-        scenario = sweep.scenario.copy()
+    words = [axis for axis in words if not is_of_arm(axis.key)]
+    for base, *chosen in product(sweep.arms().values() or [sweep.scenario], *(axis.items for axis in words)):
+        scenario = base.copy()
         scenario["checks"] = []
         for key, value in [*zip((axis.key for axis in words), chosen, strict=True), *numbers.items()]:
             scenario[key] = int(value) if param_key(places()[key][0]).kind == "integer" else value

@@ -109,6 +109,7 @@ def _first_job(plan: Sweep, table: str, controller: str | os.PathLike[str] | Non
         version=_native.version,
         abi=_native.lib.arm3r_abi_version(),
         controller=None if controller is None else _block(controller, plan),
+        arms={words: one.to_yaml() for words, one in plan.arms().items()},
     )
 
 
@@ -159,6 +160,7 @@ def _manifest(plan: Sweep, job: ShardJob) -> dict[str, Any]:
             "sweep": sha256(plan.text.encode()),
             "scenario": sha256(job.scenario.encode()),
             **({"controller": sha256(job.controller.text.encode())} if job.controller else {}),
+            **({"arms": sha256("".join(job.arms.values()).encode())} if job.arms else {}),
         },
         **({"controller": job.controller.function} if job.controller else {}),
         "runs": plan.runs,

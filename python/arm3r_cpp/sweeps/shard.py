@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,8 +14,9 @@ from numpy.typing import NDArray
 
 from .. import _native
 from .._native import Floats
-from ..answers.refusals import Refusal
+from ..answers.refusals import Refusal, merged
 from ..core.batch import Batch, run_batch
+from ..core.params import param_key, places
 from ..core.run import Run
 from ..core.scenario import Scenario
 from ..errors import Arm3rError, BudgetError, IncompatibleError
@@ -49,7 +51,10 @@ class Statistic(NamedTuple):
 
 @dataclass(frozen=True)
 class ShardJob:
-    """What a worker receives: text and numbers only; `controller`: a function in a file, which is a text, too."""
+    """What a worker receives: text and numbers only; `controller`: a function in a file, which is a text, too.
+
+    arms: of a sweep over files of arms, the scenario with each of them, by the values of these axes.
+    """
 
     first: int
     scenario: str
@@ -61,6 +66,7 @@ class ShardJob:
     version: str
     abi: int
     controller: Block | None = None
+    arms: Mapping[tuple[str, ...], str] = field(default_factory=dict)
 
 
 class ShardResult(NamedTuple):
@@ -91,16 +97,58 @@ def run_shard(job: ShardJob, progress: Callable[[int, int], Any] | None = None) 
 
 
 def _computed(job: ShardJob, progress: Callable[[int, int], Any] | None) -> ShardResult:
+    """The parts of a shard, a part for each arm, put together."""
+    runs = len(next(iter(job.values.values())))
+    places_of: list[NDArray[Any]] = []
+    parts, refusals, done = [], [], 0
+    for rows, scenario, values in _parts(job, np.arange(runs)):
+        part_progress = progress and partial(_later, progress, done, runs)
+        batch = _batch(job, Scenario(scenario, file=job.file)._quiet(), len(rows), values, part_progress)
+        part = {"outcome": batch.outcomes, **{name: batch[name] for name in job.metrics}}
+        parts.append(part | _statistics(job.statistics, batch, part_progress))
+        places_of.append(rows)
+        done += len(rows)
+        refusals.append(batch.refusals())
+    order = np.argsort(np.concatenate(places_of))
+    columns = {"run": np.arange(job.first, job.first + runs), **_axes(job)}
+    columns |= {name: np.concatenate([part[name] for part in parts])[order] for name in parts[0]}
+    data = encode(columns, job.table, lambda: progress and progress(runs, runs))
+    return ShardResult(data, dict(sorted(Counter(columns["outcome"].tolist()).items())), merged(refusals))
+
+
+def _later(progress: Callable[[int, int], Any], before: int, runs: int, runs_done: int, _: int) -> Any:
+    return progress(before + runs_done, runs)
+
+
+def _parts(job: ShardJob, rows: NDArray[Any]) -> Iterator[tuple[NDArray[Any], str, dict[str, NDArray[Any]]]]:
+    """The rows with one arm, the scenario with it, and what else varies."""
+    keys = [key for key in job.values if is_of_arm(key)]
+    if not keys:
+        yield rows, job.scenario, job.values
+        return
+    words = list(zip(*(job.values[key].tolist() for key in keys), strict=True))
+    for chosen, text in job.arms.items():
+        here = rows[[one == chosen for one in words]]
+        if len(here):
+            yield here, text, {key: values[here] for key, values in job.values.items() if key not in keys}
+
+
+def is_of_arm(key: str) -> bool:
+    """Whether it is a word of the file of an arm: its numbers stand in the scenario, and are other ones with it."""
+    return param_key(places()[key][0]).kind == "arm_file"
+
+
+def _batch(
+    job: ShardJob,
+    scenario: Scenario,
+    runs: int,
+    values: dict[str, NDArray[Any]],
+    progress: Callable[[int, int], Any] | None,
+) -> Batch:
     counts_later = progress and (lambda runs_done, runs: progress(0, runs))  # statistics run each of them once more
-    scenario = Scenario(job.scenario, file=job.file)._quiet()
+    values = values or {"time.stop": np.full(runs, scenario["time.stop"])}  # nothing but the arm varies
     report = counts_later if job.statistics else progress
-    batch = run_batch(scenario, job.values, threads=1, progress=report, controller=job.controller, metrics=job.metrics)
-    outcomes = batch.outcomes
-    columns = {"run": np.arange(job.first, job.first + len(batch)), **_axes(job), "outcome": outcomes}
-    columns |= {name: batch[name] for name in job.metrics}
-    columns |= _statistics(job.statistics, batch, progress)
-    data = encode(columns, job.table, lambda: progress and progress(len(batch), len(batch)))
-    return ShardResult(data, dict(sorted(Counter(outcomes.tolist()).items())), batch.refusals())
+    return run_batch(scenario, values, threads=1, progress=report, controller=job.controller, metrics=job.metrics)
 
 
 def columns_of(job: ShardJob) -> list[str]:
