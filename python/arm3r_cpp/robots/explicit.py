@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from textwrap import fill
 from typing import Any, NamedTuple
 
@@ -67,7 +68,19 @@ def own_arm(choice: Choice) -> OwnArm:
             raise UsageError(f"{urdf.file}: {links[0]} has no {what}: give {keys} beside arm.urdf")
     for sentence in _doubts(urdf, chain):
         warn_user(f"{urdf.file}: {sentence}", ScenarioWarning)
-    return OwnArm(elbow, chain, _text(elbow, chain, urdf.file))
+    text = _text(elbow, chain, urdf.file)
+    if choice.given.issuperset(_paths(text)):
+        said = "all that it says of the arm is given beside arm.urdf, and replaces it"
+        raise UsageError(f"{urdf.file}: nothing of this file is used: {said}; take those keys of the arm out")
+    return OwnArm(elbow, chain, text)
+
+
+def _paths(text: str) -> Iterator[str]:
+    """Those of the keys: "model", "link2", "link2.mass"."""
+    section = ""
+    for blanks, key in re.findall(r"^( *)(\w+):", text, re.M):
+        section = section if blanks else key
+        yield f"{section}.{key}" if blanks else key
 
 
 def _doubts(urdf: Urdf, chain: Serial) -> Iterable[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable
@@ -92,6 +93,15 @@ def test_what_is_wrong_is_said_at_its_line(
     told = called(scripts / "arm3r", "run", scenario)
     assert told.returncode == 3 and words in told.stderr and "own.yaml:" in told.stderr
     assert "Traceback" not in told.stderr
+
+
+def test_a_file_of_which_nothing_is_used_is_refused(scenario: Path) -> None:
+    """A resolved scenario gives all keys: another file beside them would change nothing, without a word."""
+    resolved = Scenario(Scenario.load(scenario).to_yaml())
+    for text in (resolved, pickle.loads(pickle.dumps(Scenario.load(scenario)))):
+        text["arm.urdf"], text["arm.lock"] = str(scenario.parent / "arm.urdf"), {"wrist": 0}
+        with pytest.raises(ScenarioError, match="nothing of this file is used: all that it says of the arm is given"):
+            text.validate()
 
 
 @pytest.fixture
