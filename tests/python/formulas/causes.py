@@ -156,7 +156,31 @@ def _for(known: Known, *places: tuple[str, str]) -> Floats:
     return known.of_arm(**changes)
 
 
-_FACTORS = {"twice": 2.0, "half": 0.5, "1000 times": 1e3, "a thousandth": 1e-3, "1e6 times": 1e6}
+def _other_angle(known: Known, words: Words) -> Floats:
+    joint = int(words[1]) - 1
+    factor = {"half": 0.5, "twice": 2.0}.get(words[2], 1.0)
+    added = np.deg2rad({"90 degrees too large": 90, "90 degrees too small": -90, "180 degrees": 180}.get(words[2], 0))
+    return known.with_angle(joint, lambda q: factor * q[:, joint] + added)
+
+
+def _by_mass_matrix(known: Known, words: Words) -> Floats:
+    """With the mass matrix of the arm, from accelerations that three torques give beside none."""
+    n = known.due.shape[1]
+    zero = known.due_of({**known.states, "tau": 0 * known.states["tau"]}, {})
+    inverse = np.empty((len(zero), n, n))
+    for joint in range(n):
+        inverse[:, :, joint] = known.due_of({**known.states, "tau": 0 * zero + np.eye(n)[joint]}, {}) - zero
+    return np.linalg.solve(inverse, np.linalg.solve(inverse, known.due[..., None]))[..., 0]
+
+
+_FACTORS = {
+    "twice": 2.0,
+    "half": 0.5,
+    "1000 times": 1e3,
+    "a thousandth": 1e-3,
+    "1e6 times": 1e6,
+    "pi/180 times": np.pi / 180,
+}
 _SENTENCES: tuple[tuple[str, Callable[[Known, Words], Floats]], ...] = (
     ("the angles are taken in degrees; .*", lambda known, words: known.at(np.deg2rad(known.states["q"]))),
     ("the angles are turned into degrees before .*", lambda known, words: known.at(np.rad2deg(known.states["q"]))),
@@ -169,6 +193,9 @@ _SENTENCES: tuple[tuple[str, Callable[[Known, Words], Floats]], ...] = (
     ),
     (r"q(\d) is taken in .*", _in_another_unit),
     (r"q(\d) is taken as the absolute angle of its link; .*", _absolute),
+    (r"q(\d) is taken (half|twice|90 degrees too large|90 degrees too small|180 degrees).*", _other_angle),
+    ("the matrix is the inverse of what it should be", lambda known, words: np.linalg.inv(known.due)),
+    ("the result is multiplied by the mass matrix; .*", _by_mass_matrix),
     (r"the joints are taken in the order .*", _in_order),
     ("the result has the wrong sign", lambda known, words: -known.due),
     ("the result is in degrees; .*", lambda known, words: np.rad2deg(known.due)),

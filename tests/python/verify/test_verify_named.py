@@ -175,3 +175,49 @@ def test_mistakes_of_one_link_of_an_elbow_arm_have_their_names() -> None:
         other = scenario_of({**WITH_OFFSETS, "link2": {**link, **change}}).arm
         verdict = verify.mass(lambda q, other=other: other.mass_matrix(q), scenario_of(WITH_OFFSETS))
         assert not verdict.ok and all(words in one.cause for one in verdict.findings), str(verdict)
+
+
+# ---- of the whole: functions without a text --------------------------------------------------------------------------
+
+
+WHOLE = {
+    "q2 is taken 90 degrees too large: it counts from another direction": lambda arm, q: arm.jacobian(
+        q + [0, np.pi / 2, 0]
+    ),
+    "q3 is taken 90 degrees too small: it counts from another direction": lambda arm, q: arm.jacobian(
+        q - [0, 0, np.pi / 2]
+    ),
+    "q1 is taken 180 degrees off: it counts from the opposite direction": lambda arm, q: arm.jacobian(
+        q + [np.pi, 0, 0]
+    ),
+    "q2 is taken half as large as it is": lambda arm, q: arm.jacobian(q * [1, 0.5, 1]),
+    "q3 is taken twice as large as it is": lambda arm, q: arm.jacobian(q * [1, 1, 2]),
+    "the matrix is the inverse of what it should be": lambda arm, q: np.linalg.inv(arm.jacobian(q)),
+    "the result is pi/180 times what it should be: per degree?": lambda arm, q: np.deg2rad(arm.jacobian(q)),
+}
+
+
+@pytest.mark.parametrize("words", WHOLE)
+def test_a_mistake_of_the_whole_is_named_without_a_text(words: str) -> None:
+    scenario = arm_of("unequal", "simscape")
+    verdict = verify.jacobian(lambda q: WHOLE[words](scenario.arm, np.asarray(q)), scenario)
+    assert not verdict.ok and f"entries: {words}" in str(verdict), str(verdict)
+
+
+def test_a_mass_matrix_in_the_place_of_its_inverse_is_named() -> None:
+    scenario = arm_of("unequal", "simscape")
+    arm = scenario.arm
+
+    def forward(q, qd, tau):
+        return arm.mass_matrix(q) @ (tau - arm.velocity_product(q, qd) - arm.gravity_torque(q))
+
+    words = "the result is multiplied by the mass matrix; it should be by its inverse"
+    assert f"qdd1, qdd2, qdd3: {words}" in str(verify.forward(forward, scenario))
+
+
+def test_the_sign_of_the_result_is_named_before_that_of_all_angles() -> None:
+    """Both are so of velocity products, which are odd."""
+    scenario = arm_of("unequal", "simscape")
+    verdict = verify.coriolis(lambda q, qd: -scenario.arm.velocity_product(q, qd), scenario)
+    assert "h1, h2, h3: the result has the wrong sign" in str(verdict)
+    assert "also possible: all joint angles have the wrong sign" in str(verdict)

@@ -46,10 +46,22 @@ def hypotheses(
     yield from _angles(truth, states, revolute, kind, in_degrees)
     yield from _order(truth, states, len(revolute))
     yield from _outputs(kind, lambda: truth(states, {}), len(revolute), pose)
+    if kind.name == "forward":
+        words = "the result is multiplied by the mass matrix; it should be by its inverse"
+        yield Hypothesis(words, lambda: _by_mass_matrix(truth, states))
     if kind.is_product:
         for words, values in of_other_indices(lambda qd: truth({**states, "qd": qd}, {}), states["qd"]):
             yield Hypothesis(words, values, 2)
     yield from (Hypothesis(*one) for one in of_other_quantities(kind, truth, states, given))
+
+
+_WRONG_ANGLES: dict[str, Callable[[Floats], Floats]] = {
+    "90 degrees too large: it counts from another direction": lambda q: q + np.pi / 2,
+    "90 degrees too small: it counts from another direction": lambda q: q - np.pi / 2,
+    "180 degrees off: it counts from the opposite direction": lambda q: q + np.pi,
+    "half as large as it is": lambda q: q / 2,
+    "twice as large as it is": lambda q: 2 * q,
+}
 
 
 def _angles(
@@ -72,13 +84,15 @@ def _angles(
         yield Hypothesis("the angles are taken in degrees; they should be in radians", with_q(np.deg2rad))
         words = "the angles are turned into degrees before they are used; they should stay in radians"
         yield Hypothesis(words, with_q(np.rad2deg))
-    yield Hypothesis("all joint angles have the wrong sign", with_q(np.negative))
+    yield Hypothesis("all joint angles have the wrong sign", with_q(np.negative), 2)
     units, change = (("radians", "degrees"), np.rad2deg) if in_degrees else (("degrees", "radians"), np.deg2rad)
     for joint in range(len(revolute)):
         yield Hypothesis(f"q{joint + 1} has the wrong sign", with_q(np.negative, [joint]), 2)
         if revolute[joint]:
             words = f"q{joint + 1} is taken in {units[0]}; it should be in {units[1]}"
             yield Hypothesis(words, with_q(change, [joint]), 2)
+            yield from (Hypothesis(f"q{joint + 1} is taken {words}", with_q(wrong, [joint]), 2)
+                        for words, wrong in _WRONG_ANGLES.items())  # fmt: skip
     for joint in turning:
         if joint - 1 in turning:
             yield from _of_two_links(partial(with_q, joints=[joint]), q, joint, kind)
@@ -96,6 +110,15 @@ def _of_two_links(
     yield Hypothesis(words, absolute)
     if kind.is_derivative:
         yield Hypothesis(f"{words} (and in the derivatives, too)", partial(_absolute_columns, absolute, joint))
+
+
+def _by_mass_matrix(truth: Truth, states: States) -> Floats:
+    """M (tau - h - g), from qdd = M^-1 (tau - h - g), whose change with the torque is M^-1."""
+    still, right = (truth({**states, "tau": tau}, {}) for tau in (np.zeros_like(states["tau"]), states["tau"]))
+    units = np.eye(still.shape[1])
+    moved = [truth({**states, "tau": np.broadcast_to(one, still.shape)}, {}) - still for one in units]
+    mass = np.linalg.inv(np.stack(moved, axis=2))
+    return np.asarray((mass @ mass @ right[..., None])[..., 0])
 
 
 def _order(truth: Truth, states: States, joints: int) -> Iterator[Hypothesis]:
@@ -127,6 +150,7 @@ def _outputs(
         (1000, "1000 times what it should be: millimetres?"),
         (1e-3, "a thousandth of what it should be"),
         (1e6, "1e6 times what it should be: millimetres?"),
+        (np.pi / 180, "pi/180 times what it should be: per degree?"),
     ):
         yield Hypothesis(f"the result is {words}", partial(np.multiply, factor, values), 2, is_of_result=True)
     for row in range(rows):
@@ -145,6 +169,7 @@ def _outputs(
     if values.ndim == 3:
         if rows == values.shape[2]:
             yield Hypothesis("the matrix is transposed", lambda: np.swapaxes(values, 1, 2))
+            yield Hypothesis("the matrix is the inverse of what it should be", lambda: np.linalg.inv(values))
         for column in range(joints):
             signs = np.where(np.arange(joints) == column, -1.0, 1.0)
             yield Hypothesis(f"column {column + 1} has the wrong sign", partial(np.multiply, values, signs))
