@@ -182,13 +182,13 @@ def test_mistakes_of_one_link_of_an_elbow_arm_have_their_names() -> None:
 
 WHOLE = {
     "q2 is taken 90 degrees too large: it counts from another direction": lambda arm, q: arm.jacobian(
-        q + [0, np.pi / 2, 0]
+        np.add(q, [0, np.pi / 2, 0])
     ),
     "q3 is taken 90 degrees too small: it counts from another direction": lambda arm, q: arm.jacobian(
-        q - [0, 0, np.pi / 2]
+        np.add(q, [0, 0, -np.pi / 2])
     ),
     "q1 is taken 180 degrees off: it counts from the opposite direction": lambda arm, q: arm.jacobian(
-        q + [np.pi, 0, 0]
+        np.add(q, [np.pi, 0, 0])
     ),
     "q2 is taken half as large as it is": lambda arm, q: arm.jacobian(q * [1, 0.5, 1]),
     "q3 is taken twice as large as it is": lambda arm, q: arm.jacobian(q * [1, 1, 2]),
@@ -202,6 +202,21 @@ def test_a_mistake_of_the_whole_is_named_without_a_text(words: str) -> None:
     scenario = arm_of("unequal", "simscape")
     verdict = verify.jacobian(lambda q: WHOLE[words](scenario.arm, np.asarray(q)), scenario)
     assert not verdict.ok and f"entries: {words}" in str(verdict), str(verdict)
+
+
+def test_rows_in_the_frame_of_a_link_are_named() -> None:
+    """A Jacobian of r and z before it is turned by q1 is in a frame that moves with link 1."""
+    scenario = arm_of("unequal", "simscape")
+
+    def jacobian(q, joints):
+        pitch = sum(q[1:joints])
+        c, s, cp, sp = np.cos(q[0]), np.sin(q[0]), np.cos(pitch), np.sin(pitch)
+        turned = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ [[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]]
+        return turned.T @ scenario.arm.jacobian(q)
+
+    for link in (1, 2):
+        verdict = verify.jacobian(lambda q, link=link: jacobian(q, link), scenario)
+        assert f"the rows are in a frame that moves with link {link}; they should be in the base frame" in str(verdict)
 
 
 def test_a_mass_matrix_in_the_place_of_its_inverse_is_named() -> None:

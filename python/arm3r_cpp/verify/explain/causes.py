@@ -9,6 +9,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from ..._native import Floats
 from ...user_functions.expressions import FunctionCall, Index, Name, Node
 from ...user_functions.programs import Edit, ProgramError, line_and_column
@@ -170,10 +172,14 @@ def _hypotheses(case: Comparison) -> list[Hypothesis]:
 
 
 def _pose(case: Comparison, samples: Samples) -> Pose:
-    """Of the tip and the joints' axes."""
-    rotation = case.truth.rotation(case.convention, samples.tiled("q"))
+    """Of the tip, the joints' axes and the links: a link's axes are the tip's where all later joints are at zero."""
+    q = samples.tiled("q")
+    rotation, *links = (
+        case.truth.rotation(case.convention, np.where(np.arange(q.shape[1]) < moving, q, 0.0))
+        for moving in (q.shape[1], *range(1, q.shape[1]))
+    )
     position = case.due_of(KINDS["kinematics"], samples, rows=SPATIAL)
-    return Pose(rotation, position, case.due_of(KINDS["jacobian"], samples, rows=ANGULAR))
+    return Pose(rotation, position, case.due_of(KINDS["jacobian"], samples, rows=ANGULAR), links)
 
 
 def repairs_of(

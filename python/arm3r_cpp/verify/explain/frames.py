@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import permutations, product
 from typing import NamedTuple
@@ -26,6 +26,8 @@ class Pose(NamedTuple):
     """(S, 3), of the tip, m"""
     axes: Floats
     """(S, 3, n), of the joints; zero for prismatic ones"""
+    links: Sequence[Floats] = ()
+    """(S, 3, 3) each, of axes that move with link 1, 2, ... up to the last but one"""
 
 
 def of_other_frames(values: Floats, pose: Pose) -> Iterator[Mistake]:
@@ -41,6 +43,9 @@ def of_other_frames(values: Floats, pose: Pose) -> Iterator[Mistake]:
         which = "the tip's frame" if number == 0 else "a frame that moves with the tip"
         words = f"the rows are in {which}; they should be in the base frame{also}"
         yield words, partial(_rotated, rotation @ axes, rows), 1 + (number > 0) + bool(also)
+    for (number, link), axes in product(enumerate(pose.links, 1), _AXES):
+        words = f"the rows are in a frame that moves with link {number}; they should be in the base frame"
+        yield words, partial(_rotated, link @ axes, values), 2
     if values.shape[1] == 6:
         across = np.cross(values[:, 3:], position[:, :, None], axis=1)
         whole = np.concatenate([values[:, :3] - across, values[:, 3:]], axis=1)

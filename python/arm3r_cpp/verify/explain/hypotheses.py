@@ -46,7 +46,7 @@ def hypotheses(
     yield from _angles(truth, states, revolute, kind, in_degrees)
     yield from _order(truth, states, len(revolute))
     yield from _outputs(kind, lambda: truth(states, {}), len(revolute), pose)
-    if kind.name == "forward":
+    if "tau" in kind.inputs:
         words = "the result is multiplied by the mass matrix; it should be by its inverse"
         yield Hypothesis(words, lambda: _by_mass_matrix(truth, states))
     if kind.is_product:
@@ -169,7 +169,9 @@ def _outputs(
     if values.ndim == 3:
         if rows == values.shape[2]:
             yield Hypothesis("the matrix is transposed", lambda: np.swapaxes(values, 1, 2))
-            yield Hypothesis("the matrix is the inverse of what it should be", lambda: np.linalg.inv(values))
+            yield Hypothesis(
+                "the matrix is the inverse of what it should be", lambda: np.asarray(np.linalg.inv(values), np.float64)
+            )
         for column in range(joints):
             signs = np.where(np.arange(joints) == column, -1.0, 1.0)
             yield Hypothesis(f"column {column + 1} has the wrong sign", partial(np.multiply, values, signs))
