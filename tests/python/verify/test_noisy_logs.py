@@ -136,6 +136,25 @@ def test_noise_is_no_mistake_and_hides_none_in_many(part: int, tmp_path: Path) -
     hold(500, sample_seed() + 1000 * part, tmp_path)
 
 
+@pytest.mark.parametrize("kind", ["gravity", "inverse", "kinematics"])
+def test_a_few_spikes_are_no_mistake_and_hide_none(kind: str, tmp_path: Path) -> None:
+    rng = np.random.default_rng(sample_seed())
+    for number in range(4):
+        at = states(int(rng.integers(200, 2001)), moves=bool(rng.integers(2)), rng=rng)
+        due = TRUTH.values(KINDS[kind], TRUTH.convention, at, {})[:, :3]
+        size = np.abs(due).max()
+        measured = white(due, 1e-3 * size, rng)
+        rows = rng.choice(len(measured), int(rng.integers(1, 0.03 * len(measured))), replace=False)
+        measured[rows, rng.integers(3)] += rng.uniform(5, 50, len(rows)) * size
+        verdict = formula_verdict(written(tmp_path / "log.csv", kind, at, measured), kind)
+        assert verdict.ok, (number, str(verdict))
+        lines = ", ".join(str(row + 2) for row in sorted(rows)[:5])
+        assert any(f"far from all others, as spikes are, left out: line {lines}" in one for one in verdict.warnings)
+        entry = int(np.abs(due).max(axis=0).argmax())
+        measured[:, entry] += 0.1 * size * np.cos(at["q"][:, 1])
+        assert not formula_verdict(written(tmp_path / "log.csv", kind, at, measured), kind).ok, number
+
+
 def test_the_friction_of_joints_is_no_mistake_and_is_said(tmp_path: Path) -> None:
     seed = sample_seed()
     for number in range(6):

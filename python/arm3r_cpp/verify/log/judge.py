@@ -16,13 +16,14 @@ from ..finding import Finding
 from ..kinds import Kind
 from ..names import SHORT, quantities_of
 from ..verdict import Verdict
-from .noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, noise_of, quantum
+from .noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, noise_of, quantum, spikes_of
 from .reading import Log
 
 _LARGER = 4.0  # than the noise of the other entries: then an entry holds what is no such sum
 _OF_STATES = 2.0  # times what the noise of the states makes of an entry: nothing smaller is told from it
 _OF_TYPICAL = 1e-4  # of an entry's size at any states: torques that cancel leave rounding of that
 _STILL = 1e-3  # rad or m: less is no motion
+_MOST_SPIKES = 0.05  # of the rows
 _NO_NOISE = 0.1  # of the largest entry: no measurement is meant to be as bad
 
 
@@ -49,6 +50,8 @@ class _Candidate:
     verdict: Verdict
     undecided: dict[str, float] = field(default_factory=dict)
     """The entries that are far off, by what follows nothing, and how far."""
+    spikes: set[int] = field(default_factory=set)
+    """The rows of these entries that lie far from all others."""
 
     @property
     def doubt(self) -> int:
@@ -65,12 +68,12 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
     Raises:
         UnjudgedError: the rows are too few, or what they hold has nothing to do with what is due.
     """
-    best = _judged(log, kind, truth, noise)
-    if best.doubt and log.may_be_degrees:
-        other = _judged(log.in_radians(), kind, truth, noise)
-        if other.doubt < best.doubt:
-            best = other
-            best.verdict.found.append("angles in degrees")
+    best, log = _in_units(log, kind, truth, noise)
+    if best.undecided and 0 < len(best.spikes) <= _MOST_SPIKES * len(log.lines):
+        quieter = log.without(sorted(best.spikes))
+        without = _judged(quieter, kind, truth, noise)
+        if not without.undecided:
+            best, log = without, quieter
     verdict = best.verdict
     if len(next(iter(log.columns.values()))) < FEWEST_ROWS:
         raise UnjudgedError(
@@ -89,6 +92,17 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
     _compare_with_other_convention(verdict, log, kind, truth, noise)
     verdict.warnings += log.notes()
     return verdict
+
+
+def _in_units(log: Log, kind: Kind, truth: Any, noise: float | None) -> tuple[_Candidate, Log]:
+    """The verdict on the log, or on it with its angles taken for degrees, and that log."""
+    best = _judged(log, kind, truth, noise)
+    if best.doubt and log.may_be_degrees:
+        other = _judged(log.in_radians(), kind, truth, noise)
+        if other.doubt < best.doubt:
+            other.verdict.found.append("angles in degrees")
+            return other, log.in_radians()
+    return best, log
 
 
 def _compare_with_other_convention(verdict: Verdict, log: Log, kind: Kind, truth: Any, noise: float | None) -> None:
@@ -221,6 +235,7 @@ def _candidate(case: _Case, convention: str) -> _Candidate:
             quiet += [] if words else [sizes[place] / flat.max()]
             if not words and _rms(one) > _NO_NOISE * flat.max():
                 found.undecided[_name(kind, place)] = float(np.abs(one).max())
+                found.spikes |= spikes_of(one)
             continue
         size = max(float(flat[place]) * level, same) if noise is None else float(flat[place]) * noise
         verdict.findings.append(_finding(kind, place, case.fitted.get(place), rights[place], left[place], size))

@@ -15,6 +15,8 @@ SUSPECT, CERTAIN, CERTAIN_IF_WHITE = 5.0, 7.0, 20.0  # standard deviations of a 
 FEWEST_ROWS = 8
 _MOST_FEATURES = 4000
 _MOST_CHOSEN = 6
+_SPIKE = 12.0  # standard deviations
+_ROUNDING = 1e-9
 _HALF = 0.5 * (1 + 1e-6)  # of a step: the largest error of rounding
 _DIFFERENCES = 6  # the order of those in which a smooth motion vanishes
 _SMOOTH = 0.3  # of its own size: what has more is no motion in the order of its rows
@@ -53,6 +55,13 @@ def noise_of(states: Mapping[str, Floats]) -> dict[str, Floats]:
     }
     moves = np.std(states["q"], axis=0)
     return sizes if (sizes["q"] <= _SMOOTH * moves).all() else {}
+
+
+def spikes_of(left: Floats) -> set[int]:
+    """The rows that lie farther from the median than any noise does; none of what is exact in most rows."""
+    off = np.abs(left - np.median(left))
+    typical = 1.4826 * float(np.median(off))  # the standard deviation of normal noise
+    return set(np.flatnonzero(off > _SPIKE * typical).tolist()) if typical > _ROUNDING * off.max() else set()
 
 
 def quantum(values: Floats) -> float:

@@ -38,6 +38,10 @@ class Log(NamedTuple):
     says_unit_of_angles: bool
     others: list[str]
     """The columns that are not known."""
+    lines: list[int]
+    """Of the rows."""
+    spikes: Sequence[int] = ()
+    """The lines that are left out for lying far from all others."""
 
     def vector(self, name: str, joints: int) -> Floats | None:
         """name1, name2, ...: (rows, joints); None where a column is missing."""
@@ -71,16 +75,28 @@ class Log(NamedTuple):
         factor = {name: math.pi / 180 for name in self.columns if re.fullmatch(r"q(d|dd)?\d", name)}
         return self._replace(columns={name: factor.get(name, 1.0) * one for name, one in self.columns.items()})
 
+    def without(self, spikes: Sequence[int]) -> Log:
+        """The log without some of its rows, which lie far from all others."""
+        kept = np.delete(np.arange(len(self.lines)), spikes)
+        return self._replace(
+            columns={name: one[kept] for name, one in self.columns.items()},
+            lines=[self.lines[row] for row in kept],
+            spikes=[self.lines[row] for row in spikes],
+        )
+
     def notes(self) -> list[str]:
         """What was taken for what, and left out."""
         found = []
         if self.meant:
             found.append("read as " + ", ".join(f"{one.name}: {one.given}" for one in self.meant))
-        if self.left_out:
-            lines = ", ".join(map(str, self.left_out[:5])) + (", ..." if len(self.left_out) > 5 else "")
-            rows = f"{len(self.left_out)} row{'s' if len(self.left_out) > 1 else ''}"
-            word = "row" if self.file.endswith(ARRAYS) else "line"
-            found.append(f"{rows} with NaN or infinity left out: {word} {lines}")
+        word = "row" if self.file.endswith(ARRAYS) else "line"
+        for lines, what in (
+            (self.left_out, "with NaN or infinity"),
+            (self.spikes, "far from all others, as spikes are,"),
+        ):
+            if lines:
+                shown_ones = ", ".join(map(str, lines[:5])) + (", ..." if len(lines) > 5 else "")
+                found.append(f"{len(lines)} row{'s' * (len(lines) > 1)} {what} left out: {word} {shown_ones}")
         return found
 
     def entries(self, kind: Kind) -> dict[tuple[int, ...], Floats]:
@@ -161,6 +177,7 @@ def read_log(path: str | os.PathLike[str], called: Mapping[str, str] | None = No
         [column for _, column in known if column.given != column.name],
         any(column.has_unit for _, column in known if column.name == "q1"),
         [column.given for column in named if not is_known(column.name)],
+        [line for line, one in zip(table.lines, finite, strict=True) if one],
     )
 
 
