@@ -32,6 +32,10 @@ _OF_WORD = {word: quantity for quantity, words in _QUANTITIES.items() for word i
 _WORDS = "|".join(sorted(_OF_WORD, key=len, reverse=True))
 _INDEXED = re.compile(rf"(?:actual_|measured_|meas_)?({_WORDS})_?[\[({{]?(\d)[\])}}]?")
 _ENTRY = re.compile(r"([A-Za-z]+)_?[\[({]?(\d)(?:[,_ ]|\]\[|, )?(\d)?[\])}]?")
+_TIP = re.compile(
+    r"(?:(?:actual|measured|meas)_)?(?:tcp|tip|ee|eef|end_effector|tool)_?(?:pose|pos|position)[_.]?[\[(]?([0-6xyz])[\])]?",
+    re.IGNORECASE,
+)
 _DOTTED = re.compile(r"(q|theta)_?(\d)_?(d?)dot")
 _OF_JOINT = re.compile(rf"(.*?)[_ ]?({_WORDS})")
 
@@ -75,6 +79,9 @@ def columns_of(
     }
     meant = _numbered(joints) | _entries(
         {place: bare for place, (bare, _) in enumerate(parted) if place not in joints}, is_known
+    )
+    meant |= _of_tip(
+        {place: bare for place, (bare, _) in enumerate(parted) if place not in meant and bare not in called}
     )
     own = {bare for place, (bare, _) in enumerate(parted) if place not in meant and is_known(bare)}
     own |= set(called.values())
@@ -128,6 +135,14 @@ def _entries(names: Mapping[int, str], is_known: Callable[[str], bool]) -> dict[
         for place, name in meant.items()
         if is_known(name) and (indexed[place][1] in from_0 or not is_known(names[place]))
     }
+
+
+def _of_tip(names: Mapping[int, str]) -> dict[int, str]:
+    """tip_x for tcp_pose_0, whose first three numbers are the position; they may be counted from 1."""
+    letters = {place: found[1].lower() for place, name in names.items() if (found := _TIP.fullmatch(name))}
+    first = 0 if "0" in letters.values() else 1
+    of_letter = {str(first + axis): letter for axis, letter in enumerate("xyz")} | {letter: letter for letter in "xyz"}
+    return {place: f"tip_{of_letter[one]}" for place, one in letters.items() if one in of_letter}
 
 
 def _numbered(joints: Mapping[int, _Joint]) -> dict[int, str]:

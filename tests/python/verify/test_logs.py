@@ -31,6 +31,8 @@ def names_in(text: str) -> list[str]:
     [
         ("t|q1|q2|q3|dq1|ddq1|torque1", "t q1 q2 q3 qd1 qdd1 tau1"),
         ("timestamp|actual_q_0|actual_q_1|actual_q_2|actual_qd_0|target_q_0", "t q1 q2 q3 qd1 target_q_0"),
+        ("actual_q_0|actual_TCP_pose_0|actual_TCP_pose_2|actual_TCP_pose_3", "q1 tip_x tip_z actual_TCP_pose_3"),
+        ("q1|ee_position_x|tcp_pos[3] [mm]|tool_pose_2", "q1 tip_x tip_z tip_y"),
         ("time|joint_1|joint_2|joint_3", "t q1 q2 q3"),
         ("Time|Joint 1 Position|Joint 2 Position|Joint 1 Velocity", "t q1 q2 qd1"),
         ("/joint_states/position[0]|/joint_states/position[1]|/joint_states/velocity[0]", "q1 q2 qd1"),
