@@ -280,6 +280,11 @@ def test_terms_of_a_black_box_carry_the_tables_names() -> None:
         ("standard\ntype,a,alpha,d\n", ":2: the header is type,a,alpha,d,theta"),
         ("standard\ntype,a,alpha,d,theta\nR,0,ninety,0,0\n", ":3: alpha is a number"),
         ("standard\ntype,a,alpha,d,theta\nQ,0,0,0,0\n", ":3: the type of a joint is R or P"),
+        (
+            "standard\ntype,a,alpha,d,theta\nR,0,-90,0,0\n",
+            ":3: alpha is -90 rad, more than a turn; write -90 deg, or alpha_deg",
+        ),
+        ("standard\na,alpha [deg],d\n", ":2: the header is type,a,alpha,d,theta"),
         ("standard\ntype,a,alpha,d,theta\n" + "R,0,0,0,0\n" * 8, "1 to 7 joints, got 8"),
     ],
 )
@@ -288,6 +293,18 @@ def test_what_is_no_table_is_refused(text: str, words: str, tmp_path: Path) -> N
     path.write_text(text)
     with pytest.raises(UsageError, match=words):
         Chain.from_dh(path)
+
+
+@pytest.mark.parametrize("header", ["theta,d,a,alpha_deg", "theta (deg),d,a,alpha[deg]", "theta_rad,d,a,alpha deg"])
+def test_a_table_may_have_any_order_and_angles_in_degrees(header: str, tmp_path: Path) -> None:
+    rows = ["0,0.089159,0,90", "0,0,-0.425,0", "0,0,-0.39225,0", "0,0.10915,0,90", "0,0.09465,0,-90", "0,0.0823,0,0"]
+    path = tmp_path / "ur5.csv"
+    path.write_text("\n".join(["standard", header, *rows, ""]))
+    q = {"q": np.array([[0.3, -0.5, 0.9, 0.2, 0.1, 0.7]])}
+    ours, theirs = (
+        one.values(KINDS["jacobian"], "", q, {}) for one in (Chain.from_dh(path), Chain.from_dh(ROBOTS / "ur5.csv"))
+    )
+    assert np.array_equal(ours, theirs)
 
 
 def test_what_is_no_urdf_is_refused(tmp_path: Path) -> None:

@@ -18,6 +18,8 @@ _NUMBER = re.compile(
     r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>0*[1-9]\d{0,8}))?"
     r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?P<deg> ?deg)?)"
 )
+_ANGLE = re.compile(r"(alpha|theta)[ _]?[\[(]?(deg|degrees|rad)[\])]?")
+_NEEDED = ("a", "alpha", "d", "theta")
 _OPTIONAL = ("mass", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz", "armature")
 
 
@@ -34,9 +36,10 @@ def _turn_z(angle: float) -> Floats:
 def read_dh(path: str | os.PathLike[str], make: type[AnyChain]) -> AnyChain:
     """The chain of a CSV file: "standard" or "modified", a header, then a row a joint.
 
-    The header names type (R or P), a, alpha, d, theta, and where they are known mass, cx, cy, cz (centre of mass in the
-    link's frame), Ixx, Iyy, Izz, Ixy, Ixz, Iyz (about it) and armature. Angles are in radians, "90 deg", or "pi/2";
-    theta of a revolute joint and d of a prismatic one are offsets. A last row of type "tool" moves the tip.
+    The header names, in any order, type (R or P; without it all are R), a, alpha, d, theta, and where they are known
+    mass, cx, cy, cz (centre of mass in the link's frame), Ixx, Iyy, Izz, Ixy, Ixz, Iyz (about it) and armature. Angles
+    are in radians, "90 deg", or "pi/2", or in degrees where the header says `alpha_deg`; theta of a revolute joint and
+    d of a prismatic one are offsets. A last row of type "tool" moves the tip.
 
     Raises:
         UsageError: the file cannot be read, or a line of it says something else.
@@ -50,35 +53,53 @@ def read_dh(path: str | os.PathLike[str], make: type[AnyChain]) -> AnyChain:
     word = rows[0][1].rstrip(",").lower() if rows else ""
     if word not in ("standard", "modified"):
         raise UsageError(f"{file}:1: the first line says which table it is: standard or modified, got {word!r}")
-    names = [name.strip() for name in rows[1][1].split(",")] if len(rows) > 1 else []
-    unknown = [name for name in names if name not in ("type", "a", "alpha", "d", "theta", *_OPTIONAL)]
-    if names[:5] != ["type", "a", "alpha", "d", "theta"] or unknown:
-        raise UsageError(f"{file}:2: the header is type,a,alpha,d,theta and then any of {','.join(_OPTIONAL)}"
+    names, units = _header(rows[1][1] if len(rows) > 1 else "")
+    unknown = [name for name in names if name not in ("type", *_NEEDED, *_OPTIONAL)]
+    if not set(_NEEDED) <= set(names) or unknown:
+        raise UsageError(f"{file}:2: the header is type,{','.join(_NEEDED)} and then any of {','.join(_OPTIONAL)}"
                          + (f"; {unknown[0]!r} is none of them" if unknown else ""))  # fmt: skip
     if len(names) != len(set(names)):
         raise UsageError(f"{file}:{rows[1][0]}: two columns have one name")
     try:
-        table = [_row(file, number, names, next(csv.reader([line]))) for number, line in rows[2:]]
+        table = [_row(file, number, names, units, next(csv.reader([line]))) for number, line in rows[2:]]
     except csv.Error as error:
         raise UsageError(f"{file}: this file cannot be read: {error}") from None
     return _chain(table, word, os.path.basename(file), make)
 
 
-def _row(file: str, number: int, names: list[str], cells: list[str]) -> dict[str, object]:
-    if len(cells) > len(names) or len(cells) < 5:
+def _header(line: str) -> tuple[list[str], dict[str, str]]:
+    """The names of the columns, and the units of angles that stand in them: `alpha_deg`, `theta [rad]`."""
+    names: list[str] = []
+    units: dict[str, str] = {}
+    for name in line.split(","):
+        found = _ANGLE.fullmatch(name.strip())
+        names.append(found[1] if found else name.strip())
+        if found:
+            units[found[1]] = found[2][:3]
+    return names, units
+
+
+def _row(file: str, number: int, names: list[str], units: dict[str, str], cells: list[str]) -> dict[str, object]:
+    least = 1 + max(names.index(name) for name in _NEEDED)
+    if not least <= len(cells) <= len(names):
         raise UsageError(f"{file}:{number}: a row has {len(names)} values, got {len(cells)}")
-    kind = cells[0].strip()
+    texts = dict(zip(names, (cell.strip() for cell in cells), strict=False))
+    kind = texts.pop("type", "R")
     if kind not in ("R", "P", "tool"):
         raise UsageError(f"{file}:{number}: the type of a joint is R or P (or tool, for the last row), got {kind!r}")
     values: dict[str, object] = {"type": kind}
-    for name, cell in zip(names[1:], cells[1:], strict=False):
-        found = _NUMBER.fullmatch(cell.strip() or "0")
+    for name, text in texts.items():
+        found = _NUMBER.fullmatch(text or "0")
         if not found:
-            raise UsageError(f"{file}:{number}: {name} is a number, such as 0.25, 90 deg or pi/2, got {cell.strip()!r}")
+            raise UsageError(f"{file}:{number}: {name} is a number, such as 0.25, 90 deg or pi/2, got {text!r}")
         value = np.pi / float(found["part"] or 1) if found["pi"] else float(found["number"])
-        value = np.deg2rad(value) if found["deg"] else value
+        unit = "deg" if found["deg"] else "rad" if found["pi"] else units.get(name)
+        value = float(np.deg2rad(value)) if unit == "deg" else value
+        if name in ("alpha", "theta") and value > 2 * np.pi and not unit:
+            remedy = f"write {text} deg, or {name}_deg in the header"
+            raise UsageError(f"{file}:{number}: {name} is {text} rad, more than a turn; {remedy}")
         if value > LARGEST:
-            raise UsageError(f"{file}:{number}: {name} is at most {LARGEST:g} either way, got {cell.strip()!r}")
+            raise UsageError(f"{file}:{number}: {name} is at most {LARGEST:g} either way, got {text!r}")
         values[name] = -value if found["sign"] == "-" else value
     return values
 
