@@ -56,15 +56,16 @@ def _of_other_arm(error: ProgramError, formula: Formula, kind: Kind, joints: int
     elements, where = _elements(formula), f"where the arm has {joints} joint{'s' * (joints != 1)}"
     if beyond := next((read for read, place in elements if place >= joints), ""):
         return f"it reads {beyond}, {where}"
-    unpacked = re.search(r"values to unpack \(expected (\d+)", str(error))
-    if unpacked and int(unpacked[1]) != joints and _takes_a_vector_apart(formula, error.line):
-        return f"line {error.line} takes {unpacked[1]} elements from a joint vector, {where}"
-    if not isinstance(error, OtherShape) or any(place == joints - 1 for _, place in elements):
+    taken = _taken_apart(formula)
+    if re.search(r"values to unpack \(expected \d+", str(error)) and taken.get(error.line, joints) != joints:
+        return f"line {error.line} takes {taken[error.line]} elements from a joint vector, {where}"
+    if not isinstance(error, OtherShape) or joints in taken.values() or joints - 1 in (place for _, place in elements):
         return ""
     returned = f"it returns {'x'.join(map(str, error.shape))} numbers, as {kind.a_words}"
-    if other := kind.joints_of(error.shape):
+    other = kind.joints_of(error.shape)
+    if other not in (0, joints):
         return f"{returned} of {other} joint{'s' * (other != 1)}, {where}"
-    return f"{returned} in a plane, where the arm moves in space" if kind.is_planar(error.shape) else ""
+    return f"{returned} in a plane, where the arm moves in space" if kind.is_planar(error.shape, joints) else ""
 
 
 def _elements(formula: Formula) -> list[tuple[str, int]]:
@@ -82,13 +83,14 @@ def _elements(formula: Formula) -> list[tuple[str, int]]:
     return found
 
 
-def _takes_a_vector_apart(formula: Formula, line: int | None) -> bool:
-    """Whether a line of Python gives the elements of a joint vector to names: `q1, q2 = q`."""
-    lines = (formula.text or "").splitlines()
-    if line is None or line > len(lines):
-        return False
-    vector = re.fullmatch(r".*=\s*(\w+)(\.\w+\(\))*\s*(#.*)?", lines[line - 1])
-    return vector is not None and vector[1] in formula.arguments and slot_of(vector[1]) is not None
+def _taken_apart(formula: Formula) -> dict[int | None, int]:
+    """The lines of Python that give the elements of a joint vector to names, and to how many: `q1, q2 = q`."""
+    found: dict[int | None, int] = {}
+    for line, text in enumerate((formula.text or "").splitlines(), start=1):
+        apart = re.fullmatch(r"\s*[(\[]?((?:\w+\s*,\s*)+\w*)[)\]]?\s*=\s*(\w+)(\.\w+\(\))*\s*(#.*)?", text)
+        if apart and formula.language == "python" and apart[2] in formula.arguments and slot_of(apart[2]):
+            found[line] = len([name for name in apart[1].split(",") if name.strip()])
+    return found
 
 
 def _is_renamed(finding: Finding, name: str) -> bool:

@@ -314,6 +314,7 @@ PLANAR = {
     "jacobian.py": "from math import *\ndef jacobian(q):\n    q1, q2 = q\n    return [[sin(q1), 0], [cos(q2), 0]]\n",
     "gravity.py": "from math import *\ndef gravity(q1, q2):\n    return [9.81*cos(q1), cos(q1 + q2)]\n",
     "kinematics.m": "function p = kinematics(q)\np = [cos(q(1)) + cos(q(1)+q(2)); sin(q(1)) + sin(q(1)+q(2))];\nend\n",
+    "jacobian.m": "function J = jacobian(q)\nJ = [-sin(q(1)), 0, 0; cos(q(1)), 0, 0];\nend\n",
     "inverse.py": "import numpy as np\ndef inverse(q, qd, qdd):\n    return np.array(q)[:2] + np.array(qdd)[:2]\n",
 }
 """Of an arm with two joints in a plane."""
@@ -322,6 +323,7 @@ SAYS = {
     "jacobian.py": "line 3 takes 2 elements from a joint vector, where the arm has 3 joints; --urdf",
     "gravity.py": "it returns 2 numbers, as a gravity torque of 2 joints, where the arm has 3 joints; --urdf",
     "kinematics.m": "it returns 2 numbers, as a tip position in a plane, where the arm moves in space; --urdf",
+    "jacobian.m": "it returns 2x3 numbers, as a jacobian in a plane, where the arm moves in space; --urdf",
     "inverse.py": "it returns 2 numbers, as inverse dynamics of 2 joints, where the arm has 3 joints; --urdf",
 }
 
@@ -334,6 +336,8 @@ def test_a_formula_of_fewer_joints_cannot_be_judged(name: str, written: Any) -> 
 
 def test_a_formula_of_three_joints_that_returns_two_numbers_is_wrong(written: Any) -> None:
     """It reads the third angle, and so is of this arm."""
-    text = PLANAR["mass.m"].replace("3 + 2*cos(q(2))", "3 + 2*cos(q(3))")
-    verdict = formula_verdict(written("mass.m", text), "mass")
-    assert not verdict.ok and "returns 2x2 numbers, where a mass matrix has 3x3" in str(verdict)
+    in_matlab = PLANAR["mass.m"].replace("3 + 2*cos(q(2))", "3 + 2*cos(q(3))")
+    in_python = "def mass(q):\n    q1, q2, q3 = q\n    return [[q1, 0], [0, q2]]\n"
+    for file, text in (("mass.m", in_matlab), ("mass.py", in_python)):
+        verdict = formula_verdict(written(file, text), "mass")
+        assert not verdict.ok and "returns 2x2 numbers, where a mass matrix has 3x3" in str(verdict)

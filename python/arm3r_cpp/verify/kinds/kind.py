@@ -178,9 +178,9 @@ class Kind(ABC):
         words = [word for word in (*self.shapes, self.planar_shape) if "n" in word]
         return next((n for n in range(1, 11) if any(_numbers(word, n) == shape for word in words)), 0)
 
-    def is_planar(self, shape: tuple[int, ...]) -> bool:
-        """Whether it is that of an arm that moves in a plane, whatever its joints."""
-        return bool(self.planar_shape) and _numbers(self.planar_shape, 0) == shape
+    def is_planar(self, shape: tuple[int, ...], joints: int) -> bool:
+        """Whether it is that of an arm with so many joints that moves in a plane."""
+        return bool(self.planar_shape) and _numbers(self.planar_shape, joints) == shape
 
     def _compared(self, values: Floats, qd: Floats | None) -> Floats:
         """What is compared of values in one of the kind's shapes."""
