@@ -44,7 +44,10 @@ time: {{stop: {SAMPLES / rate:.6f}, log_every: {2 / rate:.6f}}}
 
 
 def grows(run: arm3r.Run) -> bool | None:
-    """None: too slowly to tell, within a factor of 2 from the second quarter to the last one."""
+    """None: too slowly to tell, within a factor of 2 from the second quarter to the last one.
+
+    Nor is it told of a growth of less than 0.2 1/s: the warning leaves out what grows by less than 0.1 1/s.
+    """
     if str(run.outcome) != "ok":
         return True
     rates = np.abs(np.stack([run["qd1"], run["qd2"], run["qd3"]])).max(axis=0)
@@ -54,6 +57,8 @@ def grows(run: arm3r.Run) -> bool | None:
         return True
     if early < 1e-9:
         return False
+    if early < late < early * np.exp(0.2 * run.t[-1] / 2):
+        return None
     return True if late > 2 * early else False if late < 0.5 * early else None
 
 
