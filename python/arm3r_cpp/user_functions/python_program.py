@@ -253,7 +253,7 @@ class PythonProgram:
             raise Unread(f"does what is barred: {_first_line(error)}; {_BARRED}; {_APART}", self._line(error)) from None
         except BaseException as error:
             if isinstance(error, EOFError) and str(error) == "EOF when reading a line":
-                raise Unread(f"asks for input, and nobody answers here; {_APART}", self._line(error)) from None
+                raise Unread(f"asks for input, and gets none here; {_APART}", self._line(error)) from None
             if isinstance(error, MemoryError) and not str(error):  # of the interpreter's own
                 raise ProgramError("needs too much memory") from None
             raise ProgramError(*self._describe(error)) from None
