@@ -81,7 +81,7 @@ def columns_of(
         {place: bare for place, (bare, _) in enumerate(parted) if place not in joints}, is_known
     )
     meant |= _of_tip(
-        {place: bare for place, (bare, _) in enumerate(parted) if place not in meant and bare not in called}
+        {place: bare for place, (bare, _) in enumerate(parted) if place not in meant and names[place] not in called}
     )
     own = {bare for place, (bare, _) in enumerate(parted) if place not in meant and is_known(bare)}
     own |= set(called.values())

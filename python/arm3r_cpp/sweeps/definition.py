@@ -115,11 +115,9 @@ class Sweep:
         An arm's file lies beside that of the sweep.
         """
         axes = [axis for axis in self.axes if is_of_arm(axis.key)]
-        combined = zip(*(axis.items for axis in axes), strict=True) if self.mode == "list" else product(
-            *(axis.items for axis in axes)
-        )  # fmt: skip
+        combine = zip if self.mode == "list" else product
         found = {}
-        for words in combined if axes else ():
+        for words in combine(*(axis.items for axis in axes)) if axes else ():
             found[words] = scenario = self.scenario.copy()
             scenario["checks"] = []
             for axis, word in zip(axes, words, strict=True):

@@ -59,7 +59,11 @@ def _of_other_arm(error: ProgramError, formula: Formula, kind: Kind, joints: int
     taken = _taken_apart(formula)
     if re.search(r"values to unpack \(expected \d+", str(error)) and taken.get(error.line, joints) != joints:
         return f"line {error.line} takes {taken[error.line]} elements from a joint vector, {where}"
-    if not isinstance(error, OtherShape) or joints in taken.values() or joints - 1 in (place for _, place in elements):
+    has_angles = any(
+        slot[0] == "q" for name in formula.arguments if (slot := slot_of(name))
+    )  # and no state in one vector
+    reads_last = joints in taken.values() or joints - 1 in (place for _, place in elements)
+    if not isinstance(error, OtherShape) or not has_angles or reads_last:
         return ""
     returned = f"it returns {'x'.join(map(str, error.shape))} numbers, as {kind.a_words}"
     other = kind.joints_of(error.shape)

@@ -155,6 +155,22 @@ def test_a_few_spikes_are_no_mistake_and_hide_none(kind: str, tmp_path: Path) ->
         assert not formula_verdict(written(tmp_path / "log.csv", kind, at, measured), kind).ok, number
 
 
+def test_what_is_wrong_in_a_range_of_a_state_is_no_spike(tmp_path: Path) -> None:
+    """A branch that is taken at the end of a joint's range alone has few rows, which lie together."""
+    rng = np.random.default_rng(sample_seed())
+    for moves in (False, True):
+        at = states(1000, moves=moves, rng=rng)
+        due = TRUTH.values(KINDS["gravity"], TRUTH.convention, at, {})
+        measured = white(due, 1e-3 * np.abs(due).max(), rng)
+        measured[at["q"][:, 0] > np.quantile(at["q"][:, 0], 0.97), 1] += 20 * np.abs(due).max()
+        path = written(tmp_path / "log.csv", "gravity", at, measured)
+        try:
+            verdict = formula_verdict(path, "gravity")
+        except arm3r.UnjudgedError:
+            continue
+        assert not verdict.ok, str(verdict)
+
+
 def test_the_friction_of_joints_is_no_mistake_and_is_said(tmp_path: Path) -> None:
     seed = sample_seed()
     for number in range(6):

@@ -338,6 +338,9 @@ def test_a_formula_of_three_joints_that_returns_two_numbers_is_wrong(written: An
     """It reads the third angle, and so is of this arm."""
     in_matlab = PLANAR["mass.m"].replace("3 + 2*cos(q(2))", "3 + 2*cos(q(3))")
     in_python = "def mass(q):\n    q1, q2, q3 = q\n    return [[q1, 0], [0, q2]]\n"
+    of_state = "function dx = forward(t, x, tau)\ndx = [x(4); x(5); x(6); 1];\nend\n"
+    wrong = formula_verdict(written("forward.m", of_state), "forward")
+    assert not wrong.ok and "returns 4 numbers, where forward dynamics has 3 or 6" in str(wrong)
     for file, text in (("mass.m", in_matlab), ("mass.py", in_python)):
         verdict = formula_verdict(written(file, text), "mass")
         assert not verdict.ok and "returns 2x2 numbers, where a mass matrix has 3x3" in str(verdict)

@@ -24,6 +24,7 @@ _OF_STATES = 2.0  # times what the noise of the states makes of an entry: nothin
 _OF_TYPICAL = 1e-4  # of an entry's size at any states: torques that cancel leave rounding of that
 _STILL = 1e-3  # rad or m: less is no motion
 _MOST_SPIKES = 0.05  # of the rows
+_TOGETHER = 4  # rows: fewer may lie beside each other by chance
 _NO_NOISE = 0.1  # of the largest entry: no measurement is meant to be as bad
 
 
@@ -69,8 +70,9 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
         UnjudgedError: the rows are too few, or what they hold has nothing to do with what is due.
     """
     best, log = _in_units(log, kind, truth, noise)
-    if best.undecided and 0 < len(best.spikes) <= _MOST_SPIKES * len(log.lines):
-        quieter = log.without(sorted(best.spikes))
+    spikes = sorted(best.spikes)
+    if 0 < len(spikes) <= _MOST_SPIKES * len(log.lines) and not _are_together(spikes, log, kind, truth):
+        quieter = log.without(spikes)
         without = _judged(quieter, kind, truth, noise)
         if not without.undecided:
             best, log = without, quieter
@@ -92,6 +94,17 @@ def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -
     _compare_with_other_convention(verdict, log, kind, truth, noise)
     verdict.warnings += log.notes()
     return verdict
+
+
+def _are_together(rows: list[int], log: Log, kind: Kind, truth: Any) -> bool:
+    """Whether these rows are all that a range of one state, or of time, has: then they follow it, and are no spikes."""
+    if len(rows) < _TOGETHER:
+        return False
+    states = log.states(truth.joints)
+    columns = np.column_stack([np.arange(len(log.lines)), *(states[name] for name in kind.inputs)])
+    columns = columns[:, np.ptp(columns, axis=0) > 0]
+    inside = (columns >= columns[rows].min(axis=0)) & (columns <= columns[rows].max(axis=0))
+    return bool((inside.sum(axis=0) == len(rows)).any())
 
 
 def _in_units(log: Log, kind: Kind, truth: Any, noise: float | None) -> tuple[_Candidate, Log]:
