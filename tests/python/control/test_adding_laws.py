@@ -11,6 +11,7 @@ import sysconfig
 from pathlib import Path
 
 import pytest
+from conftest import QUICK
 
 DAMPED = """\
 format: 1
@@ -78,8 +79,8 @@ def test_the_new_laws_run(root: Path, tree: Path, scripts: Path) -> None:
     for page in ("adding_a_controller", "adding_a_contact_law"):
         apply(tree, (root / f"docs/{page}.md").read_text())
     environment = os.environ | {"PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
-    options = ["-DCMAKE_CXX_FLAGS_RELEASE=-O0", "-DCMAKE_BUILD_TYPE=Release", "-DARM3R_LANES=1", "-DARM3R_PCH=OFF"]
-    options += ["-DARM3R_PYTHON=OFF", f"-DCMAKE_PREFIX_PATH={sysconfig.get_path('purelib')}"]
+    settings = QUICK | {"ARM3R_PYTHON": "OFF", "CMAKE_PREFIX_PATH": sysconfig.get_path("purelib")}
+    options = [f"-D{name}={value}" for name, value in settings.items()]
     build = tree / "build"
     for command in (
         ["cmake", "-S", str(tree), "-B", str(build), *options],

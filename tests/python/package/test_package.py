@@ -14,7 +14,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import pytest
 import yaml
-from conftest import CALLS
+from conftest import QUICK
 
 
 def _dynamic(file: Path, tag: str) -> set[str]:
@@ -109,12 +109,8 @@ def test_fast_math_is_refused(root: Path, build: Any, tmp_path: Path) -> None:
 @pytest.mark.gate
 def test_wheel_is_one_for_all_pythons(root: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", tmp_path, root]
-    command += [
-        "--config-settings",
-        f"cmake.define.CMAKE_CXX_FLAGS_RELEASE={CALLS}",
-        "--config-settings",
-        "cmake.define.ARM3R_LANES=1",
-    ]
+    for name, value in QUICK.items():
+        command += ["--config-settings", f"cmake.define.{name}={value}"]
     subprocess.run(command, check=True)
     (wheel,) = tmp_path.glob("*.whl")
     assert re.fullmatch(r"arm3r_cpp-[\d.]+-cp310-abi3-linux_\w+\.whl", wheel.name)

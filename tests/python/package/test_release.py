@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tarfile
@@ -13,7 +14,7 @@ from types import ModuleType
 
 import pytest
 import yaml
-from conftest import CALLS, ROOT, script
+from conftest import QUICK, ROOT, script
 
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
 TARGETS = set(re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split())
@@ -110,7 +111,7 @@ def test_wheels_that_are_published_are_not_those_of_this_processor_alone() -> No
 def packages(clone: Path) -> dict[str, str]:
     """The sums of the source package and of a quickly compiled wheel, built in a clone."""
     calls = "from scikit_build_core import build; build.build_sdist('dist'); build.build_wheel('dist')"
-    quick = f"'-DCMAKE_CXX_FLAGS_RELEASE={CALLS}' -DARM3R_LANES=1 -DARM3R_PCH=OFF"
+    quick = shlex.join(f"-D{name}={value}" for name, value in QUICK.items())
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = {**os.environ, "SOURCE_DATE_EPOCH": "1700000000", "CMAKE_ARGS": quick, "PATH": path}
     done = subprocess.run([sys.executable, "-c", calls], cwd=clone, env=environment, capture_output=True, text=True)

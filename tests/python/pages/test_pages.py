@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import page_runner
 import pytest
-from conftest import ROOT
+from conftest import QUICK, ROOT
 from page_runner import MARK, blocks_of
 
 PROGRAMS = ROOT / "docs" / "examples.md"  # test_examples.py runs what it shows
@@ -68,7 +69,7 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.gate
 @pytest.mark.parametrize("page", pages_with(marked=True), ids=is_shown)
 def test_marked_blocks_run_in_a_clone(page: Path, clone: Path) -> None:
-    options = "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DARM3R_LANES=1 -DARM3R_PCH=OFF"  # the quickest build
+    options = shlex.join(f"-D{name}={value}" for name, value in QUICK.items())
     run_page(clone / page.relative_to(ROOT), clone, "--clone", CMAKE_ARGS=options)
 
 
