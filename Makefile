@@ -40,7 +40,9 @@ test: $(VENV)/boost
 # Interrupted, it goes on where it was when it is called again with the same seed, as long as no file that git knows has changed.
 SEED = $(or $(ARM3R_SEED),$(shell date +%Y%m%d))
 TREE = $(shell git rev-parse "$$(git stash create | grep . || echo HEAD)^{tree}")
-gates: $(VENV)/test $(VENV)/docs $(BUILD)/tests wheels
+gates: $(VENV)/boost
+	@$(MAKE) --no-print-directory -j2 $(VENV)/test $(BUILD)/tests
+	@$(MAKE) --no-print-directory $(VENV)/docs wheels
 	@echo "If this is interrupted, make gates ARM3R_SEED=$(SEED) goes on."
 	ARM3R_SEED=$(SEED) ARM3R_SAMPLE=all ARM3R_RESUME=build/gates/$(SEED)-$(TREE).passed $(PYTEST) -m "(gate or sample) and not timed" --durations=40
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed

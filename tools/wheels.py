@@ -11,6 +11,7 @@ import platform
 import subprocess
 import sys
 import sysconfig
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +21,8 @@ SOURCES = ROOT / "build" / "yaml_cpp"
 KERNELS = ROOT / "build/ctest/taylor/taylor_kernels.hpp"  # that `make` derives: the same for every platform
 PACKAGES = Path(sysconfig.get_path("purelib"))
 ZIG = PACKAGES / "ziglang" / "zig"
+AT_ONCE = 2
+"""wheels: one is configured or packed, which takes one core, while another is compiled"""
 
 
 @dataclass(frozen=True)
@@ -51,9 +54,9 @@ PLATFORMS = [
 ]
 
 
-def run(*command: object, **options: object) -> None:
+def run(*command: object, **environment: str) -> None:
     """Its output goes to standard error, as only the names of wheels belong to standard output."""
-    subprocess.run(list(map(str, command)), check=True, cwd=ROOT, stdout=sys.stderr, **options)
+    subprocess.run(list(map(str, command)), check=True, cwd=ROOT, stdout=sys.stderr, env={**os.environ, **environment})
 
 
 def write_licenses() -> Path:
@@ -90,7 +93,8 @@ def build(target: Platform) -> Path:
     for old in FOLDER.glob(f"*-{target.tag}.whl"):
         old.unlink()
     call = f"from scikit_build_core import build; build.build_wheel({str(FOLDER)!r}, {settings(target)!r})"
-    run(sys.executable, "-c", call)
+    cores = int(os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", os.cpu_count() or 1))
+    run(sys.executable, "-c", call, CMAKE_BUILD_PARALLEL_LEVEL=str(max(1, cores // AT_ONCE)))
     [wheel] = FOLDER.glob(f"*-{target.tag}.whl")
     return wheel
 
@@ -106,9 +110,9 @@ def main(names: list[str]) -> int:
     FOLDER.mkdir(parents=True, exist_ok=True)
     run(sys.executable, ROOT / "tools" / "yaml_cpp_source.py", SOURCES)
     write_licenses()
-    for target in PLATFORMS:
-        if not names or target.name in names:
-            print(build(target).relative_to(ROOT), flush=True)
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        for wheel in pool.map(build, [target for target in PLATFORMS if not names or target.name in names]):
+            print(wheel.relative_to(ROOT), flush=True)
     return 0
 
 
