@@ -168,7 +168,8 @@ def _hypotheses(case: Comparison) -> list[Hypothesis]:
                 found.append(one)
         except (ProgramError, ValueError, ArithmeticError):
             continue
-    return sorted(found, key=lambda one: one.weight)
+    found.sort(key=lambda one: one.weight)
+    return [one for place, one in enumerate(found) if one.cause not in (other.cause for other in found[:place])]
 
 
 def _pose(case: Comparison, samples: Samples) -> Pose:

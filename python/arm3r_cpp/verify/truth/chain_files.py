@@ -158,6 +158,9 @@ class Chain(SerialChain):
             for sign in (1, -1) if kind.depends_on_inertia else ():
                 changes = {link: replace(own[link], inertia=own[link].inertia + sign * shifts[link]) for link in links}
                 found.append((steiner_words(numbers, twice=sign > 0), self._with_parts(changes)))
+        if kind.depends_on_inertia and any(joint.armature for joint in own):
+            bare = {place: replace(joint, armature=0.0) for place, joint in enumerate(own)}
+            found.append(("the armature is left out", self._with_parts(bare)))
         return found
 
     def _with_parts(self, changes: dict[int, Joint]) -> Chain:

@@ -8,13 +8,14 @@ import numpy as np
 
 from ..._native import Floats
 from ...core.arm import Arm
-from ...core.params import param_index
+from ...core.params import param_index, places
 from ...core.scenario import Scenario
 from ...errors import UnjudgedError, UsageError
 from ...robots.arm_bodies import arm_of
 from ...robots.bodies import with_mass
 from ..kinds import SPATIAL, Kind, Rows
 from .chain_files import Chain
+from .left_out import left_out
 from .three_r import ThreeR, law_torque, references_of
 
 
@@ -66,6 +67,17 @@ class ElbowArm(Chain):
     def law_torque(self, q: Floats, qd: Floats) -> Floats:
         """The torque of the scenario's law at the start, from each state."""
         return law_torque(self._scenario, q, qd)
+
+    def variants(self, kind: Kind) -> list[tuple[str, Chain]]:
+        """Those of a chain, and the arm without what a formula may have left out."""
+        found = super().variants(kind)
+        for words, keys in left_out(kind).items():
+            other = self._scenario.copy()
+            for key in keys:
+                other[key] = [0.0] * len(places()[key]) if len(places()[key]) > 1 else 0.0
+            if other.params.tobytes() != self._scenario.params.tobytes():
+                found.append((words, ElbowArm(other)))
+        return found
 
     def references(self) -> dict[str, list[float]]:
         """What the scenario's law is to reach and keep."""

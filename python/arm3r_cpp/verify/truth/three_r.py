@@ -12,12 +12,14 @@ import numpy as np
 
 from ..._native import Floats
 from ...core.arm import Arm
-from ...core.params import param_index
+from ...core.params import param_index, places
 from ...core.scenario import Scenario
 from ...errors import ScenarioError, UnjudgedError, UsageError
 from ..kinds import SPATIAL, Kind, Rows
+from .left_out import left_out
 
-CONVENTIONS = ("simscape", "slide")
+CONVENTIONS, SHAPES = ("simscape", "slide"), ("brick", "cylinder", "slender")
+"""The words of arm.convention and arm.link2.shape, in the order of their parameters' values."""
 FOLLOWING = (("com", "inertia"), ("com",), (), ("com", "inertia", "mass"))
 """What may follow a link's length and mass, the likeliest first: its shape, or numbers that stand in the text."""
 FOLLOWING_WORDS = dict(
@@ -33,6 +35,8 @@ FOLLOWING_WORDS = dict(
     )
 )
 _RANGES = {"length": (0.5, 1.6), "com": (0.2, 0.45), "mass": (0.4, 2.5), "inertia": (0.02, 0.2)}
+_LEAST_INERTIA = 2e-9
+"""kg m^2, of link 1 about its axis: without it the mass matrix of an arm of rods that point up is singular."""
 
 
 def _states_convention(scenario: Scenario) -> bool:
@@ -274,8 +278,35 @@ class ThreeR:
         return references_of(self._scenario)
 
     def variants(self, kind: Kind) -> list[tuple[str, ThreeR]]:
-        """Arms with a mistake that its quantities do not tell."""
-        return []
+        """Arms with a mistake that its quantities do not tell: something of them is left out, or the links are rods."""
+        found = [(words, dict.fromkeys(keys, 0.0)) for words, keys in left_out(kind).items()]
+        if kind.depends_on_inertia:
+            upright, rods = {"arm.link1.inertia_axial": _LEAST_INERTIA}, self._rods()
+            about = "the inertia of link 1 about its axis is left out"
+            words = "links 2 and 3 are slender rods; the arm's have a width (`shape: slender` makes them rods)"
+            found += [(about, upright), (words, rods)]
+            if not kind.is_product:  # Coriolis torques do not tell
+                found.append((f"{words}, and {about}", rods | upright))
+        others = [(words, self._with(changes)) for words, changes in found]
+        return [(words, arm) for words, arm in others if not np.array_equal(arm._params, self._params, equal_nan=True)]
+
+    def _rods(self) -> dict[str, float]:
+        """The parameters that make links 2 and 3 slender rods of their own masses, where shapes tell their inertias."""
+        changes = {}
+        for link in (2, 3):
+            if np.isnan(self._params[param_index(f"arm.link{link}.inertia[0]")]):
+                changes[f"arm.link{link}.shape"] = float(SHAPES.index("slender"))
+                changes[f"arm.link{link}.mass"] = self.values_of_quantities[f"mass{link}"]
+        return changes
+
+    def _with(self, changes: Mapping[str, float]) -> ThreeR:
+        """The arm with other numbers of some keys."""
+        other = copy.copy(self)
+        other._params, other._arms = self._params.copy(), {}
+        for key, value in changes.items():
+            other._params[places()[key]] = value
+        other.values_of_quantities = other._measure()
+        return other
 
     def rotation(self, convention: str, q: Floats) -> Floats:
         """The axes of the tip's frame as columns, x along link 3, y across the arm's plane, in the base, (S, 3, 3)."""
