@@ -6,6 +6,7 @@ import gc
 import math
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -19,6 +20,7 @@ import numpy as np
 import pytest
 from arm3r_cpp import verify
 from arm3r_cpp.user_functions import start
+from arm3r_cpp.user_functions.c_symbol import text_of
 from arm3r_cpp.user_functions.programs import Call, Edit, ProgramError
 from arm3r_cpp.user_functions.python_in_memory import PythonInMemory
 from arm3r_cpp.user_functions.python_process import PythonProcess
@@ -114,17 +116,30 @@ def test_a_package_can_be_forbidden(tmp_path: Path, monkeypatch: Any) -> None:
     assert "raises ModuleNotFoundError" in verify.jacobian(path).findings[0].cause
 
 
-@pytest.mark.parametrize("order", ["const double *q, double *out", "double *out, const double *q"])
+NUMBERS = "double q1, double q2, double q3"
+
+
+@pytest.mark.parametrize(
+    "order",
+    [
+        "const double *q, double *out",
+        "double *out, const double *q",
+        f"{NUMBERS}, double *out",
+        f"double *out, {NUMBERS}",
+    ],
+)
 def test_a_symbol_of_a_library(order: str, tmp_path: Path) -> None:
     source, library = tmp_path / "arm.c", tmp_path / "arm.so"
     text = """#include <math.h>
     void gravity(ORDER) {
+        VECTOR
         double g = 9.80665, c2 = cos(q[1]), c23 = cos(q[1] + q[2]);
         out[0] = EXTRA; out[2] = -0.785*g*0.5*c23; out[1] = -0.785*g*1.5*c2 + out[2];
     }
     """
+    vector = "double q[] = {q1, q2, q3};" if NUMBERS in order else ""
     for extra, is_right in (("0", True), ("q[0]", False)):
-        source.write_text(text.replace("EXTRA", extra).replace("ORDER", order))
+        source.write_text(text.replace("EXTRA", extra).replace("ORDER", order).replace("VECTOR", vector))
         subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source, "-lm"], check=True)
         verdict = verify.gravity(f"{library}:gravity")
         assert verdict.ok == is_right, str(verdict)
@@ -132,6 +147,38 @@ def test_a_symbol_of_a_library(order: str, tmp_path: Path) -> None:
     assert (verdict.findings[0].reads, verdict.findings[0].due) == ("q1", "0")
     with pytest.raises(arm3r.UsageError, match="name the function"):
         verify.gravity(tmp_path / "arm.so")
+
+
+def test_nine_numbers_are_arguments_of_a_symbol_of_a_library(tmp_path: Path) -> None:
+    names = ", ".join(f"double {vector}{joint}" for vector in ("q", "qd", "qdd") for joint in (1, 2, 3))
+    (tmp_path / "arm.c").write_text(f"void torque({names}, double *t) {{ t[0] = q1; t[1] = qd2; t[2] = qdd3; }}")
+    subprocess.run(["gcc", "-shared", "-fPIC", "-o", tmp_path / "arm.so", tmp_path / "arm.c"], check=True)
+    library = str(tmp_path / "arm.so")
+    program = PythonProcess(text_of(library, "torque"), "torque", library)
+    call = Call(((0, 1, 2), (3, 4, 5), (6, 7, 8)), {})
+    assert program.evaluate(call, np.arange(9.0)[None]).tolist() == [[0.0, 4.0, 8.0]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        ("const double *q, const double *masses, double *out", "takes more vectors than 1 and its result"),
+        (f"{NUMBERS}, double m2, double *out", "takes more numbers than those of its joints"),
+    ],
+)
+def test_a_symbol_that_takes_more_cannot_be_judged(arguments: str, why: str, tmp_path: Path) -> None:
+    body = "out[0] = 0; out[1] = masses[0]; out[2] = masses[1];" if "masses" in arguments else "out[0] = out[1] = m2;"
+    (tmp_path / "arm.c").write_text(f"void gravity({arguments}) {{ {body} }}")
+    subprocess.run(["gcc", "-shared", "-fPIC", "-o", tmp_path / "arm.so", tmp_path / "arm.c"], check=True)
+    with pytest.raises(arm3r.UnjudgedError, match=f"{why}: name a function of these alone"):
+        verify.gravity(f"{tmp_path / 'arm.so'}:gravity")
+
+
+def test_an_entry_that_is_nan_is_said_to_be(tmp_path: Path) -> None:
+    path = tmp_path / "gravity.py"
+    path.write_text("import numpy as np\ndef gravity(q):\n    return [0, np.sqrt(-1 - q[1]**2), 1]\n")
+    [cause] = [one.cause for one in verify.gravity(path).findings if one.entry == [2]]
+    assert re.fullmatch(r"t2 is NaN, which is no number, at q = \[(-?\d\.\d+, ){2}-?\d\.\d+\]\.", cause), cause
 
 
 # ---- functions in memory --------------------------------------------------------------------------------------------

@@ -334,6 +334,10 @@ def _cause(
         return f"{name}: in line {finding.line} `{finding.old}` {stands}{others}."
     if finding.reads is not None:
         return f"{name} {difference_words(finding.reads, finding.due)}." if finding.due else f"{name} is wrong."
+    values, q = case.values(case.second), case.second.tiled("q")
+    row = int(np.argmax(np.isnan(values.reshape(len(values), -1)[:, place])))
+    if np.isnan(values.reshape(len(values), -1)[row, place]):
+        return f"{name} is NaN, which is no number, at q = [{', '.join(f'{angle:.6g}' for angle in q[row])}]."
     return f"{name} is wrong, and neither its terms nor a single edit explain it."
 
 
