@@ -90,7 +90,7 @@ class MatlabProgram:
     a structure, `Structures`, `Pages` or a `Handle`.
     """
 
-    of_program: tuple[str, ...] = ("exist", "feval", "cellfun", "arrayfun")
+    of_program: tuple[str, ...] = ("exist", "isempty", "feval", "cellfun", "arrayfun")
     """Functions that look at variables or call functions, each a method."""
     can_trace = True
     """Whether what a statement writes depends on its states alone, and not on others around them."""
@@ -879,6 +879,14 @@ class MatlabProgram:
     def _exist(self, node: Node, variables: dict[str, Any]) -> Floats:
         name = text_in(self._values(node.parts, variables)[0])
         return number(name in variables or bool(_fields(variables, name)) or name in self.functions)
+
+    def _isempty(self, node: Node, variables: dict[str, Any]) -> Any:
+        """A global variable is empty before a value is given to it."""
+        match node.parts:
+            case (Name(word=name),) if name not in variables and name not in self._outside:
+                if isinstance(variables, Workspace) and variables.kept.get(name) == "":
+                    return number(True)
+        return self._result(node.word, self._values(node.parts, variables), variables)
 
     def _feval(self, node: Node, variables: dict[str, Any]) -> Any:
         handle, inputs = self._applied(node, variables)

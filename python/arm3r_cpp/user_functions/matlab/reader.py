@@ -2,7 +2,7 @@
 
 file        = [script] function ...
 function    = "function" [outputs "="] name ["(" names ")"] [arguments] statement ... ["end"]
-statement   = for | while | if | switch | try | "break" | "continue" | "return" | persistent | command
+statement   = for | parfor | while | if | switch | try | "break" | "continue" | "return" | persistent | command
             | [targets "="] expression
 expression  = or of and of comparisons of ranges of sums of products of signed powers of postfix values
 value       = number | text | name | "(" expression ")" | matrix | cell | handle, each with indices and fields
@@ -51,9 +51,9 @@ _REMEDIES = {
     "load": "write the numbers into the file",
     "syms": "write the symbols at the head of a script, or make a function by matlabFunction(..., 'File', 'name')",
 }
-_REFUSED = frozenset(["parfor", "spmd", "classdef", "import", "load", "save", "eval", "evalin", "assignin", "syms"])
+_REFUSED = frozenset(["spmd", "classdef", "import", "load", "save", "eval", "evalin", "assignin", "syms"])
 _LEAVES = frozenset(["break", "continue", "return"])
-_BLOCKS = frozenset(["for", "while", "if", "switch", "try"])
+_BLOCKS = frozenset(["for", "parfor", "while", "if", "switch", "try"])
 _STOPS = frozenset(["end", "else", "elseif", "case", "otherwise", "catch", "function"])
 _KEYWORDS = _REFUSED | _LEAVES | _BLOCKS | _STOPS | {"persistent", "global"}
 # What they print, draw or set changes no value.
@@ -408,16 +408,20 @@ class _Reader:
         return self.tokens[self.at - 1].end
 
     def for_block(self) -> Statement:
-        """for i = 1:3, for (i = 1:3)"""
+        """for i = 1:3, for (i = 1:3), parfor (i = 1:3, 4), whose last number is that of workers"""
         start = self.next()
         has_brackets = self.takes("(")
         name = self.name()
         self.expect("=")
         value = self.expression()
         if has_brackets:
+            if start.text == "parfor" and self.takes(","):
+                self.expression()
             self.expect(")")
         body = self.statements()
         return For(start.start, self.end_of(start), value, (body,), name=name)
+
+    parfor_block = for_block
 
     def while_block(self) -> Statement:
         start, value = self.next(), self.expression()
