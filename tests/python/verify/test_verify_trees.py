@@ -2,7 +2,9 @@
 
 robots/trees.csv has the published numbers of their URDFs, a row a joint: Universal Robots (ur_description), Franka
 Emika (franka_description), KUKA and ABB (support packages of ROS-Industrial, descriptions of MathWorks and Drake),
-Kinova (kinova-ros, ros_kortex), Rethink's Sawyer, PUMA 560 (Robotics Toolbox); right angles have all digits.
+Kinova (kinova-ros, ros_kortex), Rethink's Sawyer, PUMA 560 (Robotics Toolbox), Unitree's Z1, Gluon of Innfos (by the
+exporter of SolidWorks), Blueprint Lab's Bravo 7 with a camera beside its hand; right angles have all digits, but those
+of the Bravo, which has four or five.
 """
 
 from __future__ import annotations
@@ -45,9 +47,16 @@ TIPS = {
     "kinova_gen3": None,
     "sawyer": "right_hand",
     "puma560": None,
+    "ur3e": "tool0",
+    "ur10e": "tool0",
+    "ur16e": "tool0",
+    "kr5": "tool0",
+    "z1": None,
+    "gluon": None,
+    "bravo7": "bravo_finger_jaws_base_link",
 }
 TOO_LONG = {"panda_fingers": "a chain has 1 to 7 joints, got 8"}  # a finger's joint is one
-WITHOUT_BODIES = ("panda", "fr3", "irb2400", "irb6640", "puma560")
+WITHOUT_BODIES = ("panda", "fr3", "irb2400", "irb6640", "puma560", "bravo7")
 
 
 def urdf_of(rows: Iterable[Row]) -> str:
