@@ -31,7 +31,7 @@ from ..user_functions.python_nodes import PythonText
 from ..user_functions.python_process import PythonProcess
 from ..user_functions.python_program import _numbers, value_of
 from ..user_functions.sympy_expressions import function_of, is_expression
-from .kinds import KINDS, Kind, kind_of_name
+from .kinds import KINDS, Kind, kind_of_name, kinds_of_outputs
 from .names import TIME, quantities_of, slot_of, slots_of
 from .samples import Samples, columns
 
@@ -473,15 +473,16 @@ def likely_function(source: PythonText, file: str, kind: str | None = None) -> s
 
 def kind_of(formula: Formula) -> Kind | None:
     """The kind of formula, from its names; None where they do not tell it."""
-    outputs = [formula.outputs[0]] if formula.outputs else []
+    outputs = formula.outputs
     if isinstance(formula.program, MatlabProgram):
-        outputs = formula.program.outputs[:1]
+        outputs = formula.program.outputs
     elif isinstance(formula.program, OctaveProcess):
-        outputs = formula.program.header.outputs[:1]
-    for name in (formula.name, Path(formula.file).stem, *outputs):
-        kind = kind_of_name(name)
-        if kind:
+        outputs = formula.program.header.outputs
+    for name in (formula.name, Path(formula.file).stem):
+        if kind := kind_of_name(name):
             return KINDS[kind]
+    if outputs and (kind := kinds_of_outputs(outputs)[0]):
+        return KINDS[kind]
     if outputs and outputs[0].rstrip("123") in ("t", "tau", "Tau", "torque", "g", "G"):
         return _torque_of({slot[0] for name in formula.arguments if (slot := slot_of(name))})
     return None

@@ -26,7 +26,7 @@ from .explain.differences import only_structured
 from .explain.repair import Progress
 from .failure import failed
 from .formula import Formula
-from .kinds import KINDS, Kind, kind_of_name
+from .kinds import KINDS, Kind, kinds_of_outputs
 from .meaning import as_called, assumed, doubted, meant
 from .names import line_of_own_torque, reference_of, slot_of, vectors_of
 from .verdict import Verdict
@@ -169,8 +169,8 @@ def _not_judged(formula: Formula) -> list[str]:
     """Of a function that returns several kinds of formula, those that are left."""
     if formula.output is None:
         return []
-    kinds = {name: kind_of_name(name) for place, name in enumerate(formula.outputs) if place != formula.output}
-    left = [f"{name} (--kind {kind})" for name, kind in kinds.items() if kind]
+    kinds = enumerate(kinds_of_outputs(formula.outputs))
+    left = [f"{formula.outputs[place]} (--kind {kind})" for place, kind in kinds if kind and place != formula.output]
     return [f"not judged here: {', '.join(left)}"] if left else []
 
 

@@ -17,7 +17,7 @@ from ..user_functions.expressions import Number
 from ..user_functions.programs import ProcessEnded, ProgramError
 from .comparison import TOLERANCE, Comparison, scales
 from .formula import Formula
-from .kinds import KINDS, Kind, kind_of_name
+from .kinds import KINDS, Kind, kinds_of_outputs
 from .names import is_right_hand_side, vectors_of
 from .samples import Samples
 from .truth.three_r import FOLLOWING
@@ -56,7 +56,7 @@ def _distance(formula: Formula, kind: Kind, truth: Any) -> tuple[bool, int, floa
 def _kind_of_output(formula: Formula) -> str | None:
     """The kind that the name of the chosen output tells."""
     place = formula.output
-    return kind_of_name(formula.outputs[place]) if place is not None and place < len(formula.outputs) else None
+    return kinds_of_outputs(formula.outputs)[place] if place is not None and place < len(formula.outputs) else None
 
 
 def _has_fitting_shape(formula: Formula, kind: Kind, truth: Any) -> bool:

@@ -71,6 +71,36 @@ def dynamics(q, qd):
     assert "not judged here: M (--kind mass), C (--kind coriolis)" in verdict.warnings
 
 
+TEXTBOOK = """function [FIRST, C, G] = two_links(q, qd)
+m1 = 1.5; m2 = 0.9; l1 = 0.4; lc1 = 0.22; lc2 = 0.13; I1 = 0.02; I2 = 0.01; g = 9.81;
+h12 = m2*(lc2^2 + l1*lc2*cos(q(2))) + I2;
+FIRST = [m1*lc1^2 + m2*(l1^2 + lc2^2 + 2*l1*lc2*cos(q(2))) + I1 + I2, h12; h12, m2*lc2^2 + I2];
+h = m2*l1*lc2*sin(q(2));
+C = [-h*qd(2), -h*(qd(1) + qd(2)); h*qd(1), 0];
+G = [(m1*lc1 + m2*l1)*g*cos(q(1)) + m2*lc2*g*cos(q(1) + q(2)); m2*lc2*g*cos(q(1) + q(2))];
+end
+"""
+
+
+@pytest.mark.parametrize("letter", ["M", "D", "B", "H", "A"])
+def test_the_mass_matrix_has_the_letter_of_any_textbook(letter: str, written: Any) -> None:
+    table = "type,a,alpha,d,theta,mass,cx,cy,cz,Ixx,Iyy,Izz\nR,0.4,0,0,0,1.5,-0.18,0,0,0,0.02,0.02\n"
+    rows = written("two_links.csv", f"{table}R,0.3,0,0,0,0.9,-0.17,0,0,0,0.01,0.01\n")
+    arm = verify.Chain.from_dh(rows).placed(gravity=(0, -9.81, 0))
+    path = written("two_links.m", TEXTBOOK.replace("FIRST", letter))
+    for kind, left in {"mass": ("C", "G"), "coriolis": (letter, "G"), "gravity": (letter, "C")}.items():
+        verdict = formula_verdict(path, None if kind == "mass" else kind, arm)
+        assert verdict.ok and verdict.kind == kind, str(verdict)
+        kinds = {letter: "mass", "C": "coriolis", "G": "gravity"}
+        words = f"not judged here: {', '.join(f'{name} (--kind {kinds[name]})' for name in left)}"
+        assert words in verdict.warnings
+
+
+def test_a_vector_h_beside_gravity_is_no_mass_matrix(written: Any) -> None:
+    path = written("terms.m", f"function [h, g] = terms(q, qd)\n{LAST} {GRAVITY} g = [0; t2; t3]; h = 0*q;\nend\n")
+    assert formula_verdict(path).kind == "coriolis" and formula_verdict(path, "gravity").ok
+
+
 # ---- lines that do not go on -----------------------------------------------------------------------------------------
 
 

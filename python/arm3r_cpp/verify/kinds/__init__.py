@@ -8,6 +8,7 @@ one is a class in a module here, an entry in `KINDS` and in `_BY_NAME`, and a fu
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from .controller import Controller
 from .coriolis import Coriolis
@@ -36,7 +37,7 @@ KINDS: dict[str, Kind] = {
 }
 """By their names, in the order in which they are listed, and looked for in a log."""
 
-__all__ = ["ANGULAR", "KINDS", "SPATIAL", "Kind", "Rows", "kind_of_name"]
+__all__ = ["ANGULAR", "KINDS", "SPATIAL", "Kind", "Rows", "kind_of_name", "kinds_of_outputs"]
 
 _BY_NAME = (
     "jacobian_dot", "controller", "forward", "inverse", "coriolis", "gravity", "jacobian", "mass", "kinematics",
@@ -58,3 +59,16 @@ def kind_of_name(name: str) -> str | None:
             if (len(word) > 2 and word in lower) or word in (lower.split("_")[0], lower.split("_")[-1]):
                 return kind.name
     return next((kind.name for kind in KINDS.values() if lower in kind.letters), None)
+
+
+def kinds_of_outputs(outputs: Sequence[str]) -> list[str | None]:
+    """The kinds that the names of a function's outputs tell: H of [H, C, g] is a mass matrix, that of [h, g] is not."""
+    kinds = [kind_of_name(name) for name in outputs]
+    if "mass" in kinds:
+        return kinds
+    for place, name in enumerate(outputs):
+        others = kinds[:place] + kinds[place + 1 :]
+        is_beside = "coriolis" in others or (kinds[place] is None and "gravity" in others)
+        if is_beside and name.lower() in KINDS["mass"].letters_beside:
+            return [*kinds[:place], "mass", *kinds[place + 1 :]]
+    return kinds

@@ -64,6 +64,8 @@ class Kind(ABC):
     """Parts of the names of functions."""
     letters: tuple[str, ...] = ()
     """Whole names of functions and outputs."""
+    letters_beside: tuple[str, ...] = ()
+    """Names of an output with others beside it whose names tell their kinds, as textbooks have them."""
     columns: str = ""
     """The columns of a log that are its entries, a regular expression; "" where none are."""
     columns_words: str = ""

@@ -12,6 +12,7 @@ class Mass(Kind):
     name, words, letter = "mass", "mass matrix", "M"
     inputs, unit, shapes = ("q",), "kg m^2", ("nxn",)
     called, letters = ("mass", "inertia", "mmat"), ("m",)
+    letters_beside = ("a", "b", "d", "h")
     columns, columns_words = r"M_?[(\[]?(\d)[_,]?(\d)[)\]]?", "M11.."
     depends_on_inertia, comes_with_others = True, True
     order, has_products = 2, True
