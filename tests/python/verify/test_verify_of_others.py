@@ -84,7 +84,7 @@ end
 
 @pytest.mark.parametrize("letter", ["M", "D", "B", "H", "A"])
 def test_the_mass_matrix_has_the_letter_of_any_textbook(letter: str, written: Any) -> None:
-    table = "type,a,alpha,d,theta,mass,cx,cy,cz,Ixx,Iyy,Izz\nR,0.4,0,0,0,1.5,-0.18,0,0,0,0.02,0.02\n"
+    table = "standard\ntype,a,alpha,d,theta,mass,cx,cy,cz,Ixx,Iyy,Izz\nR,0.4,0,0,0,1.5,-0.18,0,0,0,0.02,0.02\n"
     rows = written("two_links.csv", f"{table}R,0.3,0,0,0,0.9,-0.17,0,0,0,0.01,0.01\n")
     arm = verify.Chain.from_dh(rows).placed(gravity=(0, -9.81, 0))
     path = written("two_links.m", TEXTBOOK.replace("FIRST", letter))
