@@ -181,6 +181,19 @@ class Urdf:
         """The joints that stand on a link."""
         return self._by_parent.get(link, [])
 
+    def standing(self) -> dict[str, tuple[Floats, Floats]]:
+        """The links that fixed joints hold on the root: rotation and origin of each in the root's frame."""
+        [root] = [link for link in self._links if link not in self._by_child]
+        found = {root: (np.eye(3), np.zeros(3))}
+        rest = [root]
+        while rest:
+            rotation, origin = found[parent := rest.pop()]
+            for joint in (one for one in self.children(parent) if one.kind == "fixed"):
+                step_rotation, step_origin = joint.pose(0.0)
+                found[joint.child] = rotation @ step_rotation, origin + rotation @ step_origin
+                rest.append(joint.child)
+        return found
+
     def has_inertial(self, link: str) -> bool:
         return self._links[link].find("inertial") is not None
 

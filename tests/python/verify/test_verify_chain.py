@@ -484,7 +484,7 @@ J = [-sin(q(1))-0.8*sin(q(1)+q(2)), -0.8*sin(q(1)+q(2)); cos(q(1))+0.8*cos(q(1)+
 end
 """
     done = command(written("jacobian.m", text), "--urdf", written("arm.urdf", UPRIGHT))
-    words = "in the frame of joint 1, which is turned by 90 deg about x and is moved by [0, 0, 0.4] m in the base"
+    words = "in the frame of joint 1, which is turned by 90 deg about x and is moved by [0, 0, 0.4] m in link base"
     assert done.returncode == 0 and f"{words}, tip tip: right" in done.stdout, done.stdout
     second = "cos(q(1))+0.8*cos(q(1)+q(2)), 0.8*cos(q(1)+q(2))"
     turned = text.replace(f"{second}; 0 0]", f"0 0; {second}]")

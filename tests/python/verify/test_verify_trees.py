@@ -10,6 +10,7 @@ of the Bravo, which has four or five.
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ import pinocchio as pin
 import pytest
 from arm3r_cpp import UnjudgedError, UsageError, verify
 from arm3r_cpp.verify import Chain
+from arm3r_cpp.verify.functions import formula_verdict
 from arm3r_cpp.verify.kinds import KINDS
 from numpy.typing import NDArray
 
@@ -179,3 +181,57 @@ def _plain(folder: Path) -> Path:
     path = folder / "plain.urdf"
     path.write_text(urdf_of(TREES["ur5"]))
     return path
+
+
+DH_OF_UR = {  # d1, a2, a3, d4, d5, d6 as the manufacturer gives them, of frame 0 and of joints with these twists
+    "ur3": (0.1519, -0.24365, -0.21325, 0.11235, 0.08535, 0.0819),
+    "ur5": (0.089159, -0.425, -0.39225, 0.10915, 0.09465, 0.0823),
+    "ur10": (0.1273, -0.612, -0.5723, 0.163941, 0.1157, 0.0922),
+    "ur3e": (0.15185, -0.24355, -0.2132, 0.13105, 0.08535, 0.0921),
+    "ur5e": (0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996),
+    "ur10e": (0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655),
+    "ur16e": (0.1807, -0.4784, -0.36, 0.17415, 0.11985, 0.11655),
+}
+UR = """import numpy as np
+
+d = [D1, 0, 0, D4, D5, D6]
+a = [0, A2, A3, 0, 0, 0]
+alpha = [np.pi/2, 0, 0, np.pi/2, -np.pi/2, 0]
+
+
+def frames(q):
+    found = [np.eye(4)]
+    for i in range(6):
+        c, s, ca, sa = np.cos(q[i]), np.sin(q[i]), np.cos(alpha[i]), np.sin(alpha[i])
+        step = [[c, -s*ca, s*sa, a[i]*c], [s, c*ca, -c*sa, a[i]*s], [0, sa, ca, d[i]], [0, 0, 0, 1]]
+        found.append(found[-1] @ np.array(step))
+    return found
+
+
+def forward_kinematics(q):
+    return frames(q)[-1]
+
+
+def jacobian(q):
+    *before, last = frames(q)
+    return np.array([[*np.cross(one[:3, 2], last[:3, 3] - one[:3, 3]), *one[:3, 2]] for one in before]).T
+"""
+
+
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("name", DH_OF_UR)
+def test_formulas_in_the_frame_of_another_fixed_link_are_right(name: str, chain_of: Any, tmp_path: Path) -> None:
+    """The controller of a UR has its frame turned by 180 degrees from that of ROS: its file has both."""
+    chain, _ = chain_of(name)
+    text = UR
+    for letter, value in zip(("D1", "A2", "A3", "D4", "D5", "D6"), DH_OF_UR[name], strict=True):
+        text = text.replace(letter, str(value))
+    path = tmp_path / "ur.py"
+    path.write_text(text)
+    for function in ("forward_kinematics", "jacobian"):
+        verdict = formula_verdict(f"{path}:{function}", arm=chain)
+        assert verdict.ok, str(verdict)
+        assert any(re.match(r"in the frame of link base\w*, which is turned by 180 deg about -?z", one)
+                   for one in verdict.found), verdict.found  # fmt: skip
+    path.write_text(text.replace("-np.pi/2", "np.pi/2"))
+    assert not formula_verdict(f"{path}:jacobian", arm=chain).ok

@@ -42,6 +42,7 @@ class SerialChain:
         without_inertial: Sequence[str] = (),
         without_any_inertial: Sequence[str] = (),
         named_numbers: Mapping[str, float] | None = None,
+        standing: Mapping[str, tuple[Floats, Floats]] | None = None,
     ) -> None:
         """
         Args:
@@ -54,6 +55,7 @@ class SerialChain:
             without_any_inertial: those of them on which nothing with a mass is fixed.
             states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
+            standing: frames that do not move, by their names: rotation and origin in the base.
 
         Raises:
             UsageError: there is no joint, or there are more than seven.
@@ -77,6 +79,7 @@ class SerialChain:
         self.held = tuple(held)
         self.without_inertial, self.without_any_inertial = tuple(without_inertial), tuple(without_any_inertial)
         self.named_numbers = dict(named_numbers or {})
+        self.standing = dict(standing or {})
 
     @property
     def gravity_size(self) -> float:

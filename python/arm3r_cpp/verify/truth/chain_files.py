@@ -50,6 +50,7 @@ class Chain(SerialChain):
             held=found.held,
             without_inertial=found.without_inertial,
             without_any_inertial=found.without_any_inertial,
+            standing=urdf.standing(),
         )
 
     @classmethod
@@ -102,6 +103,7 @@ class Chain(SerialChain):
             without_inertial=self.without_inertial,
             without_any_inertial=self.without_any_inertial,
             named_numbers=self.named_numbers,
+            standing={name: (turn @ rotation, turn @ origin) for name, (rotation, origin) in self.standing.items()},
         )
 
     def _ways_down(self) -> list[Floats]:
@@ -122,13 +124,25 @@ class Chain(SerialChain):
         other.gravity, other.takes_direction = size * direction, True
         return other
 
-    def in_frame_of_first_joint(self) -> Chain:
-        """The chain in the frame in which its first joint stands, instead of the base."""
+    def _in_frame_of(self, name: str, rotation: Floats, origin: Floats) -> Chain:
+        """The chain in a frame that stands in the base, instead of the base."""
         other, (first, *rest) = copy.copy(self), self.parts
-        other.parts = [replace(first, rotation=np.eye(3), origin=np.zeros(3)), *rest]
-        other.gravity = first.rotation.T @ self.gravity
-        other.frame = f"the frame of joint 1, which {pose_words(first.rotation, first.origin)} in the base"
+        moved = replace(first, rotation=rotation.T @ first.rotation, origin=rotation.T @ (first.origin - origin))
+        other.parts, other.gravity = [moved, *rest], rotation.T @ self.gravity
+        root = next((f"link {link}" for link in self.standing), "the base")
+        other.frame = f"the frame of {name}, which {pose_words(rotation, origin)} in {root}"
         return other
+
+    def _in_other_frames(self) -> list[Chain]:
+        """In the frames that the file has beside the base, and in that of joint 1 at rest."""
+        first, found = self.parts[0], [(np.eye(3), np.zeros(3))]
+        others = []
+        links = {f"link {link}": pose for link, pose in self.standing.items()}
+        for name, pose in {**links, "joint 1": (first.rotation, first.origin)}.items():
+            if not any(np.array_equal(pose[0], one[0]) and np.array_equal(pose[1], one[1]) for one in found):
+                found.append(pose)
+                others.append(self._in_frame_of(name, *pose))
+        return others
 
     def open_to(self, kind: Kind) -> list[Chain]:
         """Other chains that its file may mean: it says nothing of g, and a base may stand anywhere."""
@@ -136,9 +150,7 @@ class Chain(SerialChain):
             size = self.gravity_size
             placed = [self, *(self._falling_along(direction, size) for direction in self._ways_down())]
             return [*placed[1:], *(one.with_gravity(g) for one in placed for g in _OTHER_GRAVITIES)]
-        first = self.parts[0]
-        stands_apart = not (np.array_equal(first.rotation, np.eye(3)) and not first.origin.any())
-        return [self.in_frame_of_first_joint()] if kind.depends_on_base and stands_apart else []
+        return self._in_other_frames() if kind.depends_on_base else []
 
     def variants(self, kind: Kind) -> list[tuple[str, Chain]]:
         """Chains with a mistake in the masses of all links, or of one, in words."""
