@@ -181,11 +181,13 @@ class Urdf:
         """The joints that stand on a link."""
         return self._by_parent.get(link, [])
 
-    def standing(self) -> dict[str, tuple[Floats, Floats]]:
-        """The links that fixed joints hold on the root: rotation and origin of each in the root's frame."""
-        [root] = [link for link in self._links if link not in self._by_child]
-        found = {root: (np.eye(3), np.zeros(3))}
-        rest = [root]
+    def root(self) -> str:
+        """The link that is no child."""
+        return next(link for link in self._links if link not in self._by_child)
+
+    def fixed_on(self, link: str) -> dict[str, tuple[Floats, Floats]]:
+        """A link and those that fixed joints hold on it: rotation and origin of each in the frame of the first, m."""
+        found, rest = {link: (np.eye(3), np.zeros(3))}, [link]
         while rest:
             rotation, origin = found[parent := rest.pop()]
             for joint in (one for one in self.children(parent) if one.kind == "fixed"):

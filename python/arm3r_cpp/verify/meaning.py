@@ -25,6 +25,7 @@ from .truth.three_r import FOLLOWING
 _CHANGE = 1e-6  # of the largest: what changes less does not change
 _MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
 _MOST_OUTPUTS = 4
+_NEAR = 0.25  # of the distance from what is right in the frame of the base
 
 
 def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
@@ -78,7 +79,7 @@ def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
     """Of the arms that a file may mean, the one by which fewest entries are wrong.
 
     Of equals it is one on which the formula's gravity acts, with a size that stands in its text; then the nearest. Of
-    equal frames it is the base's.
+    equal frames it is the base's, unless the formula is far from what is right there and near in another.
     """
     others = truth.open_to(kind)
     if not others:
@@ -91,18 +92,21 @@ def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
         return any(math.isclose(one.gravity_size, number, rel_tol=1e-9) for number in literals)
 
     is_written = any(map(has_size, [truth, *others]))
+    apart: list[float] = []  # of the frames, the base's first
 
-    def distance(one: Any) -> tuple[int, bool, int, bool, bool, float]:
+    def distance(one: Any) -> tuple[int, bool, int, bool, bool, bool, float]:
         parameters = _parameters(formula, kind, one)
         given = [(numbers[name], one.values_of_quantities[parameters[name]]) for name in parameters if name in numbers]
         case = meant(formula, kind, one)[0]
         values, due = case.values(case.second), case.due(case.second)
+        apart.append(float(np.mean(np.abs(values - due) / scales(due))))
         return (
             len(case.wrong(values, case.second, due)),
             feels_gravity and one.is_across_gravity(),
             sum(not np.isclose(*pair, rtol=1e-9) for pair in given),
             is_written and not has_size(one),
             one.takes_gravity,
+            not (kind.depends_on_base and apart[-1] < _NEAR * apart[0]),
             _apart_but_for_the_sign(values, due) if kind.depends_on_gravity else 0.0,  # of frames the base's
         )
 

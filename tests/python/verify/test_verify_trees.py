@@ -235,3 +235,19 @@ def test_formulas_in_the_frame_of_another_fixed_link_are_right(name: str, chain_
                    for one in verdict.found), verdict.found  # fmt: skip
     path.write_text(text.replace("-np.pi/2", "np.pi/2"))
     assert not formula_verdict(f"{path}:jacobian", arm=chain).ok
+
+
+def test_a_point_of_another_link_on_the_last_one_is_named(tmp_path: Path) -> None:
+    path, formula = tmp_path / "ur5.urdf", tmp_path / "ur.py"
+    path.write_text(urdf_of(TREES["ur5"]))
+    text = UR
+    for letter, value in zip(("D1", "A2", "A3", "D4", "D5", "D6"), DH_OF_UR["ur5"], strict=True):
+        text = text.replace(letter, str(value))
+    formula.write_text(text)
+    wrist = Chain.from_urdf(path, tip="wrist_3_link")
+    verdict = formula_verdict(f"{formula}:forward_kinematics", arm=wrist)
+    assert {one.cause for one in verdict.findings} == {"The point is that of link ee_link: name it by --tip ee_link."}
+    assert "in the frame of link base, which is turned by 180 deg about z in link world" in verdict.found
+    turned = wrist.placed(base_rotation=(0, 0, np.pi / 2))
+    verdict = formula_verdict(f"{formula}:forward_kinematics", arm=turned)
+    assert any(re.match(r"in the frame of link base, which is turned by 90 deg about -z", one) for one in verdict.found)

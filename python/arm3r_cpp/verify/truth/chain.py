@@ -17,6 +17,7 @@ MAX_JOINTS = 7
 GRAVITY = (0.0, 0.0, -9.80665)  # m/s^2
 
 
+Pose = tuple[Floats, Floats]  # rotation and origin, m
 AnyChain = TypeVar("AnyChain", bound="SerialChain")
 
 
@@ -42,7 +43,8 @@ class SerialChain:
         without_inertial: Sequence[str] = (),
         without_any_inertial: Sequence[str] = (),
         named_numbers: Mapping[str, float] | None = None,
-        standing: Mapping[str, tuple[Floats, Floats]] | None = None,
+        standing: Mapping[str, Pose] | None = None,
+        carried: Mapping[str, Pose] | None = None,
     ) -> None:
         """
         Args:
@@ -56,6 +58,7 @@ class SerialChain:
             states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
             standing: frames that do not move, by their names: rotation and origin in the base.
+            carried: frames on the last link, in its own.
 
         Raises:
             UsageError: there is no joint, or there are more than seven.
@@ -68,8 +71,6 @@ class SerialChain:
         self.tool_rotation = np.eye(3) if tool_rotation is None else tool_rotation
         self.tool, self.gravity = np.array(tool, float), np.array(gravity, float)
         self.groups = self._parallel_groups()
-        g = self.gravity_size
-        self.values_of_quantities: dict[str, float] = {"gravity": g} if g and self._has_masses() else {}
         self.states_gravity, self.tip, self.frame = states_gravity, tip, ""
         self.takes_gravity = False
         """Whether its size is what a formula says, as the chain's file does not."""
@@ -79,12 +80,18 @@ class SerialChain:
         self.held = tuple(held)
         self.without_inertial, self.without_any_inertial = tuple(without_inertial), tuple(without_any_inertial)
         self.named_numbers = dict(named_numbers or {})
-        self.standing = dict(standing or {})
+        self.standing, self.carried = dict(standing or {}), dict(carried or {})
 
     @property
     def gravity_size(self) -> float:
         """m/s^2"""
         return float(np.linalg.norm(self.gravity))
+
+    @property
+    def values_of_quantities(self) -> dict[str, float]:
+        """The chain's numbers that a formula may have as names."""
+        g = self.gravity_size
+        return {"gravity": g} if g and self._has_masses() else {}
 
     def plane(self) -> int | None:
         """The axis of the base across which the chain moves, 0 for x; None where it leaves every such plane."""
@@ -256,7 +263,7 @@ class SerialChain:
         """The chain where gravity is as large, m/s^2."""
         other = copy.copy(self)
         other.gravity = self.gravity * (g / np.linalg.norm(self.gravity))
-        other.values_of_quantities, other.takes_gravity = {"gravity": g}, True
+        other.takes_gravity = True
         return other
 
     def values(self, kind: Kind, convention: str, states: Mapping[str, Floats], quantities: Mapping[str, float],

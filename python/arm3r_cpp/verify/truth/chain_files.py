@@ -50,7 +50,8 @@ class Chain(SerialChain):
             held=found.held,
             without_inertial=found.without_inertial,
             without_any_inertial=found.without_any_inertial,
-            standing=urdf.standing(),
+            standing=urdf.fixed_on(urdf.root()),
+            carried=urdf.fixed_on(found.joints[-1].child) if found.joints else None,
         )
 
     @classmethod
@@ -90,21 +91,12 @@ class Chain(SerialChain):
             parts[0] = replace(parts[0], rotation=turn @ parts[0].rotation, origin=turn @ parts[0].origin)
         if payload:
             parts[-1] = with_mass(parts[-1], payload, self.tool)
-        return type(self)(
-            parts,
-            tool_rotation=self.tool_rotation,
-            tool=self.tool,
-            gravity=self.gravity if gravity is None else gravity,
-            name=self.name,
-            states_gravity=self.states_gravity or gravity is not None,
-            tip=self.tip,
-            without_tip=self.without_tip,
-            held=self.held,
-            without_inertial=self.without_inertial,
-            without_any_inertial=self.without_any_inertial,
-            named_numbers=self.named_numbers,
-            standing={name: (turn @ rotation, turn @ origin) for name, (rotation, origin) in self.standing.items()},
-        )
+        other = copy.copy(self)
+        other.parts = parts
+        other.standing = {name: (turn @ rotation, turn @ origin) for name, (rotation, origin) in self.standing.items()}
+        if gravity is not None:
+            other.gravity, other.states_gravity = np.array(gravity, float), True
+        return other
 
     def _ways_down(self) -> list[Floats]:
         """Of an arm that moves across gravity, as it lies on paper: down the page, or it hangs or stands at zero."""
@@ -153,8 +145,11 @@ class Chain(SerialChain):
         return self._in_other_frames() if kind.depends_on_base else []
 
     def variants(self, kind: Kind) -> list[tuple[str, Chain]]:
-        """Chains with a mistake in the masses of all links, or of one, in words."""
-        if not kind.needs_masses or not self._has_masses():
+        """Chains with a mistake in the masses of all links, or of one, in words; or with another point on the last."""
+        if not kind.needs_masses:
+            return [(f"the point is that of link {name}: name it by --tip {name}", self._to(origin))
+                    for name, (_, origin) in self.carried.items() if not np.allclose(origin, self.tool)]  # fmt: skip
+        if not self._has_masses():
             return []
         own = self.parts
         ends = [*(joint.origin for joint in own[1:]), self.tool]
@@ -174,6 +169,12 @@ class Chain(SerialChain):
             bare = {place: replace(joint, armature=0.0) for place, joint in enumerate(own)}
             found.append(("the armature is left out", self._with_parts(bare)))
         return found
+
+    def _to(self, tool: Floats) -> Chain:
+        """The chain with its tip elsewhere on the last link."""
+        other = copy.copy(self)
+        other.tool = tool
+        return other
 
     def _with_parts(self, changes: dict[int, Joint]) -> Chain:
         """The chain with other joints, and what they carry, in some places."""
