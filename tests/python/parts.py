@@ -69,7 +69,13 @@ PARTS = {
         "the system's packages qemu-user and libgcc-s1-arm64-cross",
     ),
     "wine": Part(lambda: shutil.which("wine") is not None, "the system's package wine64"),
-    "wheels": Part(lambda: (WHEELS / "built").is_file() and have_modules("ziglang", "auditwheel"), "`make wheels`"),
+    "wheels": Part(
+        lambda: any((WHEELS / one).is_file() for one in ("built", "tested")) and have_modules("ziglang", "auditwheel"),
+        "`make wheels`",
+    ),
+    "macos-x86_64": Part(
+        lambda: any(WHEELS.glob("*-macosx_*_x86_64.whl")), "`make wheels`; `make gates` builds the others"
+    ),
     "site": Part(
         lambda: have_modules("sphinx", "myst_nb", "furo", "ziamath"),
         "`pip install 'arm3r_cpp[docs]'`, with Python 3.11 or later",

@@ -1,4 +1,4 @@
-"""The wheels that `make wheels` has built, unpacked, and what runs their programs on this machine."""
+"""The wheels that `make wheels` or `make gates` has built, unpacked, and what runs their programs on this machine."""
 
 from __future__ import annotations
 

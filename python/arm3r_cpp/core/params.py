@@ -16,6 +16,7 @@ def param_count() -> int:
     return int(lib.arm3r_param_count())
 
 
+@cache
 def param_index(name: str) -> int:
     """The index of a parameter, such as "wall.contact.stiffness" or "initial.q[0]".
 

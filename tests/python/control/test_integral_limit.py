@@ -62,6 +62,7 @@ def random_hybrid(rng: np.random.Generator, *, sampled: bool) -> tuple[Any, dict
     if made["controller.anti_windup"] == "back_calculation":
         made["controller.tracking_time"] = rng.uniform(0.01, 0.2)
     made["reference"] = {"type": "hold", "force": {"value": wanted}}
+    made["solver.max_steps"] = 100_000  # a hundred times what a stable loop takes
     if sampled:
         made["sampling.rate"] = 500
     return made, gains, limit

@@ -9,6 +9,7 @@ import shlex
 import subprocess
 import sys
 import tarfile
+import zipfile
 from pathlib import Path
 from types import ModuleType
 
@@ -126,3 +127,14 @@ def test_source_package_and_wheel_have_the_same_bytes_in_two_folders(tmp_path: P
         subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)
     one, two = map(packages, clones)
     assert len(one) == 2 and one == two
+    [wheel] = (clones[0] / "dist").glob("*.whl")
+    assert re.fullmatch(r"arm3r_cpp-[\d.]+-cp310-abi3-linux_\w+\.whl", wheel.name)  # for all versions of Python
+    names = set(zipfile.ZipFile(wheel).namelist())
+    parts = "_arm3r.abi3.so bin/arm3r include/arm3r/arm3r.h lib/libarm3r.so lib/cmake/arm3r/arm3rConfig.cmake"
+    assert {f"arm3r_cpp/{part}" for part in parts.split()} <= names
+    files = [
+        *clones[0].glob("scenarios/**/*.yaml"),
+        *clones[0].glob("docs/*.schema.json"),
+        *clones[0].glob("docs/*.md"),
+    ]
+    assert {f"arm3r_cpp/share/arm3r/{path.relative_to(clones[0]).as_posix()}" for path in files} <= names

@@ -12,6 +12,7 @@ import pytest
 from arm3r_cpp.verify.functions import formula_verdict, truth_of
 from arm3r_cpp.verify.kinds import KINDS
 from arm3r_cpp.verify.log.noise import features_of
+from arm3r_cpp.verify.truth.three_r import ThreeR
 from numpy.typing import NDArray
 from random_scenarios import sample_seed
 
@@ -274,3 +275,15 @@ def test_a_log_of_the_other_convention_is_named_so(tmp_path: Path) -> None:
     verdict = formula_verdict(written(tmp_path / "log.csv", "gravity", at, values), arm=scenario)
     assert not verdict.ok
     assert "it is right in the convention simscape; the scenario states slide" in verdict.alternatives
+
+
+def test_columns_of_coriolis_terms_are_no_heights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """h1 is a name of the height of joint 2, too: then each row would be of an arm of its own."""
+    rng, arms = np.random.default_rng(sample_seed()), []
+    at = states(400, moves=False, rng=rng)
+    due = TRUTH.values(KINDS["coriolis"], TRUTH.convention, at, {})
+    path = written(tmp_path / "log.csv", "coriolis", at, white(due, 1e-3 * np.abs(due).max(), rng))
+    arm = ThreeR.arm
+    monkeypatch.setattr(ThreeR, "arm", lambda self, *given, **more: arms.append(given) or arm(self, *given, **more))
+    assert formula_verdict(path, "coriolis").ok
+    assert len(arms) < 100

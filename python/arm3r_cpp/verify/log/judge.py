@@ -17,7 +17,7 @@ from ..kinds import Kind
 from ..names import SHORT, quantities_of
 from ..verdict import Verdict
 from .noise import FEWEST_ROWS, features_of, follows, friction_of, inflation, noise_of, quantum, spikes_of
-from .reading import Log
+from .reading import Log, is_entry
 
 _LARGER = 4.0  # than the noise of the other entries: then an entry holds what is no such sum
 _OF_STATES = 2.0  # times what the noise of the states makes of an entry: nothing smaller is told from it
@@ -180,7 +180,7 @@ def _judged(log: Log, kind: Kind, truth: Any, noise: float | None) -> _Candidate
     given = {
         quantity: log.columns[name]
         for name, quantity in quantities_of(log.columns).items()
-        if quantity in truth.values_of_quantities and not name.startswith("J")
+        if quantity in truth.values_of_quantities and not name.startswith("J") and not is_entry(name)
     }
     case = _Case(
         log=log,

@@ -143,8 +143,12 @@ class Log(NamedTuple):
 
 def is_known(name: str) -> bool:
     """Whether a log's column of this name is judged, or says at which state or of which arm a row is."""
-    entries = any(re.fullmatch(kind.columns, name) for kind in _JUDGED)
-    return bool(_STATES.fullmatch(name)) or entries or bool(quantities_of([name]))
+    return bool(_STATES.fullmatch(name)) or is_entry(name) or bool(quantities_of([name]))
+
+
+def is_entry(name: str) -> bool:
+    """Whether a log's column of this name is an entry of some kind of formula: h1 is no height."""
+    return any(re.fullmatch(kind.columns, name) for kind in _JUDGED)
 
 
 def read_log(path: str | os.PathLike[str], called: Mapping[str, str] | None = None) -> Log:
