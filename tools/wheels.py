@@ -111,7 +111,8 @@ def main(names: list[str]) -> int:
     run(sys.executable, ROOT / "tools" / "yaml_cpp_source.py", SOURCES)
     write_licenses()
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        for wheel in pool.map(build, [target for target in PLATFORMS if not names or target.name in names]):
+        chosen = [target for target in PLATFORMS if not names or target.name in names]
+        for wheel in pool.map(build, sorted(chosen, key=lambda one: "x86_64" not in one.name)):  # the longest first
             print(wheel.relative_to(ROOT), flush=True)
     return 0
 
