@@ -173,6 +173,23 @@ def _by_mass_matrix(known: Known, words: Words) -> Floats:
     return np.linalg.solve(inverse, np.linalg.solve(inverse, known.due[..., None]))[..., 0]
 
 
+_LEFT_OUT: dict[str, dict[str, Any]] = {
+    "height of joint 2 above the base frame": {"arm.base_height": 0.0},
+    "payload": {"arm.payload.mass": 0.0},
+    "armature": {"arm.armature": [0.0] * 3},
+    "damping": {"arm.damping": [0.0] * 3},
+    "friction": {"arm.friction": [0.0] * 3},
+    "inertia of link 1 about its axis": {"arm.link1.inertia_axial": 2e-9},  # some, or the mass matrix may be singular
+}
+
+
+def _rods(known: Known, words: Words) -> Floats:
+    changes = dict(_LEFT_OUT["inertia of link 1 about its axis"]) if words[1] else {}
+    for link in "23":
+        changes |= {f"arm.link{link}.shape": "slender", f"arm.link{link}.mass": known.numbers[f"m{link}"]}
+    return known.due_of(known.states, changes)
+
+
 _FACTORS = {
     "twice": 2.0,
     "half": 0.5,
@@ -235,6 +252,8 @@ _SENTENCES: tuple[tuple[str, Callable[[Known, Words], Floats]], ...] = (
         r"the parallel-axis term m l.2 is (missing|counted twice): the inertia(?:s are| of link (\d) is) about .*",
         _parallel_axes,
     ),
+    (rf"the ({'|'.join(_LEFT_OUT)}) is left out", lambda known, words: known.due_of(known.states, _LEFT_OUT[words[1]])),
+    (r"links 2 and 3 are slender rods; the arm's have a width \(.*\)(, and the inertia of link 1 .*)?", _rods),
     ("g is missing", lambda known, words: known.of_arm(gravity=[0, 0, -1])),
     ("g is multiplied in twice", lambda known, words: known.of_arm(gravity=[0, 0, -(known.numbers["g"] ** 2)])),
     ("gravity is left out", lambda known, words: known.of_arm(gravity=[0, 0, 0])),
