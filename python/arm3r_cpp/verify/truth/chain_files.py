@@ -121,8 +121,11 @@ class Chain(SerialChain):
         other, (first, *rest) = copy.copy(self), self.parts
         moved = replace(first, rotation=rotation.T @ first.rotation, origin=rotation.T @ (first.origin - origin))
         other.parts, other.gravity = [moved, *rest], rotation.T @ self.gravity
-        root = next((f"link {link}" for link in self.standing), "the base")
-        other.frame = f"the frame of {name}, which {pose_words(rotation, origin)} in {root}"
+        root, turn = next(
+            ((f"link {link}", turn) for link, (turn, _) in self.standing.items()), ("the base", np.eye(3))
+        )
+        where = root if np.array_equal(turn, np.eye(3)) else "that in which the base stands"
+        other.frame = f"the frame of {name}, which {pose_words(rotation, origin)} in {where}"
         return other
 
     def _in_other_frames(self) -> list[Chain]:
