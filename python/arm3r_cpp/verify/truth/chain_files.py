@@ -121,12 +121,14 @@ class Chain(SerialChain):
         other, (first, *rest) = copy.copy(self), self.parts
         moved = replace(first, rotation=rotation.T @ first.rotation, origin=rotation.T @ (first.origin - origin))
         other.parts, other.gravity = [moved, *rest], rotation.T @ self.gravity
-        root, turn = next(
-            ((f"link {link}", turn) for link, (turn, _) in self.standing.items()), ("the base", np.eye(3))
-        )
-        where = root if np.array_equal(turn, np.eye(3)) else "that in which the base stands"
-        other.frame = f"the frame of {name}, which {pose_words(rotation, origin)} in {where}"
+        other.frame = f"the frame of {name}, which {pose_words(rotation, origin)} in {self._base_words()}"
         return other
+
+    def _base_words(self) -> str:
+        """What the chain's own frame is: that of the file's root, unless this is turned."""
+        for link, (turn, _) in self.standing.items():
+            return f"link {link}" if np.array_equal(turn, np.eye(3)) else "that in which the base stands"
+        return "the base"
 
     def _in_other_frames(self) -> list[Chain]:
         """In the frames that the file has beside the base, and in that of joint 1 at rest."""
