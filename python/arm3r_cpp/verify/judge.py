@@ -20,7 +20,7 @@ from .comparison import TOLERANCE, Comparison
 from .coverage import seen_by_tests
 from .doubts import few, leave_open, look_at_others
 from .explain.budget import SECONDS_AN_EDIT, Budget, affordable
-from .explain.causes import explain
+from .explain.causes import explain, right_by_name
 from .explain.constants import judge_constants
 from .explain.differences import only_structured
 from .explain.repair import Progress
@@ -152,6 +152,10 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     own_due, own_values = _own(case)
     verdict.residual = _largest(own_values - own_due)
     wrong = only_structured(verdict, case, values, due, wrong)
+    if wrong and (by_name := right_by_name(case)):
+        words, verdict.residual = by_name
+        verdict.found.insert(0, words)
+        wrong = frozenset()
     if case.convention != case.truth.convention:
         verdict.warnings.append(f"the convention {case.convention} is not that of the arm, {case.truth.convention}")
     if case.kind.is_product and not wrong:

@@ -252,3 +252,52 @@ def test_a_point_of_another_link_on_the_last_one_is_named(tmp_path: Path) -> Non
     verdict = formula_verdict(f"{formula}:forward_kinematics", arm=turned)
     words = "in the frame of link base, which is turned by 90 deg about -z in that in which the base stands"
     assert words in verdict.found, verdict.found
+
+
+TWISTS = """
+
+def body_jacobian(q):
+    J, R = jacobian(q), frames(q)[-1][:3, :3]
+    return np.vstack([R.T @ J[3:], R.T @ J[:3]])
+
+
+def JacobianSpace(q):
+    J, p = jacobian(q), frames(q)[-1][:3, 3]
+    return np.vstack([J[3:], J[:3] - np.cross(J[3:].T, p).T])
+"""
+
+
+def twists(tip: str, folder: Path) -> tuple[Chain, Path]:
+    """A UR5 up to a tip, and Jacobians of it as twists."""
+    path, formula = folder / "ur5.urdf", folder / "ur.py"
+    path.write_text(urdf_of(TREES["ur5"]))
+    text = UR + TWISTS
+    for letter, value in zip(("D1", "A2", "A3", "D4", "D5", "D6"), DH_OF_UR["ur5"], strict=True):
+        text = text.replace(letter, str(value))
+    formula.write_text(text)
+    return Chain.from_urdf(path, tip=tip), formula
+
+
+@pytest.mark.parametrize("tip", ["tool0", "ee_link"])
+def test_body_and_space_jacobians_are_right_as_what_they_are_called(tip: str, tmp_path: Path) -> None:
+    """Angular rows first, in any fixed frame of the file and any frame on the tip."""
+    chain, formula = twists(tip, tmp_path)
+    moving = "the tip's frame" if tip == "tool0" else "a frame that moves with the tip"
+    words = {
+        "body_jacobian": f"a body Jacobian, in {moving}, angular rows first",
+        "JacobianSpace": "a space Jacobian, of the point at the base's origin, angular rows first",
+    }
+    for name, said in words.items():
+        verdict = formula_verdict(f"{formula}:{name}", arm=chain)
+        assert verdict.ok and verdict.residual < 1e-12 and verdict.found[0].startswith(said), str(verdict)
+
+
+@pytest.mark.gate
+def test_wrong_body_and_space_jacobians_and_those_of_other_names_are_wrong(tmp_path: Path) -> None:
+    chain, formula = twists("tool0", tmp_path)
+    text = formula.read_text()
+    formula.write_text(text.replace("R.T @ J[:3]", "R @ J[:3]").replace("- np.cross", "+ np.cross"))
+    assert not any(formula_verdict(f"{formula}:{name}", arm=chain).ok for name in ("body_jacobian", "JacobianSpace"))
+    formula.write_text(text.replace("body_jacobian", "jacobian_of_tip"))
+    verdict = formula_verdict(f"{formula}:jacobian_of_tip", arm=chain)
+    assert not verdict.ok and "in the tip's frame" in verdict.findings[0].cause

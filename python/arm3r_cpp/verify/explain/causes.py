@@ -23,7 +23,7 @@ from ..samples import Samples
 from ..verdict import Verdict
 from .budget import Budget
 from .edits import Editor
-from .frames import Pose
+from .frames import Pose, jacobian_of_name
 from .hypotheses import Hypothesis, hypotheses
 from .reader import read_entries
 from .repair import Progress, Repair, cover, influential, tried, wrong_entries
@@ -79,6 +79,20 @@ def explain(
     verdict.alternatives += causes[1:]
     for repair in chosen:
         verdict.alternatives += _other_edits(case, repairs, repair)
+
+
+def right_by_name(case: Comparison) -> tuple[str, float] | None:
+    """What a Jacobian is that is right in a frame that its name says, and how far it is from that."""
+    if not case.kind.is_derivative or not re.search("body|space|spatial", case.formula.name, re.I):
+        return None
+    for truth in (case.truth, *case.truth.open_to(case.kind)):
+        other = replace(case, truth=truth)
+        other.shape = case.shape
+        for one in _hypotheses(other):
+            if words := jacobian_of_name(case.formula.name, one.cause):
+                error = float(np.abs(other.values(other.second) - one.values()).max())
+                return f"{words}{f' in {truth.frame}' if truth is not case.truth else ''}", error
+    return None
 
 
 def _not_continued(formula: Formula) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import permutations, product
@@ -13,6 +14,8 @@ from ..._native import Floats
 
 _EULER = (("roll, pitch and yaw", 2, 0, 1), ("Euler angles (ZYZ)", 2, 2, 1), ("Euler angles (XYZ)", 0, 2, -1))
 """Of turns about moving axes: their words, the first and the last axis, the sign of their product along the second."""
+_MOVING = "a frame that moves with the tip"
+_ANGULAR_FIRST = ", and the angular rows stand above the linear ones"
 Mistake = tuple[str, Callable[[], Floats], int]
 """Its words, what is returned with it, how far-fetched it is."""
 
@@ -38,9 +41,9 @@ def of_other_frames(values: Floats, pose: Pose) -> Iterator[Mistake]:
     rotation, position = pose.rotation, pose.position
     turned = [("", values)]
     if values.shape[1] == 6:
-        turned.append((", and the angular rows stand above the linear ones", np.roll(values, 3, axis=1)))
+        turned.append((_ANGULAR_FIRST, np.roll(values, 3, axis=1)))
     for (number, axes), (also, rows) in product(enumerate(_AXES), turned):
-        which = "the tip's frame" if number == 0 else "a frame that moves with the tip"
+        which = "the tip's frame" if number == 0 else _MOVING
         words = f"the rows are in {which}; they should be in the base frame{also}"
         yield words, partial(_rotated, rotation @ axes, rows), 1 + (number > 0) + bool(also)
     for (number, link), axes in product(enumerate(pose.links, 1), _AXES):
@@ -51,7 +54,22 @@ def of_other_frames(values: Floats, pose: Pose) -> Iterator[Mistake]:
         whole = np.concatenate([values[:, :3] - across, values[:, 3:]], axis=1)
         words = "the linear rows are of the last link's point at the base's origin; they should be those of the tip"
         yield words, lambda: whole, 1
+        yield f"{words}{_ANGULAR_FIRST}", lambda: np.roll(whole, 3, axis=1), 2
         yield from _of_euler_rates(values, rotation)
+
+
+def jacobian_of_name(name: str, cause: str) -> str | None:
+    """What a Jacobian is that is right as what its name says: a body or a space Jacobian; None where it is not.
+
+    Args:
+        cause: the words of `of_other_frames` for it.
+    """
+    found = re.match(rf"the rows are in (the tip's frame|{_MOVING})|the linear rows are of the last link's", cause)
+    which, names = ("body", "body") if found and found[1] else ("space", "space|spatial")
+    if not found or not re.search(names, name, re.I):
+        return None
+    of = f"in {found[1]}" if found[1] else "of the point at the base's origin"
+    return f"a {which} Jacobian, {of}{', angular rows first' if _ANGULAR_FIRST in cause else ''}"
 
 
 def of_other_points(values: Floats, pose: Pose) -> Iterator[Mistake]:

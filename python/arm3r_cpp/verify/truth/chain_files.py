@@ -120,7 +120,7 @@ class Chain(SerialChain):
         """The chain in a frame that stands in the base, instead of the base."""
         other, (first, *rest) = copy.copy(self), self.parts
         moved = replace(first, rotation=rotation.T @ first.rotation, origin=rotation.T @ (first.origin - origin))
-        other.parts, other.gravity = [moved, *rest], rotation.T @ self.gravity
+        other.parts, other.gravity, other.standing = [moved, *rest], rotation.T @ self.gravity, {}
         other.frame = f"the frame of {name}, which {pose_words(rotation, origin)} in {self._base_words()}"
         return other
 
