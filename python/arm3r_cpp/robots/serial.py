@@ -94,18 +94,12 @@ def _with_branches(
 ) -> Body:
     """A link with all that hangs on it beside the way. Appends the names of its links and of joints held at zero."""
     whole = Body(0.0, np.zeros(3), np.zeros((3, 3)))
-    rest = [(link, np.eye(3), np.zeros(3))]
-    while rest:
-        name, rotation, origin = rest.pop()
+    for name, rotation, origin in urdf.below(link, lambda joint: joint.child not in on_way, positions):
         links.append(name)
         whole = joined(whole, _moved(urdf.body(name), rotation, origin))
         for joint in reversed(urdf.children(name)):
-            if joint.child in on_way:
-                continue
-            if joint.kind != "fixed" and joint.name not in positions:
+            if joint.child not in on_way and joint.kind != "fixed" and joint.name not in positions:
                 held.append(joint.name)
-            step_rotation, step_origin = joint.pose(positions.get(joint.name, 0.0))
-            rest.append((joint.child, rotation @ step_rotation, origin + rotation @ step_origin))
     return whole
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -181,20 +182,27 @@ class Urdf:
         """The joints that stand on a link."""
         return self._by_parent.get(link, [])
 
-    def root(self) -> str:
-        """The link that is no child."""
-        return next(link for link in self._links if link not in self._by_child)
+    def below(
+        self, link: str, is_passed: Callable[[UrdfJoint], bool], positions: Mapping[str, float] | None = None
+    ) -> Iterator[tuple[str, Floats, Floats]]:
+        """A link and those that joints which are passed hold on it: name, rotation and origin in its frame, m.
+
+        Args:
+            positions: of joints that are not at zero, rad or m.
+        """
+        rest = [(link, np.eye(3), np.zeros(3))]
+        while rest:
+            name, rotation, origin = rest.pop()
+            yield name, rotation, origin
+            for joint in reversed(self.children(name)):
+                if is_passed(joint):
+                    step_rotation, step_origin = joint.pose((positions or {}).get(joint.name, 0.0))
+                    rest.append((joint.child, rotation @ step_rotation, origin + rotation @ step_origin))
 
     def fixed_on(self, link: str) -> dict[str, tuple[Floats, Floats]]:
         """A link and those that fixed joints hold on it: rotation and origin of each in the frame of the first, m."""
-        found, rest = {link: (np.eye(3), np.zeros(3))}, [link]
-        while rest:
-            rotation, origin = found[parent := rest.pop()]
-            for joint in (one for one in self.children(parent) if one.kind == "fixed"):
-                step_rotation, step_origin = joint.pose(0.0)
-                found[joint.child] = rotation @ step_rotation, origin + rotation @ step_origin
-                rest.append(joint.child)
-        return found
+        found = self.below(link, lambda joint: joint.kind == "fixed")
+        return {name: (rotation, origin) for name, rotation, origin in found}
 
     def has_inertial(self, link: str) -> bool:
         return self._links[link].find("inertial") is not None

@@ -92,25 +92,31 @@ def assumed(formula: Formula, kind: Kind, truth: Any) -> Any:
         return any(math.isclose(one.gravity_size, number, rel_tol=1e-9) for number in literals)
 
     is_written = any(map(has_size, [truth, *others]))
-    apart: list[float] = []  # of the frames, the base's first
+    cases = [(one, meant(formula, kind, one)[0]) for one in (truth, *others)]
+    in_base = _mean_error(cases[0][1])
 
-    def distance(one: Any) -> tuple[int, bool, int, bool, bool, bool, float]:
+    def distance(meaning: tuple[Any, Comparison]) -> tuple[int, bool, int, bool, bool, bool, float]:
+        one, case = meaning
         parameters = _parameters(formula, kind, one)
         given = [(numbers[name], one.values_of_quantities[parameters[name]]) for name in parameters if name in numbers]
-        case = meant(formula, kind, one)[0]
         values, due = case.values(case.second), case.due(case.second)
-        apart.append(float(np.mean(np.abs(values - due) / scales(due))))
         return (
             len(case.wrong(values, case.second, due)),
             feels_gravity and one.is_across_gravity(),
             sum(not np.isclose(*pair, rtol=1e-9) for pair in given),
             is_written and not has_size(one),
             one.takes_gravity,
-            not (kind.depends_on_base and apart[-1] < _NEAR * apart[0]),
+            not (kind.depends_on_base and _mean_error(case) < _NEAR * in_base),
             _apart_but_for_the_sign(values, due) if kind.depends_on_gravity else 0.0,  # of frames the base's
         )
 
-    return min([truth, *others], key=distance)
+    return min(cases, key=distance)[0]
+
+
+def _mean_error(case: Comparison) -> float:
+    """The mean difference from what is right, relative to the entries' scales."""
+    due = case.due(case.second)
+    return float(np.mean(np.abs(case.values(case.second) - due) / scales(due)))
 
 
 def _apart_but_for_the_sign(values: Floats, due: Floats) -> float:

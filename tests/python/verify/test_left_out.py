@@ -10,34 +10,31 @@ import numpy as np
 import pytest
 from arm3r_cpp.verify.functions import formula_verdict
 
-PLANAR = """\
-format: 1
-arm:
-  base_height: 0.3
+BOTH = """\
   payload: {mass: 0.4}
   armature: [0.02, 0.03, 0.01]
   damping: [0.4, 0.3, 0.2]
   friction: [0.3, 0.5, 0.2]
   friction_velocity: 0.1
-  link1: {inertia_axial: 0.03}
-  link2: {length: 0.9, section: [0.08, 0.08]}
-  link3: {length: 0.7, section: [0.06, 0.06]}
 """
-ELBOW = """\
+PLANAR = f"""\
 format: 1
 arm:
-  model: elbow
+{BOTH}  base_height: 0.3
+  link1: {{inertia_axial: 0.03}}
+  link2: {{length: 0.9, section: [0.08, 0.08]}}
+  link3: {{length: 0.7, section: [0.06, 0.06]}}
+"""
+ELBOW = f"""\
+format: 1
+arm:
+{BOTH}  model: elbow
   shoulder_offset: 0.1
-  payload: {mass: 0.4}
-  armature: [0.02, 0.03, 0.01]
-  damping: [0.4, 0.3, 0.2]
-  friction: [0.3, 0.5, 0.2]
-  friction_velocity: 0.1
-  link1: {mass: 3, com: [0.02, 0.1, 0.01], inertia: [0.03, 0.04, 0.05, 0.001, 0.002, 0.003]}
-  link2: {length: 0.9, offset: 0.05, mass: 2, com: [0.4, 0.02, 0.03], inertia: [0.01, 0.2, 0.21, 0.001, 0.002, 0.003]}
-  link3: {mass: 1.2, tip: [0.7, 0.01, 0.02], com: [0.3, 0.01, 0.02], inertia: [0.01, 0.1, 0.11, 0.001, 0.002, 0.003]}
-  rotor2: {inertia: 1.0e-4, ratio: 60}
-  rotor3: {inertia: 1.0e-4, ratio: 80}
+  link1: {{mass: 3, com: [0.02, 0.1, 0.01], inertia: [0.03, 0.04, 0.05, 0.001, 0.002, 0.003]}}
+  link2: {{length: 0.9, offset: 0.05, mass: 2, com: [0.4, 0.02, 0.03], inertia: [0.01, 0.2, 0.21, 0.001, 0.002, 0.003]}}
+  link3: {{mass: 1.2, tip: [0.7, 0.01, 0.02], com: [0.3, 0.01, 0.02], inertia: [0.01, 0.1, 0.11, 0.001, 0.002, 0.003]}}
+  rotor2: {{inertia: 1.0e-4, ratio: 60}}
+  rotor3: {{inertia: 1.0e-4, ratio: 80}}
 """
 MASSES, INERTIAS, ALL = {"gravity", "mass", "inverse"}, {"mass", "inverse"}, {"inverse"}
 LEFT_OUT: dict[str, tuple[dict[str, object], set[str]]] = {
@@ -89,6 +86,37 @@ def test_what_is_left_out_is_named(text: str, kind: str, words: str) -> None:
 def test_both_arms_have_cases_of_all_that_they_can_leave_out() -> None:
     assert {words for _, _, words in CASES} == set(LEFT_OUT)
     assert len(CASES) == 19
+
+
+NO_ARM_WITHOUT = {  # links without width may point up: without the armature, or the width of link 2, M11 falls to 0
+    "planar": """
+  link1: {inertia_axial: 0}
+  armature: [0.1, 0.1, 0.1]
+  link2: {shape: slender, length: 0.9, mass: 1.2}
+  link3: {shape: slender, length: 0.7, mass: 0.8}
+""",
+    "one width": """
+  link1: {inertia_axial: 0}
+  link2: {length: 0.9, mass: 1.2, section: [0.05, 0.05]}
+  link3: {shape: slender, length: 0.7, mass: 0.8}
+""",
+    "elbow": """
+  model: elbow
+  armature: [0.1, 0.1, 0.1]
+  link1: {mass: 0, com: [0, 0, 0], inertia: [0, 0, 0, 0, 0, 0]}
+  link2: {length: 0.9, mass: 1.2, com: [0.45, 0, 0], inertia: [0, 0.08, 0.08, 0, 0, 0]}
+  link3: {mass: 0.8, tip: [0.7, 0, 0], com: [0.35, 0, 0], inertia: [0, 0.03, 0.03, 0, 0, 0]}
+""",
+}
+
+
+@pytest.mark.parametrize("name", NO_ARM_WITHOUT)
+def test_what_no_arm_is_without_is_no_cause(name: str) -> None:
+    scenario = arm3r.Scenario(f"format: 1\narm:{NO_ARM_WITHOUT[name]}")
+    mass = scenario.arm.mass_matrix
+    formula = (lambda q: mass(q) + 2 * np.eye(3)) if name == "elbow" else (lambda q, m2: mass(q) + m2 * np.eye(3))
+    verdict = arm3r.verify.mass(formula, arm=scenario)
+    assert not verdict.ok and not any("left out" in one.cause for one in verdict.findings), str(verdict)
 
 
 RODS = """import numpy as np

@@ -218,14 +218,19 @@ def jacobian(q):
 """
 
 
+def ur_program(name: str) -> str:
+    text = UR
+    for letter, value in zip(("D1", "A2", "A3", "D4", "D5", "D6"), DH_OF_UR[name], strict=True):
+        text = text.replace(letter, str(value))
+    return text
+
+
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("name", DH_OF_UR)
 def test_formulas_in_the_frame_of_another_fixed_link_are_right(name: str, chain_of: Any, tmp_path: Path) -> None:
     """The controller of a UR has its frame turned by 180 degrees from that of ROS: its file has both."""
     chain, _ = chain_of(name)
-    text = UR
-    for letter, value in zip(("D1", "A2", "A3", "D4", "D5", "D6"), DH_OF_UR[name], strict=True):
-        text = text.replace(letter, str(value))
+    text = ur_program(name)
     path = tmp_path / "ur.py"
     path.write_text(text)
     for function in ("forward_kinematics", "jacobian"):
@@ -240,10 +245,7 @@ def test_formulas_in_the_frame_of_another_fixed_link_are_right(name: str, chain_
 def test_a_point_of_another_link_on_the_last_one_is_named(tmp_path: Path) -> None:
     path, formula = tmp_path / "ur5.urdf", tmp_path / "ur.py"
     path.write_text(urdf_of(TREES["ur5"]))
-    text = UR
-    for letter, value in zip(("D1", "A2", "A3", "D4", "D5", "D6"), DH_OF_UR["ur5"], strict=True):
-        text = text.replace(letter, str(value))
-    formula.write_text(text)
+    formula.write_text(ur_program("ur5"))
     wrist = Chain.from_urdf(path, tip="wrist_3_link")
     verdict = formula_verdict(f"{formula}:forward_kinematics", arm=wrist)
     assert {one.cause for one in verdict.findings} == {"The point is that of link ee_link: name it by --tip ee_link."}
@@ -271,10 +273,7 @@ def twists(tip: str, folder: Path) -> tuple[Chain, Path]:
     """A UR5 up to a tip, and Jacobians of it as twists."""
     path, formula = folder / "ur5.urdf", folder / "ur.py"
     path.write_text(urdf_of(TREES["ur5"]))
-    text = UR + TWISTS
-    for letter, value in zip(("D1", "A2", "A3", "D4", "D5", "D6"), DH_OF_UR["ur5"], strict=True):
-        text = text.replace(letter, str(value))
-    formula.write_text(text)
+    formula.write_text(ur_program("ur5") + TWISTS)
     return Chain.from_urdf(path, tip=tip), formula
 
 
@@ -298,6 +297,41 @@ def test_wrong_body_and_space_jacobians_and_those_of_other_names_are_wrong(tmp_p
     text = formula.read_text()
     formula.write_text(text.replace("R.T @ J[:3]", "R @ J[:3]").replace("- np.cross", "+ np.cross"))
     assert not any(formula_verdict(f"{formula}:{name}", arm=chain).ok for name in ("body_jacobian", "JacobianSpace"))
+    for name in ("jacobian_of_tip", "task_space_jacobian"):
+        formula.write_text(text.replace("body_jacobian", name).replace("JacobianSpace", name))
+        assert not formula_verdict(f"{formula}:{name}", arm=chain).ok
     formula.write_text(text.replace("body_jacobian", "jacobian_of_tip"))
     verdict = formula_verdict(f"{formula}:jacobian_of_tip", arm=chain)
     assert not verdict.ok and "in the tip's frame" in verdict.findings[0].cause
+
+
+def test_the_rate_of_a_jacobian_in_other_axes_is_no_rate_of_a_body_jacobian(tmp_path: Path) -> None:
+    """That has the rate of the axes, too."""
+    path = tmp_path / "rate.py"
+    path.write_text("""import numpy as np
+
+
+def turned(q):
+    c1, s1, c, s = np.cos(q[0]), np.sin(q[0]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
+    return np.array([[c1*c, s1*c, -s], [-s1, c1, 0], [c1*s, s1*s, c]])
+
+
+def jacobian(q):
+    c1, s1 = np.cos(q[0]), np.sin(q[0])
+    a, b, c, d = np.cos(q[1]), np.sin(q[1]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
+    r, h = a + c, b + d
+    return np.array([[-s1*r, -c1*h, -c1*d], [c1*r, -s1*h, -s1*d], [0, -r, -c]])
+
+
+def body_jacobian(q):
+    return turned(q) @ jacobian(q)
+
+
+def body_jacobian_dot(q, qd):
+    small = 1e-30
+    return turned(q) @ np.imag(jacobian(np.array(q) + 1j*small*np.array(qd)).astype(complex))/small
+""")
+    verdict = formula_verdict(f"{path}:body_jacobian")
+    assert verdict.ok and verdict.found[0] == "a body Jacobian, in the tip's frame", str(verdict)
+    verdict = formula_verdict(f"{path}:body_jacobian_dot")
+    assert not verdict.ok and "in the tip's frame" in verdict.findings[0].cause, str(verdict)

@@ -882,10 +882,10 @@ class MatlabProgram:
 
     def _isempty(self, node: Node, variables: dict[str, Any]) -> Any:
         """A global variable is empty before a value is given to it."""
+        kept = variables.kept if isinstance(variables, Workspace) else {}
         match node.parts:
-            case (Name(word=name),) if name not in variables and name not in self._outside:
-                if isinstance(variables, Workspace) and variables.kept.get(name) == "":
-                    return number(True)
+            case (Name(word=name),) if kept.get(name) == "" and name not in variables and name not in self._outside:
+                return number(True)
         return self._result(node.word, self._values(node.parts, variables), variables)
 
     def _feval(self, node: Node, variables: dict[str, Any]) -> Any:

@@ -23,7 +23,7 @@ from ..samples import Samples
 from ..verdict import Verdict
 from .budget import Budget
 from .edits import Editor
-from .frames import Pose, jacobian_of_name
+from .frames import Pose
 from .hypotheses import Hypothesis, hypotheses
 from .reader import read_entries
 from .repair import Progress, Repair, cover, influential, tried, wrong_entries
@@ -37,6 +37,8 @@ _MOST_STATES_READ = 3000
 """That a script of symbols computes for each state: for more, its terms would take minutes."""
 _MOST_PARTS = 3000
 """Of a statement that is edited: what programs write in one is read back, and not mended."""
+_JACOBIANS = {"a body": ("body",), "a space": ("space", "spatial")}
+_OTHER_SPACES = re.compile("(task|work|operational|cartesian|joint|null|state)_?space")
 
 
 def explain(
@@ -82,16 +84,18 @@ def explain(
 
 
 def right_by_name(case: Comparison) -> tuple[str, float] | None:
-    """What a Jacobian is that is right in a frame that its name says, and how far it is from that."""
-    if not case.kind.is_derivative or not re.search("body|space|spatial", case.formula.name, re.I):
+    """What a Jacobian is, body or space, that is right as what its name says, and how far it is from that."""
+    name = _OTHER_SPACES.sub("", case.formula.name.lower())
+    called = [which for which, names in _JACOBIANS.items() if any(one in name for one in names)]
+    if not called or not case.kind.is_derivative or case.kind.inputs != ("q",):
         return None
     for truth in (case.truth, *case.truth.open_to(case.kind)):
         other = replace(case, truth=truth)
         other.shape = case.shape
         for one in _hypotheses(other):
-            if words := jacobian_of_name(case.formula.name, one.cause):
-                error = float(np.abs(other.values(other.second) - one.values()).max())
-                return f"{words}{f' in {truth.frame}' if truth is not case.truth else ''}", error
+            if one.right_as.startswith(tuple(called)):
+                where = f" in {truth.frame}" if truth is not case.truth else ""
+                return one.right_as + where, float(np.abs(other.values(other.second) - one.values()).max())
     return None
 
 

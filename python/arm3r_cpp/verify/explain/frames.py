@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import permutations, product
@@ -14,10 +13,10 @@ from ..._native import Floats
 
 _EULER = (("roll, pitch and yaw", 2, 0, 1), ("Euler angles (ZYZ)", 2, 2, 1), ("Euler angles (XYZ)", 0, 2, -1))
 """Of turns about moving axes: their words, the first and the last axis, the sign of their product along the second."""
-_MOVING = "a frame that moves with the tip"
-_ANGULAR_FIRST = ", and the angular rows stand above the linear ones"
 Mistake = tuple[str, Callable[[], Floats], int]
 """Its words, what is returned with it, how far-fetched it is."""
+OfFrame = tuple[str, Callable[[], Floats], int, str]
+"""The same, and what it is right as: "a body Jacobian, ..." or "a space Jacobian, ..."; "" for nothing else."""
 
 
 class Pose(NamedTuple):
@@ -33,43 +32,35 @@ class Pose(NamedTuple):
     """(S, 3, 3) each, of axes that move with link 1, 2, ... up to the last but one"""
 
 
-def of_other_frames(values: Floats, pose: Pose) -> Iterator[Mistake]:
+def of_other_frames(values: Floats, pose: Pose) -> Iterator[OfFrame]:
     """
     Args:
         values: what is right, (S, 3, n) or (S, 6, n).
     """
     rotation, position = pose.rotation, pose.position
-    turned = [("", values)]
-    if values.shape[1] == 6:
-        turned.append((_ANGULAR_FIRST, np.roll(values, 3, axis=1)))
-    for (number, axes), (also, rows) in product(enumerate(_AXES), turned):
-        which = "the tip's frame" if number == 0 else _MOVING
+    for (number, axes), (also, first, order) in product(enumerate(_AXES), _orders(values.shape[1])):
+        which = "the tip's frame" if number == 0 else "a frame that moves with the tip"
         words = f"the rows are in {which}; they should be in the base frame{also}"
-        yield words, partial(_rotated, rotation @ axes, rows), 1 + (number > 0) + bool(also)
+        rows = partial(_rotated, rotation @ axes, values[:, order])
+        yield words, rows, 1 + (number > 0) + bool(also), f"a body Jacobian, in {which}{first}"
     for (number, link), axes in product(enumerate(pose.links, 1), _AXES):
         words = f"the rows are in a frame that moves with link {number}; they should be in the base frame"
-        yield words, partial(_rotated, link @ axes, values), 2
+        yield words, partial(_rotated, link @ axes, values), 2, ""
     if values.shape[1] == 6:
         across = np.cross(values[:, 3:], position[:, :, None], axis=1)
         whole = np.concatenate([values[:, :3] - across, values[:, 3:]], axis=1)
         words = "the linear rows are of the last link's point at the base's origin; they should be those of the tip"
-        yield words, lambda: whole, 1
-        yield f"{words}{_ANGULAR_FIRST}", lambda: np.roll(whole, 3, axis=1), 2
-        yield from _of_euler_rates(values, rotation)
+        for also, first, order in _orders(6):
+            rows = partial(np.take, whole, order, axis=1)
+            yield f"{words}{also}", rows, 1 + bool(also), f"a space Jacobian, of the point at the base's origin{first}"
+        yield from ((*one, "") for one in _of_euler_rates(values, rotation))
 
 
-def jacobian_of_name(name: str, cause: str) -> str | None:
-    """What a Jacobian is that is right as what its name says: a body or a space Jacobian; None where it is not.
-
-    Args:
-        cause: the words of `of_other_frames` for it.
-    """
-    found = re.match(rf"the rows are in (the tip's frame|{_MOVING})|the linear rows are of the last link's", cause)
-    which, names = ("body", "body") if found and found[1] else ("space", "space|spatial")
-    if not found or not re.search(names, name, re.I):
-        return None
-    of = f"in {found[1]}" if found[1] else "of the point at the base's origin"
-    return f"a {which} Jacobian, {of}{', angular rows first' if _ANGULAR_FIRST in cause else ''}"
+def _orders(rows: int) -> Iterator[tuple[str, str, list[int]]]:
+    """The order that the rows have, and that with the angular ones first: as a mistake, as a fact, and which rows."""
+    yield "", "", list(range(rows))
+    if rows == 6:
+        yield ", and the angular rows stand above the linear ones", ", angular rows first", [3, 4, 5, 0, 1, 2]
 
 
 def of_other_points(values: Floats, pose: Pose) -> Iterator[Mistake]:

@@ -21,6 +21,8 @@ class Hypothesis(NamedTuple):
     values: Callable[[], Floats]
     weight: int = 1
     """How far-fetched it is."""
+    right_as: str = ""
+    """What such a formula is right as: "a body Jacobian, in the tip's frame"."""
     is_of_result: bool = False
     """Whether all of the result is so, which several edits could mend as well."""
 

@@ -17,7 +17,6 @@ MAX_JOINTS = 7
 GRAVITY = (0.0, 0.0, -9.80665)  # m/s^2
 
 
-Pose = tuple[Floats, Floats]  # rotation and origin, m
 AnyChain = TypeVar("AnyChain", bound="SerialChain")
 
 
@@ -43,8 +42,6 @@ class SerialChain:
         without_inertial: Sequence[str] = (),
         without_any_inertial: Sequence[str] = (),
         named_numbers: Mapping[str, float] | None = None,
-        standing: Mapping[str, Pose] | None = None,
-        carried: Mapping[str, Pose] | None = None,
     ) -> None:
         """
         Args:
@@ -57,8 +54,6 @@ class SerialChain:
             without_any_inertial: those of them on which nothing with a mass is fixed.
             states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
-            standing: frames that do not move, by their names: rotation and origin in the base.
-            carried: frames on the last link, in its own.
 
         Raises:
             UsageError: there is no joint, or there are more than seven.
@@ -80,7 +75,6 @@ class SerialChain:
         self.held = tuple(held)
         self.without_inertial, self.without_any_inertial = tuple(without_inertial), tuple(without_any_inertial)
         self.named_numbers = dict(named_numbers or {})
-        self.standing, self.carried = dict(standing or {}), dict(carried or {})
 
     @property
     def gravity_size(self) -> float:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import copy
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -29,6 +30,11 @@ class Chain(SerialChain):
     >>> verdict = verify.jacobian(my_jacobian, chain)
     """
 
+    standing: Mapping[str, tuple[Floats, Floats]] = MappingProxyType({})
+    """Frames that do not move, by the names of their links, the root's first: rotation and origin in the base, m."""
+    carried: Mapping[str, tuple[Floats, Floats]] = MappingProxyType({})
+    """Those on the last link, in its own frame."""
+
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], *, tip: str | None = None) -> Chain:
         """The chain from the base link of a URDF to a link, by default to its only end.
@@ -40,7 +46,7 @@ class Chain(SerialChain):
         moving = {tuple(joint.name for joint in urdf.way(end) if joint.kind != "fixed") for end in ends}
         is_open = len(ends) > 1 and len(moving) == 1
         found = serial_chain(urdf, ends[0] if is_open else tip, {})
-        return cls(
+        chain = cls(
             found.parts,
             tool=found.tool,
             tool_rotation=found.tool_rotation,
@@ -50,9 +56,10 @@ class Chain(SerialChain):
             held=found.held,
             without_inertial=found.without_inertial,
             without_any_inertial=found.without_any_inertial,
-            standing=urdf.fixed_on(urdf.root()),
-            carried=urdf.fixed_on(found.joints[-1].child) if found.joints else None,
         )
+        chain.standing = urdf.fixed_on(urdf.way(found.tip)[0].parent)
+        chain.carried = urdf.fixed_on(found.joints[-1].child)
+        return chain
 
     @classmethod
     def from_dh(cls, path: str | os.PathLike[str]) -> Chain:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..._native import Floats
 from ...core.arm import Arm
 from ...core.params import param_index, places
 from ...core.scenario import Scenario
-from ...errors import UnjudgedError, UsageError
+from ...errors import ScenarioError, UnjudgedError, UsageError
 from ...robots.arm_bodies import arm_of
 from ...robots.bodies import with_mass
 from ..kinds import SPATIAL, Kind, Rows
@@ -70,14 +70,20 @@ class ElbowArm(Chain):
 
     def variants(self, kind: Kind) -> list[tuple[str, Chain]]:
         """Those of a chain, and the arm without what a formula may have left out."""
-        found = super().variants(kind)
-        for words, keys in left_out(kind).items():
-            other = self._scenario.copy()
-            for key in keys:
-                other[key] = [0.0] * len(places()[key]) if len(places()[key]) > 1 else 0.0
-            if other.params.tobytes() != self._scenario.params.tobytes():
-                found.append((words, ElbowArm(other)))
-        return found
+        others = [(words, self._without(keys)) for words, keys in left_out(kind).items()]
+        return [*super().variants(kind), *((words, other) for words, other in others if other is not None)]
+
+    def _without(self, keys: Sequence[str]) -> ElbowArm | None:
+        """The arm with zeros for some keys; None where it has them already, or where no arm can have them."""
+        other = self._scenario.copy()
+        for key in keys:
+            count = len(places()[key])
+            other[key] = [0.0] * count if count > 1 else 0.0
+        try:
+            is_same = other.params.tobytes() == self._scenario.params.tobytes()
+        except ScenarioError:  # such as links without width that point up, without their armature
+            return None
+        return None if is_same else ElbowArm(other)
 
     def references(self) -> dict[str, list[float]]:
         """What the scenario's law is to reach and keep."""

@@ -100,7 +100,7 @@ class ThreeR:
         """The arm's own quantities, from its functions: a shape in the scenario does not tell mass and centre."""
         number = self._number
         plain = self._params.copy()
-        for name in ("arm.payload.mass", "arm.armature[0]", "arm.armature[1]", "arm.armature[2]", "arm.base_height"):
+        for name in ("arm.payload.mass", "arm.armature[1]", "arm.armature[2]", "arm.base_height"):
             plain[param_index(name)] = 0
         plain[param_index("arm.convention")] = 1
         for axis, value in enumerate((0, 0, -1)):
@@ -243,12 +243,14 @@ class ThreeR:
 
     def _axial(self, link: int) -> float:
         """The inertia about the link's own axis: what it adds to M11 where the links stand upright."""
-        without, own = self._params.copy(), self.values_of_quantities
+        whole, own = self._params.copy(), self.values_of_quantities
+        whole[param_index("arm.link1.inertia_axial")] += _LEAST_INERTIA
+        without = whole.copy()
         without[param_index(f"arm.link{link}.mass")] = own[f"mass{link}"]
         for axis, value in enumerate((0.0, own[f"inertia{link}"], own[f"inertia{link}"])):
             without[param_index(f"arm.link{link}.inertia[{axis}]")] = value
         upright = np.array([0.0, np.pi / 2, 0.0])
-        with_it, without_it = (Arm(params).mass_matrix(upright)[0, 0] for params in (self._params, without))
+        with_it, without_it = (Arm(params).mass_matrix(upright)[0, 0] for params in (whole, without))
         return float(with_it - without_it)
 
     def _ratio(self, link: int) -> float:
@@ -288,7 +290,7 @@ class ThreeR:
             if not kind.is_product:  # Coriolis torques do not tell
                 found.append((f"{words}, and {about}", rods | upright))
         others = [(words, self._with(changes)) for words, changes in found]
-        return [(words, arm) for words, arm in others if not np.array_equal(arm._params, self._params, equal_nan=True)]
+        return [(words, other) for words, other in others if other is not None]
 
     def _rods(self) -> dict[str, float]:
         """The parameters that make links 2 and 3 slender rods of their own masses, where shapes tell their inertias."""
@@ -299,13 +301,18 @@ class ThreeR:
                 changes[f"arm.link{link}.mass"] = self.values_of_quantities[f"mass{link}"]
         return changes
 
-    def _with(self, changes: Mapping[str, float]) -> ThreeR:
-        """The arm with other numbers of some keys."""
+    def _with(self, changes: Mapping[str, float]) -> ThreeR | None:
+        """The arm with other numbers of some keys; None where it is the same, or no arm can have them."""
         other = copy.copy(self)
         other._params, other._arms = self._params.copy(), {}
         for key, value in changes.items():
             other._params[places()[key]] = value
-        other.values_of_quantities = other._measure()
+        if np.array_equal(other._params, self._params, equal_nan=True):
+            return None
+        try:
+            other.values_of_quantities = other._measure()
+        except ScenarioError:  # such as links that are rods and point up, without the armature that was left out
+            return None
         return other
 
     def rotation(self, convention: str, q: Floats) -> Floats:
