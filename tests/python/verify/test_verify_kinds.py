@@ -413,7 +413,7 @@ def test_the_rates_of_euler_angles_are_those_of_a_rotation() -> None:
         change = (turn(angles + step * rates) - turn(angles - step * rates)) / (2 * step) @ turn(angles).T
         jacobian = np.array([0, 0, 0, change[2, 1], change[0, 2], change[1, 0]])[None, :, None]
         whole = of_other_frames(jacobian, Pose(turn(angles)[None], np.zeros((1, 3)), np.zeros((1, 3, 1))))
-        found = [values()[0, 3:, 0] for words, values, weight in whole if "(XYZ)" in words and weight == 1]
+        found = [values()[0, 3:, 0] for words, values, weight, _ in whole if "(XYZ)" in words and weight == 1]
         assert any(np.allclose(one, rates, rtol=0, atol=1e-7) for one in found)
 
 
