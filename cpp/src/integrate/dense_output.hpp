@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "arm3r/numbers/polynomial.hpp"
 #include "arm3r/plant.hpp"
@@ -42,6 +43,13 @@ struct DenseOutput {
     template <class S>
     ARM3R_INLINE S component(std::size_t i, const S& theta) const {
         return is_series() ? summed(i, S(theta * h)) : interpolated(c, i, theta);
+    }
+
+    // A bound of what a component changes by within the step.
+    double most_change(std::size_t i) const {
+        double sum = 0, power = 1;
+        for (int k = 1; k <= (is_series() ? order : 4); ++k) sum += std::abs(c[k][i]) * (is_series() ? power *= h : 1);
+        return (1 + 1e-9) * sum;  // with its rounding errors
     }
 
     FullState operator()(double theta) const { return first(size, theta); }

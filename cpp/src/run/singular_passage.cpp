@@ -56,13 +56,17 @@ namespace {
 // The first zero of the two factors of det J, of which the second is a share of the reach, less `margin` towards 0.
 std::optional<double> first_zero(const Arm<double>& arm, const DenseOutput& dense, double end, double margin) {
     const auto pose_at = [&](double theta) { return pose(angles(dense.motion(theta))); };
-    const auto zero_of = [&](auto factor) -> std::optional<double> {
-        const double start = factor(0.0), sign = start < 0 ? -1 : 1;
+    const Pose<double> at_start = pose_at(0.0);
+    const auto zero_of = [&](auto factor, double most_change) -> std::optional<double> {
+        const auto at = [&](double theta) { return factor(pose_at(theta)); };
+        const double start = factor(at_start), sign = start < 0 ? -1 : 1;
+        if (sign * start - most_change > margin) return {};
         if (margin > 0 && sign * start <= 2 * margin) return {};
-        return first_change_of_sign([&](double theta) { return sign * factor(theta) - margin; }, end);
+        return first_change_of_sign([&](double theta) { return sign * at(theta) - margin; }, end);
     };
-    const auto stretched = zero_of([&](double theta) { return sine_of_bend(arm, pose_at(theta)); });
-    const auto on_axis = zero_of([&](double theta) { return radius(arm, pose_at(theta)) / reach(arm); });
+    const double turn2 = dense.most_change(1), turn3 = dense.most_change(2);
+    const auto stretched = zero_of([&](const Pose<double>& p) { return sine_of_bend(arm, p); }, turn3);
+    const auto on_axis = zero_of([&](const Pose<double>& p) { return radius(arm, p) / reach(arm); }, turn2 + turn3);
     if (stretched && on_axis) return std::min(*stretched, *on_axis);
     return stretched ? stretched : on_axis;
 }

@@ -6,7 +6,7 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from .._messages import as_json
@@ -148,40 +148,64 @@ def angles(text: str) -> list[float]:
 def verify(options: argparse.Namespace, codes: list[int]) -> None:
     """Judge each formula: its exit code. What one cannot be judged for is said, and the others are judged."""
     from ..user_functions.python_process import PythonProcess
-    from ..verify.functions import formula_verdict
 
     PythonProcess.report = say_once
 
     arm = arm_of(options)
     verdicts: list[Verdict] = []
     for formula in options.formulas:
-        bar = Bar("repair", "edits")
-        try:
-            verdict = formula_verdict(
-                formula,
-                options.kind,
-                arm,
-                seen_by=options.seen_by,
-                progress=bar.draw,
-                noise=options.noise,
-                columns=dict(options.columns),
-                args=options.args,
-                given=dict(options.set),
-            )
-        except Arm3rError as error:
-            say(PROGRAM, error)
-            codes.append(exit_code(error))
-            continue
-        finally:
-            bar.clear()
-        verdicts.append(verdict)
-        codes.append(0 if verdict.ok else WRONG_FORMULA)
-        if not options.json:
-            print_line(verdict)
+        for verdict in verdicts_on(formula, arm, options, codes):
+            verdicts.append(verdict)
+            codes.append(0 if verdict.ok else WRONG_FORMULA)
+            if not options.json:
+                print_line(verdict)
     if options.json:
         print_line(as_json([verdict.to_dict() for verdict in verdicts]))
     elif verdicts and (len(verdicts) > 1 or not verdicts[0].ok):
         print_line(summary(verdicts))
+
+
+def verdicts_on(formula: str, arm: Any, options: argparse.Namespace, codes: list[int]) -> Iterator[Verdict]:
+    """The verdict on a formula; on each kind that a function returns, `M, C, g`, where none is asked for."""
+    first = verdict_on(formula, options.kind, arm, options, codes)
+    if first is None:
+        return
+    others: list[str] = []
+    if options.kind is None and KINDS[first.kind].comes_with_others:
+        others = [kind for kind in first.not_judged.values() if KINDS[kind].comes_with_others]
+    beside = [verdict_on(formula, kind, arm, options, codes) for kind in others]
+    together = [first, *(one for one in beside if one is not None)]
+    judged = {one.kind for one in together}
+    for one in together:
+        one.not_judged = {name: kind for name, kind in one.not_judged.items() if kind not in judged}
+        yield one
+
+
+def verdict_on(
+    formula: str, kind: str | None, arm: Any, options: argparse.Namespace, codes: list[int]
+) -> Verdict | None:
+    """The verdict on a formula of one kind; None where it cannot be judged, which is said and among the codes."""
+    from ..verify.functions import formula_verdict
+
+    bar = Bar("repair", "edits")
+    try:
+        return formula_verdict(
+            formula,
+            kind,
+            arm,
+            seen_by=options.seen_by,
+            progress=bar.draw,
+            noise=options.noise,
+            columns=dict(options.columns),
+            args=options.args,
+            given=dict(options.set),
+        )
+    except Arm3rError as error:
+        say(PROGRAM, error)
+        codes.append(exit_code(error))
+        return None
+    finally:
+        bar.clear()
 
 
 def arm_of(options: argparse.Namespace) -> Any:

@@ -36,7 +36,7 @@ def failed(error: ProgramError, formula: Formula, kind: Kind, truth: Any, progre
     """
     finding = Finding(None, f"the formula fails: {error}", line=error.line)
     verdict = Verdict(False, kind.name, truth.convention, float("inf"), [finding], file=formula.file, text=formula.text)
-    verdict.found = [formula.engine] if formula.engine else []
+    verdict.found = list(filter(None, (formula.engine, formula.output_words)))
     if not isinstance(error, ProcessEnded) and not (isinstance(error, Unread) and not error.name):
         _mend_failure(verdict, formula, kind, truth, progress)
     if isinstance(error, Unread) and not _is_renamed(finding, error.name):

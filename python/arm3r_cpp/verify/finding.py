@@ -48,6 +48,8 @@ class Judgement:
     """The wrong entries for which neither terms nor an edit were found."""
     coverage: dict[str, Any] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    not_judged: dict[str, str] = field(default_factory=dict)
+    """The kinds of other outputs of the function, by their names."""
     file: str = ""
     found: list[str] = field(default_factory=list)
     """What was found rather than asked: the order of arguments, the unit of angles."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import os
 import re
@@ -99,6 +100,8 @@ class Formula:
     of a script it is."""
     as_columns: bool = False
     """Whether vectors are given with two axes, (n, 1)."""
+    beside: list[str] = field(default_factory=list)
+    """Other functions of the file that are named as formulas, where no function and no kind was asked for."""
     given: dict[str, Any] = field(default_factory=dict)
     """Values of arguments and of names outside of the text, as the user says them; a structure holds others."""
 
@@ -136,6 +139,13 @@ class Formula:
         if self.language == "python" and numbers_of(self.arguments)[: len(digits)] != digits:
             return None  # a Python function returns by position, unless its arguments have the same order
         return [digits.index(str(n + 1)) for n in range(len(digits))]
+
+    @property
+    def output_words(self) -> str:
+        """Which of several results is judged; "" of one."""
+        if self.output is None:
+            return ""
+        return f"its output {self.outputs[self.output] if self.language == 'matlab' else self.output + 1}"
 
     def numbers(self) -> dict[str, float]:
         """The numbers that the text gives to names."""
@@ -366,6 +376,7 @@ def from_text(
         source.comments(name),
         source.returned_names(name),
         optional,
+        beside=[] if function or kind else _formulas_beside(source, name),
     )
 
 
@@ -469,6 +480,18 @@ def likely_function(source: PythonText, file: str, kind: str | None = None) -> s
         )
     hint = f"; name one of its methods: {file}:{methods[0]}" if methods else ""
     raise UsageError(f"{file}: there is no function in this file{hint}")
+
+
+def _formulas_beside(source: PythonText, name: str) -> list[str]:
+    """The other functions named as formulas are, but for those that this one calls, by others too."""
+    called, new = set[str](), [name]
+    while new:
+        function = source.functions.get(new.pop())
+        names = {node.id for node in ast.walk(function.node) if isinstance(node, ast.Name)} if function else set()
+        new += names & source.functions.keys() - called
+        called |= names
+    plain = [one for one, function in source.functions.items() if not function.is_method]
+    return [one for one in plain if one != name and one not in called and kind_of_name(one)]
 
 
 def kind_of(formula: Formula) -> Kind | None:

@@ -62,7 +62,9 @@ def judge(
     except Unjudged as error:
         raise UnjudgedError(f"{formula.file}: cannot be judged: it {error}") from None
     except ProgramError as error:
-        return failed(error, formula, kind, truth, progress)
+        verdict = failed(error, formula, kind, truth, progress)
+        verdict.not_judged = _not_judged(formula)
+        return verdict
     verdict, case = min(verdicts, key=lambda one: one[0].complexity)
     if verdict.findings and _is_left_alone(kind) and (line := line_of_own_torque(formula.text or "")):
         raise UnjudgedError(
@@ -74,6 +76,7 @@ def judge(
     judge_constants(verdict, case)
     verdict.alternatives = few(verdict.alternatives)
     verdict.ok = not verdict.findings
+    verdict.not_judged = _not_judged(formula)
     seen_by_tests(verdict, case, seen_by)
     return verdict
 
@@ -146,7 +149,8 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     verdict = Verdict(True, case.kind.name, case.convention, 0.0, file=formula.file, text=formula.text)
     values, due = case.values(case.second), case.due(case.second)
     case.shape = due.shape[1:]
-    verdict.warnings += _not_judged(formula)
+    if formula.beside:
+        verdict.warnings.append(f"not judged here: {', '.join(formula.beside)} ({formula.file}:{formula.beside[0]})")
     verdict.shape, verdict.found = list(case.shape), _found(case)
     wrong = case.wrong(values, case.second, due)
     own_due, own_values = _own(case)
@@ -169,13 +173,12 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     return verdict
 
 
-def _not_judged(formula: Formula) -> list[str]:
-    """Of a function that returns several kinds of formula, those that are left."""
+def _not_judged(formula: Formula) -> dict[str, str]:
+    """The other kinds of formula that a function returns, by the names of its outputs."""
     if formula.output is None:
-        return []
-    kinds = enumerate(kinds_of_outputs(formula.outputs))
-    left = [f"{formula.outputs[place]} (--kind {kind})" for place, kind in kinds if kind and place != formula.output]
-    return [f"not judged here: {', '.join(left)}"] if left else []
+        return {}
+    kinds = zip(formula.outputs, kinds_of_outputs(formula.outputs), strict=True)
+    return {name: kind for place, (name, kind) in enumerate(kinds) if kind and place != formula.output}
 
 
 def _note_skewness(verdict: Verdict, case: Comparison) -> None:
@@ -217,9 +220,7 @@ def _found(case: Comparison) -> list[str]:
         found.append(f"arguments in the order {', '.join(states)}")
     if formula.order and formula.order != sorted(formula.order):
         found.append(f"outputs in the order {', '.join(formula.outputs)}")
-    if formula.output is not None:
-        is_named = formula.language == "matlab"
-        found.append(f"its output {formula.outputs[formula.output] if is_named else formula.output + 1}")
+    found += [formula.output_words] if formula.output_words else []
     if formula.as_columns:
         found.append("with vectors as columns")
     if formula.given:

@@ -31,7 +31,8 @@ _NEAR = 0.25  # of the distance from what is right in the frame of the base
 def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
     """The formula in the way in which it returns what its kind does: given plain vectors or else columns (n, 1).
 
-    Of several results that fit by their shapes the one is taken whose name says the kind, else the nearest one.
+    Of several results the one is taken whose name says the kind, else the nearest one of those that fit by their shapes
+    and whose names say no other kind.
     """
     if formula.output is not None or _has_fitting_shape(formula, kind, truth):
         return formula
@@ -42,9 +43,10 @@ def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
         others = [replace(formula, output=one, as_columns=columns) for columns, one in ways]
     else:
         others = []
-    fitting = [one for one in others if _has_fitting_shape(one, kind, truth)]
-    named = [one for one in fitting if one.output is not None and _kind_of_output(one) == kind.name]
-    return min(named or fitting, key=lambda one: _distance(one, kind, truth), default=formula)
+    named = [one for one in others if _kind_of_output(one) == kind.name]
+    open_ones = named or [one for one in others if _kind_of_output(one) is None]
+    fitting = [one for one in open_ones if _has_fitting_shape(one, kind, truth)]
+    return min(fitting, key=lambda one: _distance(one, kind, truth), default=named[0] if named else formula)
 
 
 def _distance(formula: Formula, kind: Kind, truth: Any) -> tuple[bool, int, float]:

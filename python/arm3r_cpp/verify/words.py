@@ -24,6 +24,8 @@ def report(verdict: Judgement) -> str:
         lines += [f"  {line}" for line in _block(verdict, same, told)]
     lines += [f"  also possible: {words}" for words in verdict.alternatives]
     lines += [f"  note: {words}" for words in verdict.warnings]
+    if others := [f"{name} (--kind {kind})" for name, kind in verdict.not_judged.items()]:
+        lines.append(f"  note: not judged here: {', '.join(others)}")
     lines += [f"  {_covered(verdict, name)}" for name in verdict.coverage]
     return "\n".join(map(shown, lines))
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from arm3r_cpp import Scenario, UnjudgedError, UsageError, verify
+from arm3r_cpp.commands.verify import main
 from arm3r_cpp.verify.functions import formula_verdict
 from arm3r_cpp.verify.kinds import KINDS
 
@@ -68,7 +69,8 @@ def dynamics(q, qd):
 """
     verdict = verify.gravity(written("dynamics.py", text))
     assert verdict.ok, str(verdict)
-    assert "not judged here: M (--kind mass), C (--kind coriolis)" in verdict.warnings
+    assert verdict.not_judged == {"M": "mass", "C": "coriolis"}
+    assert "note: not judged here: M (--kind mass), C (--kind coriolis)" in str(verdict)
 
 
 TEXTBOOK = """function [FIRST, C, G] = two_links(q, qd)
@@ -92,8 +94,60 @@ def test_the_mass_matrix_has_the_letter_of_any_textbook(letter: str, written: An
         verdict = formula_verdict(path, None if kind == "mass" else kind, arm)
         assert verdict.ok and verdict.kind == kind, str(verdict)
         kinds = {letter: "mass", "C": "coriolis", "G": "gravity"}
-        words = f"not judged here: {', '.join(f'{name} (--kind {kinds[name]})' for name in left)}"
-        assert words in verdict.warnings
+        assert verdict.not_judged == {name: kinds[name] for name in left}
+
+
+def test_the_command_judges_all_that_a_function_returns(written: Any, capsys: Any) -> None:
+    table = "standard\ntype,a,alpha,d,theta,mass,cx,cy,cz,Ixx,Iyy,Izz\nR,0.4,0,0,0,1.5,-0.18,0,0,0,0.02,0.02\n"
+    rows = written("two_links.csv", f"{table}R,0.3,0,0,0,0.9,-0.17,0,0,0,0.01,0.01\n")
+    arm = ["--dh", str(rows), "--gravity=0,-9.81,0"]
+    text = TEXTBOOK.replace("FIRST", "M")
+    right, wrong = written("right.m", text), written("wrong.m", text.replace("h*qd(1), 0]", "2*h*qd(1), 0]"))
+    assert main([str(right), *arm]) == 0
+    heads = [line for line in capsys.readouterr().out.splitlines() if line.endswith(": right")]
+    assert len(heads) == 3 and [word in head for word, head in zip(("M", "C", "G"), heads, strict=True)] == [True] * 3
+    assert main([str(wrong), *arm]) == 11
+    out = capsys.readouterr().out
+    assert "h2 " in out and "1 mistake in 1 file" in out and "not judged here" not in out
+    assert main([str(wrong), *arm, "--kind", "gravity"]) == 0
+    assert "not judged here: M (--kind mass), C (--kind coriolis)" in capsys.readouterr().out
+
+
+def test_an_output_that_fails_is_named_and_the_others_are_judged(written: Any, capsys: Any) -> None:
+    path = written(
+        "terms.m", f"function [C, G, M] = terms(q, qd)\n{LAST} {GRAVITY}\nG = [0; t2; t3]; M = 1; C = 0;\nend\n"
+    )
+    assert main([str(path)]) == 11
+    out = capsys.readouterr().out
+    assert "its output C\n  the formula fails: returns 1 number, where" in out and "its output G, convention simscape: right" in out
+    assert "its output M\n  the formula fails: returns 1 number, where" in out
+
+
+def test_other_functions_of_a_file_that_are_formulas_are_named(written: Any, capsys: Any) -> None:
+    text = """from math import cos
+
+
+def fk(q):
+    return [0.0, 0.0, 0.0]
+
+
+def mass_matrix(q):
+    return [[1.0, 0, 0], [0, 1, 0], [0, 0, fk(q)[0]]]
+
+
+def jacobian(q):
+    return [[0.0] * 3] * 3
+
+
+def gravity(q):
+    t3 = -0.785*9.80665/2*cos(q[1] + q[2]) + fk(q)[2]
+    return [0.0, t3 - 0.785*9.80665*1.5*cos(q[1]), t3]
+"""
+    path = written("formulas.py", text)
+    assert main([str(path)]) == 0
+    assert f"note: not judged here: mass_matrix, jacobian ({path}:mass_matrix)" in capsys.readouterr().out
+    assert main([f"{path}:gravity"]) == main([str(path), "--kind", "gravity"]) == 0
+    assert "not judged" not in capsys.readouterr().out
 
 
 def test_a_vector_h_beside_gravity_is_no_mass_matrix(written: Any) -> None:

@@ -172,7 +172,7 @@ class Kind(ABC):
         if flat is None:
             names = " or ".join("x".join(map(str, one)) for one in allowed)
             got = "x".join(map(str, shape)) or "1"
-            raise UsageError(f"returns {got} numbers, where {self.a_words} has {names}")
+            raise UsageError(f"returns {got} number{'s' * (got != '1')}, where {self.a_words} has {names}")
         return values.reshape(len(values), *flat)
 
     def joints_of(self, shape: tuple[int, ...]) -> int:
