@@ -13,6 +13,7 @@ from .._messages import as_json
 from .._progress_bar import Bar
 from ..errors import Arm3rError, UsageError
 from ..verify.kinds import KINDS
+from ..verify.log.reading import ENDINGS
 from .exit_codes import UNJUDGED, WRONG_FORMULA, attempt, exit_code, print_line, say
 
 if TYPE_CHECKING:
@@ -166,13 +167,15 @@ def verify(options: argparse.Namespace, codes: list[int]) -> None:
 
 
 def verdicts_on(formula: str, arm: Any, options: argparse.Namespace, codes: list[int]) -> Iterator[Verdict]:
-    """The verdict on a formula; on each kind that a function returns, `M, C, g`, where none is asked for."""
+    """The verdict on a formula; on each kind that a function returns or a log has, where none is asked for."""
     first = verdict_on(formula, options.kind, arm, options, codes)
     if first is None:
         return
+    is_log = formula.endswith(ENDINGS)
     others: list[str] = []
-    if options.kind is None and KINDS[first.kind].comes_with_others:
-        others = [kind for kind in first.not_judged.values() if KINDS[kind].comes_with_others]
+    if options.kind is None:
+        found = [KINDS[kind] for kind in first.not_judged.values()]
+        others = [one.name for one in found if not (is_log and one.is_logged_anyway)]
     beside = [verdict_on(formula, kind, arm, options, codes) for kind in others]
     together = [first, *(one for one in beside if one is not None)]
     judged = {one.kind for one in together}

@@ -17,12 +17,13 @@ from .._messages import place
 from .._native import Floats
 from ..errors import UsageError
 from .arrays import ENDINGS, Cells, read_arrays
+from .units import unit_of
 
 MOST_ROWS = 1_000_000
 MOST_SHOWN = 80  # characters of a cell, in a message
 _COMMENT = ("#", "%")
 _ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
-_UNITS = re.compile(r"[\[(]?(s|ms|us|rad|deg|°|m|mm|N|Nm|N m|N\*m|-|1|(rad|deg|°|m)/s(\^?2|²)?)?[\])]?", re.IGNORECASE)
+_IN_BRACKETS = re.compile(r"[\[(](.*)[\])]")
 _NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+]?\d+)?|[-+]?(nan|inf(inity)?)", re.IGNORECASE)
 
 
@@ -80,9 +81,9 @@ def read_table(path: str | os.PathLike[str]) -> Table:
         names = _names_in_comment(comments, separator, len(names))
     else:
         rows = rows[1:]
-        if rows and all(_UNITS.fullmatch(cell.strip()) and not _is_number(cell, separator) for cell in rows[0][1]):
-            units = (cell.strip(" []()") for cell in rows.pop(0)[1])
+        if rows and (units := _units(rows[0][1], separator)):
             names = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)]
+            rows = rows[1:]
     if not names[-1] and not any(cells[-1].strip() for _, cells in rows):  # each line ends in a separator
         names, rows = names[:-1], [(line, cells[:-1]) for line, cells in rows]
     return Table(file, names, [line for line, _ in rows], [cells for _, cells in rows], separator != ",")
@@ -137,6 +138,13 @@ def _cells(file: str, lines: list[tuple[int, str]], separator: str) -> Iterator[
 
 def _is_number(cell: str, separator: str) -> bool:
     return _NUMBER.fullmatch(cell.strip()) is not None and not (separator == "," and "," in cell)
+
+
+def _units(cells: list[str], separator: str) -> list[str] | None:
+    """The units in a row of them, none of which is a number; None where it is another row."""
+    units = [_IN_BRACKETS.sub(r"\1", cell.strip()).strip() for cell in cells]
+    is_other = any(_is_number(cell, separator) for cell in cells) or not any(map(unit_of, filter(None, units)))
+    return None if is_other and any(units) else ["-" if unit == "1" else unit for unit in units]
 
 
 def _names_in_comment(comments: list[str], separator: str, count: int) -> list[str]:

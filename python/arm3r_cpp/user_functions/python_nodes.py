@@ -121,14 +121,13 @@ class PythonText:
         return [one for one in found if names_of[one.start] == 1 or ends.match(self.text, one.end)]
 
     def returned_names(self, function: str) -> list[str]:
-        """The names in `return t3, t2, t1`."""
+        """The names in `return t3, t2, t1`; "" for what has none."""
         if function not in self.functions:
             return []
         returns = [node for node in ast.walk(self.functions[function].node) if isinstance(node, ast.Return)]
         if len(returns) == 1 and isinstance(returns[0].value, ast.Tuple):
-            names = returns[0].value.elts
-            if all(isinstance(name, ast.Name) for name in names):
-                return [name.id for name in names]  # type: ignore[attr-defined]
+            names = [one.id if isinstance(one, ast.Name) else "" for one in returns[0].value.elts]
+            return names if any(names) else []
         return []
 
     def nodes(self) -> list[Node]:

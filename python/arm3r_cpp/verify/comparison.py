@@ -11,9 +11,10 @@ import numpy as np
 from .._native import Floats
 from ..errors import UsageError
 from ..user_functions.programs import Edit, ProgramError
+from .explain.frames import Frame, Pose
 from .explain.repair import wrong_entries
 from .formula import Formula
-from .kinds import KINDS, SPATIAL, Kind, Rows
+from .kinds import ANGULAR, KINDS, SPATIAL, Kind, Rows
 from .samples import Samples, random_states
 from .truth.three_r import FOLLOWING
 
@@ -45,6 +46,8 @@ class Comparison:
     """What changes with a link's length: see `ThreeR.arm`."""
     rows: Rows = SPATIAL
     degrees: bool = False
+    frame: Frame | None = None
+    """That of a body or a space Jacobian, where a name says that it is one."""
     shape: tuple[int, ...] = ()
     error: float = 0.0
     """The median difference, relative to the entries' scales."""
@@ -115,7 +118,24 @@ class Comparison:
             changes: quantities with other values, in each row.
             states: other joint vectors, in each row.
         """
-        return self.due_of(self.kind, samples, states, changes)
+        values = self.due_of(self.kind, samples, states, changes)
+        return self.frame.rows(values, self.pose(samples, states, changes)) if self.frame else values
+
+    def pose(
+        self,
+        samples: Samples,
+        states: Mapping[str, Floats] | None = None,
+        changes: Mapping[str, Floats] | None = None,
+    ) -> Pose:
+        """Of the tip, the axes and the links: a link's axes are the tip's where all later joints are at zero."""
+        q = (states or {}).get("q", samples.tiled("q"))
+        rotation, *links = (
+            self.truth.rotation(self.convention, np.where(np.arange(q.shape[1]) < moving, q, 0.0))
+            for moving in (q.shape[1], *range(1, q.shape[1]))
+        )
+        position = self.due_of(KINDS["kinematics"], samples, states, changes, rows=SPATIAL)
+        axes = self.due_of(KINDS["jacobian"], samples, states, changes, rows=ANGULAR)
+        return Pose(rotation, position, axes, links)
 
     def due_of(
         self,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from .comparison import Comparison
+from .explain.budget import Budget
 from .explain.reader import read_entries
 from .meaning import is_right_as_it_stands, wrong_count
 from .truth.three_r import FOLLOWING_WORDS
@@ -73,7 +74,7 @@ def _excuse(verdict: Verdict, case: Comparison) -> None:
 def _has_other_names(verdict: Verdict, case: Comparison) -> bool:
     """Whether the wrong entries read what is due with other names in it: a3 for a2, and no bare number for either."""
     wrong = case.wrong(case.values(case.second), case.second)
-    readings = read_entries(case, wrong)
+    readings, _ = read_entries(case, wrong, Budget.of_reading(case.formula.program))
     return set(readings) == wrong and all(one.has_due_units for one in readings.values())
 
 

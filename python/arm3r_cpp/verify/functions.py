@@ -112,7 +112,7 @@ def _verdict_of(
     if isinstance(f, (str, os.PathLike)) and os.fspath(f).endswith(ENDINGS):
         if args or given:
             raise UsageError(f"{f}: --args and --set say what a function needs; --columns is for a log")
-        log = read_log(f, columns)
+        log = read_log(f, columns, truth.joint_names if isinstance(truth, Chain) else ())
         return judge_log(log, KINDS[kind] if kind else log.kind(), truth, noise=noise)
 
     def verdict_on(formula: Formula) -> Verdict:

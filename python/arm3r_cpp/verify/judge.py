@@ -20,14 +20,15 @@ from .comparison import TOLERANCE, Comparison
 from .coverage import seen_by_tests
 from .doubts import few, leave_open, look_at_others
 from .explain.budget import SECONDS_AN_EDIT, Budget, affordable
-from .explain.causes import explain, right_by_name
+from .explain.causes import explain
 from .explain.constants import judge_constants
 from .explain.differences import only_structured
 from .explain.repair import Progress
 from .failure import failed
+from .finding import Finding
 from .formula import Formula
 from .kinds import KINDS, Kind, kinds_of_outputs
-from .meaning import as_called, assumed, doubted, meant
+from .meaning import ANGULAR_FIRST, as_called, assumed, doubted, meant
 from .names import line_of_own_torque, reference_of, slot_of, vectors_of
 from .verdict import Verdict
 
@@ -58,7 +59,9 @@ def judge(
         cases = meant(formula, kind, truth)
         _require_numbers(cases[0])
         edits = affordable(REPAIR_EDITS, cases[0].calls())
-        verdicts = _explained(cases, Budget(formula.program, edits, SECONDS_AN_EDIT * REPAIR_EDITS), progress)
+        reading = Budget.of_reading(formula.program)
+        budget = Budget(formula.program, edits, SECONDS_AN_EDIT * REPAIR_EDITS, reading=reading)
+        verdicts = _explained(cases, budget, progress)
     except Unjudged as error:
         raise UnjudgedError(f"{formula.file}: cannot be judged: it {error}") from None
     except ProgramError as error:
@@ -156,10 +159,6 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     own_due, own_values = _own(case)
     verdict.residual = _largest(own_values - own_due)
     wrong = only_structured(verdict, case, values, due, wrong)
-    if wrong and (by_name := right_by_name(case)):
-        words, verdict.residual = by_name
-        verdict.found.insert(0, words)
-        wrong = frozenset()
     if case.convention != case.truth.convention:
         verdict.warnings.append(f"the convention {case.convention} is not that of the arm, {case.truth.convention}")
     if case.kind.is_product and not wrong:
@@ -170,6 +169,9 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
         worst = np.abs(values - due if is_rounding else own_values - own_due).reshape(-1, *case.shape).max(axis=0)
         verdict.is_angular = case.shape[0] == 6 and case.kind.is_derivative and int(worst.max(axis=1).argmax()) > 2
         explain(verdict, case, wrong, progress, budget)
+        if case.rows == ANGULAR_FIRST:
+            words = "the angular rows stand above the linear ones; the linear rows should be first."
+            verdict.findings.insert(0, Finding(None, words))
     return verdict
 
 
@@ -214,7 +216,7 @@ def _is_left_alone(kind: Kind) -> bool:
 
 def _found(case: Comparison) -> list[str]:
     """What was found out rather than asked for."""
-    formula, found = case.formula, []
+    formula, found = case.formula, [case.frame.words] if case.frame else []
     states = [name for name in formula.arguments if slot_of(name) and name not in case.parameters]
     if [slot_of(name) for name in states] != sorted((slot_of(name) for name in states), key=str):
         found.append(f"arguments in the order {', '.join(states)}")

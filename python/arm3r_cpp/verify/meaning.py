@@ -16,8 +16,9 @@ from ..errors import UsageError
 from ..user_functions.expressions import Number
 from ..user_functions.programs import ProcessEnded, ProgramError
 from .comparison import TOLERANCE, Comparison, scales
+from .explain.frames import named_frames
 from .formula import Formula
-from .kinds import KINDS, Kind, kinds_of_outputs
+from .kinds import ANGULAR, KINDS, SPATIAL, Kind, kinds_of_outputs
 from .names import is_right_hand_side, vectors_of
 from .samples import Samples
 from .truth.three_r import FOLLOWING
@@ -25,6 +26,7 @@ from .truth.three_r import FOLLOWING
 _CHANGE = 1e-6  # of the largest: what changes less does not change
 _MOST_MEANINGS = 8  # that are tried where some entries are wrong in all of them
 _MOST_OUTPUTS = 4
+ANGULAR_FIRST = (*ANGULAR, *SPATIAL)
 _NEAR = 0.25  # of the distance from what is right in the frame of the base
 
 
@@ -162,7 +164,25 @@ def meant(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:
             counted += found
         if any(count == 0 for count, _ in counted):
             break
-    return _fewest(counted)
+    best = _fewest(counted)
+    return _in_other_rows(best[0]) or best
+
+
+def _in_other_rows(case: Comparison) -> list[Comparison]:
+    """The comparison with the angular rows first, or in a frame that the name says, where few entries are wrong so.
+
+    None where no entry is wrong with the angular rows first: then one sentence says it.
+    """
+    rows = case.due(case.first).shape[1]
+    if not case.kind.is_derivative or rows not in (3, 6):
+        return []
+    frames = named_frames(case.formula.name, rows) if case.kind.inputs == ("q",) else []
+    others = [replace(case, frame=one) for one in frames] + [replace(case, rows=ANGULAR_FIRST)] * (rows == 6)
+    values = case.values(case.second)
+    whole, *counts = [len(one.wrong(values, case.second, one.due(case.second))) for one in (case, *others)]
+    fewest = min(counts, default=whole)
+    chosen = others[counts.index(fewest)] if 2 * fewest < whole else None
+    return [chosen] if chosen and (fewest or chosen.frame) else []
 
 
 def doubted(formula: Formula, kind: Kind, truth: Any, case: Comparison) -> list[Comparison]:
@@ -187,9 +207,17 @@ def _fewest(counted: list[tuple[int, Comparison]]) -> list[Comparison]:
     for case in best:
         errors[case.follows] = min(errors.get(case.follows, float("inf")), case.error)
     meanings: dict[Any, Comparison] = {}
-    for case in sorted(best, key=lambda case: (errors[case.follows], FOLLOWING.index(case.follows), case.error)):
+    for case in sorted(
+        best, key=lambda case: (errors[case.follows], FOLLOWING.index(case.follows), _still(case), case.error)
+    ):
         meanings.setdefault((tuple(case.parameters), case.due(case.second).tobytes()), case)
     return list(meanings.values())[:_MOST_MEANINGS]
+
+
+def _still(case: Comparison) -> int:
+    """How many entries change that should stay the same: of a plane's x, y and angle the last one, read as z."""
+    values, due = (np.ptp(one, axis=0) for one in (case.values(case.second), case.due(case.second)))
+    return int(np.sum((values > TOLERANCE) & (due <= TOLERANCE)))
 
 
 def ways(formula: Formula, kind: Kind, truth: Any) -> list[Comparison]:

@@ -20,7 +20,7 @@ def report(verdict: Judgement) -> str:
     """What `arm3r verify` prints of a formula: a line for the whole, then each finding; what explains several first."""
     lines, told = [f"{verdict.file}: {_head(verdict)}"], set[str]()
     blocks = [list(same) for _, same in groupby(sorted(verdict.findings, key=_edit_of), key=_edit_of)]
-    for same in sorted(blocks, key=lambda one: not _is_of_several(one)):
+    for same in sorted(blocks, key=lambda one: (one[0].entry is not None, not _is_of_several(one))):
         lines += [f"  {line}" for line in _block(verdict, same, told)]
     lines += [f"  also possible: {words}" for words in verdict.alternatives]
     lines += [f"  note: {words}" for words in verdict.warnings]

@@ -102,7 +102,7 @@ def wrong_logs(count: int, seed: int, path: Path) -> Counter[Any]:
         kind, at, due = drawn(number, rng)
         large = np.abs(due).max(axis=0)
         entry = int(rng.choice(np.flatnonzero(large > 0.2 * large.max())))
-        terms = features_of(KINDS[kind], TRUTH.groups, TRUTH.revolute, at)
+        terms = features_of(KINDS[kind], TRUTH.groups, TRUTH.revolute, at, {})
         term = terms[:, rng.integers(terms.shape[1])]
         share = (0.05, 0.01)[number // len(NAMES) % 2]
         values = white(due, 1e-3 * large.max(), rng)

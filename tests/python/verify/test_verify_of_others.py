@@ -119,7 +119,10 @@ def test_an_output_that_fails_is_named_and_the_others_are_judged(written: Any, c
     )
     assert main([str(path)]) == 11
     out = capsys.readouterr().out
-    assert "its output C\n  the formula fails: returns 1 number, where" in out and "its output G, convention simscape: right" in out
+    assert (
+        "its output C\n  the formula fails: returns 1 number, where" in out
+        and "its output G, convention simscape: right" in out
+    )
     assert "its output M\n  the formula fails: returns 1 number, where" in out
 
 

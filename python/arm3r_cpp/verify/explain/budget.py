@@ -17,17 +17,39 @@ def affordable(edits: int, calls: int) -> int:
     return edits * CALLS_AN_EDIT // max(CALLS_AN_EDIT, calls)
 
 
+SECONDS_READING = 10.0
+"""Of computing, for all terms that are read."""
+
+
 class Budget:
     """A number of edits, and the seconds that this process and the program's own may compute for them."""
 
-    def __init__(self, program: Any, edits: int, seconds: float | None = None, whole: Budget | None = None) -> None:
+    def __init__(
+        self,
+        program: Any,
+        edits: int,
+        seconds: float | None = None,
+        *,
+        whole: Budget | None = None,
+        reading: Budget | None = None,
+    ) -> None:
         """
         Args:
             seconds: None: `SECONDS_AN_EDIT` for each.
             whole: of which this is a part.
+            reading: that of the terms, which are read beside.
         """
-        self._program, self._left, self._whole = program, edits, whole
+        self._program, self._left, self._whole, self._reading = program, edits, whole, reading
         self._end = self._used() + (SECONDS_AN_EDIT * edits if seconds is None else seconds)
+
+    @classmethod
+    def of_reading(cls, program: Any) -> Budget:
+        """That of the terms of a formula."""
+        return cls(program, 1, SECONDS_READING)
+
+    @property
+    def reading(self) -> Budget:
+        return self._reading or self.of_reading(self._program)
 
     def _used(self) -> float:
         return time.process_time() + float(getattr(self._program, "seconds", 0.0))
@@ -43,4 +65,10 @@ class Budget:
 
     def share(self, parts: int) -> Budget:
         """One of so many parts of what is left."""
-        return Budget(self._program, self._left // parts, max(self._end - self._used(), 0.0) / parts, self)
+        return Budget(
+            self._program,
+            self._left // parts,
+            max(self._end - self._used(), 0.0) / parts,
+            whole=self,
+            reading=self._reading,
+        )

@@ -17,15 +17,13 @@ from ...user_functions.programs import Edit, ProgramError, line_and_column
 from ..comparison import Comparison, Solved, scales
 from ..finding import Finding
 from ..formula import Formula
-from ..kinds import ANGULAR, KINDS, SPATIAL
+from ..kinds import SPATIAL
 from ..names import slot_of
-from ..samples import Samples
 from ..verdict import Verdict
 from .budget import Budget
 from .edits import Editor
-from .frames import Pose
 from .hypotheses import Hypothesis, hypotheses
-from .reader import read_entries
+from .reader import Reading, read_entries
 from .repair import Progress, Repair, cover, influential, tried, wrong_entries
 from .terms import difference_words
 
@@ -35,10 +33,9 @@ _MOST_JOINTS_READ, _MOST_ENTRIES_READ = 4, 3
 """Terms of more entries of more joints are too many to read, and take seconds; edits that mend them say all."""
 _MOST_STATES_READ = 3000
 """That a script of symbols computes for each state: for more, its terms would take minutes."""
+_FARTHER = 1.01
 _MOST_PARTS = 3000
 """Of a statement that is edited: what programs write in one is read back, and not mended."""
-_JACOBIANS = {"a body": ("body",), "a space": ("space", "spatial")}
-_OTHER_SPACES = re.compile("(task|work|operational|cartesian|joint|null|state)_?space")
 
 
 def explain(
@@ -55,9 +52,11 @@ def explain(
         chosen, left = [], frozenset()
     has_long_terms = case.truth.joints > _MOST_JOINTS_READ and len(wrong) > _MOST_ENTRIES_READ
     is_too_slow = getattr(case.formula.program, "states", 1) > _MOST_STATES_READ
-    reads = {} if is_too_slow or (has_long_terms and chosen and not left) else read_entries(case, wrong)
+    reads: dict[int, Reading] = {}
+    if not is_too_slow and not (has_long_terms and chosen and not left):
+        reads, is_too_slow = read_entries(case, wrong, budget.reading)
     if is_too_slow:
-        verdict.warnings.append("its derivatives take too long for its terms to be read")
+        verdict.warnings.append("its terms take too long to be read")
     joint = None
     if left and len(chosen) == 1 and (more := _after(case, chosen[0].edit, left, progress, budget)):
         joint, chosen = chosen[0].edit, [*chosen, *more]
@@ -81,22 +80,6 @@ def explain(
     verdict.alternatives += causes[1:]
     for repair in chosen:
         verdict.alternatives += _other_edits(case, repairs, repair)
-
-
-def right_by_name(case: Comparison) -> tuple[str, float] | None:
-    """What a Jacobian is, body or space, that is right as what its name says, and how far it is from that."""
-    name = _OTHER_SPACES.sub("", case.formula.name.lower())
-    called = [which for which, names in _JACOBIANS.items() if any(one in name for one in names)]
-    if not called or not case.kind.is_derivative or case.kind.inputs != ("q",):
-        return None
-    for truth in (case.truth, *case.truth.open_to(case.kind)):
-        other = replace(case, truth=truth)
-        other.shape = case.shape
-        for one in _hypotheses(other):
-            if one.right_as.startswith(tuple(called)):
-                where = f" in {truth.frame}" if truth is not case.truth else ""
-                return one.right_as + where, float(np.abs(other.values(other.second) - one.values()).max())
-    return None
 
 
 def _not_continued(formula: Formula) -> list[str]:
@@ -135,7 +118,7 @@ def _read_torque(verdict: Verdict, case: Comparison) -> None:
     solved = Solved.of(case)
     values, due = solved.values(solved.second), solved.due(solved.second)
     wrong = wrong_entries(values, due, scales(due), 1e-8)
-    readings = read_entries(solved, wrong)
+    readings, _ = read_entries(solved, wrong, Budget.of_reading(case.formula.program))
     words = [
         f"t{place + 1} {difference_words(found.reads, found.due)}"
         for place, found in sorted(readings.items())
@@ -168,13 +151,13 @@ def _hypotheses(case: Comparison) -> list[Hypothesis]:
 
         for words, other in case.truth.variants(case.kind):
             yield Hypothesis(words, partial(replace(case, truth=other).due, samples))
-        is_spatial = case.rows[:3] == SPATIAL
+        is_spatial = case.rows[:3] == SPATIAL and not case.frame
         yield from hypotheses(
             case.kind,
             truth,
             states,
             case.truth.revolute,
-            (lambda: _pose(case, samples)) if is_spatial else None,
+            (lambda: case.pose(samples)) if is_spatial else None,
             case.given(samples),
             in_degrees=case.degrees,
         )
@@ -188,17 +171,6 @@ def _hypotheses(case: Comparison) -> list[Hypothesis]:
             continue
     found.sort(key=lambda one: one.weight)
     return [one for place, one in enumerate(found) if one.cause not in (other.cause for other in found[:place])]
-
-
-def _pose(case: Comparison, samples: Samples) -> Pose:
-    """Of the tip, the joints' axes and the links: a link's axes are the tip's where all later joints are at zero."""
-    q = samples.tiled("q")
-    rotation, *links = (
-        case.truth.rotation(case.convention, np.where(np.arange(q.shape[1]) < moving, q, 0.0))
-        for moving in (q.shape[1], *range(1, q.shape[1]))
-    )
-    position = case.due_of(KINDS["kinematics"], samples, rows=SPATIAL)
-    return Pose(rotation, position, case.due_of(KINDS["jacobian"], samples, rows=ANGULAR), links)
 
 
 def repairs_of(
@@ -240,7 +212,22 @@ def repairs_of(
 
     edits = [one for one in editor.all(statements) if not _takes_own_number(case, one)]
     found = tried(edits, evaluate_in_order, wrong_at(False), wrong_at(True), wrong, progress, budget)
-    return [one for one in found[:60] if _is_confirmed(case, one, wrong)]
+
+    def spoils(one: Repair) -> bool:
+        left = wrong - one.mended
+        try:
+            return bool(left) and _spoils(evaluate(one.edit, True), as_it_is(True), due[True], left)
+        except ProgramError:  # the formula fails as it is
+            return False
+
+    return [one for one in found[:60] if _is_confirmed(case, one, wrong) and not spoils(one)]
+
+
+def _spoils(values: Floats, before: Floats, due: Floats, left: frozenset[int]) -> bool:
+    """Whether an edit takes an entry that stays wrong farther from what is due: then it mends the others by chance."""
+    places = sorted(left)
+    after, now = (np.abs(one - due).reshape(len(due), -1)[:, places].max(axis=0) for one in (values, before))
+    return bool((after > _FARTHER * now).any())
 
 
 def _takes_own_number(case: Comparison, edit: Edit) -> bool:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from itertools import permutations, product
+from itertools import islice, permutations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,8 @@ from ..._native import Floats
 
 _EULER = (("roll, pitch and yaw", 2, 0, 1), ("Euler angles (ZYZ)", 2, 2, 1), ("Euler angles (XYZ)", 0, 2, -1))
 """Of turns about moving axes: their words, the first and the last axis, the sign of their product along the second."""
+_JACOBIANS = {"a body": ("body",), "a space": ("space", "spatial")}
+_OTHER_SPACES = re.compile("(task|work|operational|cartesian|joint|null|state)_?space")
 Mistake = tuple[str, Callable[[], Floats], int]
 """Its words, what is returned with it, how far-fetched it is."""
 OfFrame = tuple[str, Callable[[], Floats], int, str]
@@ -30,6 +33,31 @@ class Pose(NamedTuple):
     """(S, 3, n), of the joints; zero for prismatic ones"""
     links: Sequence[Floats] = ()
     """(S, 3, 3) each, of axes that move with link 1, 2, ... up to the last but one"""
+
+
+class Frame(NamedTuple):
+    """That of a body or a space Jacobian."""
+
+    words: str
+    number: int
+    """Its place among those of `of_other_frames` in which a Jacobian is right as something."""
+
+    def rows(self, values: Floats, pose: Pose) -> Floats:
+        """What is right, (S, rows, n), as it stands in this frame."""
+        return next(islice(_right_as_something(values, pose), self.number, None))[1]()
+
+
+def named_frames(name: str, rows: int) -> list[Frame]:
+    """In what a Jacobian of so many rows is right whose name says that it is a body or a space Jacobian."""
+    bare = _OTHER_SPACES.sub("", name.lower())
+    called = tuple(which for which, names in _JACOBIANS.items() if any(one in bare for one in names))
+    values, pose = np.zeros((1, rows, 1)), Pose(np.eye(3)[None], np.zeros((1, 3)), np.zeros((1, 3, 1)))
+    found = enumerate(one[3] for one in _right_as_something(values, pose))
+    return [Frame(words, number) for number, words in found if called and words.startswith(called)]
+
+
+def _right_as_something(values: Floats, pose: Pose) -> Iterator[OfFrame]:
+    return (one for one in of_other_frames(values, pose) if one[3])
 
 
 def of_other_frames(values: Floats, pose: Pose) -> Iterator[OfFrame]:

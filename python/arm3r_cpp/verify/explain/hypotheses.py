@@ -21,8 +21,6 @@ class Hypothesis(NamedTuple):
     values: Callable[[], Floats]
     weight: int = 1
     """How far-fetched it is."""
-    right_as: str = ""
-    """What such a formula is right as: "a body Jacobian, in the tip's frame"."""
     is_of_result: bool = False
     """Whether all of the result is so, which several edits could mend as well."""
 
@@ -184,6 +182,6 @@ def _outputs(
             )
     if kind.is_derivative and pose is not None and rows in (3, 6):
         here = pose()
-        yield from (Hypothesis(*one) for one in of_other_frames(values, here))
+        yield from (Hypothesis(*one[:3]) for one in of_other_frames(values, here))
         if kind.inputs == ("q",):
             yield from (Hypothesis(*one) for one in of_other_points(values, here))

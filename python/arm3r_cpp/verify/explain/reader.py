@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import combinations_with_replacement
 from typing import Any, NamedTuple
 
@@ -15,6 +16,7 @@ from ..._native import Floats
 from ...user_functions.programs import ProgramError
 from ..names import SHORT
 from ..samples import Samples
+from .budget import Budget
 from .parts import Part, parts_of
 from .spectrum import Spectrum, read
 from .terms import RATIOS, Parameters, Term, is_simple_number, sum_words, terms_of
@@ -35,25 +37,31 @@ class Reading(NamedTuple):
     """Whether all terms have simple numbers and the units of what is due: no quantity is a bare number in them."""
 
 
-def read_entries(case: Any, wrong: frozenset[int]) -> dict[int, Reading]:
-    """The readings of the wrong entries that can be read."""
+class TooSlow(Exception):
+    """The terms of a formula take too long to be read."""
+
+
+def read_entries(case: Any, wrong: frozenset[int], budget: Budget) -> tuple[dict[int, Reading], bool]:
+    """The readings of the wrong entries that can be read, and whether the time for it has ended before the last one."""
     if not case.kind.is_read:
-        return {}
-    reader = _Reader(case)
-    found = {}
+        return {}, False
+    reader = _Reader(case, budget)
+    found: dict[int, Reading] = {}
     for place in sorted(wrong):
         try:
             found[place] = reader.entry(place)
         except (ProgramError, np.linalg.LinAlgError, FloatingPointError):
             continue
-    return found
+        except TooSlow:
+            return found, True
+    return found, False
 
 
 class _Reader:
     """Reads entries of one formula, and the same entries of the truth."""
 
-    def __init__(self, case: Any) -> None:
-        self.case, self.kind = case, case.kind
+    def __init__(self, case: Any, budget: Budget) -> None:
+        self.case, self.kind, self.budget = case, case.kind, budget
         self.parts = parts_of(self.kind, case.truth.joints)
         self.own = case.truth.values_of_quantities
         names = {quantity: name for name, quantity in case.parameters.items()}
@@ -61,7 +69,31 @@ class _Reader:
         self.varied, self.lifted = self._quantities()
         self.arms = self._arms(case.known)
         self.due_arms = self._arms(sorted({*self.varied, *self.lifted}))
+        self.named = self._named()
         self._sampled: dict[tuple[bool, bytes], Floats] = {}
+
+    def _named(self) -> dict[str, float]:
+        """The chain's numbers that have a name, but for those that the text gives to other numbers."""
+        own, text = self.case.formula.numbers(), self.case.formula.text or ""
+        return {
+            name: value
+            for name, value in self.case.truth.named_numbers.items()
+            if own.get(name, np.nan) == value or not re.search(rf"(?<![\w.]){name}\b", text)
+        }
+
+    @cached_property
+    def _elsewhere(self) -> _Reader:
+        """What is due of a chain with other lengths: it shows which of them are in a number."""
+        random = np.random.default_rng(37)
+        numbers = {name: value * random.uniform(1.1, 1.9) for name, value in self.named.items()}
+        return _Reader(replace(self.case, truth=self.case.truth.with_lengths(numbers)), self.budget)
+
+    def _due_numbers(self, index: int, part: Part) -> dict[Any, float]:
+        """The number of each term that is due, by its waves and the powers of what is varied."""
+        found = self._terms_due(index, part, {})
+        return {
+            (waves, powers): number for waves, ones in (found[1] if found else {}).items() for number, powers in ones
+        }
 
     def _quantities(self) -> tuple[list[str], list[str]]:
         """The quantities in which what is due is written, and those of them that the formula's text varies."""
@@ -107,6 +139,8 @@ class _Reader:
         return np.asarray(total)
 
     def _values(self, samples: Samples, of_truth: bool) -> Floats:
+        if self.budget.is_over():
+            raise TooSlow
         values = (self.case.due if of_truth else self.case.values)(samples)
         if not np.isfinite(values).all():
             raise ProgramError("is not finite")
@@ -153,25 +187,35 @@ class _Reader:
 
     def _due(self, index: int, part: Part) -> tuple[list[Term] | None, Any]:
         """The terms of the truth with all quantities varied, and their monomials."""
-        names = sorted({*self.varied, *self.lifted})
-        values = {self.shown[name]: np.array([arm[name] for arm in self.due_arms]) for name in names}
-        parameters = Parameters(values, dict(self.case.truth.named_numbers), len(self.due_arms))
-        parameters.may_stand = partial(self._has_few_lengths, part)
-        parameters.candidates = self._candidates(part, names, parameters)
-        spectrum = self._spectrum(index, True)
-        result = spectrum and terms_of(spectrum, parameters, {}, self._scale(index, True), part.words)
+        result = self._terms_due(index, part, self.named)
         if not result:
             return None, {}
+        shown = self._parameters_due(part, {}).names
         return result[0], {
-            waves: [(number, dict(zip(parameters.names, powers, strict=True))) for number, powers in found]
+            waves: [(number, dict(zip(shown, powers, strict=True))) for number, powers in found]
             for waves, found in result[1].items()
         }
+
+    def _terms_due(self, index: int, part: Part, named: dict[str, float]) -> Any:
+        parameters = self._parameters_due(part, named)
+        if named:
+            parameters.elsewhere = self._elsewhere.case.truth.named_numbers, self._elsewhere._due_numbers(index, part)
+        spectrum = self._spectrum(index, True)
+        return spectrum and terms_of(spectrum, parameters, {}, self._scale(index, True), part.words)
+
+    def _parameters_due(self, part: Part, named: dict[str, float]) -> Parameters:
+        names = sorted({*self.varied, *self.lifted})
+        values = {self.shown[name]: np.array([arm[name] for arm in self.due_arms]) for name in names}
+        parameters = Parameters(values, dict(named), len(self.due_arms))
+        parameters.may_stand = partial(self._has_few_lengths, part)
+        parameters.candidates = self._candidates(part, names, parameters)
+        return parameters
 
     def _read(self, index: int, part: Part, monomials_due: Any, due: set[str] | None) -> list[Term] | None:
         """The terms of the formula; its numbers are called as the table's only where these are due in this entry."""
         known = self.case.known
         fixed = {self.shown[name]: self.own[name] for name in self.varied if name not in known and self.own.get(name)}
-        fixed |= {name: value for name, value in self.case.truth.named_numbers.items() if due is None or name in due}
+        fixed |= {name: value for name, value in self.named.items() if due is not None and name in due}
         values = {self.shown[name]: np.array([arm[name] for arm in self.arms]) for name in known}
         parameters = Parameters(values, fixed, len(self.arms))
         parameters.candidates = self._candidates(part, known, parameters)

@@ -101,10 +101,13 @@ def _is_idle(
 def _left(
     evaluate: Evaluate, edit: Edit, everywhere: bool, wrong: Callable[[Floats], frozenset[int]]
 ) -> frozenset[int] | None:
+    """The entries that are wrong with an edit; None where it fails, or leaves nothing but zeros that are not due."""
     try:
-        return wrong(evaluate(edit, everywhere))
+        values = evaluate(edit, everywhere)
+        found = wrong(values)
     except (ProgramError, ValueError):
         return None
+    return found if values.any() or not found else None
 
 
 def cover(repairs: Sequence[Repair], wrong: frozenset[int]) -> list[Repair]:

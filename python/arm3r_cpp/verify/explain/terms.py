@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, product
+from typing import Any
 
 import numpy as np
 
@@ -114,6 +115,8 @@ class Parameters:
         """The powers of the monomials of which a coefficient may be any sum."""
         self.may_stand: Callable[[Iterable[str]], bool] = lambda names: True
         """Whether names may stand together in a term: their product has the units of the entry."""
+        self.elsewhere: tuple[Mapping[str, float], Mapping[Any, float]] | None = None
+        """The numbers that have a name, and those of the terms, in another arm: a name is in a term that changes so."""
         self.is_determined = arms >= len(self.names) + 2 or not self.names
 
     def monomial(self, powers: Sequence[int]) -> Floats:
@@ -244,21 +247,32 @@ class Parameters:
             return self.known_terms[waves, number, tuple(powers)]
         named = [(name, power) for name, power in zip(self.names, powers, strict=True) if power]
         if self.fixed and Fraction(number).limit_denominator(4) != number:
-            found = self._named_number(number)
+            other = self.elsewhere[1].get((waves, tuple(powers)), 0.0) if self.elsewhere else None
+            found = self._named_number(number, other)
             if found:
                 number, more = found
                 named += more
         return Term(number, tuple(sorted(named, key=lambda one: (_ORDER.find(one[0][0]) % 99, one[0]))), waves)
 
-    def _named_number(self, number: float) -> tuple[float, list[tuple[str, int]]] | None:
-        """A number of the plant as a simple number times its named quantities, the fewest and the simplest that do."""
+    def _holds_elsewhere(self, ratio: float, names: Sequence[str], other: float | None) -> bool:
+        if other is None or not self.elsewhere:
+            return True
+        due = ratio * float(np.prod([self.elsewhere[0][name] for name in names]))
+        return abs(other - due) < 1e-6 * abs(due)
+
+    def _named_number(self, number: float, other: float | None) -> tuple[float, list[tuple[str, int]]] | None:
+        """A number of the plant as a simple number times its named quantities, the fewest and the simplest that do.
+
+        Args:
+            other: the number in another arm; None: it is not known.
+        """
         for size in (1, 2, 3):
             found = []
             for names in combinations(self.fixed, size):
                 value = float(np.prod([self.fixed[name] for name in names]))
                 ratios = (abs(number / value - ratio) < 1e-9 * abs(ratio) for ratio in RATIOS if value)
                 place = next((place for place, is_near in enumerate(ratios) if is_near), None)
-                if place is not None and self.may_stand(names):
+                if place is not None and self.may_stand(names) and self._holds_elsewhere(number / value, names, other):
                     found.append((place // 2, number / value, names))
             if found:
                 _, ratio, names = min(found, key=lambda one: one[0])

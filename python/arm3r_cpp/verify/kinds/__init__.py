@@ -56,7 +56,7 @@ def kind_of_name(name: str) -> str | None:
         return None
     for kind in (KINDS[one] for one in _BY_NAME):
         for word in kind.called:
-            if (len(word) > 2 and word in lower) or word in (lower.split("_")[0], lower.split("_")[-1]):
+            if (len(word) > 2 and word in f"_{lower}") or word in (lower.split("_")[0], lower.split("_")[-1]):
                 return kind.name
     return next((kind.name for kind in KINDS.values() if lower in kind.letters), None)
 

@@ -12,7 +12,7 @@ class JacobianDot(Kind):
     name, words, letter = "jacobian_dot", "rate of the jacobian", "Jdot"
     inputs, unit, shapes, planar_shape = ("q", "qd"), "m/s", ("3xn", "6xn"), "2xn"
     called = (
-        "jdot", "j_dot", "jacobian_dot", "jacobiandot", "jac_dot", "djac", "d_jac", "jacobian_rate", "jacobianrate",
+        "jdot", "j_dot", "jacobian_dot", "jacobiandot", "jac_dot", "_djac", "_d_jac", "jacobian_rate", "jacobianrate",
         "jacobian_deriv", "jacobianderiv", "jacobian_time",
     )  # fmt: skip
     letters = ("dj", "jd")

@@ -61,7 +61,7 @@ class Kind(ABC):
 
     # ---- by which names it is found ----
     called: tuple[str, ...]
-    """Parts of the names of functions."""
+    """Parts of the names of functions; those that begin with _ stand behind one, or first."""
     letters: tuple[str, ...] = ()
     """Whole names of functions and outputs."""
     letters_beside: tuple[str, ...] = ()

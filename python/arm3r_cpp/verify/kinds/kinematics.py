@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..._native import Floats
+from ...errors import UsageError
 from .kind import Kind, Model, Rows, States
 
 
@@ -22,4 +25,12 @@ class Kinematics(Kind):
         return arm.tip_position(states["q"])[:, list(rows)]
 
     def _compared(self, values: Floats, qd: Floats | None) -> Floats:
-        return values[:, :3, 3] if values.ndim == 3 else values
+        """
+        Raises:
+            UsageError: a matrix is no transform.
+        """
+        if values.ndim < 3:
+            return values
+        if np.abs(values[:, 3] - [0, 0, 0, 1]).max() > 1e-9:  # NaN shows nothing
+            raise UsageError("returns a 4x4 matrix whose last row is not 0 0 0 1")
+        return values[:, :3, 3]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import combinations_with_replacement
 
 import numpy as np
 
@@ -17,19 +18,38 @@ _MOST_FEATURES = 4000
 _MOST_CHOSEN = 6
 _SPIKE = 12.0  # standard deviations
 _ROUNDING = 1e-9
+_MOST_DECIMALS = 10
 _HALF = 0.5 * (1 + 1e-6)  # of a step: the largest error of rounding
 _DIFFERENCES = 6  # the order of those in which a smooth motion vanishes
 _SMOOTH = 0.3  # of its own size: what has more is no motion in the order of its rows
-_ORDERS = 3  # of the autoregressive model of the noise
+_ORDERS = 16  # of the autoregressive model of the noise: a slow one with a white one on it asks for many
+_ROWS_AN_ORDER = 20
 _SLIPS = (0.01, 0.1, 0.5)  # rad/s, by which friction has come to its sign
+_AGAINST = 0.02  # of the work of friction: more is none that drives the joint
+_ONE_WAY = 0.02  # of the rows
 
 
 def features_of(
-    kind: Kind, groups: Sequence[Sequence[int]], revolute: Sequence[bool], states: dict[str, Floats]
+    kind: Kind,
+    groups: Sequence[Sequence[int]],
+    revolute: Sequence[bool],
+    states: dict[str, Floats],
+    varied: Mapping[str, Floats],
 ) -> Floats:
-    """(rows, features): what the terms of such a formula are made of."""
+    """(rows, features): what the terms of such a formula are made of.
+
+    Args:
+        varied: the arm's numbers that differ from row to row: what a term has of them is a factor of it.
+    """
     first, second = (_waves(order, groups, revolute, states["q"]) for order in (1, 2))
-    return np.concatenate(kind.features(first, second, states), axis=1)
+    columns = np.concatenate(kind.features(first, second, states), axis=1)
+    known = {tuple(name for name in names if name in varied) for names in kind.monomials}
+    products = sorted(known - {()}) or [
+        names for count in (1, 2, 3) for names in combinations_with_replacement(varied, count)
+    ]
+    factors = [np.prod([varied[name] for name in names], axis=0) for names in products]
+    factors = factors[: _MOST_FEATURES // columns.shape[1]]
+    return np.concatenate([columns, *(columns * one[:, None] for one in factors)], axis=1)
 
 
 def _waves(order: int, groups: Sequence[Sequence[int]], revolute: Sequence[bool], q: Floats) -> Floats:
@@ -39,9 +59,27 @@ def _waves(order: int, groups: Sequence[Sequence[int]], revolute: Sequence[bool]
     return design(columns, q, {})
 
 
-def friction_of(qd: Floats) -> Floats:
-    """(rows, columns): what the friction of a joint of these rates is made of."""
-    return np.stack([qd, qd * np.abs(qd), *(np.tanh(qd / slip) for slip in _SLIPS)], axis=1)
+def friction_in(left: Floats, qd: Floats, step: float) -> Floats | None:
+    """The part of what is left of a torque that friction explains, of a joint of these rates; None: none is seen.
+
+    It opposes the rate, and may be another one each way.
+    """
+    odd = np.stack([qd, qd * np.abs(qd), *(np.tanh(qd / slip) for slip in _SLIPS)], axis=1)
+    if not follows(left, odd, step):
+        return None
+    forward = (qd > 0)[:, None]
+    both = np.concatenate([odd * forward, odd * ~forward], axis=1)
+    for columns in (both, odd):
+        found = columns @ np.linalg.lstsq(columns, left, rcond=None)[0]
+        power = found * qd
+        if -np.minimum(power, 0.0).sum() <= _AGAINST * np.abs(power).sum():
+            return found
+    return None
+
+
+def reverses(qd: Floats) -> bool:
+    """Whether a joint turns both ways: else a friction looks like any constant torque."""
+    return bool(min(np.mean(qd > 0), np.mean(qd < 0)) > _ONE_WAY)
 
 
 def noise_of(states: Mapping[str, Floats]) -> dict[str, Floats]:
@@ -65,7 +103,12 @@ def spikes_of(left: Floats) -> set[int]:
 
 
 def quantum(values: Floats) -> float:
-    """The step between the values of a column that has few of them; 0: none is seen."""
+    """The step between the values of a column: of its decimals, or of the few that it has; 0: none is seen."""
+    if not np.ptp(values):
+        return 0.0
+    for decimals in range(_MOST_DECIMALS):
+        if np.array_equal(np.round(values, decimals), values):
+            return float(10.0**-decimals)
     steps = np.diff(np.unique(values))
     if len(steps) == 0:
         return 0.0
@@ -150,10 +193,11 @@ def _strength(filtered: Floats, left: Floats, own: Floats) -> float:
 def _filter_of(noise: Floats) -> Floats:
     """The coefficients that make an autoregressive noise white (Yule and Walker)."""
     count = len(noise)
-    lags = np.array([noise[: count - lag] @ noise[lag:] for lag in range(_ORDERS + 1)])
-    if not lags[0] > 0:
+    orders = min(_ORDERS, count // _ROWS_AN_ORDER)
+    lags = np.array([noise[: count - lag] @ noise[lag:] for lag in range(orders + 1)])
+    if not lags[0] > 0 or not orders:
         return np.ones(1)
-    matrix = lags[np.abs(np.subtract.outer(np.arange(_ORDERS), np.arange(_ORDERS)))]
+    matrix = lags[np.abs(np.subtract.outer(np.arange(orders), np.arange(orders)))]
     return np.concatenate([[1.0], -np.linalg.lstsq(matrix, lags[1:], rcond=1e-12)[0]])
 
 

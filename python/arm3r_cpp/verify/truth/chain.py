@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from typing import TypeVar
+from dataclasses import replace
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -15,6 +16,14 @@ from ..kinds import SPATIAL, Kind, Rows
 
 MAX_JOINTS = 7
 GRAVITY = (0.0, 0.0, -9.80665)  # m/s^2
+
+
+class Moves(NamedTuple):
+    """What a length moves, for each metre of it."""
+
+    joints: list[tuple[Floats, Floats]]
+    """The origin of each joint in the frame before it, and the centre of what it carries."""
+    tool: Floats
 
 
 AnyChain = TypeVar("AnyChain", bound="SerialChain")
@@ -42,6 +51,7 @@ class SerialChain:
         without_inertial: Sequence[str] = (),
         without_any_inertial: Sequence[str] = (),
         named_numbers: Mapping[str, float] | None = None,
+        moves: Mapping[str, Moves] | None = None,
     ) -> None:
         """
         Args:
@@ -54,6 +64,7 @@ class SerialChain:
             without_any_inertial: those of them on which nothing with a mass is fixed.
             states_gravity: its size is known; else a formula may have 9.81, 9.8 or 10 m/s^2, too.
             named_numbers: what sentences call the chain's numbers.
+            moves: what moves with each of these, which are lengths.
 
         Raises:
             UsageError: there is no joint, or there are more than seven.
@@ -74,7 +85,8 @@ class SerialChain:
         self.without_tip = without_tip
         self.held = tuple(held)
         self.without_inertial, self.without_any_inertial = tuple(without_inertial), tuple(without_any_inertial)
-        self.named_numbers = dict(named_numbers or {})
+        self.named_numbers, self._moves = dict(named_numbers or {}), dict(moves or {})
+        self._first_turn = self.parts[0].rotation
 
     @property
     def gravity_size(self) -> float:
@@ -253,6 +265,20 @@ class SerialChain:
         acceleration = np.linalg.solve(self.mass_matrix(q), (tau - bias)[..., None])[..., 0]
         return np.asarray(acceleration, np.float64)
 
+    def with_lengths(self: AnyChain, numbers: Mapping[str, float]) -> AnyChain:
+        """The chain with other values of its named numbers."""
+        other = copy.copy(self)
+        other.parts, other.named_numbers = list(self.parts), {**self.named_numbers, **numbers}
+        turn = self.parts[0].rotation @ self._first_turn.T  # of the base, since the chain was made
+        for name, value in numbers.items():
+            more, moves = value - self.named_numbers[name], self._moves[name]
+            for place, (origin, centre) in enumerate(moves.joints):
+                joint = other.parts[place]
+                shift = more * (origin if place else turn @ origin)
+                other.parts[place] = replace(joint, origin=joint.origin + shift, centre=joint.centre + more * centre)
+            other.tool = other.tool + more * moves.tool
+        return other
+
     def with_gravity(self: AnyChain, g: float) -> AnyChain:
         """The chain where gravity is as large, m/s^2."""
         other = copy.copy(self)
@@ -280,7 +306,9 @@ class SerialChain:
         Raises:
             UsageError: a chain has no law.
         """
-        raise UsageError(f"{self.name}: a controller is judged by the law of a scenario: name one by --arm")
+        raise UsageError(
+            f"{self.name}: a controller is judged by the law of a scenario: name one by --arm, in the place of a chain"
+        )
 
     def _require_masses(self, kind: Kind) -> None:
         if self.without_any_inertial:

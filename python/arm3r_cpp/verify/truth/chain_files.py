@@ -30,6 +30,8 @@ class Chain(SerialChain):
     >>> verdict = verify.jacobian(my_jacobian, chain)
     """
 
+    joint_names: Sequence[str] = ()
+    """From the base to the tip; none where its file names no joints."""
     standing: Mapping[str, tuple[Floats, Floats]] = MappingProxyType({})
     """Frames that do not move, by the names of their links, the root's first: rotation and origin in the base, m."""
     carried: Mapping[str, tuple[Floats, Floats]] = MappingProxyType({})
@@ -57,6 +59,7 @@ class Chain(SerialChain):
             without_inertial=found.without_inertial,
             without_any_inertial=found.without_any_inertial,
         )
+        chain.joint_names = [joint.name for joint in found.joints]
         chain.standing = urdf.fixed_on(urdf.way(found.tip)[0].parent)
         chain.carried = urdf.fixed_on(found.joints[-1].child)
         return chain
@@ -171,12 +174,15 @@ class Chain(SerialChain):
         found = []
         for links in [bodies, *([link] for link in bodies if len(bodies) > 1)]:
             numbers = [link + 1 for link in links]
-            for place, factor in (("end", 1.0), ("middle", 0.5)):
+            has_middle = all(own[link].is_revolute and ends[link].any() for link in links)
+            for place, factor in (("end", 1.0), ("middle", 0.5))[: 1 + has_middle]:
                 changes = {link: replace(own[link], centre=factor * ends[link]) for link in links}
                 found.append((centre_words(numbers, place), self._with_parts(changes)))
             for sign in (1, -1) if kind.depends_on_inertia else ():
                 changes = {link: replace(own[link], inertia=own[link].inertia + sign * shifts[link]) for link in links}
                 found.append((steiner_words(numbers, twice=sign > 0), self._with_parts(changes)))
+        found += [(f"the mass of link {link + 1} is left out", self._with_parts({link: replace(own[link], mass=0.0)}))
+                  for link in bodies]  # fmt: skip
         if kind.depends_on_inertia and any(joint.armature for joint in own):
             bare = {place: replace(joint, armature=0.0) for place, joint in enumerate(own)}
             found.append(("the armature is left out", self._with_parts(bare)))

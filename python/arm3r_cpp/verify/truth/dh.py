@@ -12,7 +12,7 @@ import numpy as np
 from ..._native import Floats
 from ...errors import UsageError
 from ...robots.bodies import LARGEST, Joint
-from .chain import AnyChain
+from .chain import AnyChain, Moves
 
 _NUMBER = re.compile(
     r"(?P<sign>[+-]?)(?:(?P<pi>pi)(?:/(?P<part>0*[1-9]\d{0,8}))?"
@@ -105,7 +105,30 @@ def _row(file: str, number: int, names: list[str], units: dict[str, str], cells:
 
 
 def _chain(table: list[dict[str, object]], word: str, name: str, make: type[AnyChain]) -> AnyChain:
-    """Joint i turns about (or moves along) z of frame i-1 in a standard table, of frame i in a modified one."""
+    joints, tool = _parts(table, word)
+    lengths = [(key, row, float(row[key])) for row in table if row["type"] != "tool" for key in ("a", "d")]  # type: ignore[arg-type]
+    named, moves = {}, {}
+    for key, row, value in lengths:
+        if value:
+            longer = [{**one, key: value + 1.0} if one is row else one for one in table]
+            others, (other_tool, _) = _parts(longer, word)
+            label = f"{key}{table.index(row) + 1}"
+            named[label] = value
+            moves[label] = Moves(
+                [
+                    (other.origin - one.origin, other.centre - one.centre)
+                    for one, other in zip(joints, others, strict=True)
+                ],
+                other_tool - tool[0],
+            )
+    return make(joints, tool=tool[0], tool_rotation=tool[1], name=name, named_numbers=named, moves=moves)
+
+
+def _parts(table: list[dict[str, object]], word: str) -> tuple[list[Joint], tuple[Floats, Floats]]:
+    """Joint i turns about (or moves along) z of frame i-1 in a standard table, of frame i in a modified one.
+
+    The tool is the tip in the last joint's frame, and how that is turned.
+    """
     tool = np.zeros(3), np.eye(3)
     if table and table[-1]["type"] == "tool":
         a, alpha, d, theta = (float(table[-1][key]) for key in ("a", "alpha", "d", "theta"))  # type: ignore[arg-type]
@@ -127,9 +150,7 @@ def _chain(table: list[dict[str, object]], word: str, name: str, make: type[AnyC
         joints.append(_joint(row["type"] == "R", z, rotation, origin, number, shift))
     if word == "standard":
         tool = before_origin + before_rotation @ tool[0], before_rotation @ tool[1]
-    lengths = {f"{key}{place}": float(row[key]) for place, row in enumerate(table, start=1) for key in ("a", "d")}  # type: ignore[arg-type]
-    named = {key: value for key, value in lengths.items() if value}
-    return make(joints, tool=tool[0], tool_rotation=tool[1], name=name, named_numbers=named)
+    return joints, tool
 
 
 def _joint(is_revolute: bool, axis: Floats, rotation: Floats, origin: Floats, number: dict[str, float],
