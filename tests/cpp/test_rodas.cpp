@@ -153,13 +153,13 @@ template <class P>
 class Solver {
 public:
     using Y = State<double, P::size>;
-    Rodas4<P::size, P::motion, P::quadratures> stepper;
+    Rodas4<double, P::size, P::motion, P::quadratures> stepper;
 
     explicit Solver(const P& problem) : problem_(problem) { stepper.memory = P::memory; }
 
     bool step(double t, const Y& y, double h) {
-        linearize<P::motion, P::quadratures, 3>(problem_, t, y, P::memory, f0_, slopes_);
-        return stepper.step(problem_, slopes_, t, y, f0_, h);
+        linearize<P::motion, P::quadratures, 3>(problem_, t, y, P::memory, f0_, slopes_[0]);
+        return stepper.step(problem_, true, slopes_, t, y, f0_, h);
     }
 
     // Equal steps from the exact solution on: the largest error of every component on the way.
@@ -195,7 +195,7 @@ public:
 private:
     P problem_;
     Y f0_;
-    Linearization<P::size> slopes_;
+    std::array<Linearization<P::size>, 1> slopes_;
 };
 
 // ---- order
@@ -264,7 +264,7 @@ TEST_CASE(the_solution_within_a_step_meets_both_its_ends) {
 // ---- error, and what a step is worth
 
 TEST_CASE(the_error_is_the_largest_of_motion_and_memory_by_the_larger_end) {
-    Rodas4<6, 2, 1> stepper;
+    Rodas4<double, 6, 2, 1> stepper;
     stepper.memory = 2;
     stepper.y1 = {1.0, -4.0, 1.0, 1.0, 2.0, 1.0};
     const State<double, 6> y{3.0, 1.0, 1.0, 1.0, -5.0, 1.0};
@@ -279,7 +279,7 @@ TEST_CASE(the_error_is_the_largest_of_motion_and_memory_by_the_larger_end) {
 }
 
 TEST_CASE(the_next_step_follows_the_fourth_root_of_the_error_between_its_bounds) {
-    using Stepper = Rodas4<2, 2, 0>;
+    using Stepper = Rodas4<double, 2, 2, 0>;
     for (const double error : {1e-3, 1e-2, 0.3, 1.0, 7.0, 300.0})
         CHECK(std::abs(Stepper::step_factor(error) - 0.9 / std::pow(error, 0.25)) <= 1e-14);
     for (const double error : {0.0, 1e-300, 1e-5}) CHECK(Stepper::step_factor(error) == 6);
@@ -291,8 +291,8 @@ TEST_CASE(a_step_without_an_end_is_reported) {
     const auto is_taken = [](double df_dy, double value, double book) {
         const auto f = [&](double, const State<double, 2>&, State<double, 2>& dy) { dy = {value, book}; };
         const Linearization<2> linearization{{State<double, 2>{df_dy, 0.0}, State<double, 2>{0.0, 0.0}}, {0.0, 0.0}};
-        Rodas4<2, 1, 1> stepper;
-        return stepper.step(f, linearization, 0.0, {1.0, 1.0}, {1.0, 1.0}, 0.5);
+        Rodas4<double, 2, 1, 1> stepper;
+        return stepper.step(f, true, {linearization}, 0.0, {1.0, 1.0}, {1.0, 1.0}, 0.5);
     };
     CHECK(is_taken(-1, 1, 1));
     CHECK(!is_taken(1 / (0.5 * rodas4::gamma), 1, 1));
@@ -320,8 +320,8 @@ static Eigen::Matrix2d stability_function(double re, double im) {
         State<double, 2> y{}, f0;
         y[column] = 1;
         f(0.0, y, f0);
-        Rodas4<2, 2, 0> stepper;
-        REQUIRE(stepper.step(f, linearization, 0.0, y, f0, 1.0));
+        Rodas4<double, 2, 2, 0> stepper;
+        REQUIRE(stepper.step(f, true, {linearization}, 0.0, y, f0, 1.0));
         R.col(Eigen::Index(column)) << stepper.y1[0], stepper.y1[1];
     }
     return R;

@@ -47,7 +47,7 @@ void BatchWorker::run() {
 void BatchWorker::run_group(const Setup& first, std::size_t run) {
     if (job_.law.function) {
         run_with_law(first, run);
-    } else if (job_.lanes == 1 || !first.solver.runs_in_lanes()) {
+    } else if (job_.lanes == 1) {
         run_alone(first, run_options(), run);
     } else {
         lane_group_of(first)(job_.lanes, *this, first, run);

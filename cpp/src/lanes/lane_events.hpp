@@ -6,7 +6,7 @@
 #include "contact/contact_search.hpp"
 #include "contact/contact_watch.hpp"
 #include "integrate/step_limits.hpp"
-#include "integrate/stepper.hpp"
+#include "integrate/step_method.hpp"
 #include "lanes/lane_run.hpp"
 #include "run/singular_passage.hpp"
 
@@ -134,6 +134,11 @@ public:
     bool may_jump_at_end(int lane) const { return Lanes<T>::is(may_jump_, lane); }
     double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
     const Method& method() const { return method_; }
+    Metrics metrics(int lane) const {
+        Metrics found = Base::metrics(lane);
+        found.stiff_steps = method_.stiff_steps(lane);
+        return found;
+    }
     // The dense output of the last step that was accepted.
     void fill_dense_output(int lane, DenseOutput& dense) const {
         const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
@@ -154,7 +159,7 @@ private:
     void load_steps(int lane) {
         const Setup& setup = this->setup(lane);
         const auto set = [lane](T& x, double value) { Lanes<T>::set(x, lane, value); };
-        method_.load_lane(lane, setup.solver);
+        method_.load_lane(lane, setup);
         set(this->slack_, setup.clock_rounding());
         const Plant<double>& plant = setup.plant;
         set(max_step_, std::min(setup.solver.max_step, plant.has_wall ? max_wall_step(plant.wall) : infinite));
@@ -238,9 +243,7 @@ private:
 
     ARM3R_INLINE T max_step() {  // (5.2)
         T h = min(max_step_, turning_time());
-        if constexpr (Base::lanes == 1)
-            if (method_.is_stiff()) return h;
-        const Mask& touching = this->rhs_.touching;
+        const Mask touching = this->rhs_.touching && !method_.is_stiff();
         const bool may_press = this->plant_.acts_on_arm && this->plant_.has_wall && in_any_lane(touching);
         if (may_press)
             Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA {
@@ -370,11 +373,12 @@ private:
     // at the crossing (5.6).
     ARM3R_INLINE void stop_at_crossing(Y& y1) {
         for (std::size_t i = 0; i < N; ++i) y1[i] = select(crosses_, dense_.component(i, theta_), y1[i]);
-        if (!method_.repeats_to_event()) return;
-        const T h = select(crosses_, T(theta_ * this->h_), this->h_);
-        const Mask ends = method_.attempt(crosses_, t0_, this->y_, h) < T(infinite);
-        for (std::size_t i = motion_size; i < state_size; ++i)
-            y1[i] = select(crosses_ && ends, method_.end()[i], y1[i]);
+        const Mask repeats = crosses_ && method_.repeats_to_event();
+        if (!in_any_lane(repeats)) return;
+        const T h = select(repeats, T(theta_ * this->h_), this->h_);
+        const Mask ends = repeats && method_.attempt(repeats, t0_, this->y_, h) < T(infinite);
+        const Y end = method_.end();
+        for (std::size_t i = motion_size; i < state_size; ++i) y1[i] = select(ends, end[i], y1[i]);
     }
 
     // Takes the samples of the lanes that are due. Returns where the torque may be new.

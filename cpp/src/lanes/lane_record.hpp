@@ -101,10 +101,7 @@ private:
         const arm3r_outcome asked = run_.outcome;
         static_cast<Metrics&>(run_) = lane_run_->metrics(lane_);
         run_.outcome = asked;
-        if constexpr (requires { lane_run_->method().choices(); }) {
-            run_.stiff_steps = double(lane_run_->method().stiff_steps());
-            run_.choices = lane_run_->method().choices();
-        }
+        if constexpr (requires { lane_run_->method().choices(0); }) run_.choices = lane_run_->method().choices(lane_);
         const arm3r_outcome outcome = lane_run_->outcome(lane_);
         if (outcome != ARM3R_RUN_OK) end(outcome, reason(outcome));
         return lane_run_->totals(lane_);

@@ -23,8 +23,8 @@ struct Solver {
 
     // Whether all steps have one length, wherever contact or a formula of time changes.
     bool is_on_grid() const { return method == SolverMethod::rk4 && events == StepEvents::grid; }
-    // Whether a batch has runs by this method side by side.
-    bool runs_in_lanes() const { return method != SolverMethod::rodas4 && method != SolverMethod::automatic; }
+    // Whether no step is by the method for stiff equations.
+    bool is_explicit() const { return method != SolverMethod::rodas4 && method != SolverMethod::automatic; }
 };
 
 struct Setup {

@@ -13,6 +13,8 @@ namespace arm3r {
 // Fill n and a, row by row, then factorise() it in place; after that solve() takes any number of right-hand sides.
 template <std::size_t Most>
 struct SmallLu {
+    using Rows = std::array<std::size_t, Most>;
+
     std::size_t n = 0;
     std::array<std::array<double, Most>, Most> a;
 
@@ -32,11 +34,20 @@ struct SmallLu {
 
     void solve(std::array<double, Most>& x) const {
         for (std::size_t k = 0; k < n; ++k) std::swap(x[k], x[raised_[k]]);
+        substitute(a, x, n);
+    }
+    // Which row became the k-th.
+    const Rows& raised() const { return raised_; }
+
+    // Solves n equations whose factors are known, and whose right-hand sides stand in the order of the raised rows.
+    template <class T>
+    ARM3R_INLINE static void substitute(const std::array<std::array<T, Most>, Most>& factors, std::array<T, Most>& x,
+                                        std::size_t n) {
         for (std::size_t i = 1; i < n; ++i)
-            for (std::size_t j = 0; j < i; ++j) x[i] -= a[i][j] * x[j];
+            for (std::size_t j = 0; j < i; ++j) x[i] = x[i] - factors[i][j] * x[j];
         for (std::size_t i = n; i-- > 0;) {
-            for (std::size_t j = i + 1; j < n; ++j) x[i] -= a[i][j] * x[j];
-            x[i] *= a[i][i];  // the reciprocal of the pivot
+            for (std::size_t j = i + 1; j < n; ++j) x[i] = x[i] - factors[i][j] * x[j];
+            x[i] = x[i] * factors[i][i];  // the reciprocal of the pivot
         }
     }
 
@@ -54,7 +65,7 @@ private:
         return true;
     }
 
-    std::array<std::size_t, Most> raised_;  // which row became the k-th
+    Rows raised_;
 };
 
 }  // namespace arm3r

@@ -165,7 +165,7 @@ struct Dopri5 {
 
     // h times the magnitude of the dominant eigenvalue, from the difference between the last two stages, which are both
     // at the end of the step. Above 3.25 the step is limited by stability and not by accuracy (5.7).
-    T stiffness() const {
+    ARM3R_INLINE T stiffness() const {
         T rate(0.0), way(0.0);
         for (std::size_t i = 0; i < N; i = i + 1 == Norm ? i + 1 + Quadratures : i + 1) {
             const T d = (35.0 / 384 - 9017.0 / 3168) * k[0][i] + 355.0 / 33 * k[1][i] +
@@ -174,7 +174,7 @@ struct Dopri5 {
             rate = rate + (f1[i] - k[5][i]) * (f1[i] - k[5][i]);
             way = way + d * d;
         }
-        return way > T(0.0) ? sqrt(T(rate / way)) : T(0.0);
+        return select(way > T(0.0), sqrt(T(rate / way)), T(0.0));
     }
 
     ARM3R_INLINE Interpolant<T, N> interpolant(const T& t, const State<T, N>& y, const T& h) const {
