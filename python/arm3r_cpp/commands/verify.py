@@ -174,10 +174,11 @@ def verdicts_on(formula: str, arm: Any, options: argparse.Namespace, codes: list
     is_log = formula.endswith(ENDINGS)
     others: list[str] = []
     if options.kind is None:
-        found = [KINDS[kind] for kind in first.not_judged.values()]
-        others = [one.name for one in found if not (is_log and one.is_logged_anyway)]
+        found = [KINDS[kind] for kind in dict.fromkeys(first.not_judged.values())]
+        of_one = KINDS[first.kind].comes_with
+        others = [one.name for one in found if (not one.is_logged_anyway if is_log else one.name in of_one)]
     beside = [verdict_on(formula, kind, arm, options, codes) for kind in others]
-    together = [first, *(one for one in beside if one is not None)]
+    together = [first, *(one for one in beside if one is not None and (is_log or one.shape))]
     judged = {one.kind for one in together}
     for one in together:
         one.not_judged = {name: kind for name, kind in one.not_judged.items() if kind not in judged}

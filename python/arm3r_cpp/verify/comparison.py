@@ -84,9 +84,21 @@ class Comparison:
             samples = Samples({**samples.states, "q": np.rad2deg(samples.states["q"])}, samples.arms)
         raw = self.formula.values(self.call, samples, self.known, edit)
         try:
-            return self.kind.standard_form(raw, self.truth.joints, samples.tiled("qd"))
+            values = self.kind.standard_form(raw, self.truth.joints, samples.tiled("qd"))
         except UsageError as error:
             raise OtherShape(str(error), raw.shape[1:]) from None
+        return self._unwrapped(values, samples) if self._has_angle else values
+
+    @property
+    def _has_angle(self) -> bool:
+        """Whether a position has a row that is an angle, in a plane."""
+        return not self.kind.is_derivative and len(self.rows) == 3 and self.rows[2] > 2
+
+    def _unwrapped(self, values: Floats, samples: Samples) -> Floats:
+        """With the angle in the turn in which it is due."""
+        turn = 2 * np.pi
+        off = np.round((values[:, 2] - self.due(samples)[:, 2]) / turn)
+        return np.column_stack([values[:, :2], values[:, 2] - turn * off])
 
     def calls(self) -> int:
         """How many functions the formula calls at the first samples."""

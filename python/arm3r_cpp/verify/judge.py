@@ -66,7 +66,7 @@ def judge(
         raise UnjudgedError(f"{formula.file}: cannot be judged: it {error}") from None
     except ProgramError as error:
         verdict = failed(error, formula, kind, truth, progress)
-        verdict.not_judged = _not_judged(formula)
+        verdict.not_judged = _not_judged(formula, kind)
         return verdict
     verdict, case = min(verdicts, key=lambda one: one[0].complexity)
     if verdict.findings and _is_left_alone(kind) and (line := line_of_own_torque(formula.text or "")):
@@ -79,7 +79,7 @@ def judge(
     judge_constants(verdict, case)
     verdict.alternatives = few(verdict.alternatives)
     verdict.ok = not verdict.findings
-    verdict.not_judged = _not_judged(formula)
+    verdict.not_judged = _not_judged(formula, kind)
     seen_by_tests(verdict, case, seen_by)
     return verdict
 
@@ -152,6 +152,10 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     verdict = Verdict(True, case.kind.name, case.convention, 0.0, file=formula.file, text=formula.text)
     values, due = case.values(case.second), case.due(case.second)
     case.shape = due.shape[1:]
+    if unnamed := [
+        str(place) for place, name in enumerate(formula.outputs, 1) if not name and formula.output != place - 1
+    ]:
+        verdict.warnings.append(f"not judged here: output {', '.join(unnamed)}, which no name tells")
     if formula.beside:
         verdict.warnings.append(f"not judged here: {', '.join(formula.beside)} ({formula.file}:{formula.beside[0]})")
     verdict.shape, verdict.found = list(case.shape), _found(case)
@@ -161,6 +165,7 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     wrong = only_structured(verdict, case, values, due, wrong)
     if case.convention != case.truth.convention:
         verdict.warnings.append(f"the convention {case.convention} is not that of the arm, {case.truth.convention}")
+    _note_rotation(verdict, case)
     if case.kind.is_product and not wrong:
         _note_skewness(verdict, case)
     if wrong:
@@ -175,12 +180,24 @@ def _verdict(case: Comparison, progress: Progress | None, budget: Budget) -> Ver
     return verdict
 
 
-def _not_judged(formula: Formula) -> dict[str, str]:
+def _not_judged(formula: Formula, kind: Kind) -> dict[str, str]:
     """The other kinds of formula that a function returns, by the names of its outputs."""
     if formula.output is None:
         return {}
     kinds = zip(formula.outputs, kinds_of_outputs(formula.outputs), strict=True)
-    return {name: kind for place, (name, kind) in enumerate(kinds) if kind and place != formula.output}
+    return {name: other for name, other in kinds if other not in (None, kind.name)}
+
+
+def _note_rotation(verdict: Verdict, case: Comparison) -> None:
+    """Whether a transform has another rotation than the tip's frame, where the formula returns one."""
+    if "4x4" not in case.kind.shapes:
+        return
+    raw = case.formula.values(case.call, case.second, case.known)
+    if raw.shape[1:] != (4, 4):
+        return
+    rotation = case.truth.rotation(case.convention, case.second.tiled("q"))
+    if np.abs(raw[:, :3, :3] - rotation).max() > TOLERANCE:
+        verdict.warnings.append("its rotation is not that of the tip's frame, and is not judged")
 
 
 def _note_skewness(verdict: Verdict, case: Comparison) -> None:

@@ -33,8 +33,8 @@ _NEAR = 0.25  # of the distance from what is right in the frame of the base
 def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
     """The formula in the way in which it returns what its kind does: given plain vectors or else columns (n, 1).
 
-    Of several results the one is taken whose name says the kind, else the nearest one of those that fit by their shapes
-    and whose names say no other kind.
+    Of several results that fit by their shapes, and whose names say no other kind, the one is taken that changes with
+    the state and whose name says the kind, else the nearest one.
     """
     if formula.output is not None or _has_fitting_shape(formula, kind, truth):
         return formula
@@ -46,9 +46,14 @@ def as_called(formula: Formula, kind: Kind, truth: Any) -> Formula:
     else:
         others = []
     named = [one for one in others if _kind_of_output(one) == kind.name]
-    open_ones = named or [one for one in others if _kind_of_output(one) is None]
-    fitting = [one for one in open_ones if _has_fitting_shape(one, kind, truth)]
-    return min(fitting, key=lambda one: _distance(one, kind, truth), default=named[0] if named else formula)
+    others = [one for one in others if _kind_of_output(one) in (None, kind.name)]
+    fitting = [one for one in others if _has_fitting_shape(one, kind, truth)]
+
+    def likeliness(one: Formula) -> tuple[bool, bool, int, float]:
+        is_constant, count, error = _distance(one, kind, truth)
+        return is_constant, one not in named, count, error
+
+    return min(fitting, key=likeliness, default=named[0] if named else formula)
 
 
 def _distance(formula: Formula, kind: Kind, truth: Any) -> tuple[bool, int, float]:

@@ -170,6 +170,29 @@ def test_a_wrong_angle_of_a_plane_is_an_angle(judged: Any) -> None:
     assert sorted(str(verdict.findings[0].due).split(" + ")) == ["q1", "q2", "q3"], str(verdict)
 
 
+@pytest.mark.parametrize(
+    "angle", ["np.arctan2(np.sin(a[2]), np.cos(a[2]))", "(a[2] + np.pi) % (2*np.pi) - np.pi", "a[2]"]
+)
+def test_an_angle_of_a_plane_is_right_in_any_turn(angle: str, judged: Any) -> None:
+    text = "import numpy as np\nL = np.array([0.5, 0.4, 0.2])\ndef fk(q):\n    a = np.cumsum(q)\n"
+    assert judged("fk.py", f"{text}    return np.array([L @ np.cos(a), L @ np.sin(a), {angle}])\n", PLANAR).ok
+
+
+def test_a_rotation_that_is_not_that_of_the_tip_is_not_judged(judged: Any) -> None:
+    text = """import numpy as np
+L = np.array([0.5, 0.4, 0.2])
+def fk(q):
+    a, T = np.cumsum(q), np.eye(4)
+    c, s = np.cos(a[2]), np.sin(a[2])
+    T[:2, :2] = [[c, -s], [s, c]]
+    T[:2, 3] = L @ np.cos(a), L @ np.sin(a)
+    return T
+"""
+    words = "its rotation is not that of the tip's frame, and is not judged"
+    assert judged("fk.py", text, PLANAR).warnings == []
+    assert judged("fk.py", text.replace("[c, -s], [s, c]", "[c, s], [-s, c]"), PLANAR).warnings == [words]
+
+
 # ---- causes and edits ------------------------------------------------------------------------------------------------
 
 

@@ -120,6 +120,37 @@ def test_slow_noise_with_a_white_one_on_it_is_noise(rng: Any, of_table: Any, tmp
         assert formula_verdict(path, arm=chain), number
 
 
+def test_noise_in_one_entry_beside_exact_ones_is_left_open(rng: Any, tmp_path: Path) -> None:
+    q = rng.uniform(-2, 2, (400, 3))
+    g = due(truth_of(None), "gravity", {"q": q})
+    g[:, 1] += 0.02 * rng.standard_normal(400)
+    with pytest.raises(UnjudgedError, match=r"t2 is off by up to .*, as noise may be, beside entries without any"):
+        formula_verdict(log(tmp_path / "log.csv", q=q, g=g))
+    g[:, 2] *= 1.01
+    verdict = formula_verdict(log(tmp_path / "log.csv", q=q, g=g))
+    assert [one.entry for one in verdict.findings] == [[3]], str(verdict)
+
+
+@pytest.mark.parametrize("rows", [8, 12, 19])
+def test_few_rows_with_noise_tell_nothing(rows: int, rng: Any, tmp_path: Path) -> None:
+    at = states(rows, moves=False, rng=rng)
+    tau = white(due(truth_of(None), "inverse", at), 0.05, rng)
+    path = log(tmp_path / "log.csv", q=at["q"], qd=at["qd"], qdd=at["qdd"], tau=tau)
+    with pytest.raises(UnjudgedError, match=f"{rows} rows do not tell a mistake from noise; 20 or more do"):
+        formula_verdict(path)
+
+
+def test_a_torque_that_is_too_large_as_a_whole_is_found(rng: Any, tmp_path: Path) -> None:
+    for number in range(6):
+        at = motion(rng, rows=800)
+        tau = due(truth_of(None), "inverse", at)
+        tau[:, 2] *= 1.2
+        noisy = tau + 0.03 * np.std(tau, axis=0) * rng.standard_normal(tau.shape)
+        path = log(tmp_path / "log.csv", q=at["q"], qd=at["qd"], qdd=at["qdd"], tau=noisy)
+        verdict = formula_verdict(path)
+        assert [3] in [one.entry for one in verdict.findings], (number, str(verdict))
+
+
 # ---- friction --------------------------------------------------------------------------------------------------------
 
 

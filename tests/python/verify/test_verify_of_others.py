@@ -123,7 +123,35 @@ def test_an_output_that_fails_is_named_and_the_others_are_judged(written: Any, c
         "its output C\n  the formula fails: returns 1 number, where" in out
         and "its output G, convention simscape: right" in out
     )
-    assert "its output M\n  the formula fails: returns 1 number, where" in out
+    assert "note: not judged here: M (--kind mass)" in out and "its output M" not in out
+
+
+@pytest.mark.parametrize(
+    ("head", "last", "left"),
+    [
+        ("gravity(q)", "G = 9.80665*eye(3);", ""),
+        ("gravity(q)", "g = 9.80665;", ""),
+        ("gravity(q)", "J = 0.1*cos(q);", "J (--kind jacobian)"),
+        ("gravity(q, qd)", "C = cos(q);", ""),
+    ],
+)
+def test_what_has_the_letter_of_a_kind_and_is_something_else_is_not_judged(
+    head: str, last: str, left: str, written: Any, capsys: Any
+) -> None:
+    name = last[0]
+    text = f"function [tau, {name}] = {head}\n{LAST} {GRAVITY}\ntau = [0; t2; t3]; {last}\nend\n"
+    code, out = main([str(written("gravity.m", text))]), capsys.readouterr().out
+    assert "gravity torque, its output tau, convention simscape: right" in out
+    if name != "C":  # beside a gravity torque it is one of Coriolis
+        assert code == 0 and out.count("its output") == 1 and (not left or f"not judged here: {left}" in out)
+
+
+def test_an_output_that_no_name_tells_is_said_to_be_left(written: Any, capsys: Any) -> None:
+    path = written(
+        "dynamics.py", "def dynamics(q, qd):\n    M = [[1.0, 0, 0], [0, 1, 0], [0, 0, 1]]\n    return M, 2*qd, M\n"
+    )
+    main([str(path)])
+    assert "not judged here: output 2, which no name tells" in capsys.readouterr().out
 
 
 def test_other_functions_of_a_file_that_are_formulas_are_named(written: Any, capsys: Any) -> None:

@@ -13,6 +13,7 @@ class Coriolis(Kind):
 
     name, words, letter = "coriolis", "Coriolis and centrifugal torque", "h"
     inputs, unit, shapes = ("q", "qd"), "N m", ("n", "nxn")
+    comes_with = ("mass", "coriolis", "gravity")
     called, letters = ("coriolis", "centrifugal", "cmat", "velocity_product"), ("c", "h")
     columns, columns_words = r"h_?(\d)", "h1.."
     depends_on_inertia, comes_with_others = True, True

@@ -16,6 +16,7 @@ class Gravity(Kind):
 
     name, words, letter = "gravity", "gravity torque", "t"
     inputs, unit, shapes = ("q",), "N m", ("n",)
+    comes_with = ("mass", "coriolis", "gravity")
     called, letters = ("grav", "tau_g", "taug", "g_torque"), ("g",)
     columns, columns_words = r"(?:g|tau_g)_?(\d)", "g1.."
     depends_on_gravity, comes_with_others = True, True

@@ -11,6 +11,7 @@ class Inverse(Kind):
 
     name, words, letter = "inverse", "inverse dynamics", "t"
     inputs, unit, shapes = ("q", "qd", "qdd"), "N m", ("n",)
+    comes_with = ("mass", "coriolis", "gravity", "inverse")
     called = ("inverse_dyn", "invdyn", "id", "rnea", "inverse")
     columns, columns_words = r"tau(\d)", "tau1.."
     is_logged_anyway = True

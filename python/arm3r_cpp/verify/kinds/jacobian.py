@@ -14,6 +14,7 @@ class Jacobian(Kind):
 
     name, words, letter = "jacobian", "jacobian", "J"
     inputs, unit, shapes, planar_shape = ("q",), "m", ("3xn", "6xn"), "2xn"
+    comes_with = ("kinematics", "jacobian", "jacobian_dot")
     called, letters = ("jac",), ("j",)
     columns, columns_words = r"J_?[(\[]?(\d)[_,]?(\d)[)\]]?", "J11.."
     needs_masses, depends_on_base, is_derivative, comes_with_others = False, True, True, True

@@ -11,6 +11,7 @@ class JacobianDot(Kind):
 
     name, words, letter = "jacobian_dot", "rate of the jacobian", "Jdot"
     inputs, unit, shapes, planar_shape = ("q", "qd"), "m/s", ("3xn", "6xn"), "2xn"
+    comes_with = ("kinematics", "jacobian", "jacobian_dot")
     called = (
         "jdot", "j_dot", "jacobian_dot", "jacobiandot", "jac_dot", "_djac", "_d_jac", "jacobian_rate", "jacobianrate",
         "jacobian_deriv", "jacobianderiv", "jacobian_time",

@@ -104,6 +104,8 @@ class Kind(ABC):
     """Whether a matrix of it is judged by its product with the rates."""
     comes_with_others = False
     """Whether functions return it with other kinds, `M, C, g = dynamics(q, qd)`, and take what those depend on."""
+    comes_with: tuple[str, ...] = ()
+    """The kinds that a function returns beside it, whose outputs' names may be letters."""
     planted: tuple[str, ...] = ()
     """The lecture's own formulas of its entries, row by row, of a2, a3, m2, m3, g, c(...), s(...), q1 to q3."""
 

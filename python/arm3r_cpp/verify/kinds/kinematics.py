@@ -14,6 +14,7 @@ class Kinematics(Kind):
 
     name, words, letter = "kinematics", "tip position", "p"
     inputs, unit, shapes, planar_shape = ("q",), "m", ("3", "4x4"), "2"
+    comes_with = ("kinematics", "jacobian", "jacobian_dot")
     called = ("kin", "fk", "tip", "position", "pose", "effector")
     columns, columns_words = r"(?:p_?|tip_)([123xyz])", "p1.."
     is_logged_anyway = True

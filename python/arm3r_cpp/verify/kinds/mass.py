@@ -11,6 +11,7 @@ class Mass(Kind):
 
     name, words, letter = "mass", "mass matrix", "M"
     inputs, unit, shapes = ("q",), "kg m^2", ("nxn",)
+    comes_with = ("mass", "coriolis", "gravity")
     called, letters = ("mass", "inertia", "mmat"), ("m",)
     letters_beside = ("a", "b", "d", "h")
     columns, columns_words = r"M_?[(\[]?(\d)[_,]?(\d)[)\]]?", "M11.."

@@ -66,7 +66,9 @@ def _candidate(case: Case, convention: str) -> Candidate:
     for place, one in sorted(left.items()):
         if np.abs(one).max() <= max((noise or 0.0) * SIGNIFICANT, TOLERANCE) * flat[place]:
             continue
-        excuse = None if noise is not None or is_exact else excuse_of(case, place, one, by_states[place])
+        excuse = None
+        if noise is None:
+            excuse = excuse_of(case, place, one, rights[place], by_states[place], is_exact=is_exact)
         if excuse is None:
             wrong.append(place)
             continue

@@ -11,6 +11,7 @@ from .case import Candidate, Case, Place, entry_words, rms
 from .noise import follows, friction_in, reverses, spikes_of
 
 _OF_STATES = 2.0  # times what the noise of the states makes of an entry: nothing smaller is told from it
+_FEW_ROWS = 20  # fewer do not tell what follows a term
 _NO_NOISE = 0.1  # of the largest entry: no measurement is meant to be as bad
 _APART = 6.0  # times the noise of the other entries, of their size and of their scale: no sensor is as much worse
 
@@ -27,13 +28,30 @@ class Excuse:
     is_noise: bool = True
 
 
-def excuse_of(case: Case, place: Place, left: Floats, by_states: float) -> Excuse | None:
+def excuse_of(
+    case: Case, place: Place, left: Floats, right: Floats, by_states: float, *, is_exact: bool
+) -> Excuse | None:
     """Why what is left of an entry is no mistake; None: it is one.
 
     Args:
+        right: what is due.
         by_states: how far the noise of the states spreads the entry.
+        is_exact: whether other entries have no noise.
     """
     found = Excuse(rest=left)
+    features = np.column_stack([case.features, right])
+    if is_exact:
+        found.doubt = (
+            f"is off by up to {np.abs(left).max():.2g} {case.kind.unit}, as noise may be, beside entries without any: "
+            f"that follows no term of {case.kind.a_words}"
+        )
+        return None if len(left) < _FEW_ROWS or follows(left, features, case.step) else found
+    if len(left) < _FEW_ROWS:
+        found.doubt = (
+            f"is off by up to {np.abs(left).max():.2g} {case.kind.unit}, and {len(left)} rows do not tell a mistake "
+            f"from noise; {_FEW_ROWS} or more do"
+        )
+        return found
     rates = case.log.vector("qd", case.truth.joints) if case.kind.has_friction else None
     friction = friction_in(left, rates[:, place[0]], case.step) if rates is not None else None
     if rates is not None and friction is not None:
@@ -47,7 +65,7 @@ def excuse_of(case: Case, place: Place, left: Floats, by_states: float) -> Excus
                 f"is off by up to {np.abs(left).max():.2g} N m, and joint {joint} turns one way only: friction and "
                 "other torques look alike; log rows in which it turns both ways"
             )
-    if not follows(found.rest, case.features, case.step):
+    if not follows(found.rest, features, case.step):
         return found
     if rms(left) > _OF_STATES * by_states:
         return None
