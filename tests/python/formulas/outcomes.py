@@ -248,10 +248,13 @@ _ALSO = re.compile(r"in line (\d+) `(.*)` as `(.*)` would be right, too", re.S)
 
 
 def _false_alternative(path: Path, text: str, verdict: Any, wrong: Entries) -> str:
-    """Another edit that mends nothing, or spoils what is right, wherever in its line it is made."""
+    """Another edit that mends nothing, or spoils what is right, wherever in its line it is made.
+
+    A formula that is right for the numbers in its text, and only for these, has no wrong entry here: it is to stay so.
+    """
     for sentence in verdict.alternatives:
         if (said := _ALSO.fullmatch(sentence)) and not any(
-            left is not None and left < wrong
+            left is not None and (left < wrong or not (left or wrong))
             for left in _left_after(path, text, int(said[1]), said[2], said[3], verdict.convention)
         ):
             return f"not so: {sentence}"
