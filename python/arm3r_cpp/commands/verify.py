@@ -13,7 +13,6 @@ from .._messages import as_json
 from .._progress_bar import Bar
 from ..errors import Arm3rError, UsageError
 from ..verify.kinds import KINDS
-from ..verify.log.reading import ENDINGS
 from .exit_codes import UNJUDGED, WRONG_FORMULA, attempt, exit_code, print_line, say
 
 if TYPE_CHECKING:
@@ -168,6 +167,8 @@ def verify(options: argparse.Namespace, codes: list[int]) -> None:
 
 def verdicts_on(formula: str, arm: Any, options: argparse.Namespace, codes: list[int]) -> Iterator[Verdict]:
     """The verdict on a formula; on each kind that a function returns or a log has, where none is asked for."""
+    from ..verify.log.reading import ENDINGS
+
     first = verdict_on(formula, options.kind, arm, options, codes)
     if first is None:
         return

@@ -136,11 +136,11 @@ def left_of(case: Case, due: Floats) -> dict[Place, Floats]:
     return {place: values - entry_of(due, place) for place, values in sorted(case.entries.items())}
 
 
-def entry_of(due: Floats, place: tuple[int, ...]) -> Floats:
+def entry_of(due: Floats, place: Place) -> Floats:
     return np.asarray(due.reshape(len(due), -1)[:, np.ravel_multi_index(place, due.shape[1:])])
 
 
-def entry_words(kind: Kind, place: tuple[int, ...]) -> str:
+def entry_words(kind: Kind, place: Place) -> str:
     return kind.entry_name([index + 1 for index in place])
 
 
