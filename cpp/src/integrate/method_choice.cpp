@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "arm3r/numbers/primitives.hpp"
+#include "arm3r/numbers/elementary.hpp"
 #include "base/number_text.hpp"
 
 namespace arm3r {
