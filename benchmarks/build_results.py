@@ -135,7 +135,7 @@ def stepped(scenario: arm3r.Scenario) -> arm3r.Run:
 def arm_functions() -> Results:
     """Every function of `Arm` that takes arrays, at random states and at points within reach of the unequal arm."""
     arm = arm3r.Scenario.load(SCENARIOS / "unequal_arm.yaml").arm
-    for name, function in inspect.getmembers(arm, inspect.ismethod):
+    for name, function in inspect.getmembers(arm, lambda member: getattr(member, "__self__", None) is arm):
         needed = [p for p in inspect.signature(function).parameters.values() if p.default is p.empty]
         if not name.startswith("_"):
             random = np.random.default_rng(1)  # the same states, whatever other functions there are

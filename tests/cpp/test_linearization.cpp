@@ -1,8 +1,10 @@
 
+#include "arm3r/lanes.hpp"
 #include "arm3r/ode/linearization.hpp"
 #include "arm3r/plant.hpp"
 #include "check.hpp"
 #include "fixtures.hpp"
+#include "integrate/motion_jacobian.hpp"
 
 namespace arm3r {
 
@@ -181,6 +183,106 @@ TEST_CASE(every_width_gives_the_same_bits_and_those_of_doubles) {
             }
         }
     }
+}
+
+// Any arm at any wall that moves or turns, under any contact law, pushed by a force from outside.
+static Plant<double> random_plant_at_wall(Random& random, const std::string& law, const std::string& motion) {
+    const bool is_elbow = random.in(0, 1) < 0.5;
+    Params params = is_elbow ? random_elbow_params(random) : random_params(random);
+    params.set("wall", 1).set("wall.acts_on_arm", 1).set("wall.point", random.vector(-0.5, 0.5));
+    params.set("wall.normal", random.vector(-1, 1)).choose("wall.motion.type", motion);
+    if (motion == "constant") params.set("wall.motion.velocity", random.vector(-1, 1));
+    if (motion == "sinusoid")
+        params.set("wall.motion.amplitude", 0.2).set("wall.motion.frequency", 3).set("wall.motion.phase", 0.4);
+    if (motion == "ramp") params.set("wall.motion.distance", 0.3).set("wall.motion.duration", 2);
+    if (random.in(0, 1) < 0.5)
+        params.choose("wall.rotation.type", "sinusoid")
+            .set("wall.rotation.axis", random.vector(-1, 1))
+            .set("wall.rotation.amplitude", 0.3)
+            .set("wall.rotation.frequency", 2);
+    params.choose("wall.contact.law", law).set("wall.contact.stiffness", 700);
+    if (law == "kelvin_voigt") params.set("wall.contact.damping", 3);
+    if (law == "hunt_crossley") params.set("wall.contact.exponent", 1.4).set("wall.contact.dissipation", 0.4);
+    if (law == "diagonal") params.set("wall.contact.stiffness", {700, 300, 200});
+    if (law != "spring") params.set("wall.contact.friction.coefficient", 0.3);
+    params.choose("controller.type", random.in(0, 1) < 0.5 ? "gravity_compensation" : "none");
+    if (random.in(0, 1) < 0.5) params.set("arm.torque_limit", {5, 20, 10});
+    params.set("push", 1).set("push.force", random.vector(-5, 5)).set("push.start", 0.5).set("push.rise", 0.7);
+    return make_setup(params).plant;
+}
+
+// Recorded once for all plants of the same choices, and differentiated by a sweep over all lanes.
+template <class T>
+static void check_recorded(Random& random, const std::string& law, const std::string& motion) {
+    constexpr int lanes = Lanes<T>::count;
+    const Random same_choices = random;
+    MotionJacobian<T> jacobian;
+    Plant<T> plant;
+    std::array<std::optional<Plant<double>>, lanes> alone;
+    for (int lane = 0; lane < lanes; ++lane) {
+        Random again = same_choices;
+        alone[lane] = random_plant_at_wall(again, law, motion);
+        alone[lane]->contact.stiffness[0] += lane;
+        alone[lane]->arm.damping[1] += 0.1 * lane;
+        if (lane == 0) copy_choices(*alone[lane], plant);
+        each_number([&](T& x, double one) { Lanes<T>::set(x, lane, one); }, plant, *alone[lane]);
+        jacobian.load_lane(lane, *alone[lane]);
+        random = again;
+    }
+    for (int k = 0; k < 4; ++k) {
+        RightHandSide<T, T> rhs(plant);
+        rhs.force_mode = k == 0 ? ContactForceMode::none : ContactForceMode::pressed;
+        std::array<Full, lanes> y;
+        T t, latest;
+        State<T, state_size> states, f0{};
+        typename Lanes<T>::Mask here = false;
+        for (int lane = 0; lane < lanes; ++lane) {
+            y[lane] = random_state(random);
+            for (std::size_t i = 0; i < state_size; ++i) Lanes<T>::set(states[i], lane, y[lane][i]);
+            Lanes<T>::set(t, lane, random.in(0, 3)), Lanes<T>::set(latest, lane, random.in(0, 3));
+            Lanes<T>::mark(rhs.touching, lane, random.in(0, 1) < 0.7);
+            Lanes<T>::mark(rhs.separated, lane, k == 2 && Lanes<T>::is(rhs.touching, lane) && random.in(0, 1) < 0.5);
+            Lanes<T>::mark(here, lane, k < 3 || random.in(0, 1) < 0.7);
+        }
+        rhs.latest = latest;
+        Outlined<T>::run([&]() ARM3R_INLINE_LAMBDA { rhs.begin_step(states); });
+        std::array<Slopes, lanes> found{};
+        jacobian.find(here, rhs, plant.held_torque, t, states, f0, found);
+        for (int lane = 0; lane < lanes; ++lane) {
+            if (!Lanes<T>::is(here, lane)) continue;
+            auto f = right_hand_side<Dual<7>>(*alone[lane], rhs.force_mode);
+            f.touching = Lanes<T>::is(rhs.touching, lane), f.separated = Lanes<T>::is(rhs.separated, lane);
+            f.latest = Lanes<T>::get(latest, lane);
+            Full values{};
+            Slopes by_duals{};
+            linearize<motion_size, quadrature_count, 7>(f, Lanes<T>::get(t, lane), y[lane], 0, values, by_duals);
+            for (std::size_t i = 0; i < state_size; ++i) {
+                CHECK(Lanes<T>::get(f0[i], lane) == values[i]);
+                CHECK(found[lane].df_dt[i] == by_duals.df_dt[i]);
+                for (std::size_t j = 0; j < motion_size; ++j)
+                    CHECK(found[lane].df_dy[i][j] == by_duals.df_dy[i][j], law << motion << i << j);
+            }
+        }
+    }
+}
+
+template <class... Packs>
+static void check_recorded_in_lanes(TypeList<Packs...>, Random& random, const std::string& law,
+                                    const std::string& motion) {
+    const auto check = [&]<class T>() {
+        if (has_registers_for(Lanes<T>::count)) check_recorded<T>(random, law, motion);
+    };
+    (check.template operator()<Packs>(), ...);
+}
+
+TEST_CASE(a_recorded_motion_has_the_slopes_of_duals) {
+    Random random(65);
+    for (const std::string law : {"spring", "diagonal", "kelvin_voigt", "hunt_crossley"})
+        for (const std::string motion : {"fixed", "constant", "sinusoid", "ramp"})
+            for (int i = 0; i < 8; ++i) {
+                check_recorded<double>(random, law, motion);
+                check_recorded_in_lanes(LanePacks{}, random, law, motion);
+            }
 }
 
 // The quadratures are followed by the memory of a controller, of which some components are in use.

@@ -126,13 +126,8 @@ ARM3R_INLINE void each_number(F f, Plants&... plants) {
 
 template <class A, class B>
 ARM3R_INLINE void copy_arm_choices(const Arm<A>& from, Arm<B>& to) {
-    to.gravity_is_vertical = from.gravity_is_vertical;
-    to.has_damping = from.has_damping;
-    to.has_dry_friction = from.has_dry_friction;
-    to.has_torque_limit = from.has_torque_limit;
-    to.is_elbow = from.is_elbow;
-    to.elbow.base_is_turned = from.elbow.base_is_turned;
-    to.elbow.has_skew_rotors = from.elbow.has_skew_rotors;
+    static_cast<ArmChoices&>(to) = from;
+    static_cast<ElbowChoices&>(to.elbow) = from.elbow;
 }
 
 template <class A, class B>
@@ -150,23 +145,17 @@ void copy_controller_choices(const Controller<A>& from, Controller<B>& to) {
 template <class A, class B>
 void copy_choices(const Plant<A>& from, Plant<B>& to) {
     copy_arm_choices(from.arm, to.arm);
-    to.wall.motion = from.wall.motion;
-    to.wall.rotation = from.wall.rotation;
+    static_cast<WallChoices&>(to.wall) = from.wall;
     if (from.wall.table) {
         to.wall.table = std::make_shared<QuinticTable<B>>();
         to.wall.table->set_knots(from.wall.table->t.size());
     }
-    to.wall.has_outline = from.wall.has_outline;
-    to.contact.law = from.contact.law;
-    to.contact.has_friction = from.contact.has_friction;
+    static_cast<ContactChoices&>(to.contact) = from.contact;
     copy_controller_choices(from.controller, to.controller);
     static_cast<SensorChoices&>(to.sensors) = from.sensors;
     static_cast<ObserverChoices&>(to.observer) = from.observer;
     to.external_force.on = from.external_force.on;
-    to.needs_azimuth = from.needs_azimuth;
-    to.holds_torque = from.holds_torque;
-    to.has_wall = from.has_wall;
-    to.acts_on_arm = from.acts_on_arm;
+    static_cast<PlantChoices&>(to) = from;
 }
 
 }  // namespace arm3r

@@ -41,8 +41,15 @@ enum class ContactForceMode {
     each_stage,  // fixed steps: there is contact wherever the tip is inside, which each stage decides again
 };
 
+struct PlantChoices {
+    bool holds_torque = false, has_wall = false, acts_on_arm = false;
+    bool needs_azimuth = false;  // something besides gravity and wall depends on q1
+
+    bool operator==(const PlantChoices&) const = default;
+};
+
 template <class P>
-struct Plant {
+struct Plant : PlantChoices {
     Arm<P> arm;
     Wall<P> wall;
     Contact<P> contact;
@@ -51,8 +58,6 @@ struct Plant {
     Sensors<P> sensors;    // of a continuous one: bias and analog filter
     Observer<P> observer;  // beside a continuous one
     ExternalForce<P> external_force;
-    bool holds_torque = false, has_wall = false, acts_on_arm = false;
-    bool needs_azimuth = false;  // something besides gravity and wall depends on q1
 };
 
 // Whether a continuous controller or filter needs the contact force.
@@ -164,6 +169,11 @@ public:
         update_cached(2, nearest[2], cached_pose_.S23, cached_pose_.C23);
     }
 
+    // What begin_step() has cached: the nearest points for q1 (if it is needed), q2 and q2 + q3.
+    const Vec3<T>& angles_of_grid() const { return cached_q_; }
+    const Pose<T>& pose_of_grid() const { return cached_pose_; }
+    bool needs_azimuth() const { return needs_azimuth_; }
+
     template <std::size_t N>
     ARM3R_INLINE void operator()(const T& t, const State<T, N>& y, State<T, N>& dy) const {
         Vec3<T> tau;
@@ -179,16 +189,23 @@ public:
         if constexpr (terms == Terms::common) {
             common_derivative(seen, p, y, dy, tau);
         } else {
-            WallState<T> wall;  // left uninitialised if unused, as the indentation
-            Indentation<T> in;
+            WallState<T> wall;  // left uninitialised if unused
             if (senses_wall(plant_) || (plant_.acts_on_arm && force_mode != ContactForceMode::none))
                 wall = wall_state_at(seen);
-            if (needs_contact()) in = indentation_of(wall, p, Vec3<T>(y[3], y[4], y[5]));
-            derivative(seen, wall, p, in, y, dy, tau);
+            derivative_at_wall(seen, wall, p, y, dy, tau);
         }
     }
 
-    // The same with a known pose, and with wall and indentation if they are needed.
+    // The same with a known pose, and with the wall if it is needed.
+    template <std::size_t N>
+    ARM3R_INLINE void derivative_at_wall(const T& t, const WallState<T>& wall, const Pose<T>& p, const State<T, N>& y,
+                                         State<T, N>& dy, Vec3<T>& tau) const {
+        Indentation<T> in;  // left uninitialised if unused
+        if (needs_contact()) in = indentation_of(wall, p, Vec3<T>(y[3], y[4], y[5]));
+        derivative(t, wall, p, in, y, dy, tau);
+    }
+
+    // The same with the indentation, if it is needed.
     template <std::size_t N>
     ARM3R_INLINE void derivative(const T& t, const WallState<T>& wall, const Pose<T>& p, const Indentation<T>& in,
                                  const State<T, N>& y, State<T, N>& dy, Vec3<T>& tau) const {

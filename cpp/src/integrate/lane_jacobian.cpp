@@ -5,17 +5,15 @@
 
 namespace arm3r {
 
-template <std::size_t N>
-void LaneJacobian<N>::load(const Plant<double>& plant) {
+void LaneJacobian::load(const Plant<double>& plant) {
     rhs_.reset();
     plant_.emplace(plant);
     rhs_.emplace(*plant_);
     rhs_->law_function = compiled_law<double, D>();
 }
 
-template <std::size_t N>
-void LaneJacobian<N>::find(const LaneInputs& inputs, double t, const State<double, N>& y, std::size_t memory,
-                           State<double, N>& f0, Linearization<N>& jacobian) {
+void LaneJacobian::find(const LaneInputs& inputs, double t, const State<double, full_size>& y,
+                        State<double, full_size>& f0, Linearization<full_size>& jacobian) {
     plant_->held_torque = inputs.held_torque;
     rhs_->force_mode = inputs.force_mode;
     rhs_->touching = inputs.touching;
@@ -23,7 +21,7 @@ void LaneJacobian<N>::find(const LaneInputs& inputs, double t, const State<doubl
     rhs_->contact = D(inputs.contact);
     rhs_->force_phase = D(inputs.force_phase);
     rhs_->latest = D(inputs.latest);
-    linearize<motion_size, quadrature_count, derivatives_per_pass>(*rhs_, t, y, memory, f0, jacobian);
+    linearize<motion_size, quadrature_count, derivatives_per_pass>(*rhs_, t, y, full_size - state_size, f0, jacobian);
 }
 
 template <std::size_t N>
@@ -39,8 +37,6 @@ double fastest_answer(const Linearization<N>& jacobian) {
     return by_rate + std::sqrt(by_place);
 }
 
-template class LaneJacobian<state_size>;
-template class LaneJacobian<full_size>;
 template double fastest_answer(const Linearization<state_size>&);
 template double fastest_answer(const Linearization<full_size>&);
 

@@ -10,6 +10,7 @@
 #include "arm3r/plant.hpp"
 #include "integrate/lane_jacobian.hpp"
 #include "integrate/method_choice.hpp"
+#include "integrate/motion_jacobian.hpp"
 #include "setup/setup.hpp"
 
 namespace arm3r {
@@ -164,7 +165,7 @@ public:
     void load_lane(int lane, const Setup& setup) {
         judge_.load_lane(lane, setup.solver);
         if (!stiff_) return;
-        stiff_->jacobian[lane].load(setup.plant);
+        stiff_->jacobian.load_lane(lane, setup.plant);
         StiffState& state = stiff_->state;
         Lanes<T>::mark(state.is_stiff, lane, method_ == SolverMethod::rodas4);
         Lanes<T>::mark(state.has_jacobian, lane, false);
@@ -247,7 +248,7 @@ private:
         std::array<double, lanes> steps{};
     };
     struct Stiff {
-        std::array<LaneJacobian<N>, lanes> jacobian;
+        std::conditional_t<N == state_size, MotionJacobian<T>, LaneJacobians<T>> jacobian;
         StiffState state;
     };
 
@@ -282,30 +283,8 @@ private:
         if (!in_any_lane(here)) return;
         this->rhs_.begin_step(y);
         this->count(here, 1);
-        find_jacobians_of_lanes(here, t, y);
-    }
-    [[gnu::noinline]] void find_jacobians_of_lanes(const Mask& here, const T& t, const Y& y) {
-        for (int lane = 0; lane < lanes; ++lane) {
-            if (!Lanes<T>::is(here, lane)) continue;
-            const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
-            State<double, N> at, f0;
-            for (std::size_t i = 0; i < N; ++i) at[i] = get(y[i]);
-            stiff_->jacobian[lane].find(inputs_of(lane), get(t), at, N - state_size, f0, stiff_->state.jacobians[lane]);
-            for (std::size_t i = 0; i < N; ++i) Lanes<T>::set(this->f0_[i], lane, f0[i]);
-            Lanes<T>::mark(stiff_->state.has_jacobian, lane, true);
-        }
-    }
-    LaneInputs inputs_of(int lane) const {
-        const auto get = [lane](const T& x) { return Lanes<T>::get(x, lane); };
-        const RightHandSide<T, T>& rhs = this->rhs_;
-        const Vec3<T>& held = plant_.held_torque;
-        return {rhs.force_mode,
-                Lanes<T>::is(rhs.touching, lane),
-                Lanes<T>::is(rhs.separated, lane),
-                get(rhs.contact),
-                get(rhs.force_phase),
-                get(rhs.latest),
-                {get(held[0]), get(held[1]), get(held[2])}};
+        stiff_->jacobian.find(here, this->rhs_, plant_.held_torque, t, y, this->f0_, stiff_->state.jacobians);
+        stiff_->state.has_jacobian = stiff_->state.has_jacobian || here;
     }
 
     ARM3R_INLINE void start_next(const Mask& moved, const Mask& continues, const T& t, const Y& y) {

@@ -29,15 +29,15 @@ BatchKey batch_key_of(const Setup& setup) {
     return {
         setup.solver.method,
         setup.solver.method == SolverMethod::taylor ? series_order(setup) : 0,
-        plant.has_wall,
-        plant.acts_on_arm,
-        plant.wall.has_outline,
         may_be_ill_conditioned(arm),
-        plant.wall.motion,
         plant.wall.table ? plant.wall.table->knots() : 0,
-        plant.wall.rotation,
-        plant.contact.law,
-        plant.contact.has_friction,
+        plant,
+        arm,
+        model,
+        arm.elbow,
+        model.elbow,
+        plant.wall,
+        plant.contact,
         setup.controller(),
         setup.controller().reference,
         setup.digital.sampling,
@@ -45,9 +45,7 @@ BatchKey batch_key_of(const Setup& setup) {
         setup.digital.observer,
         setup.estimation,
         plant.external_force.on,
-        {arm.gravity_is_vertical, arm.has_damping, arm.has_dry_friction, arm.has_torque_limit,
-         model.gravity_is_vertical, model.has_damping, model.has_dry_friction, model.has_torque_limit, arm.is_elbow,
-         arm.elbow.base_is_turned, arm.elbow.has_skew_rotors, model.elbow.base_is_turned, model.elbow.has_skew_rotors}};
+    };
 }
 
 #define ARM3R_WITHOUT_MEMORY(T) ARM3R_LANE_RUN(T, state_size)

@@ -27,12 +27,13 @@ namespace arm3r {
 struct BatchKey {
     SolverMethod method;
     int order;  // of taylor
-    bool has_wall, acts_on_arm, has_outline, may_be_ill_conditioned;
-    Motion motion;
-    int knots;  // of a table
-    Rotation rotation;
-    ContactLaw law;
-    bool has_friction;  // of the wall
+    bool may_be_ill_conditioned;
+    int knots;  // of the wall's table
+    PlantChoices plant;
+    ArmChoices arm, model;
+    ElbowChoices elbow, elbow_of_model;
+    WallChoices wall;
+    ContactChoices contact;
     ControllerChoices controller;
     ReferenceChoices reference;
     SamplingChoices sampling;
@@ -40,7 +41,6 @@ struct BatchKey {
     ObserverChoices observer;
     EstimationChoices estimation;
     bool has_external_force;
-    std::array<bool, 13> flags;  // of arm and model
 
     bool operator==(const BatchKey&) const = default;
 };

@@ -50,6 +50,11 @@ def test_the_last_bit_of_a_column_changes_its_hash(benchmark) -> None:
     assert digest(column) == digest(column.copy()) != digest(other)
 
 
+def test_the_functions_of_an_arm_are_results(benchmark) -> None:
+    answers = dict(benchmark("build_results").arm_functions())
+    assert {"Arm.mass_matrix", "Arm.jacobian", "Arm.points"} <= set(answers) and "Arm.from_urdf" not in answers
+
+
 def test_the_first_line_that_differs_of_a_page_is_shown(benchmark, capsys: pytest.CaptureFixture[str]) -> None:
     assert benchmark("compare_builds").report({"page": "one\ntwo\nthree"}, {"page": "one\nzwei\ndrei"})
     assert "    old: two\n    new: zwei\n" in capsys.readouterr().out

@@ -29,8 +29,16 @@ struct Lumped {  // (3.2)
     P A1, A2, A3, B, B2, B3, J3, G2, G3;
 };
 
+// A flag is false if no lane has the term, which is then not computed. Leaving out a term of exact zeros changes no value.
+struct ArmChoices {
+    bool gravity_is_vertical = false, has_damping = false, has_dry_friction = false, has_torque_limit = false;
+    bool is_elbow = false;  // else planar: the links lie in one plane with axis 1, and begin on it
+
+    bool operator==(const ArmChoices&) const = default;
+};
+
 template <class P>
-struct Arm {
+struct Arm : ArmChoices {
     P base_height;  // m, d1
     BaseLink<P> link1;
     Link<P> link2, link3;
@@ -43,11 +51,6 @@ struct Arm {
     Vec3<P> torque_limit;  // N m
     Lumped<P> lumped;
     Elbow<P> elbow;  // where is_elbow; length and mass of the links, base_height and lumped hold its numbers, too
-
-    // A flag is false if no lane of P has the term, which is then not computed. Leaving out a term of exact zeros
-    // changes no value.
-    bool gravity_is_vertical = false, has_damping = false, has_dry_friction = false, has_torque_limit = false;
-    bool is_elbow = false;  // else planar: the links lie in one plane with axis 1, and begin on it
 };
 
 // m: no tip is farther from the point of axis 1 at the height of joint 2.

@@ -47,13 +47,18 @@ constexpr bool acts_along_plate(ContactLaw law) { return is_among(laws_along_pla
 // Whether it is a spring along the normal, and nothing else.
 constexpr bool is_spring(ContactLaw law) { return is_among(spring_laws, law); }
 
-template <class P>
-struct Contact {
+struct ContactChoices {
     ContactLaw law = ContactLaw::spring;
-    Vec3<P> stiffness;        // N/m along n, e1, e2; only diagonal uses all; N/m^p for hunt_crossley
-    P damping;                // N s/m, of kelvin_voigt; 0 of other laws
-    P exponent, dissipation;  // 1 and s/m, of hunt_crossley; 0 of other laws
     bool has_friction = false;
+
+    bool operator==(const ContactChoices&) const = default;
+};
+
+template <class P>
+struct Contact : ContactChoices {
+    Vec3<P> stiffness;          // N/m along n, e1, e2; only diagonal uses all; N/m^p for hunt_crossley
+    P damping;                  // N s/m, of kelvin_voigt; 0 of other laws
+    P exponent, dissipation;    // 1 and s/m, of hunt_crossley; 0 of other laws
     P friction, slip_velocity;  // 1 and m/s
 };
 

@@ -27,8 +27,14 @@ struct Rotor {
     Vec3<P> axis;  // a unit vector in the frame of the link that carries it
 };
 
+struct ElbowChoices {
+    bool base_is_turned = false, has_skew_rotors = false;
+
+    bool operator==(const ElbowChoices&) const = default;
+};
+
 template <class P>
-struct Elbow {
+struct Elbow : ElbowChoices {
     Vec3<P> position;   // m, scenario axes: the point of axis 1 at the height of joint 2
     Mat3<P> rotation;   // from base axes to those of the scenario
     P shoulder_offset;  // m, a1: of joint 2, along u
@@ -46,7 +52,6 @@ struct Elbow {
     Vec3<P> gravity;           // m/s^2, base axes
     P fixed_energy;            // J: of gravity, where u, v and the links are level
 
-    bool base_is_turned = false, has_skew_rotors = false;
     bool is_far_from_singular = false;  // in no pose is the mass matrix nearly singular
 };
 

@@ -11,20 +11,25 @@ namespace arm3r {
 enum class Motion { fixed, constant, sinusoid, ramp, table };
 enum class Rotation { none, constant, sinusoid };
 
+struct WallChoices {
+    Motion motion = Motion::fixed;
+    Rotation rotation = Rotation::none;
+    bool has_outline = false;  // some lane's half is finite
+
+    bool operator==(const WallChoices&) const = default;
+};
+
 template <class P>
-struct Wall {
+struct Wall : WallChoices {
     Vec3<P> point;      // m, origin of the plate's frame at t = 0
     Vec3<P> n, e1, e2;  // unit, at t = 0: towards the arm, and along the plate's sides (4.1)
     P half1, half2;     // m, half its sides; inf: half-space
-    bool has_outline;   // some lane's half is finite
     P face_offset;      // m, of the contact face in front of the frame
-    Motion motion = Motion::fixed;
     Vec3<P> velocity;   // m/s, for constant
     Vec3<P> direction;  // unit, of the other motions
     Sinusoid<P> sinusoid;
     Ramp<P> ramp;
     std::shared_ptr<QuinticTable<P>> table;
-    Rotation rotation = Rotation::none;
     Vec3<P> axis;  // unit, through the origin of the frame
     P turn_rate;   // rad/s, for constant
     Sinusoid<P> turn_sinusoid;

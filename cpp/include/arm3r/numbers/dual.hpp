@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "arm3r/numbers/real.hpp"
+#include "arm3r/numbers/partial_derivatives.hpp"
 
 namespace arm3r {
 
@@ -28,10 +28,7 @@ struct Dual {
     friend Dual operator+(const Dual& a, const Dual& b) { return chain(a.number + b.number, a, 1.0, b, 1.0); }
     friend Dual operator-(const Dual& a, const Dual& b) { return chain(a.number - b.number, a, 1.0, b, -1.0); }
     friend Dual operator*(const Dual& a, const Dual& b) { return chain(a.number * b.number, a, b.number, b, a.number); }
-    friend Dual operator/(const Dual& a, const Dual& b) {
-        const double quotient = a.number / b.number;
-        return chain(quotient, a, 1.0 / b.number, b, -quotient / b.number);
-    }
+    friend Dual operator/(const Dual& a, const Dual& b) { return chain(divide_and_slopes(a.number, b.number), a, b); }
     friend Dual operator-(const Dual& a) { return chain(-a.number, a, -1.0); }
     Dual& operator+=(const Dual& b) { return *this = *this + b; }
     Dual& operator-=(const Dual& b) { return *this = *this - b; }
@@ -50,49 +47,24 @@ struct Dual {
     friend Dual max(const Dual& a, const Dual& b) { return a < b ? b : a; }
     friend Dual abs(const Dual& x) { return copysign(x, Dual(1.0)); }
     friend Dual copysign(const Dual& magnitude, const Dual& sign) {
-        const double flip = copysign(1.0, magnitude.number) * copysign(1.0, sign.number);
-        return chain(copysign(magnitude.number, sign.number), magnitude, flip);
+        return chain(copysign_and_slopes(magnitude.number, sign.number), magnitude);
     }
 
     friend Dual nearest_integer(const Dual& x) {
         return Dual(arm3r::nearest_integer(x.number));
     }  // its derivative is 0 except at the jumps
 
-    // If the derivative is infinite or undefined, it is set to 0: this happens at a clamped argument only, which does
-    // not move.
-    friend Dual sqrt(const Dual& x) {
-        const double root = sqrt(x.number);
-        return chain(root, x, root > 0.0 ? 0.5 / root : 0.0);
-    }
+    friend Dual sqrt(const Dual& x) { return chain(sqrt_and_slopes(x.number), x); }
     friend SinCos<Dual> sincos(const Dual& x) {
         const auto [sine, cosine] = sincos(x.number);
         return {chain(sine, x, cosine), chain(cosine, x, -sine)};
     }
-    friend Dual tanh(const Dual& x) {
-        const double result = tanh(x.number);
-        return chain(result, x, (1.0 - result) * (1.0 + result));
-    }
-    friend Dual atan2(const Dual& y, const Dual& x) {
-        const double square = x.number * x.number + y.number * y.number;
-        const double by_y = square > 0.0 ? x.number / square : 0.0, by_x = square > 0.0 ? -y.number / square : 0.0;
-        return chain(atan2(y.number, x.number), y, by_y, x, by_x);
-    }
-    friend Dual fifth_root(const Dual& x) {
-        const double root = fifth_root(x.number);
-        return chain(root, x, root / (5.0 * x.number));
-    }
-    friend Dual exp(const Dual& x) {
-        const double result = exp(x.number);
-        return chain(result, x, result);
-    }
-    friend Dual log(const Dual& x) { return chain(log(x.number), x, 1.0 / x.number); }
-    // For p >= 1 the derivatives are finite down to x = 0, where they are those of x > 0.
-    friend Dual power(const Dual& x, const Dual& p) {
-        const double result = power(x.number, p.number);
-        const double of_less = p.number == 1.0 ? 1.0 : power(x.number, p.number - 1.0);
-        const double by_x = x.number < 0.0 ? 0.0 : p.number * of_less;
-        return chain(result, x, by_x, p, result > 0.0 ? result * log(x.number) : 0.0);
-    }
+    friend Dual tanh(const Dual& x) { return chain(tanh_and_slopes(x.number), x); }
+    friend Dual atan2(const Dual& y, const Dual& x) { return chain(atan2_and_slopes(y.number, x.number), y, x); }
+    friend Dual fifth_root(const Dual& x) { return chain(fifth_root_and_slopes(x.number), x); }
+    friend Dual exp(const Dual& x) { return chain(exp_and_slopes(x.number), x); }
+    friend Dual log(const Dual& x) { return chain(log_and_slopes(x.number), x); }
+    friend Dual power(const Dual& x, const Dual& p) { return chain(power_and_slopes(x.number, p.number), x, p); }
 
 private:
     // Two derivatives at a time share a register.
@@ -101,6 +73,10 @@ private:
         Two pair;
         __builtin_memcpy(&pair, &x.slope[i], sizeof pair);
         return pair;
+    }
+    static Dual chain(const OfOne<double>& f, const Dual& a) { return chain(f.result, a, f.by_a); }
+    static Dual chain(const OfTwo<double>& f, const Dual& a, const Dual& b) {
+        return chain(f.result, a, f.by_a, b, f.by_b);
     }
     static Dual chain(double result, const Dual& a, double by_a) {
         Dual y(result);
