@@ -40,11 +40,6 @@ public:
     static constexpr int together = 1;  // lane runs that a group steps together
     static constexpr bool completes_before_sample = true;
 
-    ARM3R_INLINE void start_lanes() {
-        this->place_lanes();
-        if constexpr (Base::lanes == 1) start_steps_outlined();
-        else start_steps();
-    }
     // The first sample, and the first step of these lanes.
     ARM3R_INLINE void start_steps() {
         Mask fresh = false;
@@ -57,31 +52,6 @@ public:
             method_.set_start(fresh, this->t_, this->y_);
             if (method_.chooses_length()) next_h_ = select(fresh, first_step(fresh), next_h_);
         });
-    }
-
-    ARM3R_INLINE void step() {
-        if (take_step()) finish_step();
-    }
-    // step() and its parts as function calls: of a single run each is compiled once.
-    void step_outlined()
-        requires(Base::lanes == 1)
-    {
-        if (take_step_outlined()) finish_step_outlined();
-    }
-    [[gnu::noinline]] void start_steps_outlined()
-        requires(Base::lanes == 1)
-    {
-        start_steps();
-    }
-    [[gnu::noinline]] bool take_step_outlined()
-        requires(Base::lanes == 1)
-    {
-        return take_step();
-    }
-    [[gnu::noinline]] void finish_step_outlined()
-        requires(Base::lanes == 1)
-    {
-        finish_step();
     }
 
     // Tries a step of every lane, and returns whether one of them has moved; finish_step() completes it.

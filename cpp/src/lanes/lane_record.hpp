@@ -9,13 +9,13 @@
 
 namespace arm3r {
 
-template <class Integrator>
+template <class Method>
 class LaneRecord : public RunRecorder {
 public:
-    LaneRecord(const Setup& setup, const RunOptions& options, Integrator& lane_run, int lane)
+    LaneRecord(const Setup& setup, const RunOptions& options, Method& lane_run, int lane)
         : RunRecorder(setup, options), lane_run_(&lane_run), lane_(lane) {}
     // A copy records another lane run, which continues as that of `other`.
-    LaneRecord(const LaneRecord& other, Integrator& lane_run) : LaneRecord(other) { lane_run_ = &lane_run; }
+    LaneRecord(const LaneRecord& other, Method& lane_run) : LaneRecord(other) { lane_run_ = &lane_run; }
 
     // Once the lane stands at its start, before its first sample; and before its first step.
     void record_contact_at_start() {
@@ -119,13 +119,13 @@ private:
         }
     }
     std::string divergence_reason(double t) const {
-        if constexpr (Integrator::completes_before_sample)
+        if constexpr (Method::completes_before_sample)
             if (!is_out_of_range(lane_run_->y(lane_)))
                 return divergence_message({}, {}, t);  // no step had a finite end
         return divergence_message(run_.q, run_.qd, t);
     }
 
-    Integrator* lane_run_;
+    Method* lane_run_;
     const int lane_;
     double theta_ = 0;
     bool has_dense_output_ = true, had_dense_output_ = true;  // whether dense_ is that of the last step, and was before

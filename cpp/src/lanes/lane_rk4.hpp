@@ -36,9 +36,10 @@ public:
         Lanes<T>::set(step_, lane, 0);  // a step does not move it
     }
 
-    ARM3R_INLINE void start_lanes() {
-        Base::start_lanes();
-        begin_counting();
+    ARM3R_INLINE void start_steps() {
+        Base::start_steps();
+        count_whole_steps();
+        is_whole_ = false;
     }
     // A whole step is not the last one of any lane.
     ARM3R_INLINE bool any_ended() const { return is_whole_ ? this->has_failed() : Base::any_ended(); }
@@ -47,37 +48,17 @@ public:
     // processor works on both at once.
     static constexpr int together = N == state_size && Base::lanes > 1 ? 2 : 1;
 
-    // A step of `count` lane runs with the same batch key, stage by stage.
-    ARM3R_INLINE static void step_together(LaneRk4* const* runs, int count) {
+    ARM3R_INLINE static void step_by_stages(LaneRk4* const* runs, int count) {
         if (runs[0]->has_common_step()) step_of<Terms::common>(runs, count);
         else step_of<Terms::any>(runs, count);
     }
-    ARM3R_INLINE void step() {
-        LaneRk4* const alone = this;
-        step_together(&alone, 1);
-    }
-    // step() as a function call: the long code is compiled once (single_run.cpp).
-    void step_outlined()
-        requires(Base::lanes == 1)
-    {
-        step();
-    }
-    // Its parts, before and after the sample at its end.
-    bool take_step_outlined()
-        requires(Base::lanes == 1)
-    {
+    ARM3R_INLINE bool take_step() {
         begin_step();
         moved_ = has_common_step() ? move<Terms::common>() : move<Terms::any>();
         return true;
     }
-    void finish_step_outlined()
-        requires(Base::lanes == 1)
-    {
+    ARM3R_INLINE void finish_step() {
         has_common_step() ? complete_step<Terms::common>(moved_) : complete_step<Terms::any>(moved_);
-    }
-    void start_steps_outlined() {
-        this->start_steps();
-        begin_counting();
     }
     // The start of the last step, and the derivatives at both ends: a single run needs them for its dense output.
     double t0(int lane) const { return Lanes<T>::get(t0_, lane); }
@@ -169,19 +150,12 @@ protected:
 private:
     ARM3R_INLINE bool has_common_step() const { return N == state_size && this->has_common_terms_; }
 
-    void begin_counting() {
-        count_whole_steps();
-        is_whole_ = false;
-    }
-
     template <Terms terms>
     ARM3R_INLINE static void step_of(LaneRk4* const* runs, int count) {
         for (int i = 0; i < count; ++i) runs[i]->begin_step();
-        if constexpr (together > 1) {
-            for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 0>();
-            for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 1>();
-            for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 2>();
-        }
+        for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 0>();
+        for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 1>();
+        for (int i = 0; i < count; ++i) runs[i]->template next_stage<terms, 2>();
         for (int i = 0; i < count; ++i) {
             const Mask moved = runs[i]->template move<terms>();
             runs[i]->template complete_step<terms>(moved);
@@ -502,16 +476,9 @@ private:
     Vec3<T> torque_before_, work_;  // N m; J, of each torque in the step
     T assumed_before_{0.0}, latest_before_{infinite};
     Indentation<T> before_{};
-    Mask moved_ = false;  // in the last step, of a single run in parts
+    Mask moved_ = false;  // in the last step
     Y f1_evaluated_{};
     bool has_evaluated_before_jump_ = false;
 };
-
-extern template void LaneRk4<double, state_size>::step_outlined();
-extern template void LaneRk4<double, full_size>::step_outlined();
-extern template bool LaneRk4<double, state_size>::take_step_outlined();
-extern template bool LaneRk4<double, full_size>::take_step_outlined();
-extern template void LaneRk4<double, state_size>::finish_step_outlined();
-extern template void LaneRk4<double, full_size>::finish_step_outlined();
 
 }  // namespace arm3r

@@ -70,12 +70,8 @@ public:
     LaneRun(const LaneRun&) = delete;  // an empty lane points to rest_
 
     // Loads a run into a lane; the setup must stay where it is until the next one is loaded. The lanes loaded since the
-    // last call of start_lanes() start with the next one.
+    // last start (run_loop.hpp) start with the next one.
     void load_lane(int lane, const Setup& setup);
-    ARM3R_INLINE void start_lanes() {
-        place_lanes();
-        start_steps();
-    }
     // The lanes that were loaded stand at their start, before the first sample: contact, energy and memory.
     ARM3R_INLINE void place_lanes() {
         observe_outlined();
@@ -458,11 +454,5 @@ private:
     bool failed_ = false;
     std::function<void(int, const ContactChange&)> on_change_;
 };
-
-// A step of a single run, which may take more of them as long as they end before `until`, s.
-template <class SingleRun>
-void advance(SingleRun& run, double) {
-    run.step_outlined();
-}
 
 }  // namespace arm3r

@@ -139,7 +139,7 @@ void LaneRun<T, N>::set_running(int lane, bool running) {
     running_[lane] = running;
     any_running_ = std::any_of(running_.begin(), running_.end(), [](bool is) { return is; });
     Lanes<T>::mark(active_, lane, running);
-    Lanes<T>::mark(started_, lane, false);  // until start_lanes() starts it
+    Lanes<T>::mark(started_, lane, false);  // until it starts
 }
 
 template <class T, std::size_t N>

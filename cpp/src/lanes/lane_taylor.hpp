@@ -30,47 +30,7 @@ public:
 
     static constexpr int together = 1;  // lane runs that a group steps together
 
-    ARM3R_INLINE void step() { finish_step(take_step()); }
-    // step() and its parts as function calls: the long code is compiled once (single_run.cpp).
-    void step_outlined()
-        requires(Base::lanes == 1)
-    {
-        step();
-    }
-    bool take_step_outlined()
-        requires(Base::lanes == 1)
-    {
-        last_ = take_step();
-        return true;
-    }
-    void finish_step_outlined()
-        requires(Base::lanes == 1)
-    {
-        finish_step(last_);
-    }
-    void start_steps_outlined() { this->start_steps(); }
-    // The dense output of the last step.
-    void fill_dense_output(int lane, DenseOutput& dense) const {
-        dense.t0 = Lanes<T>::get(t0_, lane);
-        dense.h = this->h(lane);
-        dense.order = order_;
-        dense.size = state_size;
-        for (int i = 0; i <= order_; ++i)
-            for (std::size_t j = 0; j < state_size; ++j) dense.c[i][j] = Lanes<T>::get(series_.c[i][j], lane);
-    }
-    double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
-    // Whether a sample may have changed the torque at the end of the last step.
-    bool may_jump_at_end(int lane) const { return this->is_controlled_ && Lanes<T>::is(is_last_, lane); }
-
-private:
-    // The lanes that a step moves, and by how many seconds.
-    struct Moved {
-        Mask here = false;
-        T h{0.0};
-    };
-
-    // A step up to the sample at its end, and the rest of it.
-    ARM3R_INLINE Moved take_step() {
+    ARM3R_INLINE bool take_step() {
         t0_ = this->t_;
         if (this->performance_.samples()) this->begin_segment();
         const bool pressed = this->plant_.acts_on_arm && this->contact_.any_touching();
@@ -97,17 +57,31 @@ private:
         this->accept(moved, t1, y1);
         this->evaluations_ = this->evaluations_ + select(moved, T(double(order_)), T(0.0));
         this->locate_tip();
-        return {moved, h};
+        moved_ = moved, moved_by_ = h;
+        return true;
     }
-    ARM3R_INLINE void finish_step(const Moved& moved) {
+    ARM3R_INLINE void finish_step() {
         this->sample_and_derive();
         if (crosses_) apply_changes();
         if (in_any_lane(this->next_knot_ <= this->t_)) pass_knots();
         this->update_energy_balance();
-        if (this->performance_.samples()) add_performance(moved.here, moved.h);
+        if (this->performance_.samples()) add_performance(moved_, moved_by_);
         this->check_lanes();
     }
+    // The dense output of the last step.
+    void fill_dense_output(int lane, DenseOutput& dense) const {
+        dense.t0 = Lanes<T>::get(t0_, lane);
+        dense.h = this->h(lane);
+        dense.order = order_;
+        dense.size = state_size;
+        for (int i = 0; i <= order_; ++i)
+            for (std::size_t j = 0; j < state_size; ++j) dense.c[i][j] = Lanes<T>::get(series_.c[i][j], lane);
+    }
+    double theta(int lane) const { return Lanes<T>::get(theta_, lane); }
+    // Whether a sample may have changed the torque at the end of the last step.
+    bool may_jump_at_end(int lane) const { return this->is_controlled_ && Lanes<T>::is(is_last_, lane); }
 
+private:
     enum Signal : std::size_t { depth = state_size, across1, across2, work1 };
 
     ARM3R_INLINE static T min_step(const T& t) {
@@ -378,11 +352,8 @@ private:
     bool crosses_ = false;
     std::array<PendingChange, Base::lanes> pending_changes_{};
     Expansion<T> series_;
-    Moved last_;
+    Mask moved_ = false;  // by the last step
+    T moved_by_{0.0};     // s
 };
-
-extern template void LaneTaylor<double>::step_outlined();
-extern template bool LaneTaylor<double>::take_step_outlined();
-extern template void LaneTaylor<double>::finish_step_outlined();
 
 }  // namespace arm3r

@@ -31,10 +31,4 @@ private:
     bool move_indentation(double t1, const Pose<double>& p, const Vec3<double>& qd, Instant& now);
 };
 
-inline void advance(SingleRk4& run, double until) {
-    constexpr int most = 64;  // a request to stop waits for them
-    run.take_event_free_steps(until, most - 1);
-    run.step_outlined();
-}
-
 }  // namespace arm3r

@@ -4,10 +4,6 @@
 
 namespace arm3r {
 
-template void LaneTaylor<double>::step_outlined();
-template bool LaneTaylor<double>::take_step_outlined();
-template void LaneTaylor<double>::finish_step_outlined();
-
 SingleRunMethod single_run_by_taylor() { return single_run_by<LaneTaylor<double>>(); }
 
 }  // namespace arm3r

@@ -2,12 +2,13 @@
 // A single run by one method, to its end or from sample to sample; each method is compiled in a file of its own.
 
 #include "lanes/lane_record.hpp"
+#include "lanes/run_loop.hpp"
 #include "lanes/single_run.hpp"
 #include "record/end_messages.hpp"
 
 namespace arm3r {
 
-template <class Integrator>
+template <class Method>
 class SingleRun {
 public:
     SingleRun(const Setup& setup, const RunOptions& options)
@@ -18,12 +19,12 @@ public:
     }
 
     Run run() {
-        lane_run_.start_lanes();
+        lane_run_.start();
         record_.record_contact_at_start();
         record_.record_start();
         while (record_.goes_on()) {
             record_.forget_dense_output();
-            advance(lane_run_, record_.next_row());  // several steps, as far as nothing happens in them
+            lane_run_.advance(record_.next_row());  // several steps, as far as nothing happens in them
             record_.record_step();
             record_.update_row_context();
         }
@@ -46,14 +47,14 @@ private:
     const Setup loaded_;  // while that of the record follows the torque that is held
 
 protected:
-    Integrator lane_run_;
-    LaneRecord<Integrator> record_;
+    RunLoop<Method> lane_run_;
+    LaneRecord<Method> record_;
 };
 
 // It stands where a step has reached a sample.
-template <class Integrator>
-class StandingRun : public InteractiveRun, SingleRun<Integrator> {
-    using Base = SingleRun<Integrator>;
+template <class Method>
+class StandingRun : public InteractiveRun, SingleRun<Method> {
+    using Base = SingleRun<Method>;
     using Base::lane_run_, Base::record_;
 
 public:
@@ -75,7 +76,7 @@ public:
         while (record_.goes_on()) {
             record_.forget_dense_output();
             const bool has_moved = lane_run_.take_step_outlined();
-            if constexpr (Integrator::completes_before_sample) record_.record_step();
+            if constexpr (Method::completes_before_sample) record_.record_step();
             else record_.stand_at_end();
             stands_ = has_moved && record_.is_running() && !lane_run_.has_failed() && lane_run_.stands_at_sample();
             if (stands_) return;
@@ -84,7 +85,7 @@ public:
     }
 
     Run conclude() override {
-        if constexpr (!Integrator::completes_before_sample)
+        if constexpr (!Method::completes_before_sample)
             if (stands_ && has_started_) {
                 lane_run_.skip_sample();
                 finish_step();
@@ -101,18 +102,18 @@ private:
     }
     void finish_step() {
         lane_run_.finish_step_outlined();
-        if constexpr (!Integrator::completes_before_sample) record_.record_step();
+        if constexpr (!Method::completes_before_sample) record_.record_step();
         record_.update_row_context();
     }
 
     bool stands_ = true, has_started_ = false;
 };
 
-template <class Integrator>
+template <class Method>
 SingleRunMethod single_run_by() {
-    return {[](const Setup& setup, const RunOptions& options) { return SingleRun<Integrator>(setup, options).run(); },
+    return {[](const Setup& setup, const RunOptions& options) { return SingleRun<Method>(setup, options).run(); },
             [](const Setup& setup, const RunOptions& options) -> std::unique_ptr<InteractiveRun> {
-                return std::make_unique<StandingRun<Integrator>>(setup, options);
+                return std::make_unique<StandingRun<Method>>(setup, options);
             }};
 }
 
