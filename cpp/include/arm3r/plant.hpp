@@ -495,7 +495,7 @@ private:
             where =
                 where && inside_outline(wall, indentation_at_rest(wall, state, tip_position(plant_.arm, p))) >= T(0.0);
         }
-        const T force = plant_.contact.stiffness[0] * select(where, depth, T(0.0));
+        const T force = spring_law(plant_.contact, T(select(where, depth, T(0.0)))).elastic;
         const Vec3<T> one = torques_of_one();
         return {true, {one[0] * force, one[1] * force, one[2] * force}, force * common_.speed};
     }

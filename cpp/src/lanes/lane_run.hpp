@@ -211,22 +211,11 @@ protected:
         if constexpr (terms == Terms::common) {
             const WallState<T> now = even_wall_at(plant_.wall, t_);
             wall_.position = now.position, wall_.velocity = now.velocity;
-            set_indentation(now, p_, qd, in_);
+            set_indentation(plant_.wall, now, tip_position(plant_.arm, p_), tip_velocity(plant_.arm, p_, qd), in_);
         } else {
             wall_ = wall_at(plant_.wall, t_);
             in_ = tip_indentation(plant_, wall_, p_, qd);
         }
-    }
-    // Of a wall that does not turn: what is needed of it.
-    ARM3R_INLINE void set_indentation(const WallState<T>& wall, const Pose<T>& p, const Vec3<T>& qd,
-                                      Indentation<T>& in) const {
-        const Wall<T>& plate = plant_.wall;
-        const Vec3<T> x = minus(tip_position(plant_.arm, p), wall.position);
-        const Vec3<T> v = minus(tip_velocity(plant_.arm, p, qd), wall.velocity);
-        in.depth = plate.face_offset - dot(plate.n, x), in.rate = -dot(plate.n, v);
-        if (!plate.has_outline) return;
-        in.across1 = dot(plate.e1, x), in.across2 = dot(plate.e2, x);
-        in.slip1 = dot(plate.e1, v), in.slip2 = dot(plate.e2, v);
     }
 
     // All lanes by the same formula, whatever asks for it. With a controller's memory the code is long, and is compiled once.

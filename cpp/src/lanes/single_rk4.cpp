@@ -50,7 +50,8 @@ ARM3R_INLINE bool SingleRk4::take_event_free_step(double t1, Instant& now) {
 ARM3R_INLINE bool SingleRk4::move_indentation(double t1, const Pose<double>& p, const Vec3<double>& qd, Instant& now) {
     const double h = step_;
     Indentation<double> in = now.in;
-    set_indentation(even_wall_at(plant_.wall, t1), p, qd, in);
+    set_indentation(plant_.wall, even_wall_at(plant_.wall, t1), tip_position(plant_.arm, p),
+                    tip_velocity(plant_.arm, p, qd), in);
     const Cubic depth(now.in.depth, h * now.in.rate, in.depth, h * in.rate);
     if (may_be_eventful(depth, now.in, in, h, t1, true)) return false;
     contact_.add_elastic(contact_.touching(), depth.fourth, depth.mean(), h, t1);

@@ -171,7 +171,7 @@ def slots_of(
         elif slot and slot[0] in kind.inputs and (slot[1] is None or slot[1] < joints):
             found.append(slot)
         else:
-            is_of_others = slot and slot[1] is None and kind.comes_with_others and _RATE_OR_TORQUE.fullmatch(name)
+            is_of_others = slot and slot[1] is None and kind.comes_with and _RATE_OR_TORQUE.fullmatch(name)
             found.append((name, -1) if name in parameters else slot if is_of_others else None)
     in_order: list[list[tuple[str, int | None]]] = [
         [(vector, None) for vector in kind.inputs],  # q, qd, ... in the order of the field

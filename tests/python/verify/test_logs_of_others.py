@@ -230,7 +230,7 @@ def test_torques_that_come_late_are_right_then(late: int, rng: Any, of_table: An
     assert verdict.ok and f"{who} {rows}" in str(verdict), str(verdict)
 
 
-@pytest.mark.parametrize(("factor", "words"), [(-1, "sign is the opposite one"), (1000, "as numbers in mm are")])
+@pytest.mark.parametrize(("factor", "words"), [(-1, "has the wrong sign"), (1000, "millimetres")])
 def test_a_factor_that_makes_all_right_is_named(factor: int, words: str, rng: Any, tmp_path: Path) -> None:
     q = rng.uniform(-2, 2, (300, 3))
     verdict = formula_verdict(log(tmp_path / "log.csv", q=q, J=factor * due(truth_of(None), "jacobian", {"q": q})))

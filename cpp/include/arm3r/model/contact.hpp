@@ -71,17 +71,21 @@ struct NormalForce {
 };
 
 template <class P, class T>
+ARM3R_INLINE NormalForce<T> spring_law(const Contact<P>& contact, const T& depth) {
+    const T spring = contact.stiffness[0] * depth;
+    return {spring, spring, 0.5 * spring * depth, spring};
+}
+
+template <class P, class T>
 ARM3R_INLINE NormalForce<T> normal_force_law(const Contact<P>& contact, const Indentation<T>& in) {
     if (contact.law == ContactLaw::hunt_crossley) {
         const T spring = contact.stiffness[0] * copysign(power(abs(in.depth), T(contact.exponent)), in.depth);
         const T factor = 1.0 + contact.dissipation * in.rate;
         return {spring, spring * factor, spring * in.depth / (contact.exponent + 1.0), factor};
     }
-    const T spring = contact.stiffness[0] * in.depth;
-    const T stored = 0.5 * spring * in.depth;
-    if (contact.law != ContactLaw::kelvin_voigt) return {spring, spring, stored, spring};
-    const T total = spring + contact.damping * in.rate;
-    return {spring, total, stored, total};
+    NormalForce<T> law = spring_law(contact, in.depth);
+    if (contact.law == ContactLaw::kelvin_voigt) law.total = law.release = law.elastic + contact.damping * in.rate;
+    return law;
 }
 
 // N: the normal force while the tip is inside; it never pulls.
@@ -125,8 +129,8 @@ bool is_plain_spring(const Wall<P>& wall, const Contact<P>& contact) {
 
 template <class P, class T>
 ARM3R_INLINE ContactForce<T> plain_spring_force(const Wall<P>& wall, const Contact<P>& contact, const T& depth) {
-    const T spring = contact.stiffness[0] * depth;
-    return along_normal(wall.n, spring, T(0.5 * spring * depth), T(0.0));
+    const NormalForce<T> law = spring_law(contact, depth);
+    return along_normal(wall.n, law.elastic, law.stored, T(0.0));
 }
 
 // The force of the contact law at an indentation (4.5) to (4.7).

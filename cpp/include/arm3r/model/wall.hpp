@@ -170,7 +170,18 @@ ARM3R_INLINE Indentation<T> indentation(const Wall<P>& wall, const WallState<T>&
     return indentation_along(wall.face_offset, axes(wall, state), x, v);
 }
 
-// The same for a plate that does not turn, without the rates, which is cheaper.
+// The same for a plate that does not turn; the place on it is set only where it has an outline.
+template <class P, class T>
+ARM3R_INLINE void set_indentation(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point,
+                                  const Vec3<T>& velocity, Indentation<T>& in) {
+    const Vec3<T> x = minus(point, state.position), v = minus(velocity, state.velocity);
+    in.depth = wall.face_offset - dot(wall.n, x), in.rate = -dot(wall.n, v);
+    if (!wall.has_outline) return;
+    in.across1 = dot(wall.e1, x), in.across2 = dot(wall.e2, x);
+    in.slip1 = dot(wall.e1, v), in.slip2 = dot(wall.e2, v);
+}
+
+// The same without the rates, which is cheaper.
 template <class P, class T>
 ARM3R_INLINE Indentation<T> indentation_at_rest(const Wall<P>& wall, const WallState<T>& state, const Vec3<T>& point) {
     const Vec3<T> x = minus(point, state.position);

@@ -12,6 +12,7 @@ import numpy as np
 from ..._native import Floats
 from ..kinds import Kind
 from .christoffel import of_other_indices
+from .factors import FACTORS
 from .frames import Pose, of_other_frames, of_other_points
 from .quantities import States, Truth, of_other_quantities
 
@@ -140,19 +141,9 @@ def _outputs(
 ) -> Iterator[Hypothesis]:
     values = due()
     rows = values.shape[1]
-    yield Hypothesis("the result has the wrong sign", lambda: -values, is_of_result=True)
-    yield Hypothesis(
-        "the result is in degrees; it should be in radians", lambda: np.rad2deg(values), 2, is_of_result=True
-    )
-    for factor, words in (
-        (2, "twice what it should be"),
-        (0.5, "half of what it should be"),
-        (1000, "1000 times what it should be: millimetres?"),
-        (1e-3, "a thousandth of what it should be"),
-        (1e6, "1e6 times what it should be: millimetres?"),
-        (np.pi / 180, "pi/180 times what it should be: per degree?"),
-    ):
-        yield Hypothesis(f"the result is {words}", partial(np.multiply, factor, values), 2, is_of_result=True)
+    for factor, words in FACTORS.items():
+        cost = 1 if factor == -1 else 2
+        yield Hypothesis(f"the result {words}", partial(np.multiply, factor, values), cost, is_of_result=True)
     for row in range(rows):
         signs = np.where(np.arange(rows) == row, -1.0, 1.0)
         yield Hypothesis(

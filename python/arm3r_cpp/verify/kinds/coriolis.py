@@ -16,7 +16,7 @@ class Coriolis(Kind):
     comes_with = ("mass", "coriolis", "gravity")
     called, letters = ("coriolis", "centrifugal", "cmat", "velocity_product"), ("c", "h")
     columns, columns_words = r"h_?(\d)", "h1.."
-    depends_on_inertia, comes_with_others = True, True
+    depends_on_inertia = True
     has_products, polynomial_in, is_product = True, ("qd",), True
 
     def due(self, arm: Model, states: States, rows: Rows) -> Floats:

@@ -19,7 +19,7 @@ class Gravity(Kind):
     comes_with = ("mass", "coriolis", "gravity")
     called, letters = ("grav", "tau_g", "taug", "g_torque"), ("g",)
     columns, columns_words = r"(?:g|tau_g)_?(\d)", "g1.."
-    depends_on_gravity, comes_with_others = True, True
+    depends_on_gravity = True
     quantities = ("length2", "length3", "mass2", "mass3", "gravity")
     monomials = tuple((f"mass{i}", "gravity", f"length{j}") for i in (2, 3) for j in (2, 3))
     planted = ("0", "-m2*g*(a2/2)*c(q2)-m3*g*(a2*c(q2)+(a3/2)*c(q2+q3))", "-m3*g*(a3/2)*c(q2+q3)")

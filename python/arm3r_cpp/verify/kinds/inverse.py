@@ -15,7 +15,7 @@ class Inverse(Kind):
     called = ("inverse_dyn", "invdyn", "id", "rnea", "inverse")
     columns, columns_words = r"tau(\d)", "tau1.."
     is_logged_anyway = True
-    depends_on_gravity, depends_on_inertia, has_friction, comes_with_others = True, True, True, True
+    depends_on_gravity, depends_on_inertia, has_friction = True, True, True
     has_products, polynomial_in = True, ("qd", "qdd")
 
     def due(self, arm: Model, states: States, rows: Rows) -> Floats:

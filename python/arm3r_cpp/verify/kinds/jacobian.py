@@ -17,7 +17,7 @@ class Jacobian(Kind):
     comes_with = ("kinematics", "jacobian", "jacobian_dot")
     called, letters = ("jac",), ("j",)
     columns, columns_words = r"J_?[(\[]?(\d)[_,]?(\d)[)\]]?", "J11.."
-    needs_masses, depends_on_base, is_derivative, comes_with_others = False, True, True, True
+    needs_masses, depends_on_base, is_derivative = False, True, True
     quantities = ("length2", "length3")
     monomials = (("length2",), ("length3",))
     planted = (

@@ -17,7 +17,7 @@ class JacobianDot(Kind):
         "jacobian_deriv", "jacobianderiv", "jacobian_time",
     )  # fmt: skip
     letters = ("dj", "jd")
-    needs_masses, depends_on_base, is_derivative, comes_with_others = False, True, True, True
+    needs_masses, depends_on_base, is_derivative = False, True, True
     quantities = ("length2", "length3")
     polynomial_in = ("qd",)
 

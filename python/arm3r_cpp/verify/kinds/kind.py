@@ -102,10 +102,9 @@ class Kind(ABC):
     """Whether it is linear in masses and inertias."""
     is_product = False
     """Whether a matrix of it is judged by its product with the rates."""
-    comes_with_others = False
-    """Whether functions return it with other kinds, `M, C, g = dynamics(q, qd)`, and take what those depend on."""
     comes_with: tuple[str, ...] = ()
-    """The kinds that a function returns beside it, whose outputs' names may be letters."""
+    """The kinds that a function returns with it, `M, C, g = dynamics(q, qd)`: their names may be letters, and it takes
+    what any of them depends on."""
     planted: tuple[str, ...] = ()
     """The lecture's own formulas of its entries, row by row, of a2, a3, m2, m3, g, c(...), s(...), q1 to q3."""
 

@@ -15,7 +15,7 @@ class Mass(Kind):
     called, letters = ("mass", "inertia", "mmat"), ("m",)
     letters_beside = ("a", "b", "d", "h")
     columns, columns_words = r"M_?[(\[]?(\d)[_,]?(\d)[)\]]?", "M11.."
-    depends_on_inertia, comes_with_others = True, True
+    depends_on_inertia = True
     order, has_products = 2, True
 
     def due(self, arm: Model, states: States, rows: Rows) -> Floats:

@@ -45,57 +45,70 @@ def judged(log: Log, kind: Kind, truth: Any, noise: float | None) -> Candidate:
 
 def _candidate(case: Case, convention: str) -> Candidate:
     """The verdict by one arm, in one convention."""
-    log, kind, noise = case.log, case.kind, case.noise
+    log, kind = case.log, case.kind
     due = due_of(case, convention, case.states)
     missing = [place for place in case.entries if len(place) != due.ndim - 1 or any(np.array(place) >= due.shape[1:])]
     if missing:
         raise UsageError(f"{log.file}: {kind.a_words} has no entry {[one + 1 for one in missing[0]]}{log.hint()}")
     verdict = Verdict(True, kind.name, convention, 0.0, file=log.file, shape=list(due.shape[1:]))
     verdict.found = [f"convention {convention}"] if convention else []
-    flat = scales(due.reshape(len(due), -1)).reshape(due.shape[1:])
-    flat = np.maximum(flat, _OF_TYPICAL * np.abs(typical(case)).max())
-    rights = {place: entry_of(due, place) for place in case.entries}
-    left = left_of(case, due)
     found = Candidate(case, verdict)
+    rights = {place: entry_of(due, place) for place in case.entries}
+    left, scale = left_of(case, due), _scale_of_entries(case, due)
     sizes = {place: case.fitted[place].noise if place in case.fitted else rms(one) for place, one in left.items()}
-    by_states = spread_by_states(case, convention, due)
-    is_exact = any(size <= TOLERANCE * flat[place] < np.ptp(rights[place]) for place, size in sizes.items())
-    is_exact = is_exact and max(np.abs(one).max() for one in left.values()) > 2 * case.step
-    excuses: dict[Place, Excuse] = {}
-    wrong: list[Place] = []
-    for place, one in sorted(left.items()):
-        if np.abs(one).max() <= max((noise or 0.0) * SIGNIFICANT, TOLERANCE) * flat[place]:
-            continue
-        excuse = None
-        if noise is None:
-            excuse = excuse_of(case, place, one, rights[place], by_states[place], is_exact=is_exact)
-        if excuse is None:
-            wrong.append(place)
-            continue
-        excuses[place] = excuse
-        if excuse.doubt:
-            found.undecided[entry_words(kind, place)] = excuse.doubt
+    off = {place: one for place, one in sorted(left.items()) if not _is_within(case, one, scale[place])}
+    excuses = {} if case.noise is not None else _excuses(case, convention, due, off, left, sizes, scale)
+    found.undecided = {entry_words(kind, place): one.doubt for place, one in excuses.items() if one.doubt}
     quiet = {place: one.rest for place, one in excuses.items() if one.is_noise and not one.doubt}
-    wrong += not_noise(case, found, quiet, {place: float(flat[place]) for place in left})
+    wrong = [place for place in off if place not in excuses]
+    wrong += not_noise(case, found, quiet, scale)
     words = [one.words for place, one in excuses.items() if one.words and place not in wrong]
     verdict.warnings += words
     found.is_excused = bool(words)
-    level = float(np.median([size / flat[place] for place, size in sizes.items()]))
+
+    level = float(np.median([size / scale[place] for place, size in sizes.items()]))
     same = float(np.median(list(sizes.values())))
     for place in sorted(wrong):
-        size = max(float(flat[place]) * level, same) if noise is None else float(flat[place]) * noise
+        size = max(scale[place] * level, same) if case.noise is None else scale[place] * case.noise
         verdict.findings.append(_finding(kind, place, case.fitted.get(place), rights[place], left[place], size))
     verdict.residual = float(max(np.abs(left[place]).max() for place in wrong or left))
     verdict.unexplained = [one.entry for one in verdict.findings if one.reads is None and one.entry]
-    level = (
-        level
-        if case.fitted
-        else max((rms(one) / flat[place] for place, one in quiet.items() if place not in wrong), default=0.0)
-    )
+    if not case.fitted:
+        level = max((rms(one) / scale[place] for place, one in quiet.items() if place not in wrong), default=0.0)
     if level > TOLERANCE:
         verdict.warnings.append(f"noise of {level:.1e} of the entries' scale; what is smaller cannot be judged")
     verdict.ok = not verdict.findings
     return found
+
+
+def _scale_of_entries(case: Case, due: Floats) -> dict[Place, float]:
+    """What an entry is compared with: its size in these rows, but not less than rounding at any states."""
+    flat = scales(due.reshape(len(due), -1)).reshape(due.shape[1:])
+    flat = np.maximum(flat, _OF_TYPICAL * np.abs(typical(case)).max())
+    return {place: float(flat[place]) for place in case.entries}
+
+
+def _is_within(case: Case, left: Floats, scale: float) -> bool:
+    """Whether what is left of an entry is rounding, or the noise that the caller has stated."""
+    return bool(np.abs(left).max() <= max((case.noise or 0.0) * SIGNIFICANT, TOLERANCE) * scale)
+
+
+def _excuses(
+    case: Case,
+    convention: str,
+    due: Floats,
+    off: dict[Place, Floats],
+    left: dict[Place, Floats],
+    sizes: dict[Place, float],
+    scale: dict[Place, float],
+) -> dict[Place, Excuse]:
+    """What may explain an entry that is off, where anything does, other than a mistake."""
+    by_states = spread_by_states(case, convention, due)
+    rights = {place: entry_of(due, place) for place in off}
+    is_exact = any(size <= TOLERANCE * scale[at] < np.ptp(entry_of(due, at)) for at, size in sizes.items())
+    is_exact = is_exact and max(np.abs(one).max() for one in left.values()) > 2 * case.step
+    found = {at: excuse_of(case, at, one, rights[at], by_states[at], is_exact=is_exact) for at, one in off.items()}
+    return {place: excuse for place, excuse in found.items() if excuse is not None}
 
 
 def _finding(kind: Kind, place: Place, fitted: Fit | None, right: Floats, left: Floats, noise: float) -> Finding:

@@ -10,6 +10,7 @@ import numpy as np
 from ...errors import UnjudgedError
 from ..comparison import TOLERANCE
 from ..doubts import right_elsewhere
+from ..explain.factors import FACTORS
 from ..finding import Finding
 from ..kinds import Kind
 from ..verdict import Verdict
@@ -22,14 +23,6 @@ from .reading import JUDGED, Log
 _STILL = 1e-3  # rad or m: less is no motion
 _MOST_SPIKES = 0.05  # of the rows
 _TOGETHER = 4  # rows: fewer may lie beside each other by chance
-_FACTORS = {
-    -1.0: "the sign is the opposite one.",
-    1e3: "a thousand times too large, as numbers in mm are.",
-    1e-3: "a thousand times too small.",
-    180 / np.pi: "57.3 times too large, as degrees are.",
-    np.pi / 180: "57.3 times too small.",
-}
-"""What entries are that one factor makes right."""
 
 
 def judge_log(log: Log, kind: Kind, truth: Any, *, noise: float | None = None) -> Verdict:
@@ -87,9 +80,9 @@ def _are_together(rows: list[int], log: Log, kind: Kind, truth: Any) -> bool:
 def _explain_by_factor(verdict: Verdict, log: Log, kind: Kind, truth: Any, noise: float | None) -> None:
     """Say it where one factor makes all entries right."""
     names = [name for name in log.columns if re.fullmatch(kind.columns, name)]
-    for factor, words in _FACTORS.items() if len(verdict.findings) > 1 else ():
+    for factor, words in FACTORS.items() if len(verdict.findings) > 1 else ():
         if not judged(log.times(1 / factor, names), kind, truth, noise).doubt:
-            verdict.findings = [Finding(one.entry, words) for one in verdict.findings]
+            verdict.findings = [Finding(one.entry, f"the result {words}.") for one in verdict.findings]
             verdict.unexplained = []
             return
 
