@@ -357,6 +357,12 @@ ARM3R_API int32_t arm3r_simulation_run(const arm3r_simulation *simulation, arm3r
  * it is one; where not, `fault` says why; `degrees` is true of `VALUE deg`), `nothing`. The text stays until this thread asks again. */
 ARM3R_API int32_t arm3r_yaml_json(const char *text, size_t text_size, const char *file, size_t file_size, const char **json);
 
+/* A sweep's file, read by the table of its keys. json: an object with what they say, defaults included, numbers in SI, `scenario`
+ * as the name of its file, and in each axis and statistic its place, `at`: "LINE:COLUMN"; it stays until this thread asks again.
+ * scenario: the one that it names or holds, with the values of `set`, not yet validated. */
+ARM3R_API int32_t arm3r_sweep_read(const char *text, size_t text_size, const char *file, size_t file_size, const char **json,
+                                   arm3r_scenario **scenario);
+
 /* ---- text: results ------------------------------------------------------------------------------------------------- */
 
 ARM3R_API int32_t arm3r_run_summary(const arm3r_run *run, const char **json);   /* the JSON summary, one object */
@@ -382,6 +388,7 @@ ARM3R_API int32_t arm3r_output_summary(const char *path, size_t path_size, const
 /* ---- text: reference ----------------------------------------------------------------------------------------------- */
 
 ARM3R_API const char *arm3r_schema_json(void);     /* JSON Schema of the scenario file */
+ARM3R_API const char *arm3r_sweep_schema_json(void); /* of a sweep's file */
 ARM3R_API const char *arm3r_schema_markdown(void); /* the reference page of scenario keys */
 ARM3R_API const char *arm3r_columns_text(void);    /* name, unit and meaning of every column, one a line */
 ARM3R_API const char *arm3r_columns_markdown(void);

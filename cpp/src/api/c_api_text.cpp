@@ -16,6 +16,7 @@
 #include "scenario/arm_file.hpp"
 #include "scenario/json_schema.hpp"
 #include "scenario/reference_docs.hpp"
+#include "scenario/sweep.hpp"
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
 #include "schema/suggest.hpp"
@@ -27,10 +28,10 @@ using namespace arm3r;
 
 namespace {
 
-constexpr std::size_t any_size = SIZE_MAX;     // the reader has its own limit, and its own words for it
-constexpr std::size_t enough = (1 << 20) + 1;  // of a text that is longer than the reader takes
+constexpr std::size_t any_size = SIZE_MAX;           // the reader has its own limit, and its own words for it
+constexpr std::size_t enough = most_yaml_bytes + 1;  // of a text that is longer than the reader takes
 
-// What arm3r_yaml_json and arm3r_output_summary returned last: it stays until this thread asks again.
+// What arm3r_yaml_json or arm3r_sweep_read, and arm3r_output_summary returned last: it stays until this thread asks again.
 thread_local std::string last_json, last_summary;
 
 Results results_of(const arm3r_run& run) {
@@ -251,6 +252,20 @@ int32_t arm3r_yaml_json(const char* text, size_t text_size, const char* file, si
     });
 }
 
+int32_t arm3r_sweep_read(const char* text, size_t text_size, const char* file, size_t file_size, const char** json,
+                         arm3r_scenario** scenario) {
+    return guard([&] {
+        need(text, "text");
+        need(json, "json");
+        need(scenario, "scenario");
+        Scenario base;
+        const std::string name = text_in(file, file_size, "file");
+        last_json = read_sweep(std::string(text, std::min(text_size, enough)), name, base);
+        *json = last_json.c_str();
+        *scenario = new_scenario(std::move(base));
+    });
+}
+
 // ---- results
 
 int32_t arm3r_run_summary(const arm3r_run* run, const char** json) {
@@ -340,6 +355,7 @@ int32_t arm3r_output_summary(const char* path, size_t path_size, const char** su
 // ---- reference
 
 const char* arm3r_schema_json(void) { return made_once<schema_json>(); }
+const char* arm3r_sweep_schema_json(void) { return made_once<sweep_schema_json>(); }
 const char* arm3r_schema_markdown(void) { return made_once<schema_markdown>(); }
 const char* arm3r_columns_text(void) { return made_once<columns_text>(); }
 const char* arm3r_columns_markdown(void) { return made_once<columns_markdown>(); }

@@ -48,6 +48,16 @@ std::string read_up_to(int descriptor, const std::string& path, std::size_t enou
 
 }  // namespace
 
+bool is_absolute(const std::string& name) {
+    return platform::last_separator(name.substr(0, 1)) == 0 || (name.size() > 1 && name[1] == ':');
+}
+
+std::string path_beside(const std::string& file, const std::string& name) {
+    if (name == "-") return "./-";  // no standard input
+    const std::size_t folder = platform::last_separator(file);
+    return is_absolute(name) || folder == file.npos ? name : file.substr(0, folder + 1) + name;
+}
+
 std::string read_input(const std::string& path, std::size_t enough) {
     if (path.empty()) refuse(path, "file.name", "the file name is empty");
     if (path == "-") return read_up_to(standard_input, "standard input", enough);

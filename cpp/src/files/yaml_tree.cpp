@@ -15,8 +15,8 @@ namespace arm3r {
 
 namespace {
 
-constexpr std::size_t max_bytes = 1 << 20, max_nodes = 50'000, longest_scalar = 64 << 10, deepest = 64,
-                      max_open_brackets = 10'000, max_keys = 1000;
+constexpr std::size_t max_nodes = 50'000, longest_scalar = 64 << 10, deepest = 64, max_open_brackets = 10'000,
+                      max_keys = 1000;
 
 [[noreturn]] void refuse(Problem problem) { throw Error(ARM3R_E_SCENARIO, std::vector{std::move(problem)}); }
 
@@ -367,6 +367,15 @@ const Node* Node::find(std::string_view name) const {
 
 Node* Node::find(std::string_view name) { return const_cast<Node*>(std::as_const(*this).find(name)); }
 
+Node leaf(std::string key, std::string text, std::string note) {
+    Node node;
+    node.type = Node::scalar;
+    node.key = std::move(key);
+    node.text = std::move(text);
+    node.note = std::move(note);
+    return node;
+}
+
 std::string node_text(const Node& node) {
     switch (node.type) {
         case Node::scalar: return node.quoted ? json_string(node.text) : node.text;
@@ -377,10 +386,10 @@ std::string node_text(const Node& node) {
 }
 
 std::string checked_text(std::string text, const std::string& file) {
-    if (text.size() > max_bytes)
+    if (text.size() > most_yaml_bytes)
         refuse({.code = "file.size",
                 .message = "larger than a scenario may be",
-                .got = "more than " + std::to_string(max_bytes) + " bytes",
+                .got = "more than " + std::to_string(most_yaml_bytes) + " bytes",
                 .allowed = "at most 1048576 bytes (1 MiB)",
                 .file = file});
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))

@@ -42,6 +42,8 @@ struct Node {
     const SourceLocation& start() const { return key_mark.column ? key_mark : mark; }
 };
 
+Node leaf(std::string key, std::string text, std::string note = {});  // a scalar
+
 struct Document {
     Node root;
     std::vector<Problem> problems;
@@ -56,7 +58,9 @@ std::string node_text(const Node& node);
 // Throws Error ARM3R_E_SCENARIO where the text cannot be read any further. The document may be empty (nothing).
 Document parse_yaml(const std::string& text, const std::string& file);
 
-// At most 1 MiB of UTF-8 without control characters; CR only before LF. A leading byte order mark is taken off.
+inline constexpr std::size_t most_yaml_bytes = 1 << 20;
+
+// At most so many bytes (1 MiB) of UTF-8 without control characters; CR only before LF. A leading byte order mark is taken off.
 std::string checked_text(std::string text, const std::string& file);
 
 }  // namespace arm3r

@@ -30,10 +30,6 @@ Words keys_of(Check::Subject subject) {
     return keys;
 }
 
-bool is_in(const Words& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 Words names_of(std::span<const std::size_t> columns) {
     Words names;
     for (const std::size_t column : columns) names.emplace_back(column_table[column].name);

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/number_text.hpp"
 #include "base/text.hpp"
 #include "files/paths.hpp"
 #include "results/checks.hpp"
 #include "scenario/reference_docs.hpp"
+#include "scenario/sweep.hpp"
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
 
@@ -45,13 +47,16 @@ void append_bound(Words& members, std::string name, double value, bool open) {
     members.push_back(member(name, shortest(value)));
 }
 
+std::string or_degrees(const std::string& number) {
+    return R"({"anyOf": [)" + number + R"(, {"type": "string", "pattern": "^[-+.0-9e]+ +deg$"}]})";
+}
+
 std::string number_schema(const Key& key) {
     Words members = {member("type", json_string(key.kind == Kind::integer ? "integer" : "number"))};
     append_bound(members, "minimum", key.bounds.low, key.bounds.open_low);
     append_bound(members, "maximum", key.bounds.high, key.bounds.open_high);
     const std::string number = object(members);
-    if (key.kind == Kind::angle)
-        return R"({"anyOf": [)" + number + R"(, {"type": "string", "pattern": "^[-+.0-9e]+ +deg$"}]})";
+    if (key.kind == Kind::angle) return or_degrees(number);
     return key.allow_infinity ? R"({"anyOf": [)" + number + R"(, {"const": "inf"}]})" : number;
 }
 
@@ -69,15 +74,18 @@ std::string arm_file_schema(const std::string& name) {
     return name == "axis_tolerance" ? angle : text;
 }
 
+std::string special_schema(const Key& key);
+
 // For the choices made in `params`.
 std::string value_schema(const Key& key, const Params& params) {
     if (key.kind == Kind::flag) return R"({"type": "boolean"})";
     if (key.kind == Kind::file) return R"({"type": "string", "minLength": 1})";
     if (key.kind == Kind::arm_file) return arm_file_schema(last_name(key.path));
     if (key.kind == Kind::choice) return object({member("enum", json_words(key.choices))});
+    if (key.kind == Kind::special) return special_schema(key);
     if (key.kind == Kind::column)
-        return R"({"type": "array", "items": {"$ref": "#/definitions/column of a run"}, "minItems": 1, )"
-               R"("uniqueItems": true})";
+        return R"({"type": "array", "items": {"enum": )" + json_words(key.choices) +
+               R"(}, "minItems": 1, "uniqueItems": true})";
     const std::string number = number_schema(key), list = list_schema(key, number);
     switch (key.form) {
         case Form::vector_or_word: return R"({"anyOf": [)" + list + R"(, {"const": )" + json_string(key.word) + "}]}";
@@ -149,6 +157,59 @@ std::string chosen(const Key& choice, const Words& words) {
 
 std::string rule(const std::string& condition, const std::string& then) {
     return object({member("if", condition), member("then", then)});
+}
+
+std::string required(const Words& names) { return member("required", json_words(names)); }
+
+std::string without(Words names) {
+    for (std::string& name : names) name = member(name, "false");
+    return object({member("properties", object(names))});
+}
+
+// ---- sweeps
+
+// A map with the keys that stand in the table of sweeps below `section`.
+Words sweep_map(const std::string& section) {
+    Words properties, needed, rules;
+    for (const Key& key : sweep_keys()) {
+        const std::string name = last_name(key.path);
+        if (key.path != join(section, name)) continue;
+        properties.push_back(member(name, described_value(key, nullptr, param_defaults())));
+        if (!key.decided_by && key.required) needed.push_back(name);
+        if (section == "axes" && !key.required) rules.push_back(object({required({name})}));
+        if (section.empty() && key.decided_by) {
+            rules.push_back(rule(chosen(*key.decided_by, key.when), object({required({name})})));
+            rules.push_back(rule(chosen(*key.decided_by, words_without(key)), without({name})));
+        }
+    }
+    Words members = {member("type", json_string("object")), required(needed), member("additionalProperties", "false"),
+                     member("properties", lines(properties, section.empty() ? "  " : "      "))};
+    if (!rules.empty()) members.push_back(member(section.empty() ? "allOf" : "oneOf", array(rules)));
+    return members;
+}
+
+// What `set` can name: keys, their single numbers, and sections.
+Words settable() {
+    std::set<std::string> paths;
+    for (const std::string& path : all_paths())
+        for (std::size_t end = path.size(); end != path.npos; end = path.rfind('.', end - 1))
+            paths.insert(path.substr(0, end));
+    for (std::size_t i = 0; i < param_count(); ++i) paths.insert(param_name(i));
+    paths.erase("format");
+    return Words(paths.begin(), paths.end());
+}
+
+std::string special_schema(const Key& key) {
+    if (key.path == "format") return R"({"const": 1})";
+    if (key.path == "scenario") return R"({"type": ["string", "object"]})";
+    if (key.path == "set") return R"({"type": "object", "propertyNames": {"enum": )" + json_words(settable()) + "}}";
+    if (!key.path.starts_with("axes."))
+        return R"({"type": "array", "minItems": 1, "items": )" + lines(sweep_map(key.path), "    ") + "}";
+    if (key.size == 1) return R"({"type": "array", "minItems": 1})";
+    Words items(2, or_degrees(R"({"type": "number"})"));
+    if (key.size == 3) items.push_back(R"({"type": "integer", "minimum": 1})");
+    return object({member("type", json_string("array")), member("items", array(items)),
+                   member("minItems", std::to_string(key.size)), member("maxItems", std::to_string(key.size))});
 }
 
 // ---- the document
@@ -256,11 +317,6 @@ private:
         return object(members);
     }
 
-    static std::string without(Words names) {
-        for (std::string& name : names) name = member(name, "false");
-        return object({member("properties", object(names))});
-    }
-
     // Sections, and sections in them, that only some control laws have.
     static Words rules_of_control() {
         const Key& type = known_key("controller.type");
@@ -322,5 +378,12 @@ private:
 }  // namespace
 
 std::string schema_json() { return SchemaWriter().document(); }
+
+std::string sweep_schema_json() {
+    Words members = sweep_map("");
+    members.insert(members.begin(), {member("$schema", json_string("http://json-schema.org/draft-07/schema#")),
+                                     member("title", json_string("arm3r sweep"))});
+    return lines(members, "") + "\n";
+}
 
 }  // namespace arm3r

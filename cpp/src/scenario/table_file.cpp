@@ -170,16 +170,6 @@ private:
     std::vector<Node> lists_;
 };
 
-bool is_absolute(const std::string& name) {
-    return platform::last_separator(name.substr(0, 1)) == 0 || name.substr(1, 1) == ":";
-}
-
-std::string path_of(const std::string& name, const std::string& scenario_file) {
-    if (name == "-") return "./-";  // no standard input
-    const std::size_t folder = platform::last_separator(scenario_file);
-    return is_absolute(name) || folder == scenario_file.npos ? name : scenario_file.substr(0, folder + 1) + name;
-}
-
 // The section above a path, in the tree; null where there is none.
 Node* section_of(Node& root, const std::string& path) {
     Node* node = &root;
@@ -242,7 +232,7 @@ Node with_table_files(Node root, const std::string& scenario_file, std::vector<P
         if (!name || name->type != Node::scalar) continue;
         refuse_lists_beside(key, *section, scenario_file, problems);
         const Node given = *name;
-        const std::string path = path_of(given.text, scenario_file);
+        const std::string path = path_beside(scenario_file, given.text);
         const std::size_t before = problems.size();
         const std::string text = text_of(path, key, given, scenario_file, problems);
         if (problems.size() > before) continue;

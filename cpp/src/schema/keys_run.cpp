@@ -17,6 +17,7 @@ Key log_columns() {
                              "Names of the columns of the log; t is always one. The rest is not computed, and nothing "
                              "but the log changes."));
     for (const Column& column : column_table) key.choices.emplace_back(column.name);
+    key.word = "names that `arm3r columns` lists";
     return of_kind(Kind::column, derived("all that the run has", key));
 }
 

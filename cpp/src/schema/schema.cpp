@@ -34,6 +34,8 @@ const Key* known_among(const std::vector<Key>& keys, const std::string& path) {
     return &*found;
 }
 
+}  // namespace
+
 void connect(std::vector<Key>& keys) {
     constexpr std::string_view model = "controller.model.";
     std::size_t offset = 0;
@@ -44,6 +46,8 @@ void connect(std::vector<Key>& keys) {
         if (key.path.starts_with(model)) key.plant = known_among(keys, "arm." + key.path.substr(model.size()));
     }
 }
+
+namespace {
 
 std::vector<Key> make_schema() {
     std::vector<Key> keys;
@@ -89,8 +93,8 @@ const Key& known_key(std::string_view path) {
 }
 
 const char* kind_name(Kind kind) {
-    constexpr const char* names[] = {"number",  "angle",  "integer", "flag",    "choice",
-                                     "section", "column", "file",    "arm_file"};
+    constexpr const char* names[] = {"number",  "angle",  "integer", "flag",     "choice",
+                                     "section", "column", "file",    "arm_file", "special"};
     return names[static_cast<std::size_t>(kind)];
 }
 

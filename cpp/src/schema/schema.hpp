@@ -23,6 +23,7 @@ enum class Kind {
     column,    // the name of a column of a run; one word of `choices`
     file,      // the name of a file with lists of the section; its number is NaN, the lists are those of the file
     arm_file,  // what is said of arm.urdf; its number is NaN, the keys are those of the file
+    special,   // of a sweep: what its reader reads itself; `word` says how it is written
 };
 
 const char* kind_name(Kind kind);
@@ -59,7 +60,8 @@ struct Key {
     std::string doc;   // one sentence
     std::vector<std::string> choices = {};
     std::map<std::string, std::vector<double>> fallback_for = {};  // by the choice at when_key, where it differs
-    std::string word = {};               // for vector_or_word: "infinite"; for by_choice: that which takes a list
+    std::string word = {};               // for vector_or_word: "infinite"; for by_choice: that which takes a list;
+                                         // for a choice or columns: what messages call very many words
     std::size_t min_size = 0;            // for list
     bool any_length = false;             // for list
     std::string when_key = {};           // the key exists only where the choice at this path ...
@@ -70,6 +72,9 @@ struct Key {
     const Key* decided_by = nullptr;     // the key at when_key
     const Key* plant = nullptr;          // of a key of controller.model: the plant's
 };
+
+// Of a whole table: fills in the offsets, and the choices that decide.
+void connect(std::vector<Key>& keys);
 
 // Every key, in the order of the reference page. `name` (text), `format` and `checks` are the reader's own.
 const std::vector<Key>& schema();

@@ -61,6 +61,8 @@ void check_choice(const Key& key, std::span<const double> params, ProblemList& p
         });
 }
 
+}  // namespace
+
 void check_number(const Key& key, double value, std::size_t item, std::size_t count, ProblemList& problem_list) {
     const auto broken = [&](const char* code, const char* message) {
         problem_list.add([&] {
@@ -75,6 +77,8 @@ void check_number(const Key& key, double value, std::size_t item, std::size_t co
     else if ((key.kind == Kind::integer || key.kind == Kind::column) && value != std::floor(value))
         broken("scenario.type", "not a whole number");
 }
+
+namespace {
 
 void check_numbers(const Key& key, std::span<const double> params, ProblemList& problem_list) {
     if (key.any_length && params.size() > param_count())

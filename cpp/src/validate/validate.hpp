@@ -20,6 +20,9 @@ struct Validation {
 // Every rule that one key alone can break (range, shape, word), and those between keys.
 Validation validate(std::span<const double> params);
 
+// The range of one of the `count` numbers of a key, and that it is whole where it must be.
+void check_number(const Key& key, double value, std::size_t item, std::size_t count, ProblemList& problem_list);
+
 // The setup of parameters that keep every rule; else throws Error ARM3R_E_SCENARIO with every problem.
 Setup valid_setup(std::span<const double> params);
 

@@ -9,7 +9,7 @@ What a callback raises comes out of the call that led to it (`progress`); memory
 from .arm_files import read_arms_with
 from .arrays import States, check_finite, readable, reals, writable
 from .batches import batch, batch_row_count, batch_rows, summary_columns
-from .calls import call, create, error, file_path, nearest_word, text, utf8, yaml
+from .calls import call, create, error, file_path, nearest_word, sweep, text, utf8
 from .laws import LawMemory, NoTorque, SimulationView, StateMemory, control, put_torque, state_index
 from .library import Floats, ffi, lib, string, version
 from .progress import BatchProgress, Progress
@@ -48,9 +48,9 @@ __all__ = [
     "state_index",
     "string",
     "summary_columns",
+    "sweep",
     "text",
     "utf8",
     "version",
     "writable",
-    "yaml",
 ]

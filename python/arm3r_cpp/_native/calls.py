@@ -63,11 +63,11 @@ def text(function: Callable[..., int], *arguments: Any) -> str:
     return string(out[0])
 
 
-def yaml(text: bytes, file: str) -> dict[str, Any]:
-    """A YAML file as the library reads it: nodes as arm3r_yaml_json describes them."""
+def sweep(text: bytes, file: str) -> tuple[Any, dict[str, Any]]:
+    """The scenario of a sweep's file, a handle, and what its keys say, as arm3r_sweep_read describes it."""
     out = ffi.new("const char **")
-    call(lib.arm3r_yaml_json, text, len(text), *utf8(file, "file"), out)
-    return json.loads(ffi.string(out[0]))
+    scenario = create("scenario", lib.arm3r_sweep_read, text, len(text), *utf8(file, "file"), out)
+    return scenario, json.loads(ffi.string(out[0]))
 
 
 def nearest_word(word: str, words: Iterable[str]) -> str:

@@ -80,9 +80,9 @@ def parser() -> argparse.ArgumentParser:
 
 class _PrintSchema(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from ..sweeps.json_schema import sweep_schema
+        from .. import _native
 
-        print_line(sweep_schema().rstrip("\n"))
+        print_line(_native.string(_native.lib.arm3r_sweep_schema_json()).rstrip("\n"))
         parser.exit()
 
 

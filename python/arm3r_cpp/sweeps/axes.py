@@ -17,7 +17,6 @@ Runs = NDArray[np.uint64]
 
 SPACES = ("linspace", "geomspace")
 DISTRIBUTIONS = ("uniform", "log_uniform", "normal")
-MODES = ("grid", "list", "random", "latin_hypercube")
 DIGITS = 14  # significant, of values that are computed: what the last two hold is rounding
 
 

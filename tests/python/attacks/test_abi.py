@@ -17,6 +17,7 @@ from arm3r_cpp._arm3r import ffi, lib
 
 HEADER = Path(arm3r.__file__).parent / "include" / "arm3r" / "arm3r.h"
 SCENARIO = b"format: 1\ntime: {stop: 0.05}\nwall: {point: [1.7, 0, 0]}\n"  # in contact from the start: it has an event
+SWEEP = b"format: 1\nscenario: {}\naxes: [{key: time.stop, values: [1, 2]}]\n"
 CONTROLLED = SCENARIO + b"controller: {type: user}\n"
 USER = arm3r.Scenario(CONTROLLED.decode()).params[arm3r.param_index("controller.type")]
 SIZE_MAX = 2 ** (8 * ffi.sizeof("size_t")) - 1
@@ -133,6 +134,8 @@ class Caller:
                 "arm3r_run_save": bytes(self.output),
                 "arm3r_output_probe": bytes(self.output),
             }.get(function.name, b"time.stop")
+        if (function.name, name) == ("arm3r_sweep_read", "text"):
+            return SWEEP
         return {"text": SCENARIO, "word": b"lenght", "file": b"abi.yaml", "name": b"initial.q[0]", "value": b"0.1"}[
             name
         ]

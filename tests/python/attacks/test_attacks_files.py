@@ -51,8 +51,8 @@ def test_a_disk_that_is_full_from_the_start_is_exit_6(scripts: Path, sweep_file:
 def test_another_format_of_a_sweep_is_exit_9(scripts: Path, sweep_file: Path, tmp_path: Path) -> None:
     sweep_file.write_text(SWEEP.replace("format: 1", "format: 2"))
     done = command(scripts, "arm3r-sweep", sweep_file, "-o", tmp_path / "out")
-    assert done.returncode == 9 and f"{sweep_file}:1:1: error[sweep.format]: format" in done.stderr
-    assert "got 2" in done.stderr and not (tmp_path / "out").exists()
+    assert done.returncode == 9 and f"{sweep_file}:1:9: error[sweep.format]: format" in done.stderr
+    assert "written for format 2" in done.stderr and not (tmp_path / "out").exists()
     with pytest.raises(arm3r.IncompatibleError):
         arm3r.Sweep.load(sweep_file)
 

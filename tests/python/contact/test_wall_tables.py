@@ -204,6 +204,11 @@ def test_what_is_wrong_with_a_file_is_told_by_its_line(tmp_path: Path, case: str
     assert "this must be given" not in str(caught.value)  # nothing is said twice
 
 
+def test_a_file_without_a_name_is_a_file_that_cannot_be_read() -> None:
+    with pytest.raises(arm3r.ScenarioError, match=r"wall\.motion\.file: cannot be read: the file name is empty"):
+        arm3r.Scenario(PRESSED % ('file: ""', METHODS[0]), file="wall.yaml").validate()
+
+
 def test_a_list_beside_the_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "motion.csv").write_text(HEAD + "1,0.1\n")
     scenario = arm3r.Scenario(PRESSED % ("file: motion.csv, t: [0, 1]", METHODS[0]), file=str(tmp_path / "wall.yaml"))
