@@ -31,7 +31,8 @@ namespace {
 constexpr std::size_t any_size = SIZE_MAX;           // the reader has its own limit, and its own words for it
 constexpr std::size_t enough = most_yaml_bytes + 1;  // of a text that is longer than the reader takes
 
-// What arm3r_yaml_json or arm3r_sweep_read, and arm3r_output_summary returned last: it stays until this thread asks again.
+// What arm3r_yaml_json or arm3r_sweep_read, and arm3r_output_summary returned last: it stays until this thread asks
+// again.
 thread_local std::string last_json, last_summary;
 
 Results results_of(const arm3r_run& run) {

@@ -60,7 +60,8 @@ Document parse_yaml(const std::string& text, const std::string& file);
 
 inline constexpr std::size_t most_yaml_bytes = 1 << 20;
 
-// At most so many bytes (1 MiB) of UTF-8 without control characters; CR only before LF. A leading byte order mark is taken off.
+// At most so many bytes (1 MiB) of UTF-8 without control characters; CR only before LF. A leading byte order mark is
+// taken off.
 std::string checked_text(std::string text, const std::string& file);
 
 }  // namespace arm3r

@@ -1,6 +1,6 @@
 #pragma once
-// The JSON Schemas of scenarios and of sweeps, generated from their tables: an editor offers by them the keys of the chosen
-// type.
+// The JSON Schemas of scenarios and of sweeps, generated from their tables: an editor offers by them the keys of the
+// chosen type.
 
 #include <string>
 

@@ -138,6 +138,7 @@ def test_problems_are_dicts_as_of_a_scenario() -> None:
     with pytest.raises(arm3r.ScenarioError) as raised:
         arm3r.Sweep(axis("{key: tim.stop, values: [1]}"), file="s.yaml")
     (problem,) = raised.value.problems
+    assert raised.value.code == problem["code"] == "sweep.unknown_word"
     assert set(problem) == {"code", "message", "file", "line", "column", "path", "got", "allowed", "hint"}
 
 
@@ -157,14 +158,17 @@ def test_faults_of_the_scenarios_file_have_its_own_places(tmp_path: Path) -> Non
 
 
 def test_set_goes_before_the_overrides() -> None:
-    text = GOOD + "set: {time.log_every: 0.05, initial.q: [0, 10 deg, 0]}\n"
+    text = GOOD + "set: {time.log_every: 0.05, initial.q: [0, 10 deg, 0], name: 'a, b', wall: {'face_offset': 0.25}}\n"
     plan = arm3r.Sweep(text, overrides=["initial.q[1]=0.5"])
+    assert plan.scenario.name == "a, b" and plan.scenario["wall.face_offset"] == 0.25
     assert plan.scenario["time.log_every"] == 0.05 and plan.scenario["initial.q[1]"] == 0.5
 
 
 def test_angles_may_be_in_degrees() -> None:
     plan = arm3r.Sweep(axis('{key: "initial.q[1]", linspace: [-30 deg, -20 deg, 3]}'))
     assert plan.values()["initial.q[1]"] == pytest.approx(np.deg2rad([-30, -25, -20]), rel=1e-13)
+    plan = arm3r.Sweep(axis("{key: initial.q, values: [[0, 30 deg, 0.5]]}"))
+    assert plan.values()["initial.q"][0] == pytest.approx([0, np.pi / 6, 0.5], rel=1e-15)
 
 
 AS_MAP = {"format": 1, "scenario": {}, "axes": [{"key": "time.stop", "values": [0, 0.1]}]}
