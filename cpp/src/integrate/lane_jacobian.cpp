@@ -21,7 +21,8 @@ void LaneJacobian::find(const LaneInputs& inputs, double t, const State<double, 
     rhs_->contact = D(inputs.contact);
     rhs_->force_phase = D(inputs.force_phase);
     rhs_->latest = D(inputs.latest);
-    linearize<motion_size, quadrature_count, derivatives_per_pass>(*rhs_, t, y, full_size - state_size, f0, jacobian);
+    constexpr std::size_t memory = std::size_t(full_size) - std::size_t(state_size);
+    linearize<motion_size, quadrature_count, derivatives_per_pass>(*rhs_, t, y, memory, f0, jacobian);
 }
 
 template <std::size_t N>
