@@ -107,7 +107,7 @@ def test_the_scene_is_large(browser: Any, address: str, size: str) -> None:
         visitor.open(address)
         width, height = SIZES[size]
         box = visitor.page.locator("#scene").bounding_box()
-        assert box["width"] * box["height"] >= 0.37 * width * height
+        assert box["width"] * box["height"] >= 0.33 * width * height
         colours = picture(visitor)[round(box["y"]) + 4 : round(box["y"] + box["height"]) - 4]
         dark = np.argwhere(colours.sum(axis=2) < 420)  # the arm
         assert np.ptp(dark[:, 1]) >= 0.45 * box["width"]
