@@ -7,6 +7,7 @@
 
 import { readFileSync } from "node:fs";
 import { load } from "../../web/core/core.js";
+import { poseTowards } from "../../web/page/src/simulate/reach.js";
 
 const module_ = await WebAssembly.compile(readFileSync(process.argv[2]));
 let exports;
@@ -57,6 +58,7 @@ const more = {
             core[method](...values);
             return performance.now() - start;
         }),
+    pose_towards: (...values) => poseTowards(core, ...values),
     run_with_csv: (...values) => {
         const run = core.run(...values);
         return { ...run, csv: run.csv() };

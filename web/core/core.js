@@ -10,6 +10,7 @@
 
 const OK = 0;
 const INDEX = -103; // ARM3R_E_INDEX
+const REACH = -105; // ARM3R_E_REACH
 const RUN_OPTIONS = 56; // sizeof(arm3r_run_options) in wasm32
 const EVENT = 88; // sizeof(arm3r_event)
 const BATCH_ROWS = 56; // sizeof(arm3r_batch_rows)
@@ -212,33 +213,38 @@ export class Core {
      * vectors along the positive axes of the joints. reach, m: of arm3r_arm_reach.
      */
     positions(text, q, { name = "scenario.yaml", set = {} } = {}) {
-        return this.#withScenario(text, { name, set }, (scenario) => {
-            const params = this.#params(scenario);
-            const arm = this.#withArray(params, (at) => this.#handle("arm3r_arm_create", at, params.length));
-            try {
-                const states = q.length / 3;
-                const of = (function_, width) =>
-                    this.#withArray(Float64Array.from(q), (from) =>
-                        this.#withMemory(8 * width * states, (to) => {
-                            this.#check(this.#call(function_, arm, states, from, to));
-                            return this.#doubles(to, width * states);
-                        }),
-                    );
-                const reach = this.#withMemory(8, (to) => {
-                    this.#check(this.#call("arm3r_arm_reach", arm, to));
-                    return this.#doubles(to, 1)[0];
-                });
-                return {
-                    tip: of("arm3r_arm_tip_position", 3),
-                    elbow: of("arm3r_arm_elbow_position", 3),
-                    points: of("arm3r_arm_points", 21),
-                    axes: axesOf(of("arm3r_arm_geometric_jacobian", 18)),
-                    reach,
-                };
-            } finally {
-                this.#call("arm3r_arm_free", arm);
-            }
+        return this.#withArm(text, { name, set }, (arm) => {
+            const states = q.length / 3;
+            const of = (function_, width) =>
+                this.#withArray(Float64Array.from(q), (from) =>
+                    this.#withMemory(8 * width * states, (to) => {
+                        this.#check(this.#call(function_, arm, states, from, to));
+                        return this.#doubles(to, width * states);
+                    }),
+                );
+            const reach = this.#withMemory(8, (to) => {
+                this.#check(this.#call("arm3r_arm_reach", arm, to));
+                return this.#doubles(to, 1)[0];
+            });
+            return {
+                tip: of("arm3r_arm_tip_position", 3),
+                elbow: of("arm3r_arm_elbow_position", 3),
+                points: of("arm3r_arm_points", 21),
+                axes: axesOf(of("arm3r_arm_geometric_jacobian", 18)),
+                reach,
+            };
         });
+    }
+
+    /**
+     * Joint angles that put the tip at points (flat, 3 a point, m), by arm3r_arm_inverse_kinematics: four Float64Arrays, 3
+     * numbers a point, rad, each up to the first point out of reach. Joint 1 faces the points in the first two and faces
+     * away in the others; the elbow is up in the first and the third.
+     */
+    inverseKinematics(text, tip, { name = "scenario.yaml", set = {} } = {}) {
+        return this.#withArm(text, { name, set }, (arm) =>
+            [[1, 1], [1, 0], [0, 1], [0, 0]].map((branch) => this.#branch(arm, Float64Array.from(tip), branch)),
+        );
     }
 
     /** JSON Schema of the scenario file, text. */
@@ -291,6 +297,35 @@ export class Core {
                 }
             }),
         );
+    }
+
+    #withArm(text, options, use) {
+        return this.#withScenario(text, options, (scenario) => {
+            const params = this.#params(scenario);
+            const arm = this.#withArray(params, (at) => this.#handle("arm3r_arm_create", at, params.length));
+            try {
+                return use(arm);
+            } finally {
+                this.#call("arm3r_arm_free", arm);
+            }
+        });
+    }
+
+    #branch(arm, tip, [front, elbowUp]) {
+        const solve = (count, to, failed) =>
+            this.#withArray(tip, (from) =>
+                this.#call("arm3r_arm_inverse_kinematics", arm, count, from, front, elbowUp, to, failed),
+            );
+        return this.#withMemory(8 * tip.length + 4, (to) => {
+            const failed = to + 8 * tip.length;
+            let count = tip.length / 3;
+            const status = solve(count, to, failed);
+            if (status === REACH) {
+                count = new Uint32Array(this.#buffer(), failed, 1)[0];
+                this.#check(solve(count, to, failed));
+            } else this.#check(status);
+            return this.#doubles(to, 3 * count);
+        });
     }
 
     #shape(run) {

@@ -78,10 +78,8 @@ function writeServed() {
 }
 
 function writeSelfContained() {
-  const inlined = examples.map((one) => {
-    const picture = existsSync(one.picture) ? `data:image/png;base64,${readFileSync(one.picture).toString("base64")}` : "";
-    return { ...one, picture };
-  });
+  const pictures = examples.map(({ picture }) => (existsSync(picture) ? `data:image/png;base64,${readFileSync(picture).toString("base64")}` : ""));
+  const inlined = { scenarios: packed(JSON.stringify(examples.map(({ picture, ...text }) => text))), pictures };
   const core = { wasm: packed(readFileSync(wasm)), worker: packed(Buffer.from(worker.js)) };
   const hash = createHash("sha256").update(page.js).digest("base64");
   const policy = policyOf({ "script-src": `'sha256-${hash}' 'wasm-unsafe-eval'`, "worker-src": "blob:", "style-src": "'unsafe-inline'",

@@ -118,6 +118,35 @@ def test_the_points_and_axes_of_an_elbow_arm_are_the_native_ones() -> None:
     assert found["reach"] == arm.reach
 
 
+def test_inverse_kinematics_has_the_bits_of_the_native_one() -> None:
+    """Four branches, each up to the first point out of reach."""
+    planar, elbow_arm = [[1.2, 0.3, 0.4], [0.5, -0.9, 0.2], [2.5, 0, 0], [1, 0, 0]], [[0.3, 0.2, 0.4]]
+    for keys, tips in (({}, planar), ({"arm": WITH_OFFSETS}, elbow_arm)):
+        text = yaml_of({"format": 1, "initial": {"q": [0.4, -0.7, 1.1]}, **keys})
+        [branches] = core(["inverseKinematics", text, [part for tip in tips for part in tip]])
+        arm = arm3r.Scenario(text).arm
+        choices = [(front, elbow) for front in (True, False) for elbow in ("up", "down")]
+        for found, (front, elbow) in zip(branches, choices, strict=True):
+            q = arm.inverse_kinematics(tips[:2], front=front, elbow=elbow)
+            assert found.tolist() == q.ravel().tolist(), (front, elbow)
+    [beyond] = core(["inverseKinematics", SCENARIO, [9, 0, 0]])
+    assert [found.tolist() for found in beyond] == [[]] * 4
+
+
+def test_the_tip_comes_as_near_to_a_point_as_it_reaches() -> None:
+    """In the branch that it is in; towards a point out of reach along the ray from the shoulder."""
+    arm = arm3r.Scenario(SCENARIO).arm
+    near = [0.1, -0.5, 1.0]
+    reachable = arm.tip_position([0.3, -0.2, 0.7]).tolist()
+    points = [reachable, [4.0, 3.0, 0.0], [0.0, -3.0, 4.0]]
+    found = core(*(["pose_towards", SCENARIO, {"name": "a.yaml", "point": point, "near": near}] for point in points))
+    assert found[0]["q"] == pytest.approx([0.3, -0.2, 0.7], abs=1e-12)
+    for pose, point in zip(found[1:], points[1:], strict=True):
+        tip = np.array(pose["tip"])
+        assert arm.tip_position(pose["q"]) == pytest.approx(tip, abs=1e-6)
+        assert tip == pytest.approx(2 * np.array(point) / 5, abs=2e-3)
+
+
 def test_the_example_of_the_page_runs(tmp_path: Path) -> None:
     [block] = re.findall(r"```js\n(.*?)```", (ROOT / "docs" / "webassembly.md").read_text(), re.S)
     assert block.count("./core.js") == 1

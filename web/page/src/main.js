@@ -9,12 +9,16 @@ import { given } from "./app/given.js";
 import { Store } from "./app/store.js";
 import { startTheme } from "./app/theme.js";
 import { Controls } from "./controls/controls.js";
+import { TipHandle } from "./drag/tip_handle.js";
+import { WallHandle } from "./drag/wall_handle.js";
 import { Editor } from "./editor/editor.js";
 import { startBand } from "./parts/band.js";
 import { Checks } from "./parts/checks.js";
 import { startDownloads } from "./parts/downloads.js";
+import { EnergyBars } from "./parts/energy_bars.js";
 import { startKeyboard } from "./parts/keyboard.js";
 import { Menu } from "./parts/menu.js";
+import { startShown } from "./parts/shown.js";
 import { startStatus } from "./parts/status.js";
 import { startTabs } from "./parts/tabs.js";
 import { Tour } from "./parts/tour.js";
@@ -23,11 +27,13 @@ import { Plots } from "./plots/plots.js";
 import { textOf } from "./scenario/link.js";
 import { Scene } from "./scene/scene.js";
 import { recordedRun } from "./simulate/recorded.js";
+import { keepRunBefore } from "./simulate/run_before.js";
 import { Simulation, shippedScenarios } from "./simulate/simulation.js";
 
 const FIRST = "moving_wall";
 
 const store = new Store({
+  before: null, ghost: true, energies: true, degrees: true,
   text: "", name: "scenario", checked: "", problems: [], warnings: [], failure: "", resolved: null, schema: null, opened: 0,
   run: null, panels: [], band: { within: 0, keys: [] }, bandRun: null, busy: false, tab: "", theme: "light",
   time: 0, playing: false, speed: 1, range: null, axes: true, chosenPlots: {},
@@ -47,6 +53,8 @@ async function start() {
   };
   const parts = makeParts({ editor, simulation, examples, open });
   startBand(store);
+  startShown(store);
+  keepRunBefore(store);
   startDownloads(store, simulation, parts, say);
   startKeyboard(store, { ...parts, editor });
   await openFirst(open, examples);
@@ -59,6 +67,7 @@ function makeParts({ editor, simulation, examples, open }) {
   const plots = new Plots(store);
   new Checks(store);
   new Controls(store, editor, simulation);
+  new EnergyBars(store);
   const scene = sceneOrNull();
   const menu = new Menu(examples, (example) => {
     store.set({ range: null, playing: false });
@@ -68,8 +77,7 @@ function makeParts({ editor, simulation, examples, open }) {
   for (const button of document.querySelectorAll("[data-view]")) {
     button.addEventListener("click", () => scene?.view.look(button.dataset.view));
   }
-  at("axes").addEventListener("change", (event) => store.set({ axes: event.target.checked }));
-  store.on(["axes"], () => (at("axes").checked = store.get("axes")));
+  if (scene) scene.handles = [new TipHandle(store, scene, { editor, simulation, transport }), new WallHandle(store, scene, editor)];
   at("open-help").addEventListener("click", () => at("help").showModal());
   at("help-close").addEventListener("click", () => at("help").close());
   return { transport, plots, scene, menu, tour };

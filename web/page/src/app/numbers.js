@@ -29,3 +29,16 @@ export function yaml(value) {
 }
 
 export const DEGREE = Math.PI / 180;
+
+/** ms for which a number stays while a run plays, so that it can be read. */
+export const READABLE = 100;
+
+/** An angle, rad, in degrees or radians. */
+export function angleText(angle, degrees) {
+  return degrees ? `${fixed(angle / DEGREE, 1)}°` : `${fixed(angle, 3)} rad`;
+}
+
+/** With so many digits behind the point; what is rounded to zero has no sign. */
+export function fixed(value, digits) {
+  return value.toFixed(digits).replace(/^-(?=0\.?0*$)/, "").replace("-", "−");
+}

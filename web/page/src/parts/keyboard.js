@@ -5,6 +5,7 @@ const TYPING = "input:not([type=range]):not([type=checkbox]), select, textarea, 
 
 export function startKeyboard(store, { transport, scene, plots, editor, menu, tour }) {
   const view = (name) => () => scene?.view.look(name);
+  const turn = (name) => () => store.set({ [name]: !store.get(name) });
   const keys = {
     " ": () => transport.toggle(),
     ArrowRight: (event) => transport.step(event.shiftKey ? 10 : 1),
@@ -20,7 +21,10 @@ export function startKeyboard(store, { transport, scene, plots, editor, menu, to
     2: view("side"),
     3: view("front"),
     4: view("top"),
-    a: () => store.set({ axes: !store.get("axes") }),
+    a: turn("axes"),
+    g: turn("ghost"),
+    b: turn("energies"),
+    u: turn("degrees"),
     e: () => showEditor(),
     m: () => menu.show(),
     n: () => tour.go(1),

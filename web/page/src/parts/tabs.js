@@ -1,4 +1,4 @@
-/** Panels that share a place. Beside a wide scene stand the text or the checks; on a phone, one panel of all. */
+/** Panels that share a place: beside a wide scene plots, text, checks or report; on a phone the values, too. */
 import { at } from "../app/dom.js";
 
 export function startTabs(store) {
@@ -23,10 +23,10 @@ export function startTabs(store) {
   });
   const narrow = matchMedia("(max-width: 759px)");
   const fit = () => {
-    if (!narrow.matches && ["plots", "sliders"].includes(store.get("tab"))) store.set({ tab: "text" });
+    if (!narrow.matches && store.get("tab") === "sliders") store.set({ tab: "plots" });
   };
   narrow.addEventListener("change", fit);
   store.on(["tab"], show);
-  store.set({ tab: narrow.matches ? "plots" : "text" });
-  show();
+  store.on(["problems"], () => !store.get("run") && store.get("problems").length > 0 && store.set({ tab: "text" }));
+  store.set({ tab: "plots" });
 }

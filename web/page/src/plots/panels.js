@@ -1,15 +1,17 @@
 /** The panels beside the scene: which columns stand together, in which unit, with which look. */
+import { DEGREE } from "../app/numbers.js";
 
 const STILL = 1e-6; // m: a coordinate of the tip that changes less has no panel of its own
-const LOOKS = [["blue", []], ["red", [7, 4]], ["green", [2, 3]], ["amber", [8, 3, 2, 3]], ["sky", []], ["pink", [7, 4]], ["ink", [2, 3]]];
+const [DASHED, DOTTED, DASH_DOTTED] = [[7, 4], [2, 3], [8, 3, 2, 3]];
+const LOOKS = [["blue", []], ["red", DASHED], ["green", DASH_DOTTED]];
 const FORCE = ["onWall", []];
 const MEASURED = ["measured", []];
-const REFERENCE = ["ink", [7, 4]];
+const REFERENCE = ["ink", DASHED];
 const JOINTS = ["₁", "₂", "₃"];
 
 /** Series of three columns that belong together. */
-function three(names, labels, first = 0) {
-  return names.map((column, i) => ({ column, label: labels[i], look: LOOKS[first + i] }));
+function three(names, labels) {
+  return names.map((column, i) => one(column, labels[i], LOOKS[i]));
 }
 
 function joints(name, symbol) {
@@ -25,7 +27,7 @@ const ALL = [
     series: [one("force", "force", FORCE), one("force_measured", "measured", MEASURED), one("force_ref", "reference", REFERENCE)] },
   { name: "force_on_wall", title: "Force on the wall", unit: "N",
     series: three(["f_on_wall_x", "f_on_wall_y", "f_on_wall_z"], ["x", "y", "z"]) },
-  { name: "angles", title: "Joint angles", unit: "rad", series: joints("q", "q") },
+  { name: "angles", title: "Joint angles", unit: "rad", angle: true, series: joints("q", "q") },
   ...["x", "y", "z"].map((axis) => ({ name: `tip_${axis}`, title: `Tip, ${axis}`, unit: "mm", scale: 1e3, flat: 2,
     series: [one(`tip_${axis}`, "tip"), one(`tip_ref_${axis}`, "reference", REFERENCE)] })),
   { name: "depth", title: "Depth of the tip in the wall", unit: "mm", scale: 1e3, zero: true, series: [one("depth", "depth")] },
@@ -33,19 +35,29 @@ const ALL = [
   { name: "residuals", title: "Residual of the observer", unit: "N m", series: joints("residual", "r") },
   { name: "stiffness", title: "Estimated stiffness", unit: "N/m", series: [one("stiffness_estimate", "estimate")] },
   { name: "tank", title: "Energy in the tank", unit: "J", series: [one("tank_energy", "tank")] },
-  { name: "rates", title: "Joint rates", unit: "rad/s", series: joints("qd", "q̇") },
+  { name: "rates", title: "Joint rates", unit: "rad/s", angle: true, series: joints("qd", "q̇") },
   { name: "energies", title: "Energies", unit: "J", series: [
+    one("work_actuators", "work of actuators", ["amber", [], 3.2]), one("work_wall", "external work", ["pink", [], 2.4]),
     one("energy_kinetic", "kinetic"), { ...one("energy_potential", "Δ potential", LOOKS[1]), change: true },
-    one("energy_contact", "contact", LOOKS[2]), one("work_actuators", "work of actuators", LOOKS[3]), one("work_wall", "work of wall", LOOKS[5]),
-    one("energy_dissipated", "dissipated", LOOKS[6])] },
+    one("energy_contact", "contact", LOOKS[2]), one("energy_dissipated", "dissipated", ["ink", DOTTED])] },
 ]; // prettier-ignore
 
-/** The panels of a run, each with the series that it has; `first`: whether it is drawn when none has been chosen. */
-export function panelsOf({ columns, resolved }) {
-  const found = ALL.map((panel) => ({ ...panel, series: panel.series.filter((one) => shows(one, columns)) }));
+/** The series of a panel that a run has columns for. */
+export function seriesOf(name, columns) {
+  return ALL.find((panel) => panel.name === name).series.filter((one) => shows(one, columns));
+}
+
+/** The panels of a run, each with the series that it has; `first`: whether it is drawn when none has been chosen. degrees:
+ * whether angles are in degrees. */
+export function panelsOf({ columns, resolved }, degrees) {
+  const found = ALL.map((panel) => ({ ...inUnit(panel, degrees), series: seriesOf(panel.name, columns) }));
   const drawn = found.filter((panel) => panel.series.length > 0);
   const has = (name) => drawn.some((panel) => panel.name === name);
   return drawn.map((panel) => ({ ...panel, first: isFirst(panel.name, columns, resolved, has) }));
+}
+
+function inUnit(panel, degrees) {
+  return panel.angle && degrees ? { ...panel, unit: panel.unit.replace("rad", "°"), scale: 1 / DEGREE } : panel;
 }
 
 function shows({ column }, columns) {

@@ -7,6 +7,8 @@ import { drawContact } from "./contact.js";
 
 const HEIGHT = 118;
 const AXIS = 58; // px left of the curves, the same in all panels
+const WIDTH = 1.7; // px, of a curve
+const KEY = 18; // px, of the line of a legend: a period of all dashes
 const FONT = "11px system-ui, sans-serif";
 
 export class Plot {
@@ -85,9 +87,7 @@ export class Plot {
 
   #key(one, i) {
     const key = make("span", { className: "plot-key" });
-    key.style.setProperty("--colour", this.look[one.look[0]]);
-    key.classList.toggle("dashed", one.look[1].length > 0);
-    key.append(make("i"), `${one.label} `, this.values[i]);
+    key.append(lineOf(one.look, this.look), `${one.label} `, this.values[i]);
     return key;
   }
 
@@ -123,7 +123,7 @@ export class Plot {
   #options(width) {
     const { look, panel } = this;
     const axis = { stroke: look.faint, font: FONT, grid: { stroke: look.grid, width: 1 }, ticks: { show: false } };
-    const series = panel.series.map((one) => ({ stroke: look[one.look[0]], width: 1.7, dash: one.look[1], points: { show: false } }));
+    const series = panel.series.map(({ look: [colour, dash, width = WIDTH] }) => ({ stroke: look[colour], width, dash, points: { show: false } }));
     const edges = this.hasBand ? series.flatMap((one) => [0, 1].map(() => ({ stroke: `${one.stroke}00`, width: 0, points: { show: false } }))) : [];
     const first = 1 + series.length;
     return {
@@ -172,6 +172,19 @@ export class Plot {
     if (!this.dragged) this.actions.seek(plot.posToVal(event.offsetX, "x"));
     this.dragged = false;
   }
+}
+
+/** The line that a legend shows for a curve: in its colour, with its dashes. */
+function lineOf([colour, dash, width = WIDTH], look) {
+  const line = drawing("svg", { class: "plot-line", width: KEY, height: 4, "aria-hidden": "true" });
+  line.append(drawing("path", { d: `M0 2H${KEY}`, stroke: look[colour], "stroke-width": width, "stroke-dasharray": dash.join(" ") }));
+  return line;
+}
+
+function drawing(tag, attributes) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
 }
 
 function shifted(values, one, columns, scale) {

@@ -2,11 +2,10 @@
 import { at, make } from "../app/dom.js";
 import { colours } from "../app/colours.js";
 import { later, show } from "../app/frames.js";
+import { READABLE } from "../app/numbers.js";
 import { contactSpans } from "./contact.js";
 import { panelsOf } from "./panels.js";
 import { Plot } from "./plot.js";
-
-const READABLE = 100; // ms for which a number stays while a run plays: nobody reads faster
 
 export class Plots {
   #plots = new Map();
@@ -21,6 +20,7 @@ export class Plots {
     store.on(["theme"], () => later("plots", () => this.#renew()));
     store.on(["time", "playing"], () => show("plots", () => this.#seek()));
     store.on(["range"], () => this.#zoom());
+    store.on(["degrees"], () => later("plots", () => this.#renew()));
     new ResizeObserver(() => later("plot-size", () => this.#resize())).observe(this.list);
     at("zoom-in").addEventListener("click", () => this.magnify(0.5));
     at("zoom-out").addEventListener("click", () => this.magnify(2));
@@ -51,7 +51,7 @@ export class Plots {
     const { t } = run.columns;
     const range = this.store.get("range");
     if (range && (range[0] >= t[t.length - 1] || range[1] <= t[0])) this.store.set({ range: null });
-    const all = panelsOf(run);
+    const all = panelsOf(run, this.store.get("degrees"));
     const chosen = this.store.get("chosenPlots");
     const wanted = all.filter((panel) => chosen[panel.name] ?? panel.first);
     this.#offer(all, wanted);

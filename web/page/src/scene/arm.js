@@ -1,15 +1,17 @@
 /** The arm: a column on axis 1, links with their offsets, and a body at joints 2 and 3. */
 import { BoxGeometry, CylinderGeometry, Group, Matrix4, Mesh, MeshStandardMaterial, SphereGeometry, Vector3 } from "three";
+import { piece } from "./piece.js";
 import { cross, unit } from "./pose.js";
 
 /** The bars between the arm's points, from axis 1 on: thickness, of size, and whether it lies along a joint's axis. */
 const BARS = [[0.036, false], [0.036, false], [0.036, true], [0.026, false], [0.026, true]]; // prettier-ignore
 
 export class ArmModel {
-  constructor() {
-    this.links = new MeshStandardMaterial({ roughness: 0.45, metalness: 0.25 });
-    this.joints = new MeshStandardMaterial({ roughness: 0.5, metalness: 0.2 });
-    this.end = new MeshStandardMaterial({ roughness: 0.4 });
+  /** look: what all its materials have in common. */
+  constructor(look = {}) {
+    this.links = new MeshStandardMaterial({ roughness: 0.45, metalness: 0.25, ...look });
+    this.joints = new MeshStandardMaterial({ roughness: 0.5, metalness: 0.2, ...look });
+    this.end = new MeshStandardMaterial({ roughness: 0.4, ...look });
     this.column = new Mesh(new CylinderGeometry(1, 1.25, 1, 32), this.links);
     this.bars = BARS.map(() => new Mesh(new BoxGeometry(1, 1, 1), this.links));
     this.bodies = [0, 1].map(() => new Mesh(new CylinderGeometry(1, 1, 1, 32), this.joints));
@@ -37,6 +39,18 @@ export class ArmModel {
     });
     this.tip.scale.setScalar(0.021 * size);
     this.tip.position.set(...tip);
+    this.pieces = this.#pieces(points, axes, size);
+  }
+
+  /** What labels must not cover. */
+  #pieces(points, axes, size) {
+    const bars = BARS.map(([thickness], i) => piece(points[i + 1], points[i + 2], 0.6 * thickness * size));
+    const bodies = [2, 4].map((i) => {
+      const ends = [-1, 1].map((side) => points[i].map((part, k) => part + 0.04 * side * size * axes[i / 2][k]));
+      return piece(...ends, 0.046 * size);
+    });
+    const foot = this.column.position.toArray().map((part, k) => 2 * part - points[1][k]);
+    return [...bars, ...bodies, piece(foot, points[1], 0.04 * size), piece(points[6], points[6], 0.021 * size)];
   }
 
   /** Down to the floor; short where axis 1 leads to no floor. */

@@ -1,5 +1,6 @@
 /** An arrow: a shaft and a head, both as thick as seen best, whatever the length. */
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
+import { piece } from "./piece.js";
 
 const UP = new Vector3(0, 1, 0);
 
@@ -26,5 +27,11 @@ export class Arrow {
     this.object.position.copy(from);
     this.object.quaternion.copy(new Quaternion().setFromUnitVectors(UP, vector.clone().normalize()));
     this.tip.copy(from).add(vector);
+    this.from = from;
+  }
+
+  /** What labels must not cover. */
+  get pieces() {
+    return this.object.visible ? [piece(this.from, this.tip, 2.6 * this.thickness)] : [];
   }
 }

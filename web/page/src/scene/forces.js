@@ -23,6 +23,11 @@ export class Forces {
     }
   }
 
+  /** What labels must not cover. */
+  get pieces() {
+    return [...this.onWall.pieces, ...this.onTip.pieces];
+  }
+
   place({ tip, forceOnWall, forceOnTip }, size) {
     const scale = this.largest > 0 ? (LONGEST * size) / this.largest : 0;
     for (const [arrow, force] of [[this.onWall, forceOnWall], [this.onTip, forceOnTip]]) {

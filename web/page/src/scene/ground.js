@@ -24,6 +24,11 @@ export class Ground {
     });
   }
 
+  /** What labels must not cover. */
+  get pieces() {
+    return this.axes.flatMap((axis) => axis.pieces);
+  }
+
   /** A floor of squares of half a link's length. */
   #makeGrid(size) {
     this.grid?.geometry.dispose();

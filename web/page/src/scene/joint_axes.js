@@ -2,8 +2,10 @@
 import { ConeGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry, Vector3 } from "three";
 import { JOINTS } from "../app/colours.js";
 import { Arrow } from "./arrow.js";
+import { piece } from "./piece.js";
 
 const ARC = 1.5 * Math.PI;
+const CHORDS = 8; // that an arc is for labels
 const Z = new Vector3(0, 0, 1);
 
 export class JointAxes {
@@ -17,9 +19,14 @@ export class JointAxes {
     [above, points[2], points[4]].forEach((point, i) => this.axes[i].place(point, axes[i], size));
   }
 
-  /** Where the labels stand. */
-  ends() {
-    return this.axes.map((axis) => axis.arrow.tip);
+  /** What labels must not cover. */
+  get pieces() {
+    return this.object.visible ? this.axes.flatMap((axis) => axis.pieces) : [];
+  }
+
+  /** The arrows, at whose ends the labels stand. */
+  get arrows() {
+    return this.axes.map((axis) => axis.arrow);
   }
 }
 
@@ -43,5 +50,12 @@ class JointAxis {
     this.turn.scale.setScalar(0.055 * size);
     this.turn.position.copy(from).addScaledVector(direction, 0.1 * size);
     this.turn.quaternion.copy(new Quaternion().setFromUnitVectors(Z, direction));
+  }
+
+  get pieces() {
+    this.turn.updateMatrix();
+    const at = (i) => new Vector3(Math.cos((i / CHORDS) * ARC), Math.sin((i / CHORDS) * ARC), 0).applyMatrix4(this.turn.matrix);
+    const chords = Array.from({ length: CHORDS }, (_, i) => piece(at(i), at(i + 1), 0.2 * this.turn.scale.x));
+    return [...this.arrow.pieces, ...chords];
   }
 }

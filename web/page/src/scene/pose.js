@@ -5,7 +5,7 @@ import { valueOf, valuesOf } from "../simulate/thin.js";
 const XYZ = ["x", "y", "z"];
 
 /**
- * Points of the arm, axes of its joints, frame of the wall, both forces at a time, s; straight between rows.
+ * Joint angles, points of the arm, axes of its joints, face of the wall, both forces at a time, s; straight between rows.
  *
  * points: of axis 1 nearest to the origin, of axis 1 at the height of joint 2, joint 2, the end of link 2 in its plane,
  * joint 3, the end of link 3 in its plane, the tip. up: along axis 1, away from the base.
@@ -18,11 +18,12 @@ export function poseAt(run, time) {
   const axes = vectors(valuesOf(columns.t, arm.axes, time)).map(unit);
   const { wall } = resolved;
   return {
+    q: [1, 2, 3].map((joint) => value(`q${joint}`)),
     points,
     axes,
     up: axes[0].map((part) => part * (resolved.arm.joint_sign?.[0] ?? 1)),
     tip: points.at(-1),
-    wall: wall && "wall_x" in columns ? { point: three("wall"), ...wallFrame(wall, time) } : null,
+    wall: wall && "wall_x" in columns ? faceOf(wall, three("wall"), time) : null,
     forceOnTip: three("f_on_tip"),
     forceOnWall: three("f_on_wall"),
     contact: value("contact") > 0.5,
@@ -32,6 +33,12 @@ export function poseAt(run, time) {
 /** Three numbers each. */
 function vectors(numbers) {
   return Array.from({ length: numbers.length / 3 }, (_, i) => [...numbers.slice(3 * i, 3 * i + 3)]);
+}
+
+/** The face of the plate, whose frame has this origin at a time. */
+function faceOf(wall, origin, time) {
+  const frame = wallFrame(wall, time);
+  return { point: origin.map((part, i) => part + wall.face_offset * frame.normal[i]), ...frame };
 }
 
 /** Unit vectors of the plate at a time, model (4.1): normal towards the arm, e1 and e2 along the plate. */

@@ -1,11 +1,7 @@
 /** The path of the tip: all of it faint, up to the present time strong; and the path of its reference. */
 import { Group } from "three";
-import { Line2 } from "three/addons/lines/Line2.js";
-import { LineGeometry } from "three/addons/lines/LineGeometry.js";
-import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { rowAt, thin } from "../simulate/thin.js";
-
-const MOST = 1500; // points of a path
+import { rowAt } from "../simulate/thin.js";
+import { Path } from "./path.js";
 
 export class Trace {
   constructor() {
@@ -41,22 +37,5 @@ export class Trace {
     const passed = rowAt(this.times, time);
     this.past.line.geometry.instanceCount = passed;
     this.past.line.visible = passed > 0;
-  }
-}
-
-class Path {
-  constructor(look) {
-    this.material = new LineMaterial({ worldUnits: false, ...look });
-    this.line = new Line2(new LineGeometry(), this.material);
-    this.line.frustumCulled = false;
-  }
-
-  set(axes, rows = thin(axes, 0, axes[0].length, MOST)) {
-    const places = new Float32Array(3 * Math.max(2, rows.length));
-    for (let i = 0; i < places.length; i += 1) places[i] = axes[i % 3][rows[Math.min((i / 3) | 0, rows.length - 1)]];
-    this.line.geometry.dispose();
-    this.line.geometry = new LineGeometry().setPositions(places);
-    if (this.material.dashed) this.line.computeLineDistances();
-    return rows;
   }
 }

@@ -1,5 +1,5 @@
 /** From the text in the store to results in the store: every change of the text runs the whole scenario again. */
-import { given } from "../app/given.js";
+import { given, unpacked } from "../app/given.js";
 import { Runner } from "./runner.js";
 import { source } from "./source.js";
 
@@ -34,6 +34,12 @@ export class Simulation {
   /** The text with another choice (YAML) at a path, without the keys of the old one; `needed`: keys it must have. */
   choose(path, value, needed) {
     return this.#wait("choose", { path, value, needed });
+  }
+
+  /** The pose { q, tip } that brings the tip to a point, m, or as near as it reaches; null where there is none. */
+  pose(point) {
+    this.#store.set({ busy: true });
+    return this.#wait("pose", { point, near: this.#store.get("resolved").initial.q });
   }
 
   #wait(kind, question) {
@@ -89,6 +95,10 @@ export class Simulation {
       if (text === this.#store.get("text")) this.#store.set({ bandRun: band, busy: !last });
     },
     chosen: ({ text }) => this.#promises.get("choose").resolve(text),
+    pose: ({ pose }) => {
+      this.#store.set({ busy: false });
+      this.#promises.get("pose").resolve(pose);
+    },
     csv: ({ csv }) => this.#promises.get("csv").resolve(csv),
     failed: ({ message, problems, question }) => {
       this.#promises.get(question?.kind)?.reject(new Error(message));
@@ -100,5 +110,8 @@ export class Simulation {
 
 /** What stands beside the page's HTML about the build: the scenarios by name, in the menu's order. */
 export async function shippedScenarios() {
-  return given("arm3r-examples") ?? (await fetch("examples.json")).json();
+  const held = given("arm3r-examples");
+  if (!held) return (await fetch("examples.json")).json();
+  const scenarios = JSON.parse(new TextDecoder().decode(await unpacked(held.scenarios)));
+  return scenarios.map((one, i) => ({ ...one, picture: held.pictures[i] }));
 }

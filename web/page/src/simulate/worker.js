@@ -2,10 +2,11 @@
  * The worker that holds the simulator. It answers one question at a time; a page with a newer one ends the worker.
  *
  * In:  { kind: "load", wasm } with the bytes of arm3r.wasm, or the module that another worker compiled; then
- *      { kind: "run" | "band" | "choose" | "csv", id, text, name, ... }.
+ *      { kind: "run" | "band" | "choose" | "pose" | "csv", id, text, name, ... }.
  * Out: { kind: "loaded", module, version, schema }, then the answers, each with the id of its question.
  */
 import { load } from "../../../core/core.js";
+import { poseTowards } from "./reach.js";
 import { changed, removing, setting } from "../scenario/edit.js";
 
 const ALL_COLUMNS = { "time.log_columns": "null" }; // what is drawn, whatever the log is to have
@@ -63,6 +64,10 @@ const answers = {
       else break;
     }
     post({ kind: "chosen", id, text: edited, before: text });
+  },
+
+  pose({ id, text, name, point, near }) {
+    post({ kind: "pose", id, pose: poseTowards(core, text, { name, point, near }) });
   },
 
   csv({ id, text, name }) {
