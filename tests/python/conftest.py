@@ -12,6 +12,7 @@ from pathlib import Path
 from types import ModuleType
 
 import arm3r_cpp as arm3r
+import page_visitor
 import parts
 import pytest
 import resuming
@@ -32,7 +33,7 @@ QUICK = {"CMAKE_CXX_FLAGS_RELEASE": CALLS, "ARM3R_LANES": "1"}
 
 def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(parts)
-    for plugin in (sampling, resuming, time_box):
+    for plugin in (sampling, resuming, time_box, page_visitor):
         config.pluginmanager.register(plugin)
 
 

@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import json
-import math
 import random
 import re
-import shutil
-import threading
-from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -16,112 +12,15 @@ from typing import Any
 import arm3r_cpp as arm3r
 import pytest
 from arm3r_cpp.live import page as live_page
-from arm3r_cpp.live import page_data, server
+from arm3r_cpp.live import page_data
 from conftest import ROOT, scenario_files
+from page_visitor import SIZES, Visitor, percentile, tasks_of
 from parts import PAGE
 from random_scenarios import sample_seed
 
 pytestmark = pytest.mark.needs("page")
 
-SIZES = {"laptop": (1280, 800), "phone": (390, 844)}
-FLAGS = [
-    "--no-sandbox",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]  # WebGL without a GPU
-WAIT = 120_000  # ms, where other work keeps the machine busy
-SETTLED = "body.started:not(.busy):not([data-drawing])"
 NAMES = [path.relative_to(ROOT / "scenarios").with_suffix("").as_posix() for path in scenario_files()]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))))
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def address() -> str:
-    """Of a server of the page that was built."""
-    lines: list[str] = []
-    live_page.FOLDER = PAGE  # of the repository: it need not be installed
-    options = {"port": 0, "browser": False, "say": lines.append}
-    threading.Thread(
-        target=server.serve, args=(live_page.html("index.html", None),), kwargs=options, daemon=True
-    ).start()
-    while not lines:
-        pass
-    return lines[0].split()[0]
-
-
-class Visitor:
-    """Somebody who looks at a page, and keeps what went wrong."""
-
-    def __init__(self, browser: Any, size: str, **options: Any) -> None:
-        width, height = SIZES[size]
-        self.context = browser.new_context(viewport={"width": width, "height": height}, **options)
-        self.page = self.context.new_page()
-        self.page.set_default_timeout(WAIT)
-        self.errors: list[str] = []
-        self.requests: list[str] = []
-        self.page.on("console", lambda line: self.errors.append(line.text) if line.type == "error" else None)
-        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.on("request", lambda request: self.requests.append(request.url))
-
-    def open(self, address: str) -> Visitor:
-        self.page.goto(address)
-        self.settle()
-        return self
-
-    def settle(self) -> None:
-        """Wait until the newest text has been simulated and drawn, and the present time is shown."""
-        self.page.wait_for_selector(SETTLED, state="attached")
-        self.page.evaluate(
-            "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())))"
-        )
-
-    def choose(self, name: str) -> None:
-        self.page.click("#open-menu")
-        self.page.click(f'.card[data-name="{name}"]')
-        self.settle()
-
-    def type_text(self, text: str) -> None:
-        """Put a text in the place of the scenario, as somebody who pastes it."""
-        self.page.click('[data-tab="text"]')
-        self.page.click(".cm-content")
-        self.page.keyboard.press("Control+a")
-        self.page.keyboard.insert_text(text)
-        self.settle()
-
-    def text_of(self, selector: str) -> str:
-        return self.page.text_content(selector) or ""
-
-    def hash(self) -> str:
-        """Of the run that is shown."""
-        return self.text_of(".outcome code").strip()
-
-    def set_slider(self, path: str, place: int) -> None:
-        """Move a slider to a place of 0 to 1000, as a user does: it says input, then change."""
-        move = (
-            "(one, place) => { one.value = place;"
-            "for (const kind of ['input', 'change']) one.dispatchEvent(new Event(kind)); }"
-        )
-        self.page.locator(f'input[type=range][data-path="{path}"]').evaluate(move, place)
-
-    def check(self) -> None:
-        assert self.errors == []
-
-    def __enter__(self) -> Visitor:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.context.close()
 
 
 def native_hash(text: str, name: str) -> str:
@@ -136,10 +35,13 @@ def some_names(count: int) -> list[str]:
 
 
 def open_scenarios(visitor: Visitor, names: list[str]) -> None:
-    """Each is shown without an error, with all its checks passed."""
+    """Each is shown without an error, with all its checks passed; it plays, or has played to its end."""
     for name in names:
         visitor.choose(name)
         assert visitor.page.locator(".problem").count() == 0, name
+        plays = visitor.page.get_attribute("#play", "aria-label") == "Pause"
+        assert plays or visitor.page.input_value("#scrubber") == "10000", name
+        assert re.search(r"^Watch .*\d.*\.$", visitor.text_of("#watch")), name
         count = visitor.text_of("#check-count")
         assert count == "" or len(set(count.split("/"))) == 1, (name, count)
         assert visitor.page.locator(".plot canvas").count() >= 3, name
@@ -149,14 +51,14 @@ def open_scenarios(visitor: Visitor, names: list[str]) -> None:
 @pytest.mark.parametrize("size", SIZES)
 def test_scenarios_open(browser: Any, address: str, size: str) -> None:
     print("ARM3R_SEED =", sample_seed())
-    with Visitor(browser, size) as visitor:
+    with Visitor(browser, size, motion=True) as visitor:
         open_scenarios(visitor.open(address), some_names(2))
 
 
 @pytest.mark.gate
 @pytest.mark.parametrize("size", SIZES)
 def test_every_scenario_opens(browser: Any, address: str, size: str) -> None:
-    with Visitor(browser, size) as visitor:
+    with Visitor(browser, size, motion=True) as visitor:
         visitor.open(address)
         assert sorted(card.get_attribute("data-name") for card in visitor.page.locator(".card").all()) == sorted(NAMES)
         open_scenarios(visitor, NAMES)
@@ -247,6 +149,28 @@ def test_another_controller_comes_without_the_keys_of_the_old_one(browser: Any, 
             visitor.settle()
             assert visitor.page.locator(".problem").count() == 0, kind
             assert visitor.page.input_value('select[data-path="controller.type"]') == kind
+
+
+PATIENT = """const wait = setTimeout;
+window.setTimeout = (work, ms, ...more) => wait(work, ms === 30 ? 5000 : ms, ...more);
+"""
+CHOOSE = """(kinds) => {
+  const list = document.querySelector('select[data-path="controller.type"]');
+  for (const kind of kinds) { list.value = kind; list.dispatchEvent(new Event('change')); }
+}"""
+
+
+def test_the_last_of_two_choices_counts(browser: Any, address: str) -> None:
+    """The second is made before the simulator has answered the first, which is answered all the same."""
+    with Visitor(browser, "laptop") as visitor:
+        visitor.page.add_init_script(PATIENT)
+        visitor.open(address)
+        visitor.page.evaluate(CHOOSE, ["joint_pd", "hybrid"])
+        visitor.settle()
+        assert "type: hybrid" in visitor.text_of(".cm-content")
+        assert visitor.page.input_value('select[data-path="controller.type"]') == "hybrid"
+        assert visitor.page.locator(".problem").count() == 0
+        visitor.check()
 
 
 # ---- text -----------------------------------------------------------------------------------------------------------
@@ -490,28 +414,10 @@ def test_the_licences_of_what_is_bundled_are_there() -> None:
 # ---- frames ---------------------------------------------------------------------------------------------------------
 
 
-def tasks_of(trace: dict[str, Any]) -> tuple[list[float], list[float]]:
-    """Of the page's main thread, ms of the processor: each task, and all that begin within a frame's 1/60 s."""
-    events = trace["traceEvents"]
-    named = [e for e in events if e.get("name") == "thread_name" and e["args"].get("name") == "CrRendererMain"]
-    threads = {(e["pid"], e["tid"]) for e in named}
-    own = [e for e in events if (e["pid"], e["tid"]) in threads and "tdur" in e]
-    tasks = [e for e in own if e["name"] == "ThreadControllerImpl::RunTask"]
-    frames: dict[int, float] = {}
-    for task in tasks:
-        frame = int(task["ts"] * 60 / 1e6)
-        frames[frame] = frames.get(frame, 0.0) + task["tdur"] / 1000
-    return [task["tdur"] / 1000 for task in tasks], list(frames.values())
-
-
-def percentile(values: list[float], share: float) -> float:
-    return sorted(values)[min(len(values) - 1, math.ceil(share * len(values)) - 1)]
-
-
 @pytest.mark.gate
 def test_the_main_thread_is_free(browser: Any, address: str) -> None:
     """While the run plays and while a slider moves: at most 8 ms of a frame in 99 of 100, no task over 50 ms."""
-    with Visitor(browser, "laptop") as visitor:
+    with Visitor(browser, "laptop", motion=True) as visitor:
         visitor.open(address)
         renderer = visitor.page.evaluate(
             "() => { const gl = document.createElement('canvas').getContext('webgl2');"
