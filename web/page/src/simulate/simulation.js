@@ -11,7 +11,7 @@ export class Simulation {
   #runner;
   #waiting = 0;
   #changed = false;
-  #promises = new Map(); // of the questions whose answer is waited for, by kind
+  #promises = new Map(); // of the questions whose answer is waited for, by id
 
   constructor(store) {
     this.#store = store;
@@ -33,13 +33,13 @@ export class Simulation {
 
   /** The text with another choice (YAML) at a path, without the keys of the old one; `needed`: keys it must have. */
   choose(path, value, needed) {
+    this.#store.set({ busy: true });
     return this.#wait("choose", { path, value, needed });
   }
 
   #wait(kind, question) {
     return new Promise((resolve, reject) => {
-      this.#promises.set(kind, { resolve, reject });
-      this.#runner.ask({ kind, ...this.#scenario(), ...question });
+      this.#promises.set(this.#runner.ask({ kind, ...this.#scenario(), ...question }), { resolve, reject });
     });
   }
 
@@ -88,10 +88,13 @@ export class Simulation {
     band: ({ band, text, last }) => {
       if (text === this.#store.get("text")) this.#store.set({ bandRun: band, busy: !last });
     },
-    chosen: ({ text }) => this.#promises.get("choose").resolve(text),
-    csv: ({ csv }) => this.#promises.get("csv").resolve(csv),
+    chosen: ({ id, text }) => {
+      this.#promises.get(id).resolve(text);
+      this.#store.set({ busy: text !== this.#store.get("text") });
+    },
+    csv: ({ id, csv }) => this.#promises.get(id).resolve(csv),
     failed: ({ message, problems, question }) => {
-      this.#promises.get(question?.kind)?.reject(new Error(message));
+      this.#promises.get(question?.id)?.reject(new Error(message));
       const isOfText = question?.kind !== "band"; // of a text that was read and run before
       this.#store.set({ failure: message, busy: false, ...(isOfText ? { problems } : {}) });
     },
