@@ -23,6 +23,8 @@ export function startKeyboard(store, { transport, scene, plots, editor, menu, to
     a: () => store.set({ axes: !store.get("axes") }),
     e: () => showEditor(),
     m: () => menu.show(),
+    o: () => at("open-file").click(),
+    d: () => at("predict-start").click(),
     n: () => tour.go(1),
     p: () => tour.go(-1),
     "?": () => at("help").showModal(),

@@ -33,7 +33,7 @@ export class Scene {
     new ResizeObserver(() => this.#resize()).observe(this.canvas.parentElement);
     store.on(["theme"], () => this.#colour());
     store.on(["run"], () => later("scene-run", () => this.#show(store.get("run"))));
-    store.on(["time", "axes"], () => this.draw());
+    store.on(["time", "axes", "guess"], () => this.draw());
     this.#colour();
   }
 
@@ -100,7 +100,7 @@ export class Scene {
     arm.place(pose, this.size, this.floor);
     axes.object.visible = this.store.get("axes");
     axes.place(pose, this.size);
-    trace.upTo(time);
+    trace.upTo(time, { ahead: this.store.get("guess")?.seen ?? true });
     forces.place(pose, this.size);
     ground.place(this.size, this.floor);
     this.#placeWall(pose);
