@@ -1,7 +1,7 @@
 /**
  * Curves beside those of the run, in the same panel: what was measured, and what somebody draws.
  *
- * Each has low and high, in the unit of the panel; draw(plot, look); note(look), an element for the panel's head; and
+ * Each has low and high, in the unit of the panel; draw(plot, look); note(), an element for the panel's head; and
  * put(plot), called when there is a plot to be on.
  */
 

@@ -28,7 +28,7 @@ export class Plot {
    *  curves beside its own, as of beside.js; until: the time, s, from which on the run is hidden. */
   show(run, { about, band, range, width, beside, until }) {
     Object.assign(this, { run, about, band, range, beside, until });
-    this.notes.replaceChildren(...beside.map((one) => one.note(this.look)));
+    this.notes.replaceChildren(...beside.map((one) => one.note()));
     this.#draw(width);
     for (const one of beside) one.put(this.plot);
   }

@@ -65,10 +65,8 @@ export class Pad {
   }
 
   /** What stands for the curve beside the names of the others. */
-  note(look) {
-    const key = make("span", { className: "plot-key" }, make("i"), "yours");
-    key.style.setProperty("--colour", look.faint);
-    return key;
+  note() {
+    return make("span", { className: "yours" }, "yours");
   }
 
   #down(event) {
