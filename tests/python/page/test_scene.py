@@ -42,7 +42,7 @@ def picture(visitor: Visitor) -> Numbers:
 
 
 def drag(visitor: Visitor, selector: str, by: tuple[float, float]) -> Numbers:
-    """With the mouse, in steps; returns where the pointer lets go, px."""
+    """With the mouse, in steps; returns where the pointer is released, px."""
     start = middle(visitor, selector)
     visitor.page.mouse.move(*start)
     visitor.page.mouse.down()
@@ -253,7 +253,7 @@ def test_the_tip_stays_within_reach(browser: Any, address: str) -> None:
         drag(visitor, "#tip-handle", (90, -400))
         tip = tip_at_start(visitor)
         assert np.linalg.norm(tip) == pytest.approx(2, abs=2e-3) and tip[2] > 0.5
-        box = visitor.page.locator("#scene").bounding_box()  # the picture follows when the pointer lets go
+        box = visitor.page.locator("#scene").bounding_box()  # the picture follows when the pointer is released
         x, y = middle(visitor, "#tip-handle")
         assert 0 < x - box["x"] < box["width"] and 0 < y - box["y"] < box["height"]
         assert visitor.page.locator(".problem").count() == 0
