@@ -54,14 +54,22 @@ seeds: $(VENV)/test
 	  ARM3R_SEED=$$seed ARM3R_MINUTES=15 $(PYTEST) -m "gate and random" || exit 1; \
 	done
 
-# The live page, into build/page: needs node with npm.
-page: build/page/arm3r.wasm
-	$(BIN)/python tools/core_licenses.py wasm build/yaml_cpp/yaml-cpp > build/page/core_licenses.txt
-	npm --prefix web/page ci --no-audit --no-fund
+# The live page, into build/page: needs node with npm. The tools come where they are needed: a change of JavaScript alone
+# needs none of them.
+page: build/page/arm3r.wasm build/page/core_licenses.txt web/page/node_modules/.package-lock.json
 	node web/page/build.mjs
 
+build/page/core_licenses.txt: build/page/arm3r.wasm tools/core_licenses.py
+	$(BIN)/python tools/core_licenses.py wasm build/yaml_cpp/yaml-cpp > $@
+
+web/page/node_modules/.package-lock.json: web/page/package-lock.json
+	@$(MAKE) --no-print-directory $(VENV)/page
+	npm --prefix web/page ci --no-audit --no-fund
+	@touch $@
+
 # The core in WebAssembly, by the clang of the Python package ziglang.
-build/page/arm3r.wasm: $(shell find cpp cmake tools -type f) CMakeLists.txt web/core/core.js $(VENV)/wasm
+build/page/arm3r.wasm: $(shell find cpp cmake -type f) tools/yaml_cpp_source.py CMakeLists.txt pyproject.toml web/core/core.js
+	@$(MAKE) --no-print-directory $(VENV)/wasm
 	$(BIN)/python tools/yaml_cpp_source.py build/yaml_cpp
 	$(BIN)/cmake -S . -B build/wasm -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/wasm_toolchain.cmake \
 	  -DARM3R_ZIG=$$($(BIN)/python -c "import ziglang; print(ziglang.__path__[0])")/zig \
@@ -138,8 +146,6 @@ $(VENV)/tools: pyproject.toml
 $(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench $(VENV)/wasm $(VENV)/wheels: $(VENV)/%: pyproject.toml | $(VENV)/installed
 	$(PIP) 'arm3r_cpp[$*]'
 	@touch $@
-
-page: $(VENV)/page # node and npm come with it
 
 # What the C++ tests are compiled with.
 $(VENV)/boost: pyproject.toml | $(VENV)/installed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import threading
 from collections.abc import Iterator
@@ -113,3 +114,21 @@ class Visitor:
 
     def __exit__(self, *_: object) -> None:
         self.context.close()
+
+
+def tasks_of(trace: dict[str, Any]) -> tuple[list[float], list[float]]:
+    """Of the page's main thread, ms of the processor: each task, and all that begin within a frame's 1/60 s."""
+    events = trace["traceEvents"]
+    named = [e for e in events if e.get("name") == "thread_name" and e["args"].get("name") == "CrRendererMain"]
+    threads = {(e["pid"], e["tid"]) for e in named}
+    own = [e for e in events if (e["pid"], e["tid"]) in threads and "tdur" in e]
+    tasks = [e for e in own if e["name"] == "ThreadControllerImpl::RunTask"]
+    frames: dict[int, float] = {}
+    for task in tasks:
+        frame = int(task["ts"] * 60 / 1e6)
+        frames[frame] = frames.get(frame, 0.0) + task["tdur"] / 1000
+    return [task["tdur"] / 1000 for task in tasks], list(frames.values())
+
+
+def percentile(values: list[float], share: float) -> float:
+    return sorted(values)[min(len(values) - 1, math.ceil(share * len(values)) - 1)]

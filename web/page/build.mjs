@@ -25,6 +25,7 @@ for (const file of [wasm, coreLicenses]) {
 
 const page = await bundle("src/main.js");
 const worker = await bundle("src/simulate/worker.js");
+const unpack = await bundle("src/unpack.js");
 const examples = shipped();
 const licenses = [licenseTexts([...page.inputs, ...worker.inputs]), readFileSync(coreLicenses, "utf8")].join(separator());
 const version = /^version = "([^"]+)"/m.exec(readFileSync(join(ROOT, "pyproject.toml"), "utf8"))[1];
@@ -78,13 +79,15 @@ function writeServed() {
 }
 
 function writeSelfContained() {
-  const pictures = examples.map(({ picture }) => (existsSync(picture) ? `data:image/png;base64,${readFileSync(picture).toString("base64")}` : ""));
-  const inlined = { scenarios: packed(JSON.stringify(examples.map(({ picture, ...text }) => text))), pictures };
-  const core = { wasm: packed(readFileSync(wasm)), worker: packed(Buffer.from(worker.js)) };
-  const hash = createHash("sha256").update(page.js).digest("base64");
-  const policy = policyOf({ "script-src": `'sha256-${hash}' 'wasm-unsafe-eval'`, "worker-src": "blob:", "style-src": "'unsafe-inline'",
+  const inlined = examples.map((one) => {
+    const picture = existsSync(one.picture) ? `data:image/png;base64,${readFileSync(one.picture).toString("base64")}` : "";
+    return { ...one, picture };
+  });
+  const core = { wasm: packed(readFileSync(wasm)), worker: packed(Buffer.from(worker.js)), page: packed(Buffer.from(page.js)) };
+  const hashes = [unpack, page].map(({ js }) => `'sha256-${createHash("sha256").update(js).digest("base64")}'`).join(" ");
+  const policy = policyOf({ "script-src": `${hashes} 'wasm-unsafe-eval'`, "worker-src": "blob:", "style-src": "'unsafe-inline'",
     "img-src": "data: blob:" }); // prettier-ignore
-  const scripts = `${data("arm3r-core", core)}\n${data("arm3r-examples", inlined)}\n<script>${page.js}</script>`;
+  const scripts = `${data("arm3r-core", core)}\n${data("arm3r-examples", inlined)}\n<script>${unpack.js}</script>`;
   const licensesHere = `<details><summary>show</summary><pre>${escaped(licenses)}</pre></details>`;
   const html = filled({ policy, head: `<style>${page.css}</style>`, scripts, licenses: licensesHere });
   if (Buffer.byteLength(html) > MOST) throw new Error(`live.html has ${Buffer.byteLength(html)} bytes, more than ${MOST}`);

@@ -15,6 +15,7 @@ from .._native import Floats
 from ..core.run import Run
 from ..core.scenario import Scenario
 from ..errors import UsageError
+from .plain_text import plain_text
 
 
 def of_text(text: str, name: str) -> dict[str, Any]:
@@ -38,7 +39,7 @@ def of_run(run: Run) -> dict[str, Any]:
     arm, q = scenario.arm, run["q"]
     axes = arm.geometric_jacobian(q)[:, 3:].swapaxes(1, 2)
     data = {
-        **of_text(text, run.summary["name"]),
+        **of_text(plain_text(text), run.summary["name"]),
         "resolved": _resolved(scenario),
         "columns": run.columns,
         "units": run.units,

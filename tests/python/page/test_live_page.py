@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import random
 import re
 from itertools import pairwise
@@ -15,7 +14,7 @@ import pytest
 from arm3r_cpp.live import page as live_page
 from arm3r_cpp.live import page_data
 from conftest import ROOT, scenario_files
-from page_visitor import SIZES, Visitor
+from page_visitor import SIZES, Visitor, percentile, tasks_of
 from parts import PAGE
 from random_scenarios import sample_seed
 
@@ -36,10 +35,13 @@ def some_names(count: int) -> list[str]:
 
 
 def open_scenarios(visitor: Visitor, names: list[str]) -> None:
-    """Each is shown without an error, with all its checks passed."""
+    """Each is shown without an error, with all its checks passed; it plays, or has played to its end."""
     for name in names:
         visitor.choose(name)
         assert visitor.page.locator(".problem").count() == 0, name
+        plays = visitor.page.get_attribute("#play", "aria-label") == "Pause"
+        assert plays or visitor.page.input_value("#scrubber") == "10000", name
+        assert re.search(r"^Watch .*\d.*\.$", visitor.text_of("#watch")), name
         count = visitor.text_of("#check-count")
         assert count == "" or len(set(count.split("/"))) == 1, (name, count)
         assert visitor.page.locator(".plot canvas").count() >= 3, name
@@ -49,14 +51,14 @@ def open_scenarios(visitor: Visitor, names: list[str]) -> None:
 @pytest.mark.parametrize("size", SIZES)
 def test_scenarios_open(browser: Any, address: str, size: str) -> None:
     print("ARM3R_SEED =", sample_seed())
-    with Visitor(browser, size) as visitor:
+    with Visitor(browser, size, motion=True) as visitor:
         open_scenarios(visitor.open(address), some_names(2))
 
 
 @pytest.mark.gate
 @pytest.mark.parametrize("size", SIZES)
 def test_every_scenario_opens(browser: Any, address: str, size: str) -> None:
-    with Visitor(browser, size) as visitor:
+    with Visitor(browser, size, motion=True) as visitor:
         visitor.open(address)
         assert sorted(card.get_attribute("data-name") for card in visitor.page.locator(".card").all()) == sorted(NAMES)
         open_scenarios(visitor, NAMES)
@@ -147,6 +149,28 @@ def test_another_controller_comes_without_the_keys_of_the_old_one(browser: Any, 
             visitor.settle()
             assert visitor.page.locator(".problem").count() == 0, kind
             assert visitor.page.input_value('select[data-path="controller.type"]') == kind
+
+
+PATIENT = """const wait = setTimeout;
+window.setTimeout = (work, ms, ...more) => wait(work, ms === 30 ? 5000 : ms, ...more);
+"""
+CHOOSE = """(kinds) => {
+  const list = document.querySelector('select[data-path="controller.type"]');
+  for (const kind of kinds) { list.value = kind; list.dispatchEvent(new Event('change')); }
+}"""
+
+
+def test_the_last_of_two_choices_counts(browser: Any, address: str) -> None:
+    """The second is made before the simulator has answered the first, which is answered all the same."""
+    with Visitor(browser, "laptop") as visitor:
+        visitor.page.add_init_script(PATIENT)
+        visitor.open(address)
+        visitor.page.evaluate(CHOOSE, ["joint_pd", "hybrid"])
+        visitor.settle()
+        assert "type: hybrid" in visitor.text_of(".cm-content")
+        assert visitor.page.input_value('select[data-path="controller.type"]') == "hybrid"
+        assert visitor.page.locator(".problem").count() == 0
+        visitor.check()
 
 
 # ---- text -----------------------------------------------------------------------------------------------------------
@@ -390,28 +414,10 @@ def test_the_licences_of_what_is_bundled_are_there() -> None:
 # ---- frames ---------------------------------------------------------------------------------------------------------
 
 
-def tasks_of(trace: dict[str, Any]) -> tuple[list[float], list[float]]:
-    """Of the page's main thread, ms of the processor: each task, and all that begin within a frame's 1/60 s."""
-    events = trace["traceEvents"]
-    named = [e for e in events if e.get("name") == "thread_name" and e["args"].get("name") == "CrRendererMain"]
-    threads = {(e["pid"], e["tid"]) for e in named}
-    own = [e for e in events if (e["pid"], e["tid"]) in threads and "tdur" in e]
-    tasks = [e for e in own if e["name"] == "ThreadControllerImpl::RunTask"]
-    frames: dict[int, float] = {}
-    for task in tasks:
-        frame = int(task["ts"] * 60 / 1e6)
-        frames[frame] = frames.get(frame, 0.0) + task["tdur"] / 1000
-    return [task["tdur"] / 1000 for task in tasks], list(frames.values())
-
-
-def percentile(values: list[float], share: float) -> float:
-    return sorted(values)[min(len(values) - 1, math.ceil(share * len(values)) - 1)]
-
-
 @pytest.mark.gate
 def test_the_main_thread_is_free(browser: Any, address: str) -> None:
     """While the run plays and while a slider moves: at most 8 ms of a frame in 99 of 100, no task over 50 ms."""
-    with Visitor(browser, "laptop") as visitor:
+    with Visitor(browser, "laptop", motion=True) as visitor:
         visitor.open(address)
         renderer = visitor.page.evaluate(
             "() => { const gl = document.createElement('canvas').getContext('webgl2');"

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from arm3r_cpp.plot import style
 from arm3r_cpp.plot.run_panels import ENERGIES
-from page_visitor import SIZES, Visitor
-from test_live_page import percentile, tasks_of
+from page_visitor import SIZES, Visitor, percentile, tasks_of
 
 pytestmark = pytest.mark.needs("page")
 

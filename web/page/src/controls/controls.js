@@ -82,12 +82,14 @@ export class Controls {
     return setting(text, list[1], `[${items.join(", ")}]`, tree);
   }
 
-  /** Another type or law: the simulator says which keys go with it. */
+  /** Another type or law: the simulator says which keys go with it. The last choice counts. */
   async #choose(path, value) {
     const text = this.store.get("text");
     const needed = NEEDED[path] ?? {};
-    const chosen = await this.simulation.choose(path, value, needed).catch(() => null);
-    if (chosen !== null && this.store.get("text") === text) this.editor.replace(chosen);
+    const answer = this.simulation.choose(path, value, needed).catch(() => null);
+    this.chosen = answer;
+    const chosen = await answer;
+    if (chosen !== null && this.chosen === answer && this.store.get("text") === text) this.editor.replace(chosen);
   }
 }
 

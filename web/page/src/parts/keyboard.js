@@ -27,6 +27,8 @@ export function startKeyboard(store, { transport, scene, plots, editor, menu, to
     u: turn("degrees"),
     e: () => showEditor(),
     m: () => menu.show(),
+    o: () => at("open-file").click(),
+    d: () => at("predict-start").click(),
     n: () => tour.go(1),
     p: () => tour.go(-1),
     "?": () => at("help").showModal(),

@@ -5,13 +5,14 @@ import stops from "./stops.json";
 
 export class Tour {
   /** examples: as for the menu. open(text, name) shows a scenario. */
-  constructor(store, { editor, transport, examples, open }) {
-    Object.assign(this, { store, editor, transport, open });
+  constructor(store, { editor, transport, predict, examples, open }) {
+    Object.assign(this, { store, editor, transport, predict, open });
     this.texts = new Map(examples.map((one) => [one.name, one.text]));
     this.stop = -1;
     at("tour-next").addEventListener("click", () => this.go(1));
     at("tour-back").addEventListener("click", () => this.go(-1));
     at("tour-try").addEventListener("click", () => this.#try());
+    at("tour-predict").addEventListener("click", () => this.#predict());
     at("tour-close").addEventListener("click", () => this.close());
     at("tour-start").addEventListener("click", () => this.go(1));
   }
@@ -40,6 +41,7 @@ export class Tour {
     at("tour-try").textContent = stop.action;
     at("tour-answer").textContent = stop.answer;
     at("tour-answer").hidden = true;
+    at("tour-predict").hidden = !stop.predict;
     at("tour-back").disabled = this.stop === 0;
     at("tour-next").textContent = this.stop === stops.length - 1 ? "End" : "Next";
     this.store.set({ range: null, playing: false });
@@ -49,10 +51,25 @@ export class Tour {
   }
 
   #try() {
-    const stop = stops[this.stop];
-    const checks = stop.after.length > 0 ? { checks: JSON.stringify(stop.after) } : {};
-    this.editor.replace(edited(this.store.get("text"), { ...stop.then, ...checks }));
-    this.transport.restart(stop.speed ?? 1);
+    this.predict.end();
+    this.#change();
+    this.transport.replay(stops[this.stop].speed);
+    this.#answer();
+  }
+
+  /** The same change, but what it does is drawn before it is seen. */
+  #predict() {
+    this.#change();
+    this.predict.start({ ...stops[this.stop].predict, done: () => this.#answer() });
+  }
+
+  #change() {
+    const { then, after } = stops[this.stop];
+    const checks = after.length > 0 ? { checks: JSON.stringify(after) } : {};
+    this.editor.replace(edited(this.store.get("text"), { ...then, ...checks }));
+  }
+
+  #answer() {
     at("tour-answer").hidden = false;
     at("tour-answer").scrollIntoView({ block: "nearest" });
   }

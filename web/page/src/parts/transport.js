@@ -4,6 +4,9 @@ import { show } from "../app/frames.js";
 import { shown } from "../app/numbers.js";
 
 const STEPS = 10_000; // positions of the scrubber
+const LEAD = 1; // s of watching before what is to be watched
+const LONGEST = 0.25; // s of a frame: a page that was hidden goes on where it was
+const STILL = matchMedia("(prefers-reduced-motion: reduce)");
 const ICONS = { play: "M7 4l13 8-13 8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z" };
 
 export class Transport {
@@ -16,7 +19,7 @@ export class Transport {
     at("to-end").addEventListener("click", () => this.seek(this.span[1]));
     at("speed").addEventListener("change", (event) => store.set({ speed: Number(event.target.value) }));
     this.scrubber.addEventListener("input", () => this.#scrubbed());
-    store.on(["opened"], () => (this.rewind = true));
+    store.on(["opened"], () => this.replay());
     store.on(["run"], () => this.#fit());
     store.on(["time", "run"], () => show("transport", () => this.#show()));
     store.on(["playing"], () => this.#play());
@@ -34,9 +37,11 @@ export class Transport {
     this.store.set({ playing: !this.store.get("playing") });
   }
 
-  /** Play from the start. */
-  restart(speed) {
-    this.store.set({ time: this.span[0], speed, playing: true });
+  /** Play the run of the present text, as soon as it is there, from just before what is to be watched; speed: null for
+   *  one at which it can be watched. Where the system asks for less motion, its moment is shown. */
+  replay(speed = null) {
+    this.waiting = { speed };
+    this.#fit();
   }
 
   /** Go to a time, s, and stay there. */
@@ -58,7 +63,7 @@ export class Transport {
     this.store.set({ speed: speeds[Math.min(speeds.length - 1, Math.max(0, now + places))] });
   }
 
-  /** The speed at which a run of this length, s, can be watched: a short one is slowed down. */
+  /** The speed at which what lasts so long, s, can be watched: what is short is slowed down. */
   #watchable(length) {
     const speeds = [...at("speed").options].map((option) => Number(option.value));
     return speeds.filter((speed) => speed <= Math.min(1, length / 3)).at(-1) ?? speeds[0];
@@ -75,9 +80,18 @@ export class Transport {
 
   #fit() {
     const [start, end] = this.span;
-    if (this.rewind) this.store.set({ time: start, speed: this.#watchable(end - start) });
+    if (this.waiting && this.store.get("run")?.text === this.store.get("text")) this.#begin(start, end);
     else this.store.set({ time: this.#inside(this.store.get("time"), start, end) });
-    this.rewind = false;
+  }
+
+  /** Time waits until all of the run is drawn. */
+  #begin(start, end) {
+    const { begins, lasts, moment } = this.store.get("run").watch;
+    const speed = this.waiting.speed ?? this.#watchable(lasts);
+    this.waiting = null;
+    this.opening = true;
+    const time = STILL.matches ? moment : begins - LEAD * speed;
+    this.store.set({ time: this.#inside(time, start, end), speed, playing: !STILL.matches });
   }
 
   #show() {
@@ -105,7 +119,9 @@ export class Transport {
       return;
     }
     const [start, end] = this.span;
-    const time = this.store.get("time") + ((now - this.last) / 1000) * this.store.get("speed");
+    this.opening &&= "drawing" in document.body.dataset;
+    const passed = this.opening ? 0 : Math.min(LONGEST, (now - this.last) / 1000);
+    const time = this.store.get("time") + passed * this.store.get("speed");
     this.last = now;
     this.store.set({ time: this.#inside(time, start, end), playing: time < end });
     requestAnimationFrame((next) => this.#frame(next));

@@ -3,6 +3,7 @@ import uPlot from "uplot";
 import { make } from "../app/dom.js";
 import { shown } from "../app/numbers.js";
 import { picked, rowAt, thin, valueOf } from "../simulate/thin.js";
+import { widened } from "./beside.js";
 import { drawContact } from "./contact.js";
 
 const HEIGHT = 118;
@@ -18,15 +19,23 @@ export class Plot {
     this.look = look;
     this.actions = actions;
     this.values = panel.series.map((one) => make("b", {}, ""));
+    this.notes = make("span", { className: "plot-notes" });
     this.head = make("figcaption", {}, make("span", { className: "plot-title" }, `${panel.title}, ${panel.unit}`),
-      ...panel.series.map((one, i) => this.#key(one, i))); // prettier-ignore
+      ...panel.series.map((one, i) => this.#key(one, i)), this.notes); // prettier-ignore
     this.body = make("div", { className: "plot-body" });
     this.element = make("figure", { className: "plot", role: "group", "aria-label": panel.title }, this.head, this.body);
   }
 
-  /** Draw a run. about: { spans, events }; band: quantiles of many runs, or null; range: [from, to] in s, or null. */
-  show(run, { about, band, range, width }) {
-    Object.assign(this, { run, about, band, range });
+  /** Draw a run. about: { spans, events }; band: quantiles of many runs, or null; range: [from, to] in s, or null; beside:
+   *  curves beside its own, as of beside.js; until: the time, s, from which on the run is hidden. */
+  show(run, { about, band, range, width, beside, until }) {
+    Object.assign(this, { run, about, band, range, beside, until });
+    this.notes.replaceChildren(...beside.map((one) => one.note()));
+    this.#draw(width);
+    for (const one of beside) one.put(this.plot);
+  }
+
+  #draw(width) {
     const drawn = this.#data();
     if (this.plot && this.bands === this.hasBand) {
       this.plot.setData(drawn, false);
@@ -101,7 +110,8 @@ export class Plot {
   #data() {
     const { columns } = this.run;
     const { t } = columns;
-    const [from, to] = this.range ? [rowAt(t, this.range[0]), rowAt(t, this.range[1]) + 2] : [0, t.length];
+    const [from, last] = this.range ? [rowAt(t, this.range[0]), rowAt(t, this.range[1]) + 2] : [0, t.length];
+    const to = this.until < t[t.length - 1] ? Math.min(last, rowAt(t, this.until) + 1) : last;
     const own = this.panel.series.map((one) => columns[one.column]);
     const rows = thin(own, from, Math.min(to, t.length));
     const times = picked(t, rows);
@@ -129,12 +139,13 @@ export class Plot {
     return {
       width, height: HEIGHT, padding: [6, 16, 0, 0], legend: { show: false }, pxAlign: false,
       cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false },
-      scales: { x: { time: false }, y: { range: (_, low, high) => this.#range(low, high) } },
+      scales: { x: { time: false }, y: { range: (_, low, high) => this.#range(...widened([low, high], this.beside)) } },
       axes: [{ ...axis, size: 22, space: 60 }, { ...axis, size: AXIS, space: 26, values: (_, ticks) => ticks.map((tick) => shownTick(tick)) }],
       series: [{}, ...series, ...edges],
       bands: this.hasBand ? series.map((one, i) => ({ series: [first + 2 * i + 1, first + 2 * i], fill: `${one.stroke}38` })) : [],
       hooks: {
-        drawClear: [(plot) => drawContact(plot, { ...this.about, colour: this.look.contact, ink: this.look.faint })],
+        drawClear: [(plot) => drawContact(plot, { ...this.about, colour: this.look.contact, ink: this.look.faint }),
+          (plot) => this.beside.forEach((one) => one.draw(plot, this.look))],
         setSelect: [(plot) => this.#selected(plot)],
         ready: [(plot) => plot.over.addEventListener("click", (event) => this.#clicked(plot, event))],
       },

@@ -3,6 +3,7 @@ import { at, make } from "../app/dom.js";
 import { colours } from "../app/colours.js";
 import { later, show } from "../app/frames.js";
 import { READABLE } from "../app/numbers.js";
+import { measuredIn } from "../measured/curves.js";
 import { contactSpans } from "./contact.js";
 import { panelsOf } from "./panels.js";
 import { Plot } from "./plot.js";
@@ -16,7 +17,7 @@ export class Plots {
     this.list = at("plots");
     this.choice = at("plot-choice");
     store.on(["run", "chosenPlots"], () => later("plots", () => this.#show()));
-    store.on(["bandRun"], () => later("plots-band", () => this.#redraw()));
+    store.on(["bandRun", "guess", "measured"], () => later("plots-redraw", () => this.#redraw()));
     store.on(["theme"], () => later("plots", () => this.#renew()));
     store.on(["time", "playing"], () => show("plots", () => this.#seek()));
     store.on(["range"], () => this.#zoom());
@@ -57,7 +58,6 @@ export class Plots {
     this.#offer(all, wanted);
     this.#keep(wanted);
     this.run = run;
-    this.about = { spans: contactSpans(run), events: run.events };
     this.#redraw();
     this.store.set({ panels: wanted });
   }
@@ -70,8 +70,20 @@ export class Plots {
     if (!plot.element.isConnected) return;
     const range = this.store.get("range");
     const band = this.store.get("bandRun");
-    plot.show(this.run, { about: this.about, band, range, width: this.list.clientWidth });
+    plot.show(this.run, { band, range, width: this.list.clientWidth, ...this.#beside(plot.panel) });
     plot.seek(this.store.get("time"));
+  }
+
+  /** What stands beside the curves of a panel, and until when run and contact are shown. */
+  #beside(panel) {
+    const guess = this.store.get("guess");
+    const until = guess && !guess.seen ? guess.curve.from : Infinity;
+    const spans = contactSpans(this.run).filter(([start]) => start < until).map(([start, end]) => [start, Math.min(end, until)]);
+    const about = { spans, events: this.run.events.filter((event) => event.t <= until) };
+    const drawn = guess?.panel === panel.name ? [guess.pad] : [];
+    const measured = until < Infinity ? [] : measuredIn(panel, this.store.get("measured"), this.run);
+    const beside = [...measured, ...drawn];
+    return { about, beside, until };
   }
 
   /** Keep the panels that are still wanted, in order; make what is new; take away the others. */

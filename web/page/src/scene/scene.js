@@ -42,7 +42,7 @@ export class Scene {
     store.on(["theme"], () => this.#colour());
     store.on(["run"], () => later("scene-run", () => this.#show(store.get("run"))));
     store.on(["before", "ghost"], () => later("ghost", () => this.#showGhost()));
-    store.on(["time", "axes", "degrees"], () => this.draw());
+    store.on(["time", "axes", "degrees", "guess"], () => this.draw());
     this.#colour();
   }
 
@@ -128,7 +128,7 @@ export class Scene {
     arm.place(pose, this.size, this.floor);
     axes.object.visible = this.store.get("axes");
     axes.place(pose, this.size);
-    trace.upTo(time);
+    trace.upTo(time, { ahead: this.store.get("guess")?.seen ?? true });
     ghost.place(time, pose, this.size, this.floor);
     forces.place(pose, this.size);
     ground.place(this.size, this.floor);

@@ -32,8 +32,9 @@ export class Trace {
     if (this.reference.line.visible) this.reference.set(points("tip_ref"));
   }
 
-  /** Draw what has been passed at a time. */
-  upTo(time) {
+  /** Draw what has been passed at a time; ahead: also what comes after it. */
+  upTo(time, { ahead }) {
+    this.whole.line.visible = ahead;
     const passed = rowAt(this.times, time);
     this.past.line.geometry.instanceCount = passed;
     this.past.line.visible = passed > 0;

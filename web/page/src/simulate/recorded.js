@@ -1,5 +1,6 @@
 /** A run that Python put into the page: its rows to the last bit, not simulated again. */
 import { unpacked } from "../app/given.js";
+import { watchOf } from "../watch/moments.js";
 
 /** As the worker sends a run. data: { scenario, resolved, columns, units, matrix, arm, summary, report }. */
 export async function recordedRun(data) {
@@ -13,7 +14,8 @@ export async function recordedRun(data) {
   const arm = { points: new Float64Array(points), axes: new Float64Array(axes), reach: data.arm.reach };
   const { summary, report, resolved } = data;
   const { events, checks, name } = summary;
-  return { columns, units: data.units, events, summary, checks, report, resolved, arm, name, recorded: true };
+  const run = { columns, units: data.units, events, summary, checks, report, resolved, arm, name, recorded: true };
+  return { ...run, watch: watchOf(run) };
 }
 
 /** The run as CSV; each number reads back to the same bits. */

@@ -27,11 +27,12 @@ export class Runner {
     this.#worker = this.#started();
   }
 
-  /** Ask; what was asked before and is not yet answered is given up. */
+  /** Ask; what was asked before and is not yet answered is given up. Returns the number of the question, its id. */
   ask(question) {
     this.#next = { ...question, id: (this.#id += 1) };
     if (!this.#asked) this.#send();
     else if (!this.#timer) this.#timer = setTimeout(() => this.#giveUp(), PATIENCE);
+    return this.#id;
   }
 
   get busy() {

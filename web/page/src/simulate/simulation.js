@@ -1,5 +1,5 @@
 /** From the text in the store to results in the store: every change of the text runs the whole scenario again. */
-import { given, unpacked } from "../app/given.js";
+import { given } from "../app/given.js";
 import { Runner } from "./runner.js";
 import { source } from "./source.js";
 
@@ -11,7 +11,7 @@ export class Simulation {
   #runner;
   #waiting = 0;
   #changed = false;
-  #promises = new Map(); // of the questions whose answer is waited for, by kind
+  #promises = new Map(); // of the questions whose answer is waited for, by id
 
   constructor(store) {
     this.#store = store;
@@ -33,6 +33,7 @@ export class Simulation {
 
   /** The text with another choice (YAML) at a path, without the keys of the old one; `needed`: keys it must have. */
   choose(path, value, needed) {
+    this.#store.set({ busy: true });
     return this.#wait("choose", { path, value, needed });
   }
 
@@ -44,8 +45,7 @@ export class Simulation {
 
   #wait(kind, question) {
     return new Promise((resolve, reject) => {
-      this.#promises.set(kind, { resolve, reject });
-      this.#runner.ask({ kind, ...this.#scenario(), ...question });
+      this.#promises.set(this.#runner.ask({ kind, ...this.#scenario(), ...question }), { resolve, reject });
     });
   }
 
@@ -94,14 +94,17 @@ export class Simulation {
     band: ({ band, text, last }) => {
       if (text === this.#store.get("text")) this.#store.set({ bandRun: band, busy: !last });
     },
-    chosen: ({ text }) => this.#promises.get("choose").resolve(text),
-    pose: ({ pose }) => {
-      this.#store.set({ busy: false });
-      this.#promises.get("pose").resolve(pose);
+    chosen: ({ id, text }) => {
+      this.#promises.get(id).resolve(text);
+      this.#store.set({ busy: text !== this.#store.get("text") });
     },
-    csv: ({ csv }) => this.#promises.get("csv").resolve(csv),
+    pose: ({ id, pose }) => {
+      this.#store.set({ busy: false });
+      this.#promises.get(id).resolve(pose);
+    },
+    csv: ({ id, csv }) => this.#promises.get(id).resolve(csv),
     failed: ({ message, problems, question }) => {
-      this.#promises.get(question?.kind)?.reject(new Error(message));
+      this.#promises.get(question?.id)?.reject(new Error(message));
       const isOfText = question?.kind !== "band"; // of a text that was read and run before
       this.#store.set({ failure: message, busy: false, ...(isOfText ? { problems } : {}) });
     },
@@ -110,8 +113,5 @@ export class Simulation {
 
 /** What stands beside the page's HTML about the build: the scenarios by name, in the menu's order. */
 export async function shippedScenarios() {
-  const held = given("arm3r-examples");
-  if (!held) return (await fetch("examples.json")).json();
-  const scenarios = JSON.parse(new TextDecoder().decode(await unpacked(held.scenarios)));
-  return scenarios.map((one, i) => ({ ...one, picture: held.pictures[i] }));
+  return given("arm3r-examples") ?? (await fetch("examples.json")).json();
 }

@@ -8,6 +8,7 @@
 import { load } from "../../../core/core.js";
 import { poseTowards } from "./reach.js";
 import { changed, removing, setting } from "../scenario/edit.js";
+import { watchOf } from "../watch/moments.js";
 
 const ALL_COLUMNS = { "time.log_columns": "null" }; // what is drawn, whatever the log is to have
 const MOST_ROUNDS = 8; // of taking out keys that belong to the choice before
@@ -35,6 +36,7 @@ const answers = {
     const arm = core.positions(text, angles, { name });
     const run = { columns, units, events, summary, checks, report, resolved, arm, name: summary.name };
     run.milliseconds = performance.now() - start;
+    run.watch = watchOf(run);
     const moved = [...Object.values(columns), arm.points, arm.axes];
     post({ kind: "run", id, text, run }, moved.map((numbers) => numbers.buffer)); // prettier-ignore
   },
