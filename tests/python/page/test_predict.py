@@ -164,6 +164,24 @@ def test_the_place_of_the_tip_can_be_drawn(browser: Any, address: str) -> None:
         visitor.check()
 
 
+def test_an_angle_is_drawn_in_the_unit_of_its_panel(browser: Any, address: str) -> None:
+    with Visitor(browser, "laptop") as visitor:
+        visitor.open(address)
+        begin(visitor, "lecture/05_free_fall")
+        visitor.page.select_option("#predict-curve", "q2")
+        visitor.settle()
+        visitor.page.click("#predict-see")
+        visitor.settle()
+        run = arm3r.Scenario.example("lecture/05_free_fall").run()
+        most = np.degrees(np.abs(run["q2"] - run["q2"][0]).max())
+        assert "° from the run" in visitor.text_of("#predict-say")
+        assert numbers(visitor.text_of("#predict-say"))[1] == pytest.approx(most, rel=0.01)
+        visitor.page.keyboard.press("u")  # radians: the curve was drawn in degrees
+        visitor.settle()
+        assert not visitor.page.is_visible("#predict")
+        visitor.check()
+
+
 STOPS = json.loads((ROOT / "web/page/src/parts/stops.json").read_text())
 
 

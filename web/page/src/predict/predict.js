@@ -17,7 +17,7 @@ export class Predict {
     at("predict-end").addEventListener("click", () => this.end());
     at("predict-see").addEventListener("click", () => (store.get("guess").seen ? this.start(this.asked) : this.#see()));
     at("predict-curve").addEventListener("change", (event) => this.start({ ...this.asked, column: event.target.value }));
-    store.on(["opened"], () => this.end());
+    store.on(["opened", "degrees"], () => this.end());
     store.on(["run"], () => this.#arrived());
   }
 
@@ -51,7 +51,7 @@ export class Predict {
 
   #begin(run) {
     this.waiting = false;
-    const panels = panelsOf(run).map(foreseeable).filter(({ series }) => series.length > 0);
+    const panels = panelsOf(run, this.store.get("degrees")).map(foreseeable).filter(({ series }) => series.length > 0);
     const { panel, series } = found(panels, this.asked.column ?? run.watch.column) ?? found(panels, panels[0].series[0].column);
     const curve = guessOf(run, series.column);
     const about = { unit: panel.unit, scale: panel.scale ?? 1, label: labelOf(panel, series) };
@@ -60,17 +60,12 @@ export class Predict {
     this.store.set({
       guess: { ...about, curve, pad, panel: panel.name, column: series.column, seen: false },
       range: [Math.max(run.columns.t[0], curve.from - before), curve.to],
-      time: curve.from, playing: false, tab: this.#tab(), chosenPlots: { ...this.store.get("chosenPlots"), [panel.name]: true },
+      time: curve.from, playing: false, tab: "plots", chosenPlots: { ...this.store.get("chosenPlots"), [panel.name]: true },
     }); // prettier-ignore
     at("predict-curve").replaceChildren(...panels.flatMap((one) => one.series.map((own) => make("option", { value: own.column }, labelOf(one, own)))));
     at("predict-curve").value = series.column;
     at("predict-say").textContent = `${this.asked.question} Draw it in the panel “${panel.title}”, from ${shown(curve.from, 3)} s on.`;
     this.#show("drawing");
-  }
-
-  /** On a phone the plots are one panel of several. */
-  #tab() {
-    return at("plots-panel").offsetParent ? this.store.get("tab") : "plots";
   }
 
   #see() {
