@@ -112,6 +112,21 @@ def test_the_scene_is_large(browser: Any, address: str, size: str) -> None:
         assert np.ptp(dark[:, 1]) >= 0.45 * box["width"]
 
 
+# The sizes of elements are told when a run has come, as where the machine is busy.
+LATE = """const observe = ResizeObserver.prototype.observe;
+ResizeObserver.prototype.observe = function (...what) { const waiting = setInterval(() => {
+if (!document.querySelector('.outcome')) return;
+clearInterval(waiting); setTimeout(() => observe.apply(this, what), 3000); }, 50); };"""
+
+
+def test_a_run_that_comes_before_the_scene_knows_its_size_is_shown(browser: Any, address: str) -> None:
+    with Visitor(browser, "laptop") as visitor:
+        visitor.page.add_init_script(LATE)
+        visitor.open(address)
+        visitor.page.wait_for_selector(".scene-label:not([hidden])")
+        visitor.check()
+
+
 # ---- labels ---------------------------------------------------------------------------------------------------------
 
 BOXES = """() => Object.fromEntries([...document.querySelectorAll(

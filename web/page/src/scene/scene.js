@@ -121,7 +121,7 @@ export class Scene {
   }
 
   #draw() {
-    if (!this.run) return;
+    if (!this.run || !this.view.width) return;
     const time = this.store.get("time");
     const pose = poseAt(this.run, time);
     const { arm, axes, trace, forces, ground, ghost } = this.parts;
