@@ -22,7 +22,8 @@ target_compile_options(cxx_with_exceptions PRIVATE -w)
 set_source_files_properties(${_zig}/libunwind/src/Unwind-wasm.c PROPERTIES COMPILE_DEFINITIONS _LIBUNWIND_HIDE_SYMBOLS)
 
 # ---- small where little time is spent: only the templates are compiled for speed
-add_executable(arm3r_wasm ${ARM3R_LIBRARY_SOURCES} ${ARM3R_TEXT_SOURCES} cpp/src/wasm/csv.cpp cpp/src/wasm/runtime.cpp)
+add_executable(arm3r_wasm ${ARM3R_LIBRARY_SOURCES} ${ARM3R_TEXT_SOURCES} cpp/src/wasm/csv.cpp cpp/src/wasm/runtime.cpp
+               cpp/src/wasm/struct_sizes.cpp)
 target_compile_definitions(arm3r_wasm PRIVATE ARM3R_BUILD_INFO="${ARM3R_BUILD_INFO}")
 foreach(_target arm3r_wasm arm3r_core arm3r_keys arm3r_platform arm3r_yaml cxx_with_exceptions)
   target_compile_options(${_target} PRIVATE -Os -ffunction-sections -fdata-sections)

@@ -11,10 +11,6 @@
 const OK = 0;
 const INDEX = -103; // ARM3R_E_INDEX
 const REACH = -105; // ARM3R_E_REACH
-const RUN_OPTIONS = 56; // sizeof(arm3r_run_options) in wasm32
-const EVENT = 88; // sizeof(arm3r_event)
-const BATCH_ROWS = 56; // sizeof(arm3r_batch_rows)
-const BATCH_OPTIONS = 48; // sizeof(arm3r_batch_options)
 const ADDRESSES = 2 ** 32; // bytes that a pointer can tell apart
 const BADF = 8; // of WASI: there is no such file
 const NOSYS = 52; // of WASI: there is no such function
@@ -96,6 +92,7 @@ export class Core {
     #host;
     #dead = null;
     #sections = null; // of a scenario
+    #sizes; // of structs, bytes
 
     constructor(module, exports, host) {
         this.module = module;
@@ -103,6 +100,9 @@ export class Core {
         this.#host = host;
         this.version = this.#text(this.#call("arm3r_version"));
         this.buildInfo = this.#text(this.#call("arm3r_build_info"));
+        const sizes = new Uint32Array(this.#buffer(), this.#call("arm3r_wasm_struct_sizes"), 4);
+        const [runOptions, event, batchRows, batchOptions] = sizes;
+        this.#sizes = { runOptions, event, batchRows, batchOptions };
     }
 
     /** Whether a trap has ended this core. */
@@ -283,10 +283,10 @@ export class Core {
 
     #withRun(text, { name, set, trust = false, timeLimit = 0 }, use) {
         return this.#withScenario(text, { name, set }, (scenario) =>
-            this.#withMemory(RUN_OPTIONS, (options) => {
-                new Uint8Array(this.#buffer(), options, RUN_OPTIONS).fill(0);
-                const view = new DataView(this.#buffer(), options, RUN_OPTIONS);
-                view.setUint32(0, RUN_OPTIONS, true);
+            this.#withMemory(this.#sizes.runOptions, (options) => {
+                new Uint8Array(this.#buffer(), options, this.#sizes.runOptions).fill(0);
+                const view = new DataView(this.#buffer(), options, this.#sizes.runOptions);
+                view.setUint32(0, this.#sizes.runOptions, true);
                 view.setFloat64(16, timeLimit, true);
                 view.setBigInt64(24, trust ? 1n : 0n, true);
                 const run = this.#handle("arm3r_scenario_run", scenario, options);
@@ -359,7 +359,7 @@ export class Core {
     }
 
     #events(run) {
-        return this.#withMemory(EVENT, (out) => {
+        return this.#withMemory(this.#sizes.event, (out) => {
             this.#check(this.#call("arm3r_run_event_count", run, out));
             const count = new Uint32Array(this.#buffer(), out, 1)[0];
             return Array.from({ length: count }, (_, i) => {
@@ -477,9 +477,10 @@ export class Core {
         return this.#withArray(wanted, (places) => {
             const room = this.#rowCount(numbers, varied, runs, [places, wanted.length]);
             return this.#withMemory(8 * wanted.length * room * runs, (data) => {
-                const batchRows = words(BATCH_ROWS, [BATCH_ROWS, places, wanted.length, room, data]);
+                const { batchRows: size, batchOptions: all } = this.#sizes;
+                const batchRows = words(size, [size, places, wanted.length, room, data]);
                 const summary = this.#withArray(batchRows, (at) =>
-                    this.#withArray(words(BATCH_OPTIONS, [BATCH_OPTIONS, 0, 0, 0, 0, 0, at]), (options) =>
+                    this.#withArray(words(all, [all, 0, 0, 0, 0, 0, at]), (options) =>
                         this.#summaries(numbers, varied, runs, options),
                     ),
                 );

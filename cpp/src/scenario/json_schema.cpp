@@ -112,6 +112,7 @@ std::string default_json(const Key& key, const Key* primary, const Params& param
 std::string described_value(const Key& key, const Key* primary, const Params& params) {
     const std::string unit = key.unit.empty() ? "" : " [" + unit_text(key) + "]";
     Words members = {member("description", json_string(key.doc + unit))};
+    if (!key.unit.empty()) members.push_back(member("x-unit", json_string(key.unit)));
     if (const std::string value = default_json(key, primary, params); !value.empty())
         members.push_back(member("default", value));
     return "{" + listed(members) + ", " + value_schema(key, params).substr(1);

@@ -43,11 +43,10 @@ function followed(schema, node) {
 }
 
 function described(node) {
-  const [, meaning, unit] = /^(.*?)(?: \[([^\]]*)\])?$/s.exec(node.description ?? "");
   const one = numeric(node);
   return {
-    description: meaning,
-    unit: (unit ?? "").split(",")[0],
+    description: (node.description ?? "").replace(/ \[[^\]]*\]$/, ""), // its unit stands beside
+    unit: node["x-unit"] ?? "",
     minimum: one.exclusiveMinimum ?? one.minimum ?? -Infinity,
     open: "exclusiveMinimum" in one,
     maximum: one.maximum ?? Infinity,
