@@ -2,9 +2,9 @@
 // The values and the first derivatives of a recorded formula, in lanes: the structure of its derivatives is found once, and
 // those that are zero are left out. Each lane has the bits of Dual.
 
+#include "arm3r/numbers/dual.hpp"
 #include "arm3r/numbers/expr.hpp"
 #include "arm3r/numbers/lane_access.hpp"
-#include "arm3r/numbers/partial_derivatives.hpp"
 
 namespace arm3r {
 

@@ -40,6 +40,7 @@ def log_of(run: arm3r.Run, error: float) -> str:
     return "\n".join(rows) + "\n"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_a_measurement_stands_beside_the_run(browser: Any, address: str, tmp_path: Path, size: str) -> None:
     file = tmp_path / "bench.csv"
@@ -97,6 +98,7 @@ def test_a_scenario_opens(browser: Any, address: str) -> None:
         visitor.check()
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_of_a_robot_the_page_says_which_command_makes_a_scenario_of_it(
     browser: Any, address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], size: str
@@ -131,7 +133,9 @@ def test_the_keyboard_opens_a_file(browser: Any, address: str, tmp_path: Path) -
             visitor.page.keyboard.press("o")
         chooser.value.set_files(file)
         visitor.page.wait_for_selector("#scenario-name:text-is('mine')")
+        visitor.settle()
         visitor.page.keyboard.press("m")
+        visitor.page.wait_for_selector("#open-file")
         visitor.page.focus("#open-file")
         with visitor.page.expect_file_chooser() as chooser:
             visitor.page.keyboard.press("Enter")

@@ -21,6 +21,7 @@ def now(visitor: Visitor) -> float:
     return float(visitor.text_of("#time").split()[0])
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_the_first_ten_seconds_hold_contact_a_sentence_and_a_number(browser: Any, address: str, size: str) -> None:
     with Visitor(browser, size, motion=True) as visitor:
@@ -35,6 +36,7 @@ def test_the_first_ten_seconds_hold_contact_a_sentence_and_a_number(browser: Any
         visitor.check()
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_moves_where_the_system_asks_for_less_motion(browser: Any, address: str, size: str) -> None:
     with Visitor(browser, size) as visitor:

@@ -48,6 +48,7 @@ def open_scenarios(visitor: Visitor, names: list[str]) -> None:
         visitor.check()
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_scenarios_open(browser: Any, address: str, size: str) -> None:
     print("ARM3R_SEED =", sample_seed())
@@ -72,6 +73,7 @@ def test_the_page_has_the_bits_of_the_library(browser: Any, address: str) -> Non
             assert visitor.hash() == arm3r.Scenario.example(name).run().summary["hash"]
 
 
+@pytest.mark.gate
 def test_a_slider_that_was_just_moved_changes_no_other_scenario(browser: Any, address: str) -> None:
     """Its change of the text takes some frames; another scenario is opened before they have passed."""
     with Visitor(browser, "laptop") as visitor:
@@ -229,7 +231,7 @@ def edit_at_random(visitor: Visitor, count: int) -> None:
 
 def test_random_edits(browser: Any, address: str) -> None:
     with Visitor(browser, "laptop") as visitor:
-        edit_at_random(visitor.open(address), 10)
+        edit_at_random(visitor.open(address), 5)
 
 
 @pytest.mark.gate
@@ -296,6 +298,7 @@ Worker.prototype.postMessage = function (data) { window.questions.push(data.kind
 """
 
 
+@pytest.mark.gate
 def test_a_band_is_simulated_once(browser: Any, address: str) -> None:
     """For each run, and for each change of the band; also where the run before had other columns."""
     hybrid = arm3r.Scenario.example("force_control/hybrid_first_contact")
@@ -318,7 +321,8 @@ def test_a_band_is_simulated_once(browser: Any, address: str) -> None:
         visitor.check()
 
 
-@pytest.mark.parametrize("size", ["laptop", pytest.param("phone", marks=pytest.mark.gate)])
+@pytest.mark.gate
+@pytest.mark.parametrize("size", SIZES)
 def test_every_guided_stop_can_be_reached(browser: Any, address: str, size: str) -> None:
     stops = json.loads((ROOT / "web/page/src/parts/stops.json").read_text())
     with Visitor(browser, size) as visitor:

@@ -49,6 +49,7 @@ def begin(visitor: Visitor, name: str) -> None:
     visitor.settle()
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_a_curve_that_is_drawn_by_keys_is_as_far_from_the_run_as_is_told(browser: Any, address: str, size: str) -> None:
     """The curve is level: its distance is that of one number from the force."""
@@ -185,7 +186,8 @@ def test_an_angle_is_drawn_in_the_unit_of_its_panel(browser: Any, address: str) 
 STOPS = json.loads((ROOT / "web/page/src/parts/stops.json").read_text())
 
 
-@pytest.mark.parametrize("size", ["laptop", pytest.param("phone", marks=pytest.mark.gate)])
+@pytest.mark.gate
+@pytest.mark.parametrize("size", SIZES)
 def test_a_guided_stop_asks_before_it_shows(browser: Any, address: str, size: str) -> None:
     """Each stop with a prediction asks its question, and gives its answer only after the run is seen."""
     with Visitor(browser, size) as visitor:

@@ -99,6 +99,7 @@ def test_an_infinite_wall_goes_through_the_whole_picture(browser: Any, address: 
                 assert (np.ptp(row.sum(axis=1)) > 15) == infinite, (name, y)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_the_scene_is_large(browser: Any, address: str, size: str) -> None:
     """It has the most room of all parts, and the arm fills it."""
@@ -135,6 +136,7 @@ const { left, top, right, bottom } = one.getBoundingClientRect();
 return [one.className === 'scene-label' ? one.textContent : `#${one.id}`, [left, top, right, bottom]]; }))"""
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("view", VIEWS)
 def test_labels_cover_neither_arrows_nor_links_nor_each_other(browser: Any, address: str, size: str, view: str) -> None:
@@ -243,6 +245,7 @@ def test_legends_have_the_dashes_of_the_figures(browser: Any, address: str) -> N
 # ---- dragging -------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_the_tip_follows_the_pointer(browser: Any, address: str, size: str) -> None:
     """At any time of the run: the pose at the start becomes the one whose tip lies under the pointer."""
@@ -289,6 +292,7 @@ def test_the_wall_follows_the_pointer_along_its_normal(browser: Any, address: st
         visitor.check()
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_tip_and_wall_are_moved_by_keys(browser: Any, address: str, size: str) -> None:
     with Visitor(browser, size) as visitor:

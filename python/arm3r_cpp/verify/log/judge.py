@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import UnjudgedError
 from ..comparison import TOLERANCE
 from ..doubts import right_elsewhere
-from ..explain.factors import FACTORS
+from ..explain.hypotheses import FACTORS
 from ..finding import Finding
 from ..kinds import Kind
 from ..verdict import Verdict
