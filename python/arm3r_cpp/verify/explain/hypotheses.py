@@ -15,7 +15,6 @@ from .christoffel import of_other_indices
 from .frames import Pose, of_other_frames, of_other_points
 from .quantities import States, Truth, of_other_quantities
 
-
 FACTORS: dict[float, str] = {
     -1.0: "has the wrong sign",
     180 / np.pi: "is in degrees; it should be in radians",
