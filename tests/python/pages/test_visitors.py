@@ -12,8 +12,8 @@ import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
-import arm3r_cpp
 import pytest
+from arm3r_cpp.live.page import FOLDER
 from conftest import ROOT
 from page_runner import blocks_of
 from wheel_files import wheel
@@ -21,7 +21,7 @@ from wheel_files import wheel
 README = (ROOT / "README.md").read_text()
 LINKED = [ROOT / target for target in re.findall(r"\]\((docs/\w+\.md)\)", README)]
 INSTALL = "python -m pip install arm3r_cpp-*.whl"
-HAS_PAGE = (Path(arm3r_cpp.__file__).parent / "live" / "live.html").is_file()
+HAS_PAGE = (FOLDER / "live.html").is_file()
 
 
 class Visitor:
