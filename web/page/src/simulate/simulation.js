@@ -49,6 +49,13 @@ export class Simulation {
     });
   }
 
+  /** The promise of a question that is answered. Older ones have been given up: nothing is kept for them. */
+  #promiseOf(id) {
+    const promise = this.#promises.get(id);
+    for (const asked of this.#promises.keys()) if (asked <= id) this.#promises.delete(asked);
+    return promise;
+  }
+
   #scenario() {
     return { text: this.#store.get("text"), name: `${this.#store.get("name")}.yaml` };
   }
@@ -95,16 +102,16 @@ export class Simulation {
       if (text === this.#store.get("text")) this.#store.set({ bandRun: band, busy: !last });
     },
     chosen: ({ id, text }) => {
-      this.#promises.get(id).resolve(text);
+      this.#promiseOf(id).resolve(text);
       this.#store.set({ busy: text !== this.#store.get("text") });
     },
     pose: ({ id, pose }) => {
       this.#store.set({ busy: false });
-      this.#promises.get(id).resolve(pose);
+      this.#promiseOf(id).resolve(pose);
     },
-    csv: ({ id, csv }) => this.#promises.get(id).resolve(csv),
+    csv: ({ id, csv }) => this.#promiseOf(id).resolve(csv),
     failed: ({ message, problems, question }) => {
-      this.#promises.get(question?.id)?.reject(new Error(message));
+      this.#promiseOf(question?.id)?.reject(new Error(message));
       const isOfText = question?.kind !== "band"; // of a text that was read and run before
       this.#store.set({ failure: message, busy: false, ...(isOfText ? { problems } : {}) });
     },
