@@ -2,7 +2,7 @@
 
 set(_exports ${CMAKE_CURRENT_SOURCE_DIR}/cpp/src/api)
 if(WIN32) # the header's ARM3R_API marks what is exported
-  target_compile_definitions(arm3r PRIVATE "ARM3R_API=__declspec(dllexport)")
+  target_compile_definitions(arm3r_api PRIVATE "ARM3R_API=__declspec(dllexport)")
 elseif(APPLE)
   set(ARM3R_ORIGIN @loader_path)
   target_link_options(arm3r PRIVATE LINKER:-exported_symbols_list,${_exports}/arm3r.exports)

@@ -22,13 +22,13 @@ target_compile_options(cxx_with_exceptions PRIVATE -w)
 set_source_files_properties(${_zig}/libunwind/src/Unwind-wasm.c PROPERTIES COMPILE_DEFINITIONS _LIBUNWIND_HIDE_SYMBOLS)
 
 # ---- small where little time is spent: only the templates are compiled for speed
-add_executable(arm3r_wasm ${ARM3R_LIBRARY_SOURCES} ${ARM3R_TEXT_SOURCES} cpp/src/wasm/csv.cpp cpp/src/wasm/runtime.cpp
-               cpp/src/wasm/struct_sizes.cpp)
-target_compile_definitions(arm3r_wasm PRIVATE ARM3R_BUILD_INFO="${ARM3R_BUILD_INFO}")
-foreach(_target arm3r_wasm arm3r_core arm3r_keys arm3r_platform arm3r_yaml cxx_with_exceptions)
+add_executable(arm3r_wasm)
+arm3r_room(wasm SEES api)
+foreach(_target arm3r_platform ${_core} ${_faces} arm3r_wasm arm3r_yaml cxx_with_exceptions)
   target_compile_options(${_target} PRIVATE -Os -ffunction-sections -fdata-sections)
 endforeach()
-set_source_files_properties(${ARM3R_TEMPLATE_SOURCES} PROPERTIES COMPILE_OPTIONS -O2)
+get_property(_templates GLOBAL PROPERTY ARM3R_TEMPLATES)
+set_source_files_properties(${_templates} PROPERTIES COMPILE_OPTIONS -O2)
 
 # ---- the module: what core.js calls, and what that needs
 set(_binding ${PROJECT_SOURCE_DIR}/web/core/core.js)
@@ -37,7 +37,7 @@ file(READ ${_binding} _calls)
 string(REGEX MATCHALL "\"(arm3r_[a-z_]+|malloc|free)\"" _calls "${_calls}")
 list(TRANSFORM _calls REPLACE "\"(.+)\"" "LINKER:--export=\\1")
 list(REMOVE_DUPLICATES _calls)
-target_link_libraries(arm3r_wasm PRIVATE arm3r_core arm3r_yaml cxx_with_exceptions)
+target_link_libraries(arm3r_wasm PUBLIC ${_faces} arm3r_core cxx_with_exceptions)
 target_link_options(arm3r_wasm PRIVATE -mexec-model=reactor -nostdlib++ -s ${_calls} LINKER:--gc-sections
                     LINKER:-z,stack-size=4194304 LINKER:--initial-memory=16777216 LINKER:--max-memory=4294901760)
 set_target_properties(arm3r_wasm PROPERTIES OUTPUT_NAME arm3r SUFFIX .wasm)

@@ -13,6 +13,8 @@ from __future__ import annotations
 from importlib import import_module
 from importlib.util import find_spec
 
+from .core.provided import provide
+
 TYPE_CHECKING = False  # importing it from typing would cost more than all the rest here
 if TYPE_CHECKING:
     from typing import Any
@@ -20,6 +22,24 @@ if TYPE_CHECKING:
     from . import plot as plot
     from . import verify as verify
     from ._api import *  # noqa: F403
+
+
+provide(
+    {
+        "batch to pandas": f"{__name__}.notebook.tables:batch_to_pandas",
+        "batch to xarray": f"{__name__}.notebook.tables:batch_to_xarray",
+        "figure of two controllers": f"{__name__}.blocks.figure:figure",
+        "function of a file": f"{__name__}.blocks.block:Block.read",
+        "live page of a run": f"{__name__}.live.show:write",
+        "page of a batch": f"{__name__}.notebook.pages:of_batch",
+        "page of a run": f"{__name__}.notebook.pages:of_run",
+        "page of a scenario": f"{__name__}.notebook.pages:of_scenario",
+        "report of two controllers": f"{__name__}.blocks.report:report",
+        "run of two controllers": f"{__name__}.blocks.beside:run_beside",
+        "run to pandas": f"{__name__}.notebook.tables:run_to_pandas",
+        "run to xarray": f"{__name__}.notebook.tables:run_to_xarray",
+    }
+)
 
 
 def __getattr__(name: str) -> Any:

@@ -5,16 +5,19 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from ..errors import Arm3rError, UsageError, class_of
 from .library import ffi, lib, string
 
-if TYPE_CHECKING:
-    from .arrays import States
+
+class Places(Protocol):
+    """Where the caller's own arrays have what the library names."""
+
+    def find(self, path: str) -> tuple[str, tuple[int, ...]] | None: ...
 
 
-def error(status: int, states: States | None = None) -> Arm3rError:
+def error(status: int, states: Places | None = None) -> Arm3rError:
     """The error of this thread's last failed call, which names places in the shapes of the states that were given."""
     report = json.loads(ffi.string(lib.arm3r_error_json()))
     message, problems, index = report["message"], report["problems"], None

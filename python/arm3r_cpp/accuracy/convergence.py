@@ -104,7 +104,7 @@ def _least(key: str) -> float:
 
 
 def _run(scenario: Scenario, key: str, setting: float) -> Run:
-    changed = scenario.copy()._quiet()
+    changed = scenario.copy().quiet()
     changed[key] = setting
     changed["checks"] = []
     if key == "solver.rtol":

@@ -7,38 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 from .. import _native
 from ..control.law import Law, name_of
+from ..core.comparison import Beside
 from ..core.run import Run
 from ..errors import Arm3rError
 from .block import Block
-from .comparison import Comparison
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from ..core.scenario import Scenario
 
 GRAVITY = "gravity_compensation"
 WITHOUT_GRAVITY = ("none", "constant", "user")
 """Controllers beside which a gravity torque is not held: they do not carry the arm."""
 NO_LAW = ("none", "user")
-
-
-class Beside(Comparison):
-    """A run with a controller of your own, and the run with the scenario's. `print` shows how far apart they are."""
-
-    def __str__(self) -> str:
-        from .report import report
-
-        return report(self)
-
-    def __repr__(self) -> str:
-        return f"<Beside: {self.name} and {self.true_name or 'no other controller'}>"
-
-    def figure(self, **options: Any) -> Figure:
-        """Both runs over each other, and below them the difference; options as of `arm3r_cpp.plot.overview`."""
-        from .figure import figure
-
-        return figure(self, **options)
 
 
 def run_beside(
@@ -75,7 +55,7 @@ def true_scenario(scenario: Scenario, is_gravity: bool, rate: float | None) -> S
 
     is_gravity: whether the user's function is a gravity torque. None: the scenario has none.
     """
-    true = scenario.copy()._quiet()
+    true = scenario.copy().quiet()
     true["checks"] = []
     if is_gravity and true["controller.type"] in WITHOUT_GRAVITY:
         true.update({"controller": {"type": GRAVITY}, "reference": None})

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from ..core.comparison import Beside
     from ..core.run import Run
-    from .comparison import Comparison
 
 SMALL = 1.0
 """rad, m: differences below are drawn in the unit of small values."""
@@ -27,7 +27,7 @@ TORQUE, LENGTH = Unit("N m", 1.0, "N m", 1.0), Unit("m", 1.0, "mm", 1e3)
 
 
 def figure(
-    beside: Comparison, *, width: float = WIDTH, height: float | None = None, start: float | None = None,
+    beside: Beside, *, width: float = WIDTH, height: float | None = None, start: float | None = None,
     end: float | None = None, degrees: bool | None = None, stamp: bool = False,
 ) -> Figure:  # fmt: skip
     """Joint angles, torques and contact force of both, each with the difference below it, and how far the tips are
@@ -46,7 +46,7 @@ def figure(
         return drawn
 
 
-def labels(beside: Comparison) -> list[str]:
+def labels(beside: Beside) -> list[str]:
     """Of the two runs."""
     file, _, function = beside.name.rpartition(": ")
     name = f"{os.path.basename(file)}: {function}" if file else function

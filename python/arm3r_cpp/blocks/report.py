@@ -9,15 +9,15 @@ import numpy as np
 from .._messages import in_columns, shown
 
 if TYPE_CHECKING:
+    from ..core.comparison import Beside
     from ..core.run import Run
-    from .comparison import Comparison
 
 UNITS = {"q": ("rad", "joint angles"), "tip": ("m", "tip"), "tau": ("N m", "torque"), "force": ("N", "contact force")}
 OTHER_CONVENTION = 1e-6
 """Of the torque: a sum below that says that two torques are opposite."""
 
 
-def report(beside: Comparison) -> str:
+def report(beside: Beside) -> str:
     """The lines behind the summary of the user's run."""
     lines = [f"  controller      {shown(beside.name)}"]
     if beside.true is None:
@@ -35,7 +35,7 @@ def report(beside: Comparison) -> str:
     return "\n".join(lines)
 
 
-def table(beside: Comparison) -> str:
+def table(beside: Beside) -> str:
     """A line a quantity: yours and the scenario's at the end, and the largest difference."""
     assert beside.true
     last = beside.rows - 1
@@ -66,7 +66,7 @@ def convention_of(run: Run) -> str:
     return str(Scenario(run.summary["scenario"])["arm.convention"])
 
 
-def as_json(beside: Comparison) -> dict[str, Any]:
+def as_json(beside: Beside) -> dict[str, Any]:
     """What the JSON summary of the user's run has under `beside`."""
     return {
         "controller": beside.name,

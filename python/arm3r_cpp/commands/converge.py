@@ -34,7 +34,7 @@ def converge(options: argparse.Namespace) -> None:
 
     scenario = Scenario.load(options.scenario)
     for edit in options.set:
-        scenario._set_from_option(edit)
+        scenario.set_from_option(edit)
     print_line(converged(scenario))
 
 

@@ -19,8 +19,8 @@ from ..errors import Arm3rError, UsageError
 from .exit_codes import FAILED_CHECK, attempt, exit_code, print_line
 
 if TYPE_CHECKING:
-    from ..blocks.beside import Beside
     from ..blocks.block import Block
+    from ..core.comparison import Beside
     from ..core.scenario import Scenario
 
 PROGRAM = "arm3r"
@@ -100,10 +100,10 @@ def loaded(file: str, options: argparse.Namespace) -> Scenario:
 
     scenario = Scenario.load(file)
     for edit in options.set:
-        scenario._set_from_option(edit)
+        scenario.set_from_option(edit)
     if options.no_checks:
-        scenario._edit("checks", "[]", "--no-checks")
-    scenario._quiet().validate()  # the summary has its warnings
+        scenario.edit("checks", "[]", "--no-checks")
+    scenario.quiet().validate()  # the summary has its warnings
     return scenario
 
 
@@ -171,7 +171,7 @@ def write(beside: Beside, output: str) -> None:
             beside.yours.to_csv(path)
             print_line(path.read_text().rstrip("\n"))
     elif output:
-        beside.yours._save(output)
+        beside.yours.save(output)
 
 
 def code_of(beside: Beside) -> int:
@@ -185,7 +185,7 @@ def summary(beside: Beside) -> dict[str, Any]:
     from .. import _native
     from ..blocks.report import as_json
 
-    text = _native.text(_native.lib.arm3r_run_summary, beside.yours._handle)
+    text = _native.text(_native.lib.arm3r_run_summary, beside.yours.handle)
     return {**json.loads(text), "beside": as_json(beside)}
 
 

@@ -57,5 +57,5 @@ def scenario_of(path: Path, edits: Sequence[str]) -> Scenario:
         raise UsageError(f"{path}: a scenario's .yaml is needed", code="usage")
     scenario = Scenario.load(path)
     for edit in edits:
-        scenario._set_from_option(edit)
+        scenario.set_from_option(edit)
     return scenario

@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import _native
 from ..errors import BudgetError, ControllerError, UsageError
-from .law_state import OVER, LawState
+from .law_state import OVER, LawState, read_from
 from .time_limit import TimeLimit, TimeLimitReached
 
 Law = Callable[[float, LawState], Any]
@@ -59,11 +59,11 @@ class LawAdapter:
         self.t = t
         self.received = None
         state = LawState()
-        state._now = self._memory
+        read_from(state, self._memory)
         try:
             self.received = received = self.law(t, state)
         finally:
-            state._now = OVER
+            read_from(state, OVER)
         return received
 
     @property

@@ -19,8 +19,13 @@ OVER: Any = _Over()  # what a state has after its tick
 def state_of(memory: _native.StateMemory) -> LawState:
     """The state that reads its numbers from a memory."""
     state = LawState.__new__(LawState)
-    state._now = memory
+    read_from(state, memory)
     return state
+
+
+def read_from(state: LawState, memory: _native.StateMemory) -> None:
+    """Let a state read its numbers from another memory; OVER: from none any more."""
+    state._now = memory
 
 
 class LawState:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import Arm3rError
-
-if TYPE_CHECKING:
-    from .scenario import Scenario
+from .protocols import AnyScenario
 
 SLOW = ("rodas4", "auto", "dopri5")  # the first two compute one run after the other
 IN_LANES = ("rk4", "taylor", "dopri5")  # several runs at once
@@ -27,7 +24,7 @@ LONGEST = 1.0  # s of clock for one trial
 class Advice:
     """Gives its sentence once: when the work has run for a second and much of it is left."""
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, scenario: AnyScenario) -> None:
         self._scenario, self._start = scenario, time.monotonic()
         self._is_given = scenario["solver.method"] not in SLOW
 
@@ -41,7 +38,7 @@ class Advice:
         return sentence(self._scenario) if left > WORTH else ""
 
 
-def sentence(scenario: Scenario) -> str:
+def sentence(scenario: AnyScenario) -> str:
     """Which method would be how many times faster; "" where none is, or none can be tried."""
     method, span = scenario["solver.method"], SPAN
     whole = scenario["time.stop"] - scenario["time.start"]
@@ -61,9 +58,9 @@ def sentence(scenario: Scenario) -> str:
     )
 
 
-def trial_of(scenario: Scenario, method: str, span: float) -> Scenario:
+def trial_of(scenario: AnyScenario, method: str, span: float) -> AnyScenario:
     """The first `span` s of a scenario by a method."""
-    trial = scenario.copy()._quiet()
+    trial = scenario.copy().quiet()
     trial["checks"] = []
     if method != trial["solver.method"]:
         trial["solver"] = {"method": method}
@@ -71,7 +68,7 @@ def trial_of(scenario: Scenario, method: str, span: float) -> Scenario:
     return trial
 
 
-def seconds_by(scenario: Scenario, method: str, span: float) -> float:
+def seconds_by(scenario: AnyScenario, method: str, span: float) -> float:
     """s that one thread takes for a trial, without what a batch of no length takes.
 
     0: the method does not take this scenario, or it takes too long.
@@ -80,7 +77,7 @@ def seconds_by(scenario: Scenario, method: str, span: float) -> float:
     return max(taken[1] - taken[0], RESOLUTION) if all(taken) else 0.0
 
 
-def _seconds(scenario: Scenario, method: str, span: float) -> float:
+def _seconds(scenario: AnyScenario, method: str, span: float) -> float:
     start = time.perf_counter()
     try:
         trial = trial_of(scenario, method, span)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from .. import _native
 from .._native import Floats, ffi, lib
 from ..answers.meant_names import Answering, no_attribute
-from .params import param_defaults
+from .params import numbers_of, param_defaults
 
 
 class Arm(metaclass=Answering):
@@ -59,11 +59,11 @@ class Arm(metaclass=Answering):
             UsageError: the file cannot be read, or its arm is no elbow arm; the message says what would help.
         """
         from ..robots.explicit import explicit_arm
-        from .scenario import Scenario
 
         request = {"urdf": path, "joints": joints, "lock": lock, "tip": tip, "axis_tolerance": axis_tolerance}
         keys = indent(explicit_arm(request), "  ")
-        return Scenario(f"format: 1\narm:\n{keys}", file=os.fspath(path)).arm
+        texts = (*_native.utf8(f"format: 1\narm:\n{keys}", "text"), *_native.utf8(os.fspath(path), "path"))
+        return cls(numbers_of(_native.create("scenario", lib.arm3r_scenario_create, *texts)))
 
     if not TYPE_CHECKING:
 

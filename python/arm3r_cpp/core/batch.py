@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,16 +22,16 @@ from ..rows.batch_rows import BatchRows
 from ..rows.names import columns_asked_for, metrics_asked_for
 from .advice import Advice
 from .params import param_index, param_key, param_name, places
+from .protocols import AnyScenario, LawOfFile
+from .provided import provided
 from .run import Run
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from ..blocks.block import Block
-    from .scenario import Scenario
-
 Index = int | tuple[int, ...]
+S = TypeVar("S", bound=AnyScenario)
 
 # Codes of errors of the axes themselves, which no other number in a run would avoid.
 AXIS_ERRORS = {f"scenario.{error}" for error in ("unknown_word", "type", "unknown_key", "other_choice", "missing_key")}
@@ -68,7 +68,7 @@ class Axis(NamedTuple):
         return value if len(value) > 1 else value[0]
 
 
-class Batch:
+class Batch(Generic[S]):
     """A table of runs: `batch["peak_force"]` is a column, in the shape that the axes broadcast to.
 
     Columns are read-only arrays of float64 in SI units and radians, NaN where a run has no such number. Each has the
@@ -83,7 +83,7 @@ class Batch:
 
     def __init__(
         self,
-        scenario: Scenario,
+        scenario: S,
         axes: list[Axis],
         columns: Mapping[str, Floats],
         shape: tuple[int, ...],
@@ -91,7 +91,7 @@ class Batch:
         rows: BatchRows | None = None,
     ) -> None:
         """`Scenario.batch` makes batches."""
-        self._scenario, self._axes, self._columns, self._law = scenario, axes, dict(columns), law
+        self._scenario, self.varied, self._columns, self._law = scenario, axes, dict(columns), law
         self._rows = rows
         self.axes = {axis.key: axis.values if axis.values.shape[-1] > 1 else axis.values[..., 0] for axis in axes}
         self.shape = shape
@@ -101,7 +101,7 @@ class Batch:
             array.flags.writeable = False
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Batch, (self._scenario, self._axes, self._columns, self.shape, None, self._rows)
+        return Batch, (self._scenario, self.varied, self._columns, self.shape, None, self._rows)
 
     def __getitem__(self, name: str) -> Floats:
         """A column.
@@ -135,9 +135,7 @@ class Batch:
         return f"<Batch of {len(self)} runs over {over}: {np.count_nonzero(self.ok)} ok>"
 
     def _repr_html_(self) -> str:
-        from ..notebook import pages
-
-        return pages.of_batch(self)
+        return str(provided("page of a batch")(self))
 
     def to_pandas(self) -> pandas.DataFrame:
         """A pandas.DataFrame with a row for each run: the values that vary, the outcome in words, the other columns.
@@ -147,9 +145,8 @@ class Batch:
         Raises:
             UsageError: pandas is not installed; it is the extra `pandas`.
         """
-        from ..notebook import tables
-
-        return tables.batch_to_pandas(self)
+        frame: pandas.DataFrame = provided("batch to pandas")(self)
+        return frame
 
     def to_xarray(self) -> xarray.Dataset:
         """An xarray.Dataset of the columns in the batch's shape; the outcome is in words.
@@ -160,9 +157,8 @@ class Batch:
         Raises:
             UsageError: xarray is not installed; it is the extra `xarray`.
         """
-        from ..notebook import tables
-
-        return tables.batch_to_xarray(self)
+        dataset: xarray.Dataset = provided("batch to xarray")(self)
+        return dataset
 
     @property
     def rows(self) -> BatchRows:
@@ -194,9 +190,9 @@ class Batch:
         most: how many of these runs are asked, the first ones.
         """
         invalid = np.argwhere(self["outcome"] == lib.ARM3R_RUN_INVALID)[:most]
-        return refusals_of(self.scenario(tuple(map(int, place)))._quiet() for place in invalid)
+        return refusals_of(self.scenario(tuple(map(int, place))).quiet() for place in invalid)
 
-    def scenario(self, index: Index) -> Scenario:
+    def scenario(self, index: Index) -> S:
         """The scenario of one run, without checks: those of the base were not meant for it.
 
         index: of one run, as for a column.
@@ -206,35 +202,33 @@ class Batch:
             raise IndexError(f"index {index}: one run of a batch of shape {self.shape} has {len(self.shape)} of them")
         if not all(hasattr(i, "__index__") and not isinstance(i, (bool, np.bool_)) for i in place):
             raise IndexError(f"index {index}: whole numbers tell one run of a batch of shape {self.shape}")
-        return _scenario(self._scenario, self._axes, place, self.shape)
+        return _scenario(self._scenario, self.varied, place, self.shape)
 
-    def run(self, index: Index) -> Run:
+    def run(self, index: Index, *, progress: Progress | None = None) -> Run:
         """One run alone, with all its rows and the same bits. Raises as `Scenario.run`.
 
         A law of your own is asked again. A batch that was pickled has none any more: use `scenario(index).run`.
 
         index: of one run, as for a column.
+        progress: as of `Scenario.run`.
         """
-        return self._run(index)
-
-    def _run(self, index: Index, progress: Progress | None = None) -> Run:
         law = self._law.of_run(index) if self._law else None
         return self.scenario(index).run(controller=law, progress=progress)
 
 
 def run_batch(
-    scenario: Scenario,
+    scenario: S,
     values: Mapping[str, Any],
     *,
     grid: bool = False,
     threads: int | None = None,
     progress: BatchProgress | None = None,
-    controller: Law | NativeLaw | Block | str | os.PathLike[str] | None = None,
+    controller: Law | NativeLaw | LawOfFile | str | os.PathLike[str] | None = None,
     make_controller: MakeLaw | None = None,
     rate: float | None = None,
     columns: Sequence[str] | None = None,
     metrics: Sequence[str] | None = None,
-) -> Batch:
+) -> Batch[S]:
     """What `Scenario.batch` does."""
     if not isinstance(values, Mapping):
         raise TypeError(f"values: a map of arrays by key is needed, got {type(values).__name__}")
@@ -245,7 +239,7 @@ def run_batch(
         raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
     asked = [] if columns is None else columns_asked_for(columns)
     names = metrics_asked_for(metrics)
-    mine = scenario._for_law(rate) if has_law else scenario
+    mine = scenario.for_law(rate) if has_law else scenario
     mine.validate()
     base = mine.copy()
     base["checks"] = []
@@ -260,7 +254,7 @@ def run_batch(
     law: Any = controller
     if make_controller is None and (block := _block_of(controller)):
         law, make_controller = None, _law_of_row(block, base, axes, shape)
-    law = BatchLaw(law, make_controller, shape, scenario._file) if has_law else None
+    law = BatchLaw(law, make_controller, shape, scenario.file) if has_law else None
     _check_room(runs, len(varied) + len(names))
     numbers = _numbers(axes, shape)
     groups = [
@@ -268,12 +262,12 @@ def run_batch(
         for group in (law.groups(_groups(axes, shape)) if law else _groups(axes, shape))
     ]
     memory = _room_for_rows(runs, asked, _most_rows(groups, varied, asked) or _rows_of(base, asked))
-    advice = None if law or base._warned is None else Advice(base)
+    advice = None if law or base.is_quiet else Advice(base)
     done = 0
 
     def report(runs_done: int, _: int) -> Any:
         if advice and (sentence := advice.after(done + runs_done, runs)):
-            base._warn([sentence])
+            base.warn([sentence])
         return progress and progress(done + runs_done, runs)
 
     def table_of(group: _Group, rows: Floats) -> Floats:
@@ -298,8 +292,8 @@ def run_batch(
             done += len(group.runs)
     summaries = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
     batch = Batch(base, axes, summaries, shape, law, BatchRows(asked, memory, shape) if asked else None)
-    if base._warned is not None and runs and (batch["outcome"] == lib.ARM3R_RUN_INVALID).all():
-        base._warn([f"no run of this batch is valid: {'; '.join(lines_of(batch.refusals(), runs))}"])
+    if not base.is_quiet and runs and (batch["outcome"] == lib.ARM3R_RUN_INVALID).all():
+        base.warn([f"no run of this batch is valid: {'; '.join(lines_of(batch.refusals(), runs))}"])
     return batch
 
 
@@ -314,17 +308,15 @@ class _Group(NamedTuple):
     """(varied, runs)"""
 
 
-def _block_of(controller: Any) -> Block | None:
+def _block_of(controller: Any) -> LawOfFile | None:
     """The function in a file that is given as a law; None: it is a law already, or nothing that can be one."""
     if controller is None or callable(controller) or isinstance(controller, NativeLaw):
         return None
-    from ..blocks.block import Block  # it stands above this module
-
-    block = Block.read(controller) if isinstance(controller, (str, os.PathLike)) else controller
-    return block if isinstance(block, Block) else None
+    block = provided("function of a file")(controller) if isinstance(controller, (str, os.PathLike)) else controller
+    return block if isinstance(block, LawOfFile) else None
 
 
-def _law_of_row(block: Block, base: Scenario, axes: Sequence[Axis], shape: tuple[int, ...]) -> MakeLaw:
+def _law_of_row(block: LawOfFile, base: AnyScenario, axes: Sequence[Axis], shape: tuple[int, ...]) -> MakeLaw:
     """Makes the law of a run for the arm of that run. A file that cannot be executed raises at once."""
     block.law(base)
     return lambda index: block.law(_scenario(base, axes, index if isinstance(index, tuple) else (index,), shape))
@@ -333,7 +325,7 @@ def _law_of_row(block: Block, base: Scenario, axes: Sequence[Axis], shape: tuple
 # ---- axes -----------------------------------------------------------------------------------------------------------
 
 
-def axis_of(base: Scenario, key: str, value: Any) -> Axis:
+def axis_of(base: AnyScenario, key: str, value: Any) -> Axis:
     """What `value` means for a key. UsageError: there is no such key, or its shape does not fit."""
     if key not in places():
         param_index(key)  # raises, and names the nearest one
@@ -376,7 +368,7 @@ def _below(key: str) -> str:
     return next(place for place in places() if place.startswith(f"{key}."))
 
 
-def _width(base: Scenario, key: str, indices: list[int], array: NDArray[Any]) -> int:
+def _width(base: AnyScenario, key: str, indices: list[int], array: NDArray[Any]) -> int:
     """How many numbers of the key stand together: of one that takes a number or a list, as many as in the base."""
     if len(indices) == 1:
         return 1
@@ -435,7 +427,7 @@ def _most_rows(groups: Sequence[_Group], varied: list[int], columns: Sequence[st
     return max(counts)
 
 
-def _rows_of(base: Scenario, columns: Sequence[str]) -> int:
+def _rows_of(base: AnyScenario, columns: Sequence[str]) -> int:
     """The rows of the scenario itself: where no run of a batch is valid, theirs would be as many."""
     return _native.batch_row_count(base.params, [], np.empty((0, 1)), ["t"]) if columns else 0
 
@@ -481,14 +473,14 @@ def _groups(axes: Sequence[Axis], shape: tuple[int, ...]) -> list[Any]:
     return [np.flatnonzero(label == number) for number in np.unique(label)]
 
 
-def _scenario(base: Scenario, axes: Sequence[Axis], place: tuple[int, ...], shape: tuple[int, ...]) -> Scenario:
+def _scenario(base: S, axes: Sequence[Axis], place: tuple[int, ...], shape: tuple[int, ...]) -> S:
     scenario = base.copy()
     for axis in sorted(axes, key=lambda axis: bool(axis.indices)):  # words first: keys exist only under some
         scenario[axis.key] = axis.at(place, shape)
     return scenario
 
 
-def _params(base: Scenario, axes: Sequence[Axis], shape: tuple[int, ...], group: Any) -> Floats | None:
+def _params(base: AnyScenario, axes: Sequence[Axis], shape: tuple[int, ...], group: Any) -> Floats | None:
     """The numbers of any valid run of a group; the varied ones do not matter. None: no run of it is valid."""
     if isinstance(group, slice) and all(axis.key in base for axis in axes):
         return base.params

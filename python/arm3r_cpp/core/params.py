@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import _native
 from .._native import Floats, ffi, lib
+
+
+def numbers_of(scenario: Any) -> Floats:
+    """All numbers of a scenario of the library's: shape (param_count(),), or more with long tables."""
+    count = ffi.new("size_t *")
+    _native.call(lib.arm3r_scenario_param_count, scenario, count)
+    numbers = np.empty(count[0])
+    _native.call(lib.arm3r_scenario_params, scenario, _native.writable(numbers), numbers.size)
+    return numbers
 
 
 def param_count() -> int:

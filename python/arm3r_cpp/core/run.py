@@ -19,6 +19,7 @@ from .._native import Floats, lib
 from ..answers.meant_names import Answering, no_attribute
 from ..errors import ColumnError, UsageError
 from ..rows.names import columns_of, completions, three_of
+from .provided import provided
 from .run_file import RunData, read, with_numbers, write_npz
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ class Run(metaclass=Answering):
     ) -> None:
         """Make a run of data that was stored before; users call `Scenario.run` and `Run.load`."""
         self._columns = dict(columns)
-        self._handle = None
+        self.handle = None
         self.units = dict(units)
         self.summary = summary
         self._report = report
@@ -91,9 +92,9 @@ class Run(metaclass=Answering):
             column.flags.writeable = False
 
     @classmethod
-    def _of(cls, handle: Any) -> Run:
+    def of_handle(cls, handle: Any) -> Run:
         run = cls.__new__(cls)
-        run._handle = handle
+        run.handle = handle
         run._columns, run.units = _native.columns(handle)
         run._report = None
         return run
@@ -158,9 +159,7 @@ class Run(metaclass=Answering):
         return f"<Run {self.summary['name']}: {self.outcome}{checks}, {len(self)} rows to t = {self.t[-1]:g} s>"
 
     def _repr_html_(self) -> str:
-        from ..notebook import pages
-
-        return pages.of_run(self)
+        return str(provided("page of a run")(self))
 
     def _ipython_key_completions_(self) -> list[str]:
         return completions(self._columns)
@@ -184,7 +183,12 @@ class Run(metaclass=Answering):
 
         The text "inf", which stands in JSON for a number without end, is `math.inf` here, as it is in a batch.
         """
-        return with_numbers(json.loads(_native.text(lib.arm3r_run_summary, self._handle)))
+        return with_numbers(json.loads(_native.text(lib.arm3r_run_summary, self.handle)))
+
+    @property
+    def has_report(self) -> bool:
+        """Whether there is one: a run that was read from a CSV file has none."""
+        return self._text() is not None
 
     def report(self) -> str:
         """The summary as text that people read.
@@ -198,12 +202,12 @@ class Run(metaclass=Answering):
         return text
 
     def _text(self) -> str | None:
-        return self._report if self._handle is None else _native.text(lib.arm3r_run_report, self._handle)
+        return self._report if self.handle is None else _native.text(lib.arm3r_run_report, self.handle)
 
     @cached_property
     def outcome(self) -> str:
         """ "ok", "stopped", "diverged", ..."""
-        return self.summary["outcome"] if self._handle is None else _native.outcome(self._handle)
+        return self.summary["outcome"] if self.handle is None else _native.outcome(self.handle)
 
     @property
     def events(self) -> list[Event]:
@@ -254,15 +258,15 @@ class Run(metaclass=Answering):
             UsageError: the name has another ending; or the run was not made in this process: it has been written
                 before, or use `to_npz`.
         """
-        if self._handle is None:
+        if self.handle is None:
             raise UsageError("only a run made in this process is written as CSV; use to_npz", code="usage")
         if os.fspath(path):  # the library has a sentence for an empty name
             check_ending(path, [".csv"], hint="to_npz writes .npz, to_html .html")
-        self._save(path)
+        self.save(path)
 
-    def _save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Write PATH, .csv or .npz, and the summary beside it, as `arm3r run -o` does."""
-        _native.call(lib.arm3r_run_save, self._handle, *_native.file_path(path))
+        _native.call(lib.arm3r_run_save, self.handle, *_native.file_path(path))
 
     def to_npz(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one file, .npz, that `Run.load` and `numpy.load` read: whole or not at all.
@@ -280,9 +284,8 @@ class Run(metaclass=Answering):
         Raises:
             UsageError: pandas is not installed; it is the extra `pandas`.
         """
-        from ..notebook import tables
-
-        return tables.run_to_pandas(self)
+        frame: pandas.DataFrame = provided("run to pandas")(self)
+        return frame
 
     def to_xarray(self) -> xarray.Dataset:
         """The columns as an xarray.Dataset over the dimension t; each has its unit in `attrs["units"]`.
@@ -290,9 +293,8 @@ class Run(metaclass=Answering):
         Raises:
             UsageError: xarray is not installed; it is the extra `xarray`.
         """
-        from ..notebook import tables
-
-        return tables.run_to_xarray(self)
+        dataset: xarray.Dataset = provided("run to xarray")(self)
+        return dataset
 
     def to_html(self, path: str | os.PathLike[str]) -> None:
         """Write the live page with this run into one file that opens from disk, whole or not at all.
@@ -302,9 +304,7 @@ class Run(metaclass=Answering):
             UsageError: the name has another ending than .html, the installation has no page, or the run's summary holds
                 no scenario.
         """
-        from ..live import show
-
-        show.write(self, path)
+        provided("live page of a run")(self, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Run:

@@ -21,11 +21,12 @@ from ..errors import Arm3rError, ScenarioError, ScenarioWarning, UsageError, cla
 from ..examples import FOLDER, is_sweep, path_of
 from .arm import Arm
 from .batch import Batch, run_batch
-from .params import places
+from .comparison import Beside
+from .params import numbers_of, places
+from .provided import provided
 from .run import Run
 
 if TYPE_CHECKING:
-    from ..blocks.beside import Beside
     from ..control.batch_law import MakeLaw
 
 _PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
@@ -37,6 +38,10 @@ class Scenario(metaclass=Answering):
     >>> scenario = Scenario.example("moving_wall")
     >>> scenario["wall.contact.stiffness"] = 500
     >>> run = scenario.run()
+
+    Attributes:
+        file: its name in messages.
+        handle: the library's own `arm3r_scenario *`.
     """
 
     def __init__(self, text: str = "format: 1\n", *, file: str = "scenario.yaml") -> None:
@@ -49,9 +54,9 @@ class Scenario(metaclass=Answering):
         texts = (*_native.utf8(text, "text"), *_native.utf8(file, "file"))
         if os.path.isfile(text):
             raise UsageError(f"text: a file's name instead of a scenario; use Scenario.load({text!r})", code="usage")
-        self._file = file
+        self.file = file
         self._warned: set[str] | None = set()
-        self._handle = _native.create("scenario", lib.arm3r_scenario_create, *texts)
+        self.handle = _native.create("scenario", lib.arm3r_scenario_create, *texts)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Scenario:
@@ -61,7 +66,9 @@ class Scenario(metaclass=Answering):
             UsageError: the file cannot be read.
             ScenarioError: as for a text.
         """
-        return cls._of(_native.create("scenario", lib.arm3r_scenario_load, *_native.file_path(path)), os.fspath(path))
+        return cls.of_handle(
+            _native.create("scenario", lib.arm3r_scenario_load, *_native.file_path(path)), os.fspath(path)
+        )
 
     @classmethod
     def example(cls, name: str) -> Scenario:
@@ -78,14 +85,14 @@ class Scenario(metaclass=Answering):
         return cls.load(path)
 
     @classmethod
-    def _of(cls, handle: Any, file: str) -> Scenario:
+    def of_handle(cls, handle: Any, file: str) -> Scenario:
         scenario = cls.__new__(cls)
-        scenario._handle, scenario._file, scenario._warned = handle, file, set()
+        scenario.handle, scenario.file, scenario._warned = handle, file, set()
         return scenario
 
     def copy(self) -> Scenario:
         """An independent copy."""
-        copy = self._of(_native.create("scenario", lib.arm3r_scenario_copy, self._handle), self._file)
+        copy = self.of_handle(_native.create("scenario", lib.arm3r_scenario_copy, self.handle), self.file)
         copy._warned = None if self._warned is None else set(self._warned)
         return copy
 
@@ -96,10 +103,10 @@ class Scenario(metaclass=Answering):
         return self.copy()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restore, (self.to_yaml(), self._file)
+        return _restore, (self.to_yaml(), self.file)
 
     def __repr__(self) -> str:
-        return f"<Scenario {self._file}>"
+        return f"<Scenario {self.file}>"
 
     if not TYPE_CHECKING:
 
@@ -117,7 +124,7 @@ class Scenario(metaclass=Answering):
             UsageError: there is no such key; the message names the nearest one.
             ScenarioError: the scenario is not valid.
         """
-        found = _native.text(lib.arm3r_scenario_get, self._handle, *_native.utf8(path, "path"))
+        found = _native.text(lib.arm3r_scenario_get, self.handle, *_native.utf8(path, "path"))
         return _plain(json.loads(found, parse_float=_number))
 
     def __setitem__(self, path: str, value: Any) -> None:
@@ -150,24 +157,24 @@ class Scenario(metaclass=Answering):
         if not isinstance(values, Mapping):
             raise TypeError(f"values: a map of values by path is needed, got {type(values).__name__}")
         changed = self._changed(values)
-        _native.call(lib.arm3r_scenario_validate, changed._handle)
+        _native.call(lib.arm3r_scenario_validate, changed.handle)
         self._take(changed)
 
     def _take(self, changed: Scenario) -> None:
-        self._handle, self._warned = changed._handle, None if self._warned is None else set()
+        self.handle, self._warned = changed.handle, None if self._warned is None else set()
 
     def _changed(self, values: Mapping[str, Any]) -> Scenario:
         """A copy with other values, not validated."""
         changed = self.copy()
         for path, value in values.items():
             place = _native.utf8(path, "path")
-            _native.call(lib.arm3r_scenario_set, changed._handle, *place, *_native.utf8(flow(value, path), path))
+            _native.call(lib.arm3r_scenario_set, changed.handle, *place, *_native.utf8(flow(value, path), path))
         return changed
 
     def _check_keys(self, path: str) -> None:
         """ScenarioError: a key on the way to a path, at it or below it, exists under no choice."""
         try:
-            _native.text(lib.arm3r_scenario_name, self._handle)
+            _native.text(lib.arm3r_scenario_name, self.handle)
         except Arm3rError as error:
             unknown = [
                 problem
@@ -179,7 +186,7 @@ class Scenario(metaclass=Answering):
                 message = "\n".join(map(describe, unknown))
                 raise ScenarioError(message, status=error.status, code=error.code, problems=unknown) from None
 
-    def _set_from_option(self, text: str) -> None:
+    def set_from_option(self, text: str) -> None:
         """Put a value given as "PATH=VALUE" with VALUE in YAML, as the commands' option --set takes it.
 
         Raises:
@@ -188,12 +195,12 @@ class Scenario(metaclass=Answering):
         path, equals, value = text.partition("=")
         if not (path and equals):
             raise UsageError(f"--set {text}: PATH=VALUE is needed, such as time.stop=5", code="usage")
-        self._edit(path, value, "--set")
+        self.edit(path, value, "--set")
 
-    def _edit(self, path: str, value: str, origin: str) -> None:
+    def edit(self, path: str, value: str, origin: str) -> None:
         """Put YAML text at a path; messages call the place it came from `origin`."""
         texts = [part for word in (path, value, origin) for part in _native.utf8(word, path)]
-        _native.call(lib.arm3r_scenario_set_from, self._handle, *texts)
+        _native.call(lib.arm3r_scenario_set_from, self.handle, *texts)
         self._take(self)
 
     def __contains__(self, path: str) -> bool:
@@ -212,34 +219,38 @@ class Scenario(metaclass=Answering):
 
         What is allowed but probably a mistake is issued as ScenarioWarning, once for each state of the scenario.
         """
-        _native.call(lib.arm3r_scenario_validate, self._handle)
-        self._warn_of_scenario()
+        _native.call(lib.arm3r_scenario_validate, self.handle)
+        self.warn_of_itself()
 
-    def _warnings(self) -> list[str]:
+    @property
+    def warnings(self) -> list[str]:
         """What is allowed in this scenario but probably a mistake, a sentence each. It must be valid."""
-        lines = _native.text(lib.arm3r_scenario_warnings, self._handle).splitlines()
+        lines = _native.text(lib.arm3r_scenario_warnings, self.handle).splitlines()
         return [line.partition(": warning: ")[2] for line in lines]
 
-    def _warn_of_scenario(self) -> None:
+    def warn_of_itself(self) -> None:
         if self._warned is not None:  # a quiet one need not look for them
-            self._warn(self._warnings())
+            self.warn(self.warnings)
 
-    def _warn(self, sentences: Iterable[str]) -> None:
+    def warn(self, sentences: Iterable[str]) -> None:
         """Issue the warnings that this state of the scenario has not yet led to."""
         for sentence in sentences:
             if self._warned is not None and sentence not in self._warned:
-                warn_user(f"{self._file}: {sentence}", ScenarioWarning)
+                warn_user(f"{self.file}: {sentence}", ScenarioWarning)
                 self._warned.add(sentence)
 
-    def _quiet(self) -> Scenario:
+    @property
+    def is_quiet(self) -> bool:
+        """Whether it issues no warnings."""
+        return self._warned is None
+
+    def quiet(self) -> Scenario:
         """This scenario, which issues no warnings from now on, and neither do its copies."""
         self._warned = None
         return self
 
     def _repr_html_(self) -> str:
-        from ..notebook import pages
-
-        return pages.of_scenario(self)
+        return str(provided("page of a scenario")(self))
 
     def _ipython_key_completions_(self) -> list[str]:
         return sorted({part for path in places() for part in _sections(path)} | {"name", "checks"})
@@ -247,7 +258,7 @@ class Scenario(metaclass=Answering):
     @property
     def name(self) -> str:
         """Its `name`, by default the file's stem."""
-        return _native.text(lib.arm3r_scenario_name, self._handle)
+        return _native.text(lib.arm3r_scenario_name, self.handle)
 
     @property
     def params(self) -> Floats:
@@ -255,11 +266,7 @@ class Scenario(metaclass=Answering):
 
         Lists of a table with more than 16 points stand behind them: index of the key's first number, length, numbers.
         """
-        count = _native.ffi.new("size_t *")
-        _native.call(lib.arm3r_scenario_param_count, self._handle, count)
-        params = np.empty(count[0])
-        _native.call(lib.arm3r_scenario_params, self._handle, _native.writable(params), params.size)
-        return params
+        return numbers_of(self.handle)
 
     @property
     def arm(self) -> Arm:
@@ -268,7 +275,7 @@ class Scenario(metaclass=Answering):
 
     def to_yaml(self, *, annotate: bool = False) -> str:
         """The whole scenario with all defaults, itself a scenario; `annotate`: each value's origin in a comment."""
-        return _native.text(lib.arm3r_scenario_yaml, self._handle, bool(annotate))
+        return _native.text(lib.arm3r_scenario_yaml, self.handle, bool(annotate))
 
     def run(
         self,
@@ -310,23 +317,22 @@ class Scenario(metaclass=Answering):
         if trust and controller is not None:
             raise UsageError("trust: it takes more runs, and a law of your own may have a memory", code="usage")
         if isinstance(controller, (str, os.PathLike)):
-            from ..blocks.block import Block  # it stands above this module
-
-            controller = Block.read(controller).law(self)
+            law: Law = provided("function of a file")(controller).law(self)
+            controller = law
         if controller is None and rate is not None:
             raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
-        mine = self if controller is None else self._for_law(rate)
-        mine._warn_of_scenario()
+        mine = self if controller is None else self.for_law(rate)
+        mine.warn_of_itself()
         if controller is None:
             options: Any = {"progress": progress, "time_limit": time_limit, "trust": bool(trust)}
-            run = Run._of(_native.start(lib.arm3r_scenario_run, mine._handle, **options))
+            run = Run.of_handle(_native.start(lib.arm3r_scenario_run, mine.handle, **options))
         else:
             limits: Any = {"progress": progress, "time_limit": time_limit}
-            run = run_with_law(mine._handle, controller, mine._file, Run._of, **limits)
-        mine._warn(_native.text(lib.arm3r_run_warnings, run._handle).splitlines())
+            run = run_with_law(mine.handle, controller, mine.file, Run.of_handle, **limits)
+        mine.warn(_native.text(lib.arm3r_run_warnings, run.handle).splitlines())
         if run.outcome != "ok":
             raise class_of_outcome(run.outcome)(
-                f"{self._file}: {run.outcome}: {run.summary['message']}", code=f"run.{run.outcome}", run=run
+                f"{self.file}: {run.outcome}: {run.summary['message']}", code=f"run.{run.outcome}", run=run
             )
         return run
 
@@ -349,11 +355,11 @@ class Scenario(metaclass=Answering):
 
         Args, Raises: as `run`. What ends your run early is in `beside.failure` and is not raised.
         """
-        from ..blocks.beside import run_beside  # it stands above this module
+        limits: Any = {"progress": progress, "time_limit": time_limit}
+        beside: Beside = provided("run of two controllers")(self, controller, rate=rate, **limits)
+        return beside
 
-        return run_beside(self, controller, rate=rate, progress=progress, time_limit=time_limit)
-
-    def _for_law(self, rate: float | None) -> Scenario:
+    def for_law(self, rate: float | None) -> Scenario:
         """A copy whose controller is a law of the user's own. What it warns of, this scenario has warned of."""
         mine = self.copy()
         if mine["controller.type"] != "user":
@@ -377,7 +383,7 @@ class Scenario(metaclass=Answering):
         rate: float | None = None,
         columns: Sequence[str] | None = None,
         metrics: Sequence[str] | None = None,
-    ) -> Batch:
+    ) -> Batch[Scenario]:
         """Many runs at once: a table of their summaries. Ctrl-C ends it at once with KeyboardInterrupt.
 
         >>> batch = scenario.batch({"wall.contact.stiffness": np.geomspace(1e2, 1e6, 1000)}, columns=["q", "force"])

@@ -8,7 +8,7 @@ from typing import Any
 from .. import _native
 from .._native import lib
 from ..control.law import TORQUE
-from ..control.law_state import LawState, state_of
+from ..control.law_state import LawState, read_from, state_of
 from ..errors import ControllerError, class_of_outcome
 from .run import Run
 from .scenario import Scenario
@@ -45,10 +45,10 @@ class Simulation:
         Raises:
             ScenarioError: the scenario is not valid.
         """
-        mine = scenario._for_law(rate)
-        mine._warn_of_scenario()
-        self._file = mine._file
-        self._begin(_native.create("simulation", lib.arm3r_simulation_create, mine._handle))
+        mine = scenario.for_law(rate)
+        mine.warn_of_itself()
+        self._file = mine.file
+        self._begin(_native.create("simulation", lib.arm3r_simulation_create, mine.handle))
 
     def _begin(self, handle: Any) -> None:
         self._handle = handle
@@ -58,7 +58,7 @@ class Simulation:
     def _leave_state(self) -> None:
         """A state that the caller has kept takes its numbers with it; any other shows the next sample."""
         if getrefcount(self._state) > 2:  # held by this object and by the call
-            self._state._now = self._view.memory.copy()
+            read_from(self._state, self._view.memory.copy())
             self._state = state_of(self._view.memory)
 
     def __repr__(self) -> str:
@@ -108,7 +108,7 @@ class Simulation:
     @property
     def run(self) -> Run:
         """The rows so far: a run whose outcome is `stopped` where it is not over."""
-        return Run._of(_native.create("run", lib.arm3r_simulation_run, self._handle))
+        return Run.of_handle(_native.create("run", lib.arm3r_simulation_run, self._handle))
 
     def snapshot(self) -> Snapshot:
         """The whole state at the present sample, rows included: the cost grows with their number."""

@@ -15,7 +15,7 @@ from .task import Condition, ScenarioTask
 def judge_scenario(task: ScenarioTask, path: Path) -> Mark:
     """The mark of a file."""
     try:
-        student = Scenario(path.read_text(encoding="utf-8"), file=path.name)._quiet()
+        student = Scenario(path.read_text(encoding="utf-8"), file=path.name).quiet()
         student.validate()
     except UnicodeDecodeError:
         return Mark(WRONG, "is not UTF-8 text")
@@ -34,7 +34,7 @@ def judge_scenario(task: ScenarioTask, path: Path) -> Mark:
 
 def judged(task: ScenarioTask, student: Scenario) -> Scenario:
     """The scenario that is run: what is given, with the parts that the task takes from the student's."""
-    scenario = Scenario(task.given, file=task.name)._quiet()
+    scenario = Scenario(task.given, file=task.name).quiet()
     scenario.update({path: student[path] for path in task.takes})
     return scenario
 

@@ -34,7 +34,7 @@ def export(scenario: Scenario, path: str | os.PathLike[str]) -> None:
     is_urdf = Path(path).suffix == ".urdf"
     text, left_out = urdf_text(arm, shown(scenario.name)) if is_urdf else _mjcf(scenario, arm)
     for sentence in left_out:
-        warn_user(f"{scenario._file}: {sentence}", ScenarioWarning)
+        warn_user(f"{scenario.file}: {sentence}", ScenarioWarning)
     with replacing(Path(path)) as part:
         part.write_text(text, encoding="utf-8")
 
@@ -46,7 +46,7 @@ def _mjcf(scenario: Scenario, arm: Arm) -> tuple[str, list[str]]:
     if of_arm or of_wall:
         instead = "; leave the wall out by --set wall=null" if of_wall else ""
         instead += "; URDF (.urdf) takes the arm" if of_arm else ""
-        raise UsageError(f"{scenario._file}: MuJoCo cannot have: {'. '.join(of_arm + of_wall)}{instead}", code="usage")
+        raise UsageError(f"{scenario.file}: MuJoCo cannot have: {'. '.join(of_arm + of_wall)}{instead}", code="usage")
     start = {"q": scenario["initial.q"], "qd": scenario["initial.qd"], "start": scenario["time.start"]}
     text, left_out = mjcf.mjcf_text(arm, shown(scenario.name), **start, wall=wall.wall_of(keys) if acts else None)
     if keys and not acts:

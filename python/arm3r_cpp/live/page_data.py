@@ -46,7 +46,7 @@ def of_run(run: Run) -> dict[str, Any]:
         "matrix": _packed(np.stack([run[name] for name in run.columns])),
         "arm": {"points": _packed(arm.points(q)), "axes": _packed(axes), "reach": arm.reach},
         "summary": {key: value for key, value in run.summary.items() if key != "scenario"},
-        "report": run.report() if run._text() is not None else "",
+        "report": run.report() if run.has_report else "",
     }
     plain: dict[str, Any] = _plain(data)
     return plain

@@ -39,7 +39,7 @@ class _Plain:
     """Takes the lines of a whole scenario one after the other, and leaves out of it what changes nothing."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self.scenario = scenario._quiet()
+        self.scenario = scenario.quiet()
         self.whole = scenario.to_yaml()
         self.places: list[tuple[int, str]] = []  # indentation and key of the sections that a line is in
         self.left_out = ""
@@ -64,7 +64,7 @@ class _Plain:
         """Whether a value (YAML) at a path changes nothing; then it is taken."""
         changed = self.scenario.copy()
         try:
-            changed._edit(path, value, "the page")
+            changed.edit(path, value, "the page")
             same = changed.to_yaml() == self.whole
         except Arm3rError:
             return False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -60,7 +60,7 @@ def of_scenario(scenario: Scenario) -> str:
         yaml = scenario.to_yaml()
     except Arm3rError as error:
         problems = str(error).splitlines()
-        return html.page(html.heading("Scenario", scenario._file, "not valid", good=False), html.notes("", problems))
+        return html.page(html.heading("Scenario", scenario.file, "not valid", good=False), html.notes("", problems))
     wall = scenario["wall.motion.type"] if "wall" in scenario else "none"
     numbers = [
         ("convention", scenario["arm.convention"]),
@@ -73,13 +73,13 @@ def of_scenario(scenario: Scenario) -> str:
     return html.page(
         html.heading("Scenario", scenario.name),
         html.facts(numbers),
-        html.notes("Warnings:", scenario._warnings()),
+        html.notes("Warnings:", scenario.warnings),
         html.image(small_figure.of_scenario(scenario), small_figure.WIDTH, "the arm and the wall at the start"),
         html.folded("all values", yaml),
     )
 
 
-def of_batch(batch: Batch) -> str:
+def of_batch(batch: Batch[Any]) -> str:
     """How the runs ended, the range of their numbers, and one of these over the axes."""
     words, counts = np.unique(batch.outcomes, return_counts=True)
     state = ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
@@ -95,11 +95,11 @@ def of_batch(batch: Batch) -> str:
     )
 
 
-def _finite(batch: Batch, name: str) -> np.ndarray:
+def _finite(batch: Batch[Any], name: str) -> np.ndarray:
     values = batch[name][np.isfinite(batch[name])]
     return values if values.size else np.zeros(1)
 
 
-def _range(batch: Batch, name: str) -> tuple[float, float, float]:
+def _range(batch: Batch[Any], name: str) -> tuple[float, float, float]:
     values = _finite(batch, name)
     return float(values.min()), float(np.median(values)), float(values.max())

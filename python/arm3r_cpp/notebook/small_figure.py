@@ -85,7 +85,7 @@ def _plate(scenario: Scenario) -> Any:
     return scenario["wall.point"] + signs[:, :1] * half1 * frame.e1 + signs[:, 1:] * half2 * frame.e2
 
 
-def of_batch(batch: Batch, column: str) -> bytes | None:
+def of_batch(batch: Batch[Any], column: str) -> bytes | None:
     """A column over the axes. None: there is not one axis of numbers, or two that cross, to draw it over."""
     axes = [(key, np.asarray(values, float)) for key, values in batch.axes.items() if values.dtype.kind == "f"]
     draw = _drawing(batch, column, axes)
@@ -96,7 +96,7 @@ def of_batch(batch: Batch, column: str) -> bytes | None:
     return png.getvalue()
 
 
-def _drawing(batch: Batch, column: str, axes: list[Any]) -> Callable[[Any, Any], None] | None:
+def _drawing(batch: Batch[Any], column: str, axes: list[Any]) -> Callable[[Any, Any], None] | None:
     """How the column is drawn: a line over one axis, or colours over two that cross."""
     label = f"{column}, {batch.units[column]}"
 

@@ -44,9 +44,9 @@ def run_to_xarray(run: Run) -> xarray.Dataset:
     return _library("xarray").Dataset(variables, coords=time, attrs=about)
 
 
-def batch_to_pandas(batch: Batch) -> pandas.DataFrame:
+def batch_to_pandas(batch: Batch[Any]) -> pandas.DataFrame:
     columns: dict[str, Any] = {}
-    for axis in batch._axes:
+    for axis in batch.varied:
         values = np.broadcast_to(axis.values, (*batch.shape, axis.values.shape[-1]))
         columns |= {name: values[..., i].ravel() for i, name in enumerate(axis.names)}
     columns["outcome"] = batch.outcomes.ravel()
@@ -57,33 +57,33 @@ def batch_to_pandas(batch: Batch) -> pandas.DataFrame:
     return frame
 
 
-def batch_to_xarray(batch: Batch) -> xarray.Dataset:
+def batch_to_xarray(batch: Batch[Any]) -> xarray.Dataset:
     dimensions = _dimensions(batch)
     variables: dict[str, Any] = {n: (dimensions, batch[n], {"units": batch.units[n]}) for n in batch.names}
     variables["outcome"] = (dimensions, batch.outcomes, {})
     return _library("xarray").Dataset(variables, coords=_coordinates(batch, dimensions))
 
 
-def _dimensions(batch: Batch) -> tuple[str, ...]:
+def _dimensions(batch: Batch[Any]) -> tuple[str, ...]:
     """A dimension has the key of the one axis that varies along it and nowhere else; if not, "run" or "axis_0", ..."""
     names = []
     for place in range(len(batch.shape)):
-        along = [(axis.key, places) for axis in batch._axes if place in (places := _varies(batch, axis.values))]
+        along = [(axis.key, places) for axis in batch.varied if place in (places := _varies(batch, axis.values))]
         is_own = len(along) == 1 and along[0][1] == [place]
         names.append(along[0][0] if is_own else "run" if len(batch.shape) == 1 else f"axis_{place}")
     return tuple(names)
 
 
-def _varies(batch: Batch, values: NDArray[Any]) -> list[int]:
+def _varies(batch: Batch[Any], values: NDArray[Any]) -> list[int]:
     """The places in the shape of the batch along which an axis (..., numbers) has values of its own."""
     own = values.shape[:-1]
     first = len(batch.shape) - len(own)
     return [first + i for i, size in enumerate(own) if size > 1 or batch.shape[first + i] == 1]
 
 
-def _coordinates(batch: Batch, dimensions: tuple[str, ...]) -> dict[str, Any]:
+def _coordinates(batch: Batch[Any], dimensions: tuple[str, ...]) -> dict[str, Any]:
     coordinates: dict[str, Any] = {}
-    for axis in batch._axes:
+    for axis in batch.varied:
         places = _varies(batch, axis.values)
         here = tuple(dimensions[place] for place in places)
         values = axis.values.reshape(*(batch.shape[place] for place in places), axis.values.shape[-1])

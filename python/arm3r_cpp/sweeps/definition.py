@@ -66,11 +66,11 @@ class Sweep:
         known = list(_native.summary_columns())
         self.metrics = [name for name in given.get("metrics", known) if name != "outcome"]
         self.statistics = [Statistic(one["column"], one["of"]) for one in given.get("statistics", [])]
-        self.scenario = Scenario._of(base, given["scenario"])
+        self.scenario = Scenario.of_handle(base, given["scenario"])
         for override in overrides:
-            self.scenario._set_from_option(override)
+            self.scenario.set_from_option(override)
         self.scenario.validate()
-        self.scenario._quiet()
+        self.scenario.quiet()
         columns = _columns(self.scenario)
         _check(self, given, list(columns))
         self.units = {statistic.name: columns[statistic.column] for statistic in self.statistics}

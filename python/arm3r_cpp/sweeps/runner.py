@@ -16,6 +16,8 @@ from .. import _native
 from .._files import folder_named, replacing
 from ..core.advice import Advice
 from ..core.batch import AXIS_ERRORS, axis_of
+from ..core.protocols import LawOfFile
+from ..core.provided import provided
 from ..errors import Arm3rError, ScenarioWarning, UsageError
 from ..system.cpus import usable_cpus
 from .definition import Sweep
@@ -25,7 +27,6 @@ from .table import SweepTable
 from .table_io import merge, pyarrow
 
 if TYPE_CHECKING:
-    from ..blocks.block import Block
     from ..core.scenario import Scenario
 
 Submit = Callable[[ShardJob], "Future[ShardResult]"]
@@ -113,16 +114,14 @@ def _first_job(plan: Sweep, table: str, controller: str | os.PathLike[str] | Non
     )
 
 
-def _block(controller: str | os.PathLike[str], plan: Sweep) -> Block:
+def _block(controller: str | os.PathLike[str], plan: Sweep) -> LawOfFile:
     """
     Raises:
         UsageError: the function cannot be read, or an axis or a statistic needs the scenario's own controller.
         ControllerError: it failed at the start of a run.
     """
-    from ..blocks.block import Block  # it stands above this room
-
-    block = Block.read(controller)
-    short = plan.scenario._for_law(None)._quiet()
+    block: LawOfFile = provided("function of a file")(controller)
+    short = plan.scenario.for_law(None).quiet()
     short["checks"] = []
     _check_axes(short, plan)
     short["time.stop"] = short["time.start"]

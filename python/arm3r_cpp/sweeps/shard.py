@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,11 @@ from .._native import Floats
 from ..answers.refusals import Refusal, merged
 from ..core.batch import Batch, run_batch
 from ..core.params import param_key, places
+from ..core.protocols import LawOfFile
 from ..core.run import Run
 from ..core.scenario import Scenario
 from ..errors import Arm3rError, BudgetError, IncompatibleError
 from .table_io import encode
-
-if TYPE_CHECKING:
-    from ..blocks.block import Block
 
 STATISTICS: dict[str, Callable[[Floats], float]] = {
     "max": np.max,
@@ -65,7 +63,7 @@ class ShardJob:
     table: str
     version: str
     abi: int
-    controller: Block | None = None
+    controller: LawOfFile | None = None
     arms: Mapping[tuple[str, ...], str] = field(default_factory=dict)
 
 
@@ -103,7 +101,7 @@ def _computed(job: ShardJob, progress: Callable[[int, int], Any] | None) -> Shar
     parts, refusals, done = [], [], 0
     for rows, scenario, values in _parts(job, np.arange(runs)):
         part_progress = progress and partial(_later, progress, done, runs)
-        batch = _batch(job, Scenario(scenario, file=job.file)._quiet(), len(rows), values, part_progress)
+        batch = _batch(job, Scenario(scenario, file=job.file).quiet(), len(rows), values, part_progress)
         part = {"outcome": batch.outcomes, **{name: batch[name] for name in job.metrics}}
         parts.append(part | _statistics(job.statistics, batch, part_progress))
         places_of.append(rows)
@@ -144,7 +142,7 @@ def _batch(
     runs: int,
     values: dict[str, NDArray[Any]],
     progress: Callable[[int, int], Any] | None,
-) -> Batch:
+) -> Batch[Any]:
     counts_later = progress and (lambda runs_done, runs: progress(0, runs))  # statistics run each of them once more
     values = values or {"time.stop": np.full(runs, scenario["time.stop"])}  # nothing but the arm varies
     report = counts_later if job.statistics else progress
@@ -177,7 +175,7 @@ def _axes(job: ShardJob) -> dict[str, NDArray[Any]]:
 
 
 def _statistics(
-    wanted: Sequence[Statistic], batch: Batch, progress: Callable[[int, int], Any] | None
+    wanted: Sequence[Statistic], batch: Batch[Any], progress: Callable[[int, int], Any] | None
 ) -> dict[str, Any]:
     """The statistics of every run, which is run once more with its rows."""
     rows = []
@@ -189,9 +187,9 @@ def _statistics(
     return {statistic.name: np.array([row[j] for row in rows]) for j, statistic in enumerate(wanted)}
 
 
-def _run(batch: Batch, index: int, progress: Callable[[int, int], Any] | None) -> Run | None:
+def _run(batch: Batch[Any], index: int, progress: Callable[[int, int], Any] | None) -> Run | None:
     """The run, or as much of it as there is."""
     try:
-        return batch._run(index, progress=lambda t, stop, steps: progress and progress(index, len(batch)))
+        return batch.run(index, progress=lambda t, stop, steps: progress and progress(index, len(batch)))
     except Arm3rError as error:
         return error.run

@@ -70,7 +70,7 @@ def assert_rows_are_the_runs(batch: arm3r.Batch, run: Callable[[tuple[int, ...]]
 
 @pytest.mark.parametrize("solver", METHODS)
 def test_a_row_has_the_bits_of_the_run_alone(scenario: arm3r.Scenario, solver: str) -> None:
-    scenario._edit("solver", solver, "test")
+    scenario.edit("solver", solver, "test")
     batch = scenario.batch({"wall.contact.stiffness": STIFFNESS}, controller=press)
     assert_rows_are_the_runs(batch)
     assert_rows_are_the_runs(batch, lambda index: batch.scenario(index).run(controller=press))
@@ -284,7 +284,7 @@ def native(address: int, records: np.ndarray, **options: Any) -> NativeLaw:
 def test_a_law_in_c_has_a_memory_for_each_run(
     scenario: arm3r.Scenario, integral: int, solver: str, reentrant: bool, threads: int | None
 ) -> None:
-    scenario._edit("solver", solver, "test")
+    scenario.edit("solver", solver, "test")
     records = memories(np.linspace(10, 300, 12))
     law = native(integral, records, reentrant=reentrant)
     batch = scenario.batch({"wall.contact.stiffness": np.geomspace(1e2, 1e5, 12)}, controller=law, threads=threads)

@@ -76,7 +76,7 @@ def in_lanes(
     instructions.
     """
     batch = scenario.batch({key: value[:0] for key, value in values.items()})
-    varied = [index for axis in batch._axes for index in axis.indices]
+    varied = [index for axis in batch.varied for index in axis.indices]
     numbers = np.ascontiguousarray(np.column_stack(list(values.values())).T)
     options = ffi.new("arm3r_batch_options *", {"struct_size": ffi.sizeof("arm3r_batch_options"), "lanes": lanes})
     table = np.empty((lib.arm3r_summary_count(), numbers.shape[1]))

@@ -75,7 +75,7 @@ def test_every_method_finds_the_peak_of_the_first_contact(count: int) -> None:
         scenario.update(drawn(chance))
         for method in ("dopri5", "rodas4", "rk4"):
             scenario["solver.method"] = method
-            run = scenario._quiet().run()
+            run = scenario.quiet().run()
             if run.summary["contacts"]:
                 assert is_right(run, 1e-3), (sample_seed(), n, method, due(run), run.summary["metrics"])
 

@@ -110,7 +110,7 @@ def deviations(seed: int, count: int) -> list[float]:
     for n in range(count):
         scenario, stiffness = drawn(seed * 10_000 + n)
         try:
-            run = arm3r.Scenario(json.dumps(scenario))._quiet().run()
+            run = arm3r.Scenario(json.dumps(scenario)).quiet().run()
         except (arm3r.ScenarioError, arm3r.NumericalError):
             continue
         known = run["identifiable"] > 0

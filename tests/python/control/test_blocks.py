@@ -169,7 +169,7 @@ def test_the_true_one_computes_at_the_same_samples(scenario: arm3r.Scenario, fil
     scenario.update({"controller": {"type": "joint_pd", "joint_stiffness": [40] * 3, "joint_damping": [6] * 3},
                      "reference": {"type": "point", "q": [0.5, -0.2, 0.7]}})  # fmt: skip
     if sampling:
-        scenario._edit("sampling", sampling, "test")
+        scenario.edit("sampling", sampling, "test")
     beside = scenario.run_beside(file("pd.py", PD))
     assert beside.true_name == "joint_pd" and beside.rows == 41
     assert np.ptp(beside.yours["q1"]) > 0.05

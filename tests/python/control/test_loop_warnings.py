@@ -244,7 +244,7 @@ HOLDS = (
 def test_a_weight_that_is_compensated_wrongly_is_told_with_both_torques(law: str, warns: bool) -> None:
     text = HOLDS.replace("reference: {type: hold}\n", "") if "compensation" in law else HOLDS
     scenario = arm3r.Scenario(f"{text}controller: {law}\n")
-    said = [line for line in scenario._quiet().run().warnings if "the weight of the arm takes torques of" in line]
+    said = [line for line in scenario.quiet().run().warnings if "the weight of the arm takes torques of" in line]
     assert len(said) == warns
     if not warns:
         return

@@ -51,7 +51,7 @@ def _same(one: arm3r.Run, other: arm3r.Run) -> bool:
 
 @pytest.mark.parametrize("solver", METHODS)
 def test_it_is_asked_once_at_each_sample(scenario: arm3r.Scenario, solver: str) -> None:
-    scenario._edit("solver", solver, "test")
+    scenario.edit("solver", solver, "test")
     times: list[tuple[int, float]] = []
 
     def law(t: float, state: LawState) -> Any:
@@ -131,7 +131,7 @@ def test_a_moving_wall_is_seen_moving(scenario: arm3r.Scenario) -> None:
 
 
 def test_sensors_stand_between(scenario: arm3r.Scenario) -> None:
-    scenario._edit("sensors", "{encoder: {counts: 4096}, force: {noise: 0.5}}", "test")
+    scenario.edit("sensors", "{encoder: {counts: 4096}, force: {noise: 0.5}}", "test")
     step, off = 2 * math.pi / 4096, []
 
     def law(t: float, state: LawState) -> Any:
@@ -158,7 +158,7 @@ def test_the_torque_limit_holds(scenario: arm3r.Scenario) -> None:
 @pytest.mark.parametrize("solver", METHODS)
 def test_gravity_compensation_written_by_hand(scenario: arm3r.Scenario, convention: str, solver: str) -> None:
     scenario["arm.convention"] = convention
-    scenario._edit("solver", solver, "test")
+    scenario.edit("solver", solver, "test")
     arm, marches = scenario.arm, "rk4" in solver  # whose sines and cosines come from a grid nearby
     own = scenario.run(controller=lambda t, state: state.tau_g if marches else arm.gravity_torque(state.q))
     scenario["controller.type"] = "gravity_compensation"
@@ -169,7 +169,7 @@ def test_gravity_compensation_written_by_hand(scenario: arm3r.Scenario, conventi
 
 def test_joint_pd_written_by_hand(scenario: arm3r.Scenario) -> None:
     stiffness, damping, goal = np.array([50.0, 60, 40]), np.array([9.0, 8, 7]), np.array([0.2, -0.3, 0.8])
-    scenario._edit("sensors", NOISY, "test")
+    scenario.edit("sensors", NOISY, "test")
     own = scenario.run(controller=lambda t, s: (stiffness * (goal - s.q) - damping * s.qd) + s.tau_g)
     scenario["controller"] = {"type": "joint_pd", "joint_stiffness": stiffness, "joint_damping": damping}
     scenario["reference"] = {"type": "point", "q": goal}
@@ -291,7 +291,7 @@ def _check_partial(run: arm3r.Run, tick: int) -> None:
 @pytest.mark.parametrize("tick", [0, 37, 80])
 @pytest.mark.parametrize("solver", METHODS[:3])
 def test_what_it_raises_comes_out_with_its_traceback(scenario: arm3r.Scenario, tick: int, solver: str) -> None:
-    scenario._edit("solver", solver, "test")
+    scenario.edit("solver", solver, "test")
     calls: list[int] = []
 
     def deep_inside() -> None:
@@ -485,7 +485,7 @@ def test_a_law_in_c_is_the_same_law(scenario: arm3r.Scenario, native: Callable[.
 )
 def test_a_law_in_c_that_fails(scenario: arm3r.Scenario, native: Any, law: Any, words: str) -> None:
     for solver in METHODS[:3]:
-        scenario._edit("solver", solver, "test")
+        scenario.edit("solver", solver, "test")
         with pytest.raises(arm3r.ControllerError, match=words) as caught:
             scenario.run(controller=native(*law))
         _check_partial(caught.value.run, 12)
@@ -514,9 +514,9 @@ def _stepped(simulation: Simulation) -> arm3r.Run:
 @pytest.mark.parametrize("solver", METHODS)
 @pytest.mark.parametrize("sensors", ["null", NOISY, "{force: {analog_cutoff: 50}}"])
 def test_stepping_is_the_run(scenario: arm3r.Scenario, solver: str, sensors: str) -> None:
-    scenario._edit("solver", solver, "test")
+    scenario.edit("solver", solver, "test")
     has_series = "cutoff" not in sensors or "taylor" not in solver
-    scenario._edit("sensors", sensors if has_series else "null", "test")
+    scenario.edit("sensors", sensors if has_series else "null", "test")
     run, stepped = scenario.run(controller=damp), _stepped(Simulation(scenario))
     assert stepped.outcome == "ok" and _same(run, stepped)
     differ = {"elapsed_s"}
@@ -529,7 +529,7 @@ def test_stepping_is_the_run(scenario: arm3r.Scenario, solver: str, sensors: str
 def test_back_to_a_snapshot_bit_for_bit(scenario: arm3r.Scenario, delay: float) -> None:
     scenario["sampling.delay"] = delay
     scenario["solver"] = {"method": "auto"}
-    scenario._edit("sensors", NOISY, "test")
+    scenario.edit("sensors", NOISY, "test")
     expected, simulation = scenario.run(controller=damp), Simulation(scenario)
     snapshots = []
     for tick in range(60):
@@ -563,7 +563,7 @@ def test_a_copy_forgets_nothing(root: Path, method: str, sensors: str) -> None:
     scenario = arm3r.Scenario(path.read_text().split("checks:")[0])
     scenario["controller"] = {"type": "user"}
     scenario["sampling"] = {"rate": 100}
-    scenario._edit("sensors", sensors, "test")
+    scenario.edit("sensors", sensors, "test")
     scenario["solver.method"] = method
     expected, simulation = scenario.run(controller=damp), Simulation(scenario)
     assert ("rodas4 from" in expected.summary["solver"]["choices"]) == (method == "auto")

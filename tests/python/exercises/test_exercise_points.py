@@ -138,7 +138,7 @@ def test_what_is_right_on_the_lab_sheet_is_what_was_computed_apart(
     task: Any = TASKS[name]
     scenario = Scenario(task.given)
     scenario.update({**MENDED[name], **changes})
-    run = scenario._quiet().run()
+    run = scenario.quiet().run()
     for condition, measure, number in zip(task.conditions, measures, due, strict=True):
         assert abs(measure(run) - number) < condition.threshold / 100
         assert abs(condition.measure(run) - condition.due) < condition.threshold / 100

@@ -51,8 +51,8 @@ def bytes_of_run(run: arm3r.Run) -> bytes:
         for event in run.events
     )
     columns = b"".join(run[name].tobytes() for name in run.columns)
-    summary = _native.text(_native.lib.arm3r_run_summary, run._handle)
-    report = _native.text(_native.lib.arm3r_run_report, run._handle)
+    summary = _native.text(_native.lib.arm3r_run_summary, run.handle)
+    report = _native.text(_native.lib.arm3r_run_report, run.handle)
     texts = re.sub(r".*\"elapsed_s\": .*\n", "", summary) + re.sub(r".*  wall clock .*\n", "", report)
     return columns + events + texts.encode()
 

@@ -31,7 +31,7 @@ def run_of(law: str, contact: str, size: str, solver: str) -> arm3r.Run:
         text = text.replace(", force: {value: 20}", "")
     if law == COMPENSATES:
         text = text.replace("reference: {type: hold}\n", "")
-    return arm3r.Scenario(text)._quiet().run()
+    return arm3r.Scenario(text).quiet().run()
 
 
 def order(law: str, contact: str, size: str, events: str = "grid", runs: int = 24) -> float:

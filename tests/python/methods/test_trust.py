@@ -75,7 +75,7 @@ def random_contact(rng: np.random.Generator) -> dict[str, Any]:
 
 def run_of_one_contact(scenario: arm3r.Scenario) -> arm3r.Run | None:
     """Cut between the first contact and the next, if there is one."""
-    run = scenario._quiet().run()
+    run = scenario.quiet().run()
     if len(run.events) > 2:
         scenario["time.stop"] = (run.events[1].t + run.events[2].t) / 2
         run = scenario.run()
@@ -135,7 +135,7 @@ def test_a_damped_contact_has_the_impulse_of_its_restitution(lecture: arm3r.Scen
 def test_a_contact_that_is_computed_badly_departs_further_than_theory_allows(lecture: arm3r.Scenario, cli: Cli) -> None:
     lecture.update({"checks": [], "wall.acts_on_arm": True, "wall.contact.stiffness": 1e6})
     lecture["solver"] = {"method": "rk4", "step": 1e-3}
-    assert share(form(lecture._quiet().run(), "peak_force")) > 1
+    assert share(form(lecture.quiet().run(), "peak_force")) > 1
     text = cli("run", "-", input=lecture.to_yaml()).stdout
     assert "more than allowed" in text
 
@@ -168,7 +168,7 @@ def test_a_steady_force_follows_from_statics() -> None:
 def test_what_has_no_closed_form_is_given_none(lecture: arm3r.Scenario, change: dict[str, Any]) -> None:
     lecture.update({"checks": [], "wall.acts_on_arm": True, "wall.contact.stiffness": 1e5, "time.stop": 5.5})
     lecture.update({"time.log_every": 0.01, **change})
-    assert not CONTACT_NUMBERS & {one.name for one in lecture._quiet().run().closed_forms}
+    assert not CONTACT_NUMBERS & {one.name for one in lecture.quiet().run().closed_forms}
 
 
 def test_a_run_without_contact_has_no_closed_forms() -> None:
@@ -196,7 +196,7 @@ def random_fall(rng: np.random.Generator) -> arm3r.Scenario:
     return arm3r.Scenario(
         f"format: 1\narm: {flow(arm, 'arm')}\ninitial: {flow(initial, 'initial')}\n"
         f"solver: {flow({'method': method, **solver}, 'solver')}\ntime: {{stop: 8, log_every: 0.02}}\n"
-    )._quiet()
+    ).quiet()
 
 
 @pytest.mark.parametrize("falls", [3, pytest.param(30, marks=pytest.mark.gate)])
@@ -229,7 +229,7 @@ def test_a_loose_tolerance_is_seen_and_a_tight_one_lasts() -> None:
     horizons = []
     for rtol in (1e-4, 1e-6, 1e-8):
         scenario["solver"] = {"method": "dopri5", "rtol": rtol, "atol": rtol / 1000}
-        trust = scenario._quiet().run(trust=True).trust
+        trust = scenario.quiet().run(trust=True).trust
         assert trust is not None
         horizons.append(trust.horizon)
     assert horizons[0] < horizons[1] < horizons[2]
@@ -310,7 +310,7 @@ def test_a_law_of_your_own_has_no_horizon(lecture: arm3r.Scenario) -> None:
 def test_figures_grey_out_what_is_beyond_the_horizon() -> None:
     scenario = arm3r.Scenario.example("lecture/05_free_fall")
     scenario.update({"checks": [], "solver": {"method": "dopri5", "rtol": 1e-5}})
-    plain, run = scenario._quiet().run(), scenario.run(trust=True)
+    plain, run = scenario.quiet().run(), scenario.run(trust=True)
     assert run.trust is not None
     labels = [text.get_text() for text in arm3r.plot.overview(run).axes[0].get_legend().get_texts()]
     assert any("1e-06 rad" in label for label in labels)
@@ -321,7 +321,7 @@ def test_figures_grey_out_what_is_beyond_the_horizon() -> None:
     assert not any(patch.get_zorder() == 4 for axes in arm3r.plot.overview(plain).axes for patch in axes.patches)
     walled = arm3r.Scenario.example("moving_wall")
     walled.update({"checks": [], "solver": {"method": "dopri5", "rtol": 1e-5}, "controller": {"type": "none"}})
-    one, other = walled._quiet().run(trust=True), walled.run()
+    one, other = walled.quiet().run(trust=True), walled.run()
     figure = arm3r.plot.compare({"one": one, "other": other}, panels=["force", "torques"])
     assert one.trust is not None
     assert [patch.get_x() for patch in figure.axes[0].patches if patch.get_zorder() == 4] == [one.trust.horizon]

@@ -15,7 +15,7 @@ EXACT = {"method": "dopri5", "rtol": 1e-12, "atol": 1e-15}
 
 
 def quiet(drawn: dict[str, Any]) -> arm3r.Scenario:
-    return arm3r.Scenario(yaml_of(drawn))._quiet()
+    return arm3r.Scenario(yaml_of(drawn)).quiet()
 
 
 def outcome_of(scenario: arm3r.Scenario, **options: Any) -> arm3r.Run:
@@ -176,7 +176,7 @@ solver: {method: dopri5}
 
 @pytest.mark.gate
 def test_an_error_that_is_not_that_of_the_end_says_of_when_it_is() -> None:
-    run = arm3r.Scenario(REACHES_TOO_FAR)._quiet().run(trust=True)
+    run = arm3r.Scenario(REACHES_TOO_FAR).quiet().run(trust=True)
     assert run.trust is not None
     assert run.trust.end_error_at < 0.2
     assert run.trust.cause != ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -12,25 +13,8 @@ from pathlib import Path
 import pytest
 from conftest import CALLS
 
-# From the bottom up: a file includes files of its own room and of rooms that stand before it.
-HEADERS = ("numbers", "model", "ode", "control", "sensing")
-PROGRAM = (
-    "platform",
-    "base",
-    "schema",
-    "setup",
-    "control",
-    "validate",
-    "integrate",
-    "contact",
-    "record",
-    "run",
-    "lanes",
-)
-PROGRAM = (*PROGRAM, "batch", "trust")
-FACES = ("files", "results", "scenario", "api", "wasm", "cli")
-ROOMS = [*(f"include/arm3r/{room}" for room in HEADERS), "include/arm3r"]
-ROOMS += [f"src/{room}" for room in PROGRAM + FACES]
+# From the bottom up: a header includes headers of its own room and of rooms that stand before it.
+HEADERS = [*(f"include/arm3r/{room}" for room in ("numbers", "model", "ode", "control", "sensing")), "include/arm3r"]
 MOST_FILES = 16  # with a name of their own: X.hpp and X.cpp are one
 
 # What only these files may include.
@@ -71,25 +55,51 @@ def _room_of_include(name: str) -> str:
     return f"include/{folder}" if name.startswith("arm3r/") else f"src/{folder}"
 
 
-def test_every_room_is_in_the_order_and_has_a_page(root: Path) -> None:
+@pytest.fixture(scope="module")
+def seen(root: Path) -> dict[str, set[str]]:
+    """Of each room of the program, the rooms whose headers its compiler finds: what CMakeLists.txt says after SEES."""
+    seen: dict[str, set[str]] = {}
+    for room, rooms in re.findall(r"^ *arm3r_room\((\w+)(?: SEES((?: [a-z]+)+))?", _cmake(root), re.M):
+        seen[room] = {room}.union(*(seen[below] for below in rooms.split()))
+    return seen
+
+
+def _cmake(root: Path) -> str:
+    return "\n".join((root / name).read_text() for name in ("CMakeLists.txt", "cmake/wasm.cmake"))
+
+
+def test_every_room_has_a_target_and_a_page(root: Path, seen: dict[str, set[str]]) -> None:
     found = {_room(root, path) for path in _sources(root)}
-    assert found == set(ROOMS)
-    pages = {room for room in ROOMS if (root / "cpp" / room / "README.md").is_file()}
-    assert pages == set(ROOMS)
-    titles = {room: (root / "cpp" / room / "README.md").read_text().split("\n")[0] for room in pages}
+    assert found == {*HEADERS, *(f"src/{room}" for room in seen)}
+    titles = {room: (root / "cpp" / room / "README.md").read_text().split("\n")[0] for room in found}
     assert not {room: title for room, title in titles.items() if not title.startswith("# ")}
 
 
-def test_no_include_points_up(root: Path) -> None:
-    height = {room: place for place, room in enumerate(ROOMS)}
+def test_no_include_points_up(root: Path, seen: dict[str, set[str]]) -> None:
+    """Where a source is compiled the compiler refuses it; here headers are read too."""
     generated = {"taylor_kernels.hpp"}
-    upward = [
-        f"{_room(root, path)}/{path.name} includes {name}"
-        for path in _sources(root)
-        for kind, name in _includes(path)
-        if kind == '"' and name not in generated and height[_room_of_include(name)] > height[_room(root, path)]
-    ]
+    upward = []
+    for path in _sources(root):
+        room = _room(root, path)
+        if room in HEADERS:
+            may = HEADERS[: HEADERS.index(room) + 1]
+        else:
+            may = [*HEADERS, *(f"src/{below}" for below in seen[path.parent.name])]
+        names = [name for kind, name in _includes(path) if kind == '"' and name not in generated]
+        upward += [f"{room}/{path.name} includes {name}" for name in names if _room_of_include(name) not in may]
     assert upward == []
+
+
+def test_a_compiler_finds_the_headers_of_the_rooms_that_a_room_sees(root: Path, seen: dict[str, set[str]]) -> None:
+    commands = root / "build/ctest/compile_commands.json"
+    if not commands.is_file():
+        pytest.skip(f"{commands} is not there: make test")
+    found: dict[str, set[str]] = {}
+    for step in json.loads(commands.read_text()):
+        if room := re.search(r"/arm3r_(\w+)\.dir/", step["output"]):
+            found.setdefault(room[1], set()).update(re.findall(r"-I\S*/rooms/(\w+)", step["command"]))
+    compiled = seen.keys() - {"wasm"}
+    assert {room: found[room] for room in compiled} == {room: seen[room] for room in compiled}
 
 
 def test_no_room_is_too_large(root: Path) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
-from fnmatch import fnmatch
 from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 import arm3r_cpp as arm3r
 import grimp
 import pytest
+from arm3r_cpp.core.provided import _places, provided
 
 tomllib = pytest.importorskip("tomllib")  # of Python 3.11
 
@@ -35,19 +36,19 @@ def test_rooms_know_only_what_lies_below_them(root: Path, scripts: Path) -> None
 
 
 def test_no_modules_import_each_other(root: Path) -> None:
-    """But for the imports that are done when a public method is called."""
-    [layers] = tomllib.loads((root / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
-    graph = grimp.build_graph("arm3r_cpp", exclude_type_checking_imports=True, cache_dir=None)
-    known = {
-        module: {
-            one
-            for one in graph.find_modules_directly_imported_by(module)
-            if not any(fnmatch(f"{module} -> {one}", later) for later in layers["ignore_imports"])
-        }
-        for module in graph.modules
-    }
+    """Neither when they are loaded nor later, nor for their types: but for the names in a package's public face."""
+    graph = grimp.build_graph("arm3r_cpp", cache_dir=None)
+    faces = ("arm3r_cpp", "arm3r_cpp.plot")
+    known = {module: graph.find_modules_directly_imported_by(module) for module in graph.modules if module not in faces}
     assert known["arm3r_cpp.core.scenario"] > {"arm3r_cpp._native"}  # the sources are read
-    assert len(list(TopologicalSorter(known).static_order())) >= len(KNOWN)  # CycleError names a circle
+    assert len(list(TopologicalSorter(known).static_order())) >= len(KNOWN) - len(faces)  # CycleError names a circle
+
+
+def test_what_the_package_provides_is_there() -> None:
+    assert len(_places) == 12
+    assert all(callable(provided(name)) for name in _places)
+    asked = {name for path in KNOWN.values() for name in re.findall(r'provided\("([^"]+)"\)', path.read_text())}
+    assert asked == set(_places)
 
 
 @pytest.mark.sample(8)
@@ -62,6 +63,29 @@ def test_a_folder_can_be_taken_in(folder: Path) -> None:
     assert len(list(folder.glob("*.py"))) <= MAX_MODULES
     text = ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
     assert text and len(text.splitlines()) >= 5, f"{folder.name}: its __init__.py says what comes in and what goes out"
+
+
+FOREIGN = {"_getframe", "_register_atexit", "_legend_handle_box", "_legend_box", "_children"}
+FOREIGN |= {"_replace", "_fields", "_exit", "_NamedFuncPointer"}
+"""Of Python and of matplotlib, which have no other names for them."""
+
+
+@pytest.mark.parametrize("module", KNOWN)
+def test_no_module_uses_private_members_of_another(module: str) -> None:
+    tree = ast.parse(KNOWN[module].read_text())
+    used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and _is_private(node.attr)}
+    own = {node.name for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    own |= {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    own |= {
+        node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in ("self", "cls")
+    }
+    assert used - own - FOREIGN == set()
+
+
+def _is_private(name: str) -> bool:
+    return name.startswith("_") and not name.endswith("_")
 
 
 def test_no_module_hides_a_public_name_of_its_package() -> None:

@@ -319,7 +319,7 @@ def test_every_guided_stop_shows_what_it_says(root: Path) -> None:
         scenario = arm3r.Scenario.example(stop["scenario"])
         for values, claims in ((stop["set"], stop["before"]), (stop["then"], stop["after"])):
             for path, value in values.items():
-                scenario._edit(path, value, "stops.json")
+                scenario.edit(path, value, "stops.json")
             scenario["checks"] = claims
             run = scenario.run()
             assert run.passed, (stop["title"], run.checks)

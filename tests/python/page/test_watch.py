@@ -30,7 +30,7 @@ def watched(*texts: str) -> list[dict[str, Any]]:
 
 def whole(text: str) -> arm3r.Run:
     """The run, with all columns."""
-    scenario = arm3r.Scenario(text)._quiet()
+    scenario = arm3r.Scenario(text).quiet()
     scenario["time.log_columns"] = None
     return scenario.run()
 

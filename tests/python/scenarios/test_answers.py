@@ -101,8 +101,8 @@ SUGGESTED = re.compile(
 
 def suggestion(scenario: arm3r.Scenario, path: str, text: str) -> tuple[str, str]:
     """What the message on a text at a path suggests to write, and the message; "": nothing, or the text is accepted."""
-    one = scenario.copy()._quiet()
-    one._edit(path, text, "--set")
+    one = scenario.copy().quiet()
+    one.edit(path, text, "--set")
     try:
         one.validate()
     except arm3r.ScenarioError as error:
@@ -131,8 +131,8 @@ def test_a_number_that_a_message_suggests_is_a_number(scenario_with_all: arm3r.S
         if not found:
             continue
         suggested += 1
-        one = scenario_with_all.copy()._quiet()
-        one._edit(path, found, "--set")
+        one = scenario_with_all.copy().quiet()
+        one.edit(path, found, "--set")
         try:
             one.validate()
         except arm3r.BudgetError:  # a number
@@ -186,8 +186,8 @@ def test_words_that_a_message_suggests_are_accepted(text: str) -> None:
     found = re.search(r"write (?:`\w+: (.*?)`|(\w+))", problem["hint"])
     assert found, problem
     scenario = arm3r.Scenario(HEAD + "wall: {}\n")
-    scenario._edit(problem["path"].split("[")[0], found[1] or found[2], "--set")
-    scenario._quiet().validate()
+    scenario.edit(problem["path"].split("[")[0], found[1] or found[2], "--set")
+    scenario.quiet().validate()
 
 
 # ---- names of other programs ----------------------------------------------------------------------------------------
@@ -204,7 +204,7 @@ def pairs() -> list[tuple[str, str]]:
 def test_a_name_of_another_program_is_answered(typed: str, here: str) -> None:
     if found := re.fullmatch(r"([a-z_.]+): (\w+)", here):
         scenario = arm3r.Scenario(HEAD + "wall: {}\n")
-        scenario._edit(found[1], f'"{typed}"', "--set")
+        scenario.edit(found[1], f'"{typed}"', "--set")
         with pytest.raises(arm3r.ScenarioError, match=f"did you mean {found[2]}\\?"):
             scenario.validate()
         return

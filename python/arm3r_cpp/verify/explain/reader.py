@@ -88,7 +88,7 @@ class _Reader:
         numbers = {name: value * random.uniform(1.1, 1.9) for name, value in self.named.items()}
         return _Reader(replace(self.case, truth=self.case.truth.with_lengths(numbers)), self.budget)
 
-    def _due_numbers(self, index: int, part: Part) -> dict[Any, float]:
+    def due_numbers(self, index: int, part: Part) -> dict[Any, float]:
         """The number of each term that is due, by its waves and the powers of what is varied."""
         found = self._terms_due(index, part, {})
         return {
@@ -199,7 +199,7 @@ class _Reader:
     def _terms_due(self, index: int, part: Part, named: dict[str, float]) -> Any:
         parameters = self._parameters_due(part, named)
         if named:
-            parameters.elsewhere = self._elsewhere.case.truth.named_numbers, self._elsewhere._due_numbers(index, part)
+            parameters.elsewhere = self._elsewhere.case.truth.named_numbers, self._elsewhere.due_numbers(index, part)
         spectrum = self._spectrum(index, True)
         return spectrum and terms_of(spectrum, parameters, {}, self._scale(index, True), part.words)
 

@@ -347,7 +347,7 @@ def law_torque(scenario: Scenario | None, q: Floats, qd: Floats) -> Floats:
     """
     if scenario is None or scenario["controller.type"] == "none":
         raise UsageError("a controller is judged by the law of a scenario: name one that has a controller")
-    here = scenario.copy()._quiet()
+    here = scenario.copy().quiet()
     start = here["time.start"]
     here["checks"], here["time"] = [], {"start": start, "stop": start + 1e-6, "log_every": 1e-6}
     _stay_at_start(here)

@@ -77,7 +77,7 @@ def run_with(function: Function) -> Run:
         torque: Floats = state.tau_g + state.jacobian.T @ force
         return torque
 
-    return Scenario(LOOP)._quiet().run(controller=law, rate=RATE)
+    return Scenario(LOOP).quiet().run(controller=law, rate=RATE)
 
 
 def task(numbers: Numbers) -> FunctionTask:

@@ -41,7 +41,7 @@ def in_the_loop(function: Function) -> list[float]:
         error = float(np.abs(output - state.jacobian.T @ FORCE).max())
         return torque
 
-    Scenario(LOOP)._quiet().run(controller=law, rate=RATE)
+    Scenario(LOOP).quiet().run(controller=law, rate=RATE)
     return [free, error]
 
 

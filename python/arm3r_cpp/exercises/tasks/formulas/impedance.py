@@ -38,7 +38,7 @@ reference: {{type: point, tip: {list(self.x_d)}}}
     def in_the_loop(self, function: Function) -> list[float]:
         """The largest distance from x_d in the last half second of three."""
         text = f"{self.lab.scenario}initial: {{q: [0.3, -0.6, 1.0]}}\ntime: {{stop: 3, log_every: 0.01}}\n"
-        run = Scenario(text)._quiet().run(controller=lambda t, state: function(q=state.q, qd=state.qd), rate=RATE)
+        run = Scenario(text).quiet().run(controller=lambda t, state: function(q=state.q, qd=state.qd), rate=RATE)
         tip = np.stack([run[f"tip_{axis}"] for axis in "xyz"], axis=1)
         return [float(np.linalg.norm(tip - self.x_d, axis=1)[run.t >= 2.5].max())]
 

@@ -29,7 +29,7 @@ time: {{stop: 7, log_every: 0.001}}
 
     @cache
     def right() -> Run:
-        scenario = Scenario(given)._quiet()
+        scenario = Scenario(given).quiet()
         scenario.update({"wall.acts_on_arm": True})
         return scenario.run()
 

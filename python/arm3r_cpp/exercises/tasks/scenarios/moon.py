@@ -28,7 +28,7 @@ def task(numbers: Numbers) -> ScenarioTask:
 
     @cache
     def right() -> Run:
-        scenario = Scenario(GIVEN)._quiet()
+        scenario = Scenario(GIVEN).quiet()
         scenario.update({"arm.gravity": [0, 0, -gravity], "controller": {"type": "none"}})
         return scenario.run()
 

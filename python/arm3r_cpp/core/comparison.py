@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..core.run import Run
 from ..errors import Arm3rError
+from .provided import provided
+from .run import Run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class Difference(NamedTuple):
@@ -19,8 +23,8 @@ class Difference(NamedTuple):
     """s: the row in which it is"""
 
 
-class Comparison:
-    """A run with a controller of your own, and the run with the scenario's.
+class Beside:
+    """A run with a controller of your own, and the run with the scenario's. `print` shows how far apart they are.
 
     Attributes:
         yours: the run with your controller.
@@ -32,6 +36,17 @@ class Comparison:
 
     def __init__(self, yours: Run, true: Run | None, name: str, true_name: str, failure: Arm3rError | None) -> None:
         self.yours, self.true, self.name, self.true_name, self.failure = yours, true, name, true_name, failure
+
+    def __str__(self) -> str:
+        return str(provided("report of two controllers")(self))
+
+    def __repr__(self) -> str:
+        return f"<Beside: {self.name} and {self.true_name or 'no other controller'}>"
+
+    def figure(self, **options: Any) -> Figure:
+        """Both runs over each other, and below them the difference; options as of `arm3r_cpp.plot.overview`."""
+        figure: Figure = provided("figure of two controllers")(self, **options)
+        return figure
 
     @property
     def rows(self) -> int:
