@@ -42,7 +42,7 @@ SEED = $(or $(ARM3R_SEED),$(shell date +%Y%m%d))
 TREE = $(shell git rev-parse "$$(git stash create | grep . || echo HEAD)^{tree}")
 gates: $(VENV)/boost
 	@$(MAKE) --no-print-directory -j2 $(VENV)/test $(BUILD)/tests
-	@$(MAKE) --no-print-directory $(VENV)/docs build/wheels/tested
+	@$(MAKE) --no-print-directory $(VENV)/docs $(VENV)/gates build/wheels/tested
 	@echo "If this is interrupted, make gates ARM3R_SEED=$(SEED) goes on."
 	ARM3R_SEED=$(SEED) ARM3R_SAMPLE=all ARM3R_RESUME=build/gates/$(SEED)-$(TREE).passed $(PYTEST) -m "(gate or sample) and not timed" --durations=40
 	ARM3R_PATIENCE=1 $(BIN)/python -m pytest -q -m timed
@@ -143,7 +143,7 @@ $(VENV)/tools: pyproject.toml
 	@touch $@
 
 # An extra of the installed package.
-$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/page $(VENV)/bench $(VENV)/wasm $(VENV)/wheels: $(VENV)/%: pyproject.toml | $(VENV)/installed
+$(VENV)/test $(VENV)/dev $(VENV)/docs $(VENV)/gates $(VENV)/page $(VENV)/bench $(VENV)/wasm $(VENV)/wheels: $(VENV)/%: pyproject.toml | $(VENV)/installed
 	$(PIP) 'arm3r_cpp[$*]'
 	@touch $@
 

@@ -56,6 +56,7 @@ PARTS = {
         lambda: (PAGE / "arm3r.wasm").is_file() and have_node(),
         f"`make page`; it brings node, of which another one must have version {LEAST_NODE} or later",
     ),
+    "drake": Part(lambda: have_modules("pydrake"), "`make .venv/gates`, on Linux with x86-64"),
     "notebooks": Part(
         lambda: have_modules("nbclient", "nbformat", "ipykernel"),
         "`pip install nbclient nbformat ipykernel`, which the extra `test` brings",

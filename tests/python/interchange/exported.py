@@ -1,4 +1,4 @@
-"""What other programs make of an exported file: Pinocchio of URDF, MuJoCo of MJCF."""
+"""What other programs make of an exported file: Pinocchio and Drake of URDF, MuJoCo of MJCF."""
 
 from __future__ import annotations
 
@@ -27,6 +27,26 @@ def by_pinocchio(text: str, gravity: list[float], q: np.ndarray) -> Numbers:
     mass_matrix = np.triu(pin.crba(model, data, q)) + np.triu(data.M, 1).T
     weight = pin.computeGeneralizedGravity(model, data, q)
     return Numbers(data.oMf[tip].translation.copy(), jacobian, mass_matrix, weight)
+
+
+def by_drake(text: str, gravity: list[float], q: np.ndarray) -> Numbers:
+    from pydrake.multibody.parsing import Parser
+    from pydrake.multibody.plant import MultibodyPlant
+    from pydrake.multibody.tree import JacobianWrtVariable
+
+    plant = MultibodyPlant(0.0)
+    Parser(plant).AddModelsFromString(text, "urdf")
+    base, tip = plant.GetFrameByName("base"), plant.GetFrameByName("tip")
+    plant.WeldFrames(plant.world_frame(), base)
+    plant.mutable_gravity_field().set_gravity_vector(gravity)
+    plant.Finalize()
+    context = plant.CreateDefaultContext()
+    plant.SetPositions(context, q)
+    jacobian = plant.CalcJacobianTranslationalVelocity(
+        context, JacobianWrtVariable.kV, tip, np.zeros(3), plant.world_frame(), plant.world_frame()
+    )
+    weight = -plant.CalcGravityGeneralizedForces(context)
+    return Numbers(tip.CalcPoseInWorld(context).translation(), jacobian, plant.CalcMassMatrix(context), weight)
 
 
 def by_mujoco(text: str, q: np.ndarray) -> Numbers:
