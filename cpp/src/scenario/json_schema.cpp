@@ -13,6 +13,7 @@
 #include "scenario/sweep.hpp"
 #include "schema/columns.hpp"
 #include "schema/schema.hpp"
+#include "schema/usual_range.hpp"
 
 namespace arm3r {
 
@@ -109,10 +110,24 @@ std::string default_json(const Key& key, const Key* primary, const Params& param
     return numbers.size() == 1 ? numbers[0] : array(numbers);
 }
 
+// Of a number, where it is not the usual one of numbers: for sliders.
+std::string range_json(const Key& key) {
+    const bool is_number = key.kind == Kind::number || key.kind == Kind::angle || key.kind == Kind::integer;
+    if (!is_number) return "";
+    const UsualRange range = usual_range(key), other;
+    Words members;
+    if (range.around_zero != other.around_zero) members.push_back(member("zero", json_number(range.around_zero)));
+    if (range.factor != other.factor) members.push_back(member("factor", json_number(range.factor)));
+    if (range.is_signed) members.push_back(member("signed", "true"));
+    if (range.is_turn) members.push_back(member("turn", "true"));
+    return members.empty() ? "" : object(members);
+}
+
 std::string described_value(const Key& key, const Key* primary, const Params& params) {
     const std::string unit = key.unit.empty() ? "" : " [" + unit_text(key) + "]";
     Words members = {member("description", json_string(key.doc + unit))};
     if (!key.unit.empty()) members.push_back(member("x-unit", json_string(key.unit)));
+    if (const std::string range = range_json(key); !range.empty()) members.push_back(member("x-range", range));
     if (const std::string value = default_json(key, primary, params); !value.empty())
         members.push_back(member("default", value));
     return "{" + listed(members) + ", " + value_schema(key, params).substr(1);

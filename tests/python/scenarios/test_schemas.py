@@ -225,3 +225,24 @@ def test_the_schema_has_the_defaults_of_the_program() -> None:
                         assert scenario[f"{path}.{name}"] == default, (path, word, name)
                         compared += 1
     assert compared > 100
+
+
+def test_the_ranges_of_sliders_are_those_of_keys() -> None:
+    """Every row of the table belongs to a number; what it says lies within the bounds."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    nodes = [SCENARIO.schema, *SCENARIO.schema["definitions"].values()]
+    while nodes:
+        node = nodes.pop()
+        for name, one in node.get("properties", {}).items():
+            if isinstance(one, dict):
+                found.setdefault(name, []).append(one)
+                nodes.append(one)
+        rules = [one for word in ("allOf", "anyOf") for one in node.get(word, []) if isinstance(one, dict)]
+        nodes += [*rules, *(rule[word] for rule in rules for word in ("then", "else") if word in rule)]
+    for name in re.findall(r'"(\w+)"', (ROOT / "cpp/src/schema/usual_range.cpp").read_text().split("namespace {")[1]):
+        assert any("x-range" in one for one in found.get(name, [])), name
+    for name, some in found.items():
+        for usual, numbers in ((one["x-range"], one.get("items", one)) for one in some if "x-range" in one):
+            bounds = next((part for part in numbers.get("anyOf", [numbers]) if "minimum" in part), {})
+            assert usual.get("zero", 1) <= bounds.get("maximum", 1e300), name
+            assert usual.get("factor", 30) > 1 and (not usual.get("signed") or bounds.get("minimum", -1) < 0), name

@@ -1,7 +1,7 @@
 /** What the JSON Schema of scenarios says of a key: meaning, unit, range, choices. */
 import { parts } from "../scenario/tree.js";
 
-/** { description, unit, minimum, maximum, integer, choices, switch } of the key at a path of a resolved scenario. */
+/** { description, unit, usual (how far people vary it), minimum, maximum, integer, choices, switch } of the key at a path of a resolved scenario. */
 export function keyOf(schema, resolved, path) {
   let node = schema;
   let value = resolved;
@@ -47,6 +47,7 @@ function described(node) {
   return {
     description: (node.description ?? "").replace(/ \[[^\]]*\]$/, ""), // its unit stands beside
     unit: node["x-unit"] ?? "",
+    usual: { zero: 1, factor: 30, signed: false, turn: false, ...node["x-range"] },
     minimum: one.exclusiveMinimum ?? one.minimum ?? -Infinity,
     open: "exclusiveMinimum" in one,
     maximum: one.maximum ?? Infinity,

@@ -13,8 +13,8 @@ export class Slider {
     this.path = path;
     this.key = key;
     const [, whole, index] = /^(.*?)(?:\[(\d+)\])?$/.exec(path);
-    this.name = whole.slice(whole.lastIndexOf(".") + 1);
-    this.label = titleOf(whole, this.name, index);
+    const name = whole.slice(whole.lastIndexOf(".") + 1);
+    this.label = titleOf(whole, name, index);
     this.angle = isAngle(key);
     const unit = this.angle ? key.unit.replace("rad", "°") : key.unit === "1" ? "" : key.unit;
     const full = `${path}${unit ? `, ${unit.replace("°", "degrees")}` : ""}`;
@@ -35,7 +35,7 @@ export class Slider {
     if (own === this.value && this.range && !renewed) return;
     this.value = own;
     const outside = !this.range || own < this.range.low * (1 - 1e-9) - 1e-12 || own > this.range.high * (1 + 1e-9) + 1e-12;
-    if ((renewed && !this.moving) || outside) this.range = rangeOf(this.name, this.key, value);
+    if ((renewed && !this.moving) || outside) this.range = rangeOf(this.key, value);
     if (!this.moving) this.input.value = position(this.range, own);
     if (document.activeElement !== this.box) this.box.value = String(own);
     this.input.setAttribute("aria-valuetext", `${own}${this.angle ? " degrees" : ` ${this.key.unit}`}`);
