@@ -56,19 +56,7 @@ def parser() -> argparse.ArgumentParser:
         help="a Python or MATLAB file, a log, a library.so:SYMBOL",
     )
     add("--kind", choices=KINDS, help="what the formulas compute (default: found from names)")
-    arm = parser.add_mutually_exclusive_group()
-    arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
-    arm.add_argument("--urdf", metavar="FILE", help="the arm is this serial chain of up to 7 joints")
-    arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: `arm3r docs verify` says how it is written")
-    add("--tip", metavar="LINK", help="of a URDF: the link whose frame is the tip (default: the last one)")
-    add(
-        "--gravity",
-        type=vector,
-        metavar="X,Y,Z",
-        help="in the base frame, m/s^2 (default: the arm's own); with a minus first: --gravity=-9.81,0,0",
-    )
-    add("--base-rotation", type=angles, metavar="R,P,Y", help="of a chain: roll, pitch, yaw of its base, rad or 90deg")
-    add("--payload", type=float, metavar="KG", help="a mass at the tip")
+    _add_arm(parser)
     add("--seen-by", action="append", default=[], metavar="TEST", help="a scenario or log: would it show the mistakes?")
     add(
         "--noise",
@@ -101,6 +89,23 @@ def parser() -> argparse.ArgumentParser:
     )
     add("--json", action="store_true", help="print the verdicts as a JSON array")
     return parser
+
+
+def _add_arm(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    arm = parser.add_mutually_exclusive_group()
+    arm.add_argument("--arm", metavar="SCENARIO", help="the arm that they are meant for (default: the lecture's)")
+    arm.add_argument("--urdf", metavar="FILE", help="the arm is this serial chain of up to 7 joints")
+    arm.add_argument("--dh", metavar="FILE", help="the same, as a DH table: `arm3r docs verify` says how it is written")
+    add("--tip", metavar="LINK", help="of a URDF: the link whose frame is the tip (default: the last one)")
+    add(
+        "--gravity",
+        type=vector,
+        metavar="X,Y,Z",
+        help="in the base frame, m/s^2 (default: the arm's own); with a minus first: --gravity=-9.81,0,0",
+    )
+    add("--base-rotation", type=angles, metavar="R,P,Y", help="of a chain: roll, pitch, yaw of its base, rad or 90deg")
+    add("--payload", type=float, metavar="KG", help="a mass at the tip")
 
 
 def names(text: str) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
@@ -230,23 +231,15 @@ def run_batch(
     metrics: Sequence[str] | None = None,
 ) -> Batch[S]:
     """What `Scenario.batch` does."""
-    if not isinstance(values, Mapping):
-        raise TypeError(f"values: a map of arrays by key is needed, got {type(values).__name__}")
-    if threads is not None and not (hasattr(threads, "__index__") and 1 <= threads < 2**31):
-        raise UsageError(f"threads: a whole number from 1 is needed, got {threads!r}", code="usage")
     has_law = controller is not None or make_controller is not None
-    if rate is not None and not has_law:
-        raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
+    _check_options(values, threads, rate, has_law)
     asked = [] if columns is None else columns_asked_for(columns)
     names = metrics_asked_for(metrics)
     mine = scenario.for_law(rate) if has_law else scenario
     mine.validate()
     base = mine.copy()
     base["checks"] = []
-    axes = [axis_of(base, key, value) for key, value in values.items()]
-    for key, other in combinations(values, 2):
-        if twice := same_places(key, other):
-            raise UsageError(f"{twice[0]} varies twice, as {key} and as {other}; take one of them out", code="usage")
+    axes = _axes_of(base, values)
     axes = _crossed(axes) if grid else axes
     shape = _shape(axes)
     runs = math.prod(shape)
@@ -262,39 +255,30 @@ def run_batch(
         for group in (law.groups(_groups(axes, shape)) if law else _groups(axes, shape))
     ]
     memory = _room_for_rows(runs, asked, _most_rows(groups, varied, asked) or _rows_of(base, asked))
-    advice = None if law or base.is_quiet else Advice(base)
-    done = 0
-
-    def report(runs_done: int, _: int) -> Any:
-        if advice and (sentence := advice.after(done + runs_done, runs)):
-            base.warn([sentence])
-        return progress and progress(done + runs_done, runs)
-
-    def table_of(group: _Group, rows: Floats) -> Floats:
-        if group.params is None:
-            rows.fill(np.nan)
-            table = np.full((len(names), group.values.shape[1]), np.nan)
-            table[names.index("outcome")] = lib.ARM3R_RUN_INVALID
-            return table
-        given = group.params, varied, group.values
-        wanted = {"rows": (asked, rows) if asked else None, "metrics": names}
-        options: Any = {"threads": threads, "progress": report, **wanted}
-        return law.table(group.runs, *given, **options) if law else _native.batch(*given, **options)[0]
-
-    if len(groups) == 1:
-        table = table_of(groups[0], memory)
-    else:
-        table = np.empty((len(names), runs))
-        for group in groups:
-            rows = memory[group.runs]
-            table[:, group.runs] = table_of(group, rows)
-            memory[group.runs] = rows
-            done += len(group.runs)
+    table = _Work(base, names, asked, varied, runs, law, threads, progress).table(groups, memory)
     summaries = {name: column.reshape(shape) for name, column in zip(names, table, strict=True)}
     batch = Batch(base, axes, summaries, shape, law, BatchRows(asked, memory, shape) if asked else None)
     if not base.is_quiet and runs and (batch["outcome"] == lib.ARM3R_RUN_INVALID).all():
         base.warn([f"no run of this batch is valid: {'; '.join(lines_of(batch.refusals(), runs))}"])
     return batch
+
+
+def _check_options(values: Any, threads: Any, rate: float | None, has_law: bool) -> None:
+    if not isinstance(values, Mapping):
+        raise TypeError(f"values: a map of arrays by key is needed, got {type(values).__name__}")
+    if threads is not None and not (hasattr(threads, "__index__") and 1 <= threads < 2**31):
+        raise UsageError(f"threads: a whole number from 1 is needed, got {threads!r}", code="usage")
+    if rate is not None and not has_law:
+        raise UsageError("rate: it is that of a controller, and none is given; set sampling.rate", code="usage")
+
+
+def _axes_of(base: AnyScenario, values: Mapping[str, Any]) -> list[Axis]:
+    """UsageError: a number varies twice."""
+    axes = [axis_of(base, key, value) for key, value in values.items()]
+    for key, other in combinations(values, 2):
+        if twice := same_places(key, other):
+            raise UsageError(f"{twice[0]} varies twice, as {key} and as {other}; take one of them out", code="usage")
+    return axes
 
 
 class _Group(NamedTuple):
@@ -306,6 +290,57 @@ class _Group(NamedTuple):
     """of any valid one of them; None: there is none"""
     values: Floats
     """(varied, runs)"""
+
+
+@dataclass
+class _Work:
+    """What the library computes of every group of runs, and how it is watched."""
+
+    base: AnyScenario
+    names: list[str]
+    """of the table's columns"""
+    asked: list[str]
+    """columns over time"""
+    varied: list[int]
+    """indices of the numbers that vary"""
+    runs: int
+    law: BatchLaw | None
+    threads: int | None
+    progress: BatchProgress | None
+    done: int = 0
+    """runs of the groups before"""
+
+    def __post_init__(self) -> None:
+        self._advice = None if self.law or self.base.is_quiet else Advice(self.base)
+
+    def table(self, groups: Sequence[_Group], memory: Floats) -> Floats:
+        """The table (names, runs); the rows of the runs go into `memory`."""
+        if len(groups) == 1:
+            return self._of(groups[0], memory)
+        table = np.empty((len(self.names), self.runs))
+        for group in groups:
+            rows = memory[group.runs]
+            table[:, group.runs] = self._of(group, rows)
+            memory[group.runs] = rows
+            self.done += len(group.runs)
+        return table
+
+    def _of(self, group: _Group, rows: Floats) -> Floats:
+        if group.params is None:
+            rows.fill(np.nan)
+            table = np.full((len(self.names), group.values.shape[1]), np.nan)
+            table[self.names.index("outcome")] = lib.ARM3R_RUN_INVALID
+            return table
+        given = group.params, self.varied, group.values
+        wanted = {"rows": (self.asked, rows) if self.asked else None, "metrics": self.names}
+        options: Any = {"threads": self.threads, "progress": self._report, **wanted}
+        return self.law.table(group.runs, *given, **options) if self.law else _native.batch(*given, **options)[0]
+
+    def _report(self, runs_done: int, _: int) -> Any:
+        done = self.done + runs_done
+        if self._advice and (sentence := self._advice.after(done, self.runs)):
+            self.base.warn([sentence])
+        return self.progress and self.progress(done, self.runs)
 
 
 def _block_of(controller: Any) -> LawOfFile | None:

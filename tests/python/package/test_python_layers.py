@@ -65,6 +65,17 @@ def test_a_folder_can_be_taken_in(folder: Path) -> None:
     assert text and len(text.splitlines()) >= 5, f"{folder.name}: its __init__.py says what comes in and what goes out"
 
 
+@pytest.mark.parametrize("module", KNOWN)
+def test_functions_are_taken_in_at_a_glance(module: str) -> None:
+    """At most 60 lines beside the docstring."""
+    for node in ast.walk(ast.parse(KNOWN[module].read_text())):
+        if isinstance(node, ast.FunctionDef):
+            first = node.body[0]
+            has_text = ast.get_docstring(node) is not None
+            of_text = first.end_lineno - first.lineno + 1 if has_text else 0
+            assert node.end_lineno - node.lineno + 1 - of_text <= 60, node.name
+
+
 FOREIGN = {"_getframe", "_register_atexit", "_legend_handle_box", "_legend_box", "_children"}
 FOREIGN |= {"_replace", "_fields", "_exit", "_NamedFuncPointer"}
 """Of Python and of matplotlib, which have no other names for them."""

@@ -80,6 +80,21 @@ def run_with(function: Function) -> Run:
     return Scenario(LOOP).quiet().run(controller=law, rate=RATE)
 
 
+def _given(law: Law) -> str:
+    return f"""\
+import numpy as np
+
+K, D, k = {law.k}, {law.d}, {law.k_f}
+p = np.array([1.0, 0.0, 0.0])
+S_p = np.diag([1.0, 0.0, 0.0])
+S_f = np.eye(3) - S_p
+
+
+def command(x, v, x_d, f, f_d):
+    return S_p @ (K * (x_d - x) - D * v) + S_f @ p * (f_d + k * (f_d - f))
+"""
+
+
 def task(numbers: Numbers) -> FunctionTask:
     law = Law(
         k=numbers.pick("hybrid K", 500.0, steps(400.0, 600.0, 10.0)),
@@ -104,18 +119,7 @@ the tip along the wall, and nothing controls the pressing force.""",
             "Force along the normal: S_f = diag(1, 0, 0). Position along the face: S_p = diag(0, 1, 1).",
             "F = (f_d + k*(f_d - f), K*(x_d(2) - x(2)) - D*v(2), K*(x_d(3) - x(3)) - D*v(3)).",
         ),
-        given=f"""\
-import numpy as np
-
-K, D, k = {law.k}, {law.d}, {law.k_f}
-p = np.array([1.0, 0.0, 0.0])
-S_p = np.diag([1.0, 0.0, 0.0])
-S_f = np.eye(3) - S_p
-
-
-def command(x, v, x_d, f, f_d):
-    return S_p @ (K * (x_d - x) - D * v) + S_f @ p * (f_d + k * (f_d - f))
-""",
+        given=_given(law),
         given_suffix=".py",
         function="command",
         inputs=(

@@ -43,6 +43,28 @@ reference: {{type: point, tip: {list(self.x_d)}}}
         return [float(np.linalg.norm(tip - self.x_d, axis=1)[run.t >= 2.5].max())]
 
 
+def _given(law: Law) -> str:
+    return f"""\
+import numpy as np
+
+a2, a3, m2, m3, g = {law.lab.a2}, {law.lab.a3}, {law.lab.m2}, {law.lab.m3}, {G}
+K, D = {law.k}, {law.d}
+x_d = np.array({list(law.x_d)})
+
+
+def controller(q, qd):
+    c1, s1 = np.cos(q[0]), np.sin(q[0])
+    c2, s2, c23, s23 = np.cos(q[1]), np.sin(q[1]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
+    r, h = a2 * c2 + a3 * c23, a2 * s2 + a3 * s23
+    x = np.array([c1 * r, s1 * r, -h])
+    J = np.array([[-s1 * r, -c1 * h, -c1 * a3 * s23], [c1 * r, -s1 * h, -s1 * a3 * s23], [0, -r, -a3 * c23]])
+    t3 = -m3 * g * a3 / 2 * c23
+    tau_g = np.array([0, -(m2 / 2 + m3) * g * a2 * c2 + t3, t3])
+    force = K * (x - x_d) - D * (J @ qd)
+    return tau_g + J.T @ force
+"""
+
+
 def task(numbers: Numbers) -> FunctionTask:
     lab = arm_of(numbers)
     law = Law(
@@ -73,25 +95,7 @@ In the simulation the tip runs away. Find out why, and hand in the right law, ta
             "A spring pulls towards x_d: the error is x_d - x, and the force K times the error.",
             "force = K*(x_d - x) - D*(J @ qd); torque = tau_g + J.T @ force.",
         ),
-        given=f"""\
-import numpy as np
-
-a2, a3, m2, m3, g = {lab.a2}, {lab.a3}, {lab.m2}, {lab.m3}, {G}
-K, D = {law.k}, {law.d}
-x_d = np.array({list(law.x_d)})
-
-
-def controller(q, qd):
-    c1, s1 = np.cos(q[0]), np.sin(q[0])
-    c2, s2, c23, s23 = np.cos(q[1]), np.sin(q[1]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
-    r, h = a2 * c2 + a3 * c23, a2 * s2 + a3 * s23
-    x = np.array([c1 * r, s1 * r, -h])
-    J = np.array([[-s1 * r, -c1 * h, -c1 * a3 * s23], [c1 * r, -s1 * h, -s1 * a3 * s23], [0, -r, -a3 * c23]])
-    t3 = -m3 * g * a3 / 2 * c23
-    tau_g = np.array([0, -(m2 / 2 + m3) * g * a2 * c2 + t3, t3])
-    force = K * (x - x_d) - D * (J @ qd)
-    return tau_g + J.T @ force
-""",
+        given=_given(law),
         given_suffix=".py",
         kind="controller",
         function="controller",
