@@ -201,8 +201,9 @@ def test_the_tour_names_files_and_names_that_there_are(root: Path) -> None:
     named = {Path(name).name for name in re.findall(r"`([\w/.]+\.(?:hpp|cpp|py|md))`", tour)}
     assert named - files == set()
     ways = re.findall(r"^- \*(.*?)(?=^- \*|^$)", tour, flags=re.M | re.S)
-    assert len(ways) == 3
-    code = "\n".join(path.read_text() for path in _sources(root))
+    assert len(ways) == 4
+    package = (root / "python/arm3r_cpp").rglob("*.py")
+    code = "\n".join(path.read_text() for path in [*_sources(root), *package])
     for way in ways:
         names = [name for name in re.findall(r"`(\w+)`", way) if not re.fullmatch(r"tau\d", name)]
         assert 0 < len(names) <= 7
