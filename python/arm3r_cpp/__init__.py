@@ -28,7 +28,9 @@ provide(
     {
         "batch to pandas": f"{__name__}.notebook.tables:batch_to_pandas",
         "batch to xarray": f"{__name__}.notebook.tables:batch_to_xarray",
+        "figure of measured rows": f"{__name__}.measured.figure:measured",
         "figure of two controllers": f"{__name__}.blocks.figure:figure",
+        "film of a run": f"{__name__}.animation.animate:animate",
         "function of a file": f"{__name__}.blocks.block:Block.read",
         "live page of a run": f"{__name__}.live.show:write",
         "page of a batch": f"{__name__}.notebook.pages:of_batch",

@@ -5,21 +5,15 @@ notebook shows it as the value of a cell, `show` opens a window. `figures` holds
 `layout` decide how every figure looks, and the other modules draw one kind of figure each. The modules of this room
 must not know command lines, and they never run a scenario.
 matplotlib and numpy are imported when something is drawn, not before: the names below are loaded when they are used.
+`__init__.pyi` has their types. Films and measured rows stand above this room.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
+from typing import Any
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
-
-    from ..animation.animate import animate
-    from ..measured.figure import measured
-    from .figures import compare, force, lecture, overview, show
-
-_ELSEWHERE = {"animate": "..animation.animate", "measured": "..measured.figure"}  # they stand above this room
+from ..core.provided import provided
 
 __all__ = ["animate", "compare", "force", "lecture", "measured", "overview", "show"]
 
@@ -27,7 +21,11 @@ __all__ = ["animate", "compare", "force", "lecture", "measured", "overview", "sh
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}; it has {', '.join(__all__)}")
-    return getattr(import_module(_ELSEWHERE.get(name, ".figures"), __name__), name)
+    if name == "animate":
+        return provided("film of a run")
+    if name == "measured":
+        return provided("figure of measured rows")
+    return getattr(import_module(".figures", __name__), name)
 
 
 def __dir__() -> list[str]:
