@@ -55,6 +55,25 @@ def drag(visitor: Visitor, selector: str, by: tuple[float, float]) -> Numbers:
     return start + np.array(by)
 
 
+def drag_by_finger(visitor: Visitor, selector: str, by: tuple[float, float]) -> Numbers:
+    """As a touch screen reports it: the finger comes down, moves and is lifted."""
+    start = middle(visitor, selector)
+    device = visitor.context.new_cdp_session(visitor.page)
+
+    def report(kind: str, *places: Numbers) -> None:
+        points = [{"x": float(place[0]), "y": float(place[1])} for place in places]
+        device.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    report("touchStart", start)
+    for share in (0.3, 0.7, 1.0):
+        report("touchMove", start + share * np.array(by))
+        visitor.page.wait_for_timeout(30)
+    visitor.settle()
+    report("touchEnd")
+    visitor.settle()
+    return start + np.array(by)
+
+
 def scenario(visitor: Visitor) -> arm3r.Scenario:
     """That the page shows."""
     with visitor.page.expect_download() as download:
@@ -288,6 +307,24 @@ def test_the_wall_follows_the_pointer_along_its_normal(browser: Any, address: st
         assert abs(middle(visitor, "#wall-handle")[0] - pointer[0]) < 1
         x, y, z = scenario(visitor)["wall.point"]
         assert 1 < x < 1.95 and (y, z) == (0, 0)
+        assert visitor.hash() == scenario(visitor).run().summary["hash"]
+        visitor.check()
+
+
+def test_tip_and_wall_follow_a_finger(browser: Any, address: str) -> None:
+    """And the page does not scroll under it."""
+    with Visitor(browser, "phone", has_touch=True) as visitor:
+        visitor.open(address)
+        look(visitor, "side")
+        before, scrolled = tip_at_start(visitor), visitor.page.evaluate("scrollY")
+        pointer = drag_by_finger(visitor, "#tip-handle", (-30, -20))
+        assert np.abs(middle(visitor, "#tip-handle") - pointer).max() < 1
+        tip = tip_at_start(visitor)
+        assert tip[0] < before[0] - 0.1 and tip[2] > before[2] + 0.1 and abs(tip[1]) < 1e-6
+        pointer = drag_by_finger(visitor, "#wall-handle", (-15, 40))
+        assert abs(middle(visitor, "#wall-handle")[0] - pointer[0]) < 1
+        assert 1 < scenario(visitor)["wall.point"][0] < 1.99
+        assert visitor.page.evaluate("scrollY") == scrolled
         assert visitor.hash() == scenario(visitor).run().summary["hash"]
         visitor.check()
 
