@@ -26,7 +26,10 @@ function(arm3r_room room)
 
   set(root ${CMAKE_CURRENT_BINARY_DIR}/rooms/${room}) # a folder that holds this room alone
   file(MAKE_DIRECTORY ${root})
-  file(CREATE_LINK ${folder} ${root}/${room} SYMBOLIC)
+  file(CREATE_LINK ${folder} ${root}/${room} RESULT failure SYMBOLIC)
+  if(failure) # as on Windows for users who may not make links: there the compiler finds every room
+    set(root ${PROJECT_SOURCE_DIR}/cpp/src)
+  endif()
   target_include_directories(${target} PUBLIC ${root})
   list(TRANSFORM _is_SEES PREPEND arm3r_)
   target_link_libraries(${target} PUBLIC arm3r_flags ${_is_SEES})

@@ -41,14 +41,14 @@ def picture(visitor: Visitor) -> Numbers:
     return np.asarray(image.open(BytesIO(shot)).convert("RGB"), dtype=float)
 
 
-def drag(visitor: Visitor, selector: str, by: tuple[float, float]) -> Numbers:
-    """With the mouse, in steps; returns where the pointer is released, px."""
+def drag(visitor: Visitor, selector: str, by: tuple[float, float], *, pause: float = 30) -> Numbers:
+    """With the mouse, in steps with a pause (ms) after each; returns where the pointer is released, px."""
     start = middle(visitor, selector)
     visitor.page.mouse.move(*start)
     visitor.page.mouse.down()
     for share in (0.3, 0.7, 1.0):
         visitor.page.mouse.move(*(start + share * np.array(by)))
-        visitor.page.wait_for_timeout(30)
+        visitor.page.wait_for_timeout(pause)
     visitor.settle()
     visitor.page.mouse.up()
     visitor.settle()
@@ -308,6 +308,25 @@ def test_the_wall_follows_the_pointer_along_its_normal(browser: Any, address: st
         x, y, z = scenario(visitor)["wall.point"]
         assert 1 < x < 1.95 and (y, z) == (0, 0)
         assert visitor.hash() == scenario(visitor).run().summary["hash"]
+        visitor.check()
+
+
+@pytest.mark.parametrize(("handle", "key"), [("#tip-handle", "initial.q"), ("#wall-handle", "wall.point")])
+def test_a_slow_drag_is_undone_at_once(browser: Any, address: str, handle: str, key: str) -> None:
+    with Visitor(browser, "laptop") as visitor:
+        visitor.open(address)
+        look(visitor, "side")
+        before = scenario(visitor)
+        drag(visitor, handle, (-60, -20), pause=800)
+        dragged = scenario(visitor)
+        assert dragged[key] != before[key]
+        visitor.page.focus(handle)
+        visitor.page.keyboard.press("Control+z")
+        visitor.settle()
+        assert scenario(visitor).to_yaml() == before.to_yaml()
+        visitor.page.keyboard.press("Control+Shift+z")
+        visitor.settle()
+        assert scenario(visitor).to_yaml() == dragged.to_yaml()
         visitor.check()
 
 

@@ -1,5 +1,5 @@
 /** The scenario as text. The store has the same text at all times; sliders change it through the editor, so that undo works. */
-import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
+import { defaultKeymap, history, historyKeymap, indentWithTab, redo, undo } from "@codemirror/commands";
 import { yaml } from "@codemirror/lang-yaml";
 import { HighlightStyle, bracketMatching, ensureSyntaxTree, indentUnit, syntaxHighlighting } from "@codemirror/language";
 import { searchKeymap } from "@codemirror/search";
@@ -44,7 +44,8 @@ export class Editor {
     const changes = change(state.doc.toString(), tree);
     if (!changes) return;
     soon(() => {
-      const transaction = state.update({ changes, userEvent: joined ? "input.type.slider" : "input" });
+      // Only to the last kind does the history join a change that comes late.
+      const transaction = state.update({ changes, userEvent: joined ? "input.type.compose" : "input" });
       soon(() => this.view.dispatch(transaction));
     });
   }
@@ -52,6 +53,14 @@ export class Editor {
   /** Put a whole text in place of the present one. */
   replace(insert) {
     this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert }, userEvent: "input" });
+  }
+
+  undo() {
+    undo(this.view);
+  }
+
+  redo() {
+    redo(this.view);
   }
 
   focus() {

@@ -37,9 +37,17 @@ export function startKeyboard(store, { transport, scene, plots, editor, menu, to
     store.set({ tab: "text" });
     editor.focus();
   };
+  const changeBack = (event) => {
+    const key = event.key.toLowerCase();
+    if (key !== "z" && key !== "y") return;
+    event.preventDefault();
+    if (key === "y" || event.shiftKey) editor.redo();
+    else editor.undo();
+  };
   document.addEventListener("keydown", (event) => {
     const { target } = event;
-    if (event.ctrlKey || event.metaKey || event.altKey || target.closest(TYPING)) return;
+    if (event.altKey || target.closest(TYPING)) return;
+    if (event.ctrlKey || event.metaKey) return changeBack(event);
     const taken = target.matches("input[type=range]") && /^(Arrow|Home|End)/.test(event.key);
     const pressed = target.matches("button, summary, input[type=checkbox]") && event.key === " ";
     if (taken || pressed || !(event.key in keys)) return;
