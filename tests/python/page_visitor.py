@@ -107,7 +107,7 @@ class Visitor:
         self.page.locator(f'input[type=range][data-path="{path}"]').evaluate(move, place)
 
     def check(self) -> None:
-        assert self.errors == []
+        assert self.errors == [], self.errors
 
     def __enter__(self) -> Visitor:
         return self

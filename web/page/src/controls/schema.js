@@ -9,7 +9,7 @@ export function keyOf(schema, resolved, path) {
     if (typeof part === "number") continue; // the items of a list share what the list says
     node = property(schema, node, value, part);
     value = value?.[part];
-    if (!node) return {};
+    if (!node) return described({}); // a key that the schema does not have
   }
   return described(node);
 }
