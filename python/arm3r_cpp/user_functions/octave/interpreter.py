@@ -82,6 +82,7 @@ class Interpreter:
         os.close(theirs)
         os.close(others)
         self._rest = b""
+        os.environ["JAVA_HOME"] = os.devnull  # Java cannot start in a confined process, and would end it
         threading.stack_size(_STACK)
         threading.Thread(target=_run, args=(make, execute, methods), daemon=True).start()
 
