@@ -1,7 +1,8 @@
 # A room is a folder of cpp/src and a target of its own, arm3r_ROOM. It sees its own headers, those of the rooms after SEES
 # and those that these see: an include of any other room does not compile.
-#   ALONE: long templates, which g++ takes 5 to 25 s for; the other files are compiled eight at a time
-#   QUICKLY: in half of the time and with the same bits, as what is done once a run, but for the files ALONE
+#   ALONE: files compiled one by one and for speed: long templates, which g++ takes 5 to 25 s for, and what reads and
+#          writes much; the others are compiled eight at a time
+#   QUICKLY: those others are done once a run: compiled in half of the time, with the same bits
 
 option(ARM3R_PCH "Read Eigen and the standard headers once" ON)
 option(ARM3R_UNITY "Compile small files eight at a time, which saves half of their time" ON)

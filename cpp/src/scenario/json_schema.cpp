@@ -110,17 +110,20 @@ std::string default_json(const Key& key, const Key* primary, const Params& param
     return numbers.size() == 1 ? numbers[0] : array(numbers);
 }
 
-// Of a number, where it is not the usual one of numbers: for sliders.
-std::string range_json(const Key& key) {
-    const bool is_number = key.kind == Kind::number || key.kind == Kind::angle || key.kind == Kind::integer;
-    if (!is_number) return "";
-    const UsualRange range = usual_range(key), other;
+// The members of a usual range that differ from those of another one: for sliders.
+std::string range_json(const UsualRange& range, const UsualRange& other) {
     Words members;
     if (range.around_zero != other.around_zero) members.push_back(member("zero", json_number(range.around_zero)));
     if (range.factor != other.factor) members.push_back(member("factor", json_number(range.factor)));
     if (range.is_signed) members.push_back(member("signed", "true"));
     if (range.is_turn) members.push_back(member("turn", "true"));
     return members.empty() ? "" : object(members);
+}
+
+// Of a number, where it is not that of most numbers, which the document has.
+std::string range_json(const Key& key) {
+    const bool is_number = key.kind == Kind::number || key.kind == Kind::angle || key.kind == Kind::integer;
+    return is_number ? range_json(usual_range(key), {}) : "";
 }
 
 std::string described_value(const Key& key, const Key* primary, const Params& params) {
@@ -235,6 +238,7 @@ public:
     std::string document() {
         Words members = {member("$schema", json_string("http://json-schema.org/draft-07/schema#")),
                          member("title", json_string("arm3r scenario")),
+                         member("x-range", range_json(UsualRange{}, {.around_zero = 0, .factor = 0})),
                          member("type", json_string("object")),
                          member("required", json_words({"format"})),
                          member("additionalProperties", "false"),

@@ -93,6 +93,7 @@ class Run(metaclass=Answering):
 
     @classmethod
     def of_handle(cls, handle: Any) -> Run:
+        """The run that the library holds; handle: its `arm3r_run *`."""
         run = cls.__new__(cls)
         run.handle = handle
         run._columns, run.units = _native.columns(handle)

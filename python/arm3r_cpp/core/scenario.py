@@ -86,6 +86,7 @@ class Scenario(metaclass=Answering):
 
     @classmethod
     def of_handle(cls, handle: Any, file: str) -> Scenario:
+        """The scenario that the library holds; handle: its `arm3r_scenario *`, file: its name in messages."""
         scenario = cls.__new__(cls)
         scenario.handle, scenario.file, scenario._warned = handle, file, set()
         return scenario
@@ -229,6 +230,7 @@ class Scenario(metaclass=Answering):
         return [line.partition(": warning: ")[2] for line in lines]
 
     def warn_of_itself(self) -> None:
+        """Issue what `warnings` has. ScenarioError: it is not valid."""
         if self._warned is not None:  # a quiet one need not look for them
             self.warn(self.warnings)
 

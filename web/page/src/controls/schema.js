@@ -9,9 +9,9 @@ export function keyOf(schema, resolved, path) {
     if (typeof part === "number") continue; // the items of a list share what the list says
     node = property(schema, node, value, part);
     value = value?.[part];
-    if (!node) return described({}); // a key that the schema does not have
+    if (!node) return described(schema, {}); // a key that the schema does not have
   }
-  return described(node);
+  return described(schema, node);
 }
 
 function property(schema, node, value, name) {
@@ -42,12 +42,12 @@ function followed(schema, node) {
   return node.$ref ? { ...schema.definitions[node.$ref.slice("#/definitions/".length)], ...node } : node;
 }
 
-function described(node) {
+function described(schema, node) {
   const one = numeric(node);
   return {
     description: (node.description ?? "").replace(/ \[[^\]]*\]$/, ""), // its unit stands beside
     unit: node["x-unit"] ?? "",
-    usual: { zero: 1, factor: 30, signed: false, turn: false, ...node["x-range"] },
+    usual: { ...schema["x-range"], ...node["x-range"] },
     minimum: one.exclusiveMinimum ?? one.minimum ?? -Infinity,
     open: "exclusiveMinimum" in one,
     maximum: one.maximum ?? Infinity,
