@@ -17,8 +17,8 @@ def affordable(edits: int, calls: int) -> int:
     return edits * CALLS_AN_EDIT // max(CALLS_AN_EDIT, calls)
 
 
-SECONDS_READING = 10.0
-"""Of computing, for all terms that are read."""
+SECONDS_READING = 30.0
+"""Of computing, for all terms that are read: several times what the longest takes of those that are not very slow."""
 
 
 class Budget:

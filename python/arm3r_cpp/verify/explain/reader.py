@@ -22,6 +22,8 @@ from .spectrum import Spectrum, read
 from .terms import RATIOS, Parameters, Term, is_simple_number, sum_words, terms_of
 
 _DYNAMIC = ("length2", "com2", "com3", "mass2", "mass3", "inertia2", "inertia3", "gravity")
+_FEW_ARMS = 3
+"""At these it shows in what kinds of terms each joint stands; all arms confirm it."""
 _ROUNDING = 1e9
 """Times what is due: what a division by rounding leaves, by cos(pi/2), has terms that mean nothing."""
 
@@ -70,7 +72,7 @@ class _Reader:
         self.arms = self._arms(case.known)
         self.due_arms = self._arms(sorted({*self.varied, *self.lifted}))
         self.named = self._named()
-        self._sampled: dict[tuple[bool, bytes], Floats] = {}
+        self._sampled: dict[tuple[bool, int, bytes], Floats] = {}
 
     def _named(self) -> dict[str, float]:
         """The chain's numbers that have a name, but for those that the text gives to other numbers."""
@@ -116,11 +118,11 @@ class _Reader:
         is_torque = not part.words and self.kind.depends_on_gravity
         return monomials(names, is_torque=is_torque) if is_torque or self.kind.has_products else []
 
-    def _at(self, q: Floats, of_truth: bool) -> Floats:
+    def _at(self, q: Floats, of_truth: bool, most_arms: int | None = None) -> Floats:
         """The parts at joint angles: (arms, S, entries times parts)."""
-        key = of_truth, q.tobytes()
+        arms = (self.due_arms if of_truth else self.arms)[:most_arms]
+        key = of_truth, len(arms), q.tobytes()
         if key not in self._sampled:
-            arms = self.due_arms if of_truth else self.arms
             found: dict[bytes, Floats] = {}
             self._sampled[key] = np.stack([self._part(q, part, arms, of_truth, found) for part in self.parts], axis=3)
             self._sampled[key] = self._sampled[key].reshape(len(arms), len(q), -1)
@@ -251,7 +253,14 @@ class _Reader:
         truth = self.case.truth
         self._at(np.random.default_rng(43).uniform(-3, 3, (8, truth.joints)), of_truth)
         scale = self._scale(index, of_truth) if len(self.parts) > 1 else 0.0
-        return read(lambda q: self._at(q, of_truth), truth.groups, truth.revolute, index, scale=scale)
+        return read(
+            lambda q: self._at(q, of_truth),
+            truth.groups,
+            truth.revolute,
+            index,
+            scout=lambda q: self._at(q, of_truth, _FEW_ARMS),
+            scale=scale,
+        )
 
     def _scale(self, index: int, of_truth: bool) -> float:
         """The largest value of all parts of an entry; what a formula returns may be rounding beside what is due.
@@ -259,7 +268,7 @@ class _Reader:
         Of turns up to one: where it is looked for degrees, a hyperbolic sine would hide all else.
         """
         first, largest = index - index % len(self.parts), 0.0
-        for (truth, angles), values in self._sampled.items():
+        for (truth, _, angles), values in self._sampled.items():
             if truth or not of_truth:
                 near = np.abs(np.frombuffer(angles).reshape(-1, self.case.truth.joints)).max(axis=1) <= 2 * np.pi
                 here = values[:, near, first : first + len(self.parts)]
