@@ -21,14 +21,14 @@ target_compile_definitions(cxx_with_exceptions PRIVATE _LIBCPP_BUILDING_LIBRARY 
 target_compile_options(cxx_with_exceptions PRIVATE -w)
 set_source_files_properties(${_zig}/libunwind/src/Unwind-wasm.c PROPERTIES COMPILE_DEFINITIONS _LIBUNWIND_HIDE_SYMBOLS)
 
-# ---- small where little time is spent: only the templates are compiled for speed
+# ---- small where little time is spent: only the templates are compiled for speed, and what they inline is clang's choice
 add_executable(arm3r_wasm)
 arm3r_room(wasm SEES api)
 foreach(_target arm3r_platform ${_core} ${_faces} arm3r_wasm arm3r_yaml cxx_with_exceptions)
   target_compile_options(${_target} PRIVATE -Os -ffunction-sections -fdata-sections)
 endforeach()
 get_property(_templates GLOBAL PROPERTY ARM3R_TEMPLATES)
-set_source_files_properties(${_templates} PROPERTIES COMPILE_OPTIONS -O2)
+set_source_files_properties(${_templates} PROPERTIES COMPILE_OPTIONS "-O2;-DARM3R_INLINE=inline;-DARM3R_INLINE_LAMBDA=")
 
 # ---- the module: what core.js calls, and what that needs
 set(_binding ${PROJECT_SOURCE_DIR}/web/core/core.js)
