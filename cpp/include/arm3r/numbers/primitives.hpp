@@ -5,8 +5,10 @@
 #include <limits>
 
 // Wide registers must never cross a function call: a callee built for an older CPU would pass them differently.
-#ifndef ARM3R_INLINE  // A build without wide packs may define it as `inline`, and ARM3R_INLINE_LAMBDA as nothing.
+#ifndef ARM3R_INLINE  // A build without wide packs may define it as `inline`.
 #define ARM3R_INLINE [[gnu::always_inline]] inline
+#endif
+#ifndef ARM3R_INLINE_LAMBDA  // And a file without them this as nothing.
 #define ARM3R_INLINE_LAMBDA __attribute__((always_inline))
 #endif
 
