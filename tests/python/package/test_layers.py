@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import re
+import shutil
 import subprocess
 import sysconfig
 from collections import Counter
@@ -100,6 +102,22 @@ def test_a_compiler_finds_the_headers_of_the_rooms_that_a_room_sees(root: Path, 
             found.setdefault(room[1], set()).update(re.findall(r"-I\S*/rooms/(\w+)", step["command"]))
     compiled = seen.keys() - {"wasm"}
     assert {room: found[room] for room in compiled} == {room: seen[room] for room in compiled}
+
+
+def test_no_packs_go_through_files_whose_lambdas_may_be_called(root: Path) -> None:
+    """A function that is called takes no wide registers (widths.hpp), so that such a file must need none."""
+    commands = root / "build/ctest/compile_commands.json"
+    if not commands.is_file() or not (disassembler := shutil.which("objdump")) or platform.machine() != "x86_64":
+        pytest.skip("needs `make test` on a PC, and objdump")
+    objects = [
+        Path(step["directory"]) / step["output"]
+        for step in json.loads(commands.read_text())
+        if "-DARM3R_INLINE_LAMBDA=" in step["command"]
+    ]
+    assert objects
+    for path in objects:
+        text = subprocess.run([disassembler, "-d", path], capture_output=True, text=True, check=True).stdout
+        assert "%xmm" in text and not re.search(r"%[yz]mm", text), path.name
 
 
 def test_no_room_is_too_large(root: Path) -> None:

@@ -15,7 +15,9 @@ from arm3r_cpp import verify
 from arm3r_cpp.robots.bodies import Joint, rotation_about, rotation_of
 from arm3r_cpp.verify import Chain, kinds
 from arm3r_cpp.verify.explain.frames import Pose, of_other_frames
+from arm3r_cpp.verify.formula import Formula
 from arm3r_cpp.verify.kinds import KINDS
+from arm3r_cpp.verify.samples import Samples
 from arm3r_cpp.verify.truth.three_r import ThreeR
 
 ARM = arm3r.Scenario().arm
@@ -119,6 +121,20 @@ def test_a_rate_that_is_lost_is_read(written: Any) -> None:
     verdict = verify.formula_verdict(f"{written('dynamics.py', text)}:coriolis_matrix")
     (finding,) = verdict.findings
     assert finding.entry == [3] and "S3 qd2 " in f"{finding.reads} ", str(verdict)
+
+
+def test_terms_are_read_with_few_evaluations(written: Any, monkeypatch: Any) -> None:
+    rows = 0
+
+    def counted(formula: Formula, call: Any, samples: Samples, *rest: Any) -> Any:
+        nonlocal rows
+        rows += len(samples.arms) * len(samples.states["q"])
+        return values(formula, call, samples, *rest)
+
+    values = Formula.values
+    monkeypatch.setattr(Formula, "values", counted)
+    test_a_rate_that_is_lost_is_read(written)
+    assert 10_000 < rows < 80_000
 
 
 def test_a_coriolis_matrix_is_judged_by_its_product() -> None:

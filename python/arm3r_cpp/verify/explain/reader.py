@@ -258,7 +258,7 @@ class _Reader:
             truth.groups,
             truth.revolute,
             index,
-            scout=lambda q: self._at(q, of_truth, _FEW_ARMS),
+            few_arms=lambda q: self._at(q, of_truth, _FEW_ARMS),
             scale=scale,
         )
 

@@ -160,18 +160,18 @@ def read(
     revolute: Sequence[bool],
     entry: int,
     *,
-    scout: Sampler | None = None,
+    few_arms: Sampler | None = None,
     scale: float = 0.0,
     budget: int = 3000,
 ) -> Spectrum | None:
     """The spectrum of one entry, confirmed at random states; None where it is no such sum.
 
     Args:
-        scout: the sampler for a few of its arms, which show of what kind each joint is; all confirm it.
+        few_arms: the sampler for a few of its arms, which show of what kind each joint is; all confirm it.
         scale: of what the entry is a part of; what is very small beside it is rounding.
         budget: the most points of a grid that is tried.
     """
-    kinds = kinds_of_axes(scout or sampler, revolute, entry, max(scale, 1e-3))
+    kinds = kinds_of_axes(few_arms or sampler, revolute, entry, max(scale, 1e-3))
     if kinds is None:
         return None
     n = len(revolute)
