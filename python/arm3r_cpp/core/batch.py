@@ -22,6 +22,7 @@ from ..errors import BudgetError, ColumnError, ScenarioError, UsageError
 from ..rows.batch_rows import BatchRows
 from ..rows.names import columns_asked_for, metrics_asked_for
 from .advice import Advice
+from .flow import flow
 from .params import param_index, param_key, param_name, places
 from .protocols import AnyScenario, LawOfFile
 from .provided import provided
@@ -371,7 +372,7 @@ def axis_of(base: AnyScenario, key: str, value: Any) -> Axis:
     if kind == "column":
         raise UsageError(f"{key}: it chooses columns of a log; `columns` chooses those of a batch", code="usage")
     try:
-        array = np.asarray(value)
+        array = np.asarray(_words_of_joints(key, value) if key in OF_JOINTS else value)
     except ValueError as error:
         raise UsageError(f"{key}: its values do not have one shape: {error}", code="usage") from error
     if array.dtype.kind == "U" or (array.dtype.kind == "b" and kind == "flag"):
@@ -389,6 +390,25 @@ def axis_of(base: AnyScenario, key: str, value: Any) -> Axis:
         fix = f"one of its numbers alone is {key}[0]"
         raise UsageError(f"{key}: the shape (..., {width}) is needed, got {array.shape}; {fix}", code="usage")
     return Axis(key, indices, array + 0.0)
+
+
+OF_JOINTS = ("arm.joints", "arm.lock")
+"""Keys that take lists or maps of words: as values of an axis they are YAML, "[pan, lift, elbow]"."""
+
+
+def _words_of_joints(key: str, value: Any) -> Any:
+    is_names = key == "arm.joints" and isinstance(value, (list, tuple)) and not isinstance(value[0], (list, tuple))
+    if isinstance(value, Mapping) or (is_names and not str(value[0]).startswith("[")):
+        return flow(value, key)
+    return [_words_of_joints(key, one) for one in value] if isinstance(value, (list, tuple)) else value
+
+
+def put(scenario: AnyScenario, key: str, value: Any) -> None:
+    """Put a value of an axis."""
+    if key in OF_JOINTS:
+        scenario.edit(key, value, key)
+    else:
+        scenario[key] = value
 
 
 _WORDS = {"choice": "words", "flag": "true or false", "file": "names of files", "arm_file": "words"}
@@ -511,7 +531,7 @@ def _groups(axes: Sequence[Axis], shape: tuple[int, ...]) -> list[Any]:
 def _scenario(base: S, axes: Sequence[Axis], place: tuple[int, ...], shape: tuple[int, ...]) -> S:
     scenario = base.copy()
     for axis in sorted(axes, key=lambda axis: bool(axis.indices)):  # words first: keys exist only under some
-        scenario[axis.key] = axis.at(place, shape)
+        put(scenario, axis.key, axis.at(place, shape))
     return scenario
 
 

@@ -5,11 +5,8 @@ from __future__ import annotations
 import json
 import math
 import os
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
-
-import numpy as np
 
 from .. import _native
 from .._messages import describe, warn_user
@@ -22,14 +19,13 @@ from ..examples import FOLDER, is_sweep, path_of
 from .arm import Arm
 from .batch import Batch, run_batch
 from .comparison import Beside
+from .flow import flow
 from .params import numbers_of, places
 from .provided import provided
 from .run import Run
 
 if TYPE_CHECKING:
     from ..control.batch_law import MakeLaw
-
-_PLAIN = re.compile(r"[\w+.-][\w+. -]*(?<! )", re.ASCII)  # text that means the same without quotes in YAML's flow style
 
 
 class Scenario(metaclass=Answering):
@@ -468,29 +464,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: item for key, given in value.items() if (item := _plain(given)) not in (None, {})}
     return math.inf if value == "inf" else value
-
-
-def flow(value: Any, path: str) -> str:
-    """A value in YAML's flow style."""
-    if isinstance(value, (np.ndarray, np.generic)):
-        value = value.tolist()
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, (int, float)):
-        return repr(value)
-    if isinstance(value, str):
-        return value if _PLAIN.fullmatch(value) else json.dumps(value, ensure_ascii=False)
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(flow(item, f'{path}[{i}]') for i, item in enumerate(value))}]"
-    if isinstance(value, Mapping):
-        return (
-            "{"
-            + ", ".join(f"{flow(str(key), path)}: {flow(item, f'{path}.{key}')}" for key, item in value.items())
-            + "}"
-        )
-    raise TypeError(f"{path}: a number, text, flag, list, array or map is needed, got {type(value).__name__}")
 
 
 def _read_arm(request: str) -> tuple[int, str]:

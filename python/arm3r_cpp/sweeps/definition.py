@@ -12,10 +12,10 @@ from typing import Any
 from .. import _native
 from .._files import regular
 from .._messages import describe, did_you_mean
-from ..core.batch import AXIS_ERRORS, axis_of, same_places
+from ..core.batch import AXIS_ERRORS, axis_of, put, same_places
+from ..core.flow import flow as flow_of
 from ..core.params import param_key, places
 from ..core.scenario import Scenario
-from ..core.scenario import flow as flow_of
 from ..errors import Arm3rError, ScenarioError, UsageError
 from .axes import SPACES, SweepAxis, values_of
 from .shard import Statistic, is_of_arm
@@ -106,7 +106,7 @@ class Sweep:
             found[words] = scenario = self.scenario.copy()
             scenario["checks"] = []
             for axis, word in zip(axes, words, strict=True):
-                scenario[axis.key] = str(Path(self.file).parent.absolute() / word) if axis.key == FILE else word
+                put(scenario, axis.key, str(Path(self.file).parent.absolute() / word) if axis.key == FILE else word)
         return found
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
@@ -65,9 +67,10 @@ def decode(path: Path, kind: str) -> dict[str, NDArray[Any]]:
     if kind == "parquet":
         table = pyarrow().parquet.read_table(path)
         return {name: column.to_numpy() for name, column in zip(table.column_names, table.columns, strict=True)}
-    with path.open() as file:
-        names = next(file).rstrip("\n").split(",")
-        pieces = list(_pieces(file))
+    with path.open(newline="") as file:
+        rows = csv.reader(file)
+        names = next(rows)
+        pieces = list(_pieces(rows))
     return {name: _column([piece[i] for piece in pieces]) for i, name in enumerate(names)}
 
 
@@ -91,13 +94,17 @@ def _lines(columns: Sequence[NDArray[Any]], go_on: Callable[[], Any]) -> Iterato
 def _cells(column: NDArray[Any]) -> list[str]:
     if column.dtype.kind == "f":
         return ["" if math.isnan(value) else repr(value).removesuffix(".0") for value in column.tolist()]
-    return [str(value) for value in column.tolist()]
+    return [_quoted(str(value)) for value in column.tolist()]
 
 
-def _pieces(lines: Iterator[str]) -> Iterator[list[NDArray[Any]]]:
+def _quoted(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"' if re.search('[,"\r\n]', text) else text
+
+
+def _pieces(rows: Iterator[list[str]]) -> Iterator[list[NDArray[Any]]]:
     """The columns of some rows at a time: text takes more room than the numbers that it says."""
-    while rows := [line.rstrip("\n").split(",") for line in islice(lines, ROWS_AT_A_TIME)]:
-        yield [_numbers(cells) for cells in zip(*rows, strict=True)]
+    while some := list(islice(rows, ROWS_AT_A_TIME)):
+        yield [_numbers(cells) for cells in zip(*some, strict=True)]
 
 
 def _numbers(cells: Sequence[str]) -> NDArray[Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -85,6 +86,54 @@ def test_only_arms_may_vary(folder: Path) -> None:
     table = arm3r.sweep(folder / "sweep.yaml", out=folder / "out")
     found = {(name, work) for name, work in zip(table["arm.urdf"], table["work_actuators"], strict=True)}
     assert len(found) == 2 and np.isfinite(table["work_actuators"]).all()
+
+
+RENAMED = ARM
+for old, name in (("turn", "pan"), ("lift", "shoulder"), ("reach", "elbow"), ("wrist", "roll")):
+    RENAMED = RENAMED.replace(f'"{old}"', f'"{name}"')
+LOCKS = [{"wrist": 0.1}, {"roll": "10 deg"}]
+JOINTS = [["turn", "lift", "reach"], ["pan", "shoulder", "elbow"]]
+
+
+def _robots_with_names_of_their_own(folder: Path) -> Path:
+    (folder / "robots/a, b.urdf").write_text(RENAMED)
+    axes = [
+        {"key": "arm.urdf", "values": ["robots/one.urdf", "robots/a, b.urdf"]},
+        {"key": "arm.joints", "values": JOINTS},
+        {"key": "arm.lock", "values": LOCKS},
+    ]
+    sweep = {
+        "format": 1,
+        "scenario": "scenarios/base.yaml",
+        "mode": "list",
+        "axes": axes,
+        "metrics": ["work_actuators"],
+    }
+    (folder / "sweep.yaml").write_text(json.dumps(sweep))
+    return folder / "sweep.yaml"
+
+
+def test_the_names_of_joints_vary_with_the_robot(folder: Path) -> None:
+    table = arm3r.sweep(_robots_with_names_of_their_own(folder), out=folder / "out")
+    assert [json.loads(text) for text in table["arm.joints"]] == JOINTS
+    assert list(table["arm.urdf"]) == ["robots/one.urdf", "robots/a, b.urdf"]
+    for i, (file, joints, lock) in enumerate(zip(("one", "a, b"), JOINTS, LOCKS, strict=True)):
+        one = Scenario.load(folder / "scenarios/base.yaml")
+        one["arm.urdf"], one["arm.joints"], one["arm.lock"] = str(folder / f"robots/{file}.urdf"), joints, lock
+        assert table["work_actuators"][i] == one.run().summary["metrics"]["work_actuators"]
+    files = [str(folder / "robots/one.urdf"), str(folder / "robots/a, b.urdf")]
+    batch = Scenario.load(folder / "scenarios/base.yaml").batch(
+        {"arm.urdf": files, "arm.joints": JOINTS, "arm.lock": LOCKS}
+    )
+    assert np.array_equal(batch["work_actuators"], table["work_actuators"]) and len(set(table["work_actuators"])) == 2
+
+
+def test_one_robot_is_locked_at_several_angles(folder: Path) -> None:
+    base = Scenario.load(folder / "scenarios/base.yaml")
+    batch = base.batch({"arm.lock": [{"wrist": 0}, {"wrist": "90 deg"}], "arm.payload.mass": [0, 1]}, grid=True)
+    assert batch["work_actuators"].shape == (2, 2) and len(set(batch["work_actuators"].ravel())) == 4
+    base["arm.lock"], base["arm.payload.mass"] = {"wrist": "90 deg"}, 1
+    assert batch["work_actuators"][1, 1] == base.run().summary["metrics"]["work_actuators"]
 
 
 @pytest.mark.parametrize(
