@@ -94,6 +94,7 @@ public:
         method_.accept(moved_, moved_ && continues_ && !is_new, this->t_, this->y_, this->h_);
         this->balance_.update_where(moved_, Energies<T>{this->kinetic_, this->potential_, this->stored(this->in_)},
                                     this->y_);
+        this->balance_.add_error_where(moved_, error_);
         if (method_.chooses_length()) choose_next_length();
         else whole_steps_ = whole_steps_ + select(moved_ && this->t_ >= next_on_grid() - this->slack_, T(1.0), T(0.0));
         if (in_any_lane(moved_ && this->t_ >= knot_)) pass_knots();

@@ -22,7 +22,7 @@ double tolerance(const Solver& solver) {
 
 double balance_limit(const Solver& solver, const EnergyTotals& totals) {
     const double of_steps = 1e-12 + std::numeric_limits<double>::epsilon() * totals.steps;
-    return 100 * tolerance(solver) * totals.throughput + of_steps * totals.scale + 0x1p-46 * totals.force_times_reach;
+    return (100 + totals.errors) * tolerance(solver) * totals.throughput + of_steps * totals.scale + 0x1p-46 * totals.force_times_reach;
 }
 
 bool is_strict(const Solver& solver) {

@@ -16,10 +16,11 @@ namespace arm3r {
 
 // What the balance of a run is judged by, J: the largest energy throughput and residual so far; the scale of the rounding
 // errors of a step, which is the largest energy of motion and of the contact, and what the weight can do over the reach
-// of the arm; and the largest forces times that reach, by which a rounding error of the position becomes an energy. None
-// of them knows where an energy, a height or a time is zero.
+// of the arm; the largest forces times that reach, by which a rounding error of the position becomes an energy; the steps,
+// and the errors that the method estimated of them, added up in units of its tolerance. None of them knows where an
+// energy, a height or a time is zero.
 struct EnergyTotals {
-    double throughput = 0, residual = 0, scale = 0, force_times_reach = 0, steps = 0;
+    double throughput = 0, residual = 0, scale = 0, force_times_reach = 0, steps = 0, errors = 0;
 };
 
 // The limit of the residual at the end, and whether a larger one is an outcome of the run or only a warning.
@@ -37,7 +38,7 @@ public:
         const auto set = [lane](T& x, double value) { Lanes<T>::set(x, lane, value); };
         set(energy_at_start_, energies.sum());
         set(potential_at_start_, energies.potential);
-        set(residual_, 0), set(throughput_, 0);
+        set(residual_, 0), set(throughput_, 0), set(errors_, 0);
         set(stored_, energies.kinetic + energies.contact);
     }
 
@@ -60,12 +61,21 @@ public:
         stored_ = max(stored_, T(now.kinetic + now.contact));
     }
 
+    // error: what the method estimates of the step that was taken, in units of its tolerance.
+    ARM3R_INLINE void add_error_where(const typename Lanes<T>::Mask& here, const T& error) {
+        errors_ = errors_ + select(here, error, T(0.0));
+    }
+
     double energy_at_start(int lane) const { return Lanes<T>::get(energy_at_start_, lane); }  // J
     // peak_force: N, of the wall.
     EnergyTotals totals(int lane, const Plant<double>& plant, double peak_force, double steps) const {
         const double scale = Lanes<T>::get(stored_, lane) + weight_times_reach(plant.arm);
-        return {Lanes<T>::get(throughput_, lane), Lanes<T>::get(residual_, lane), scale,
-                largest_force(plant, peak_force) * reach(plant.arm), steps};
+        return {Lanes<T>::get(throughput_, lane),
+                Lanes<T>::get(residual_, lane),
+                scale,
+                largest_force(plant, peak_force) * reach(plant.arm),
+                steps,
+                Lanes<T>::get(errors_, lane)};
     }
 
 private:
@@ -74,7 +84,7 @@ private:
         return (plant.acts_on_arm ? peak_force : 0) + (plant.external_force.on ? std::sqrt(dot(push, push)) : 0);
     }
 
-    T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, throughput_{0.0}, stored_{0.0};
+    T energy_at_start_{0.0}, potential_at_start_{0.0}, residual_{0.0}, throughput_{0.0}, stored_{0.0}, errors_{0.0};
 };
 
 // A residual that is NaN counts as infinite.
