@@ -21,9 +21,9 @@ double tolerance(const Solver& solver) {
 }  // namespace
 
 double balance_limit(const Solver& solver, const EnergyTotals& totals) {
-    const double of_method = (100 + totals.errors) * tolerance(solver) * totals.throughput;
+    const double of_step = tolerance(solver) * totals.throughput + totals.inertia * solver.atol * solver.atol;
     const double of_rounding = (1e-12 + std::numeric_limits<double>::epsilon() * totals.steps) * totals.scale;
-    return of_method + of_rounding + 0x1p-46 * totals.force_times_reach;
+    return (100 + totals.errors) * of_step + of_rounding + 0x1p-46 * totals.force_times_reach;
 }
 
 bool is_strict(const Solver& solver) {

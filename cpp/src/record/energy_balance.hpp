@@ -17,10 +17,10 @@ namespace arm3r {
 // What the balance of a run is judged by, J: the largest energy throughput and residual so far; the scale of the rounding
 // errors of a step, which is the largest energy of motion and of the contact, and what the weight can do over the reach
 // of the arm; the largest forces times that reach, by which a rounding error of the position becomes an energy; the steps,
-// and the errors that the method estimated of them, added up in units of its tolerance. None of them knows where an
-// energy, a height or a time is zero.
+// and the errors that the method estimated of them, added up in units of its tolerance; and the inertia of links 2 and 3,
+// kg m^2. None of them knows where an energy, a height or a time is zero.
 struct EnergyTotals {
-    double throughput = 0, residual = 0, scale = 0, force_times_reach = 0, steps = 0, errors = 0;
+    double throughput = 0, residual = 0, scale = 0, force_times_reach = 0, steps = 0, errors = 0, inertia = 0;
 };
 
 // The limit of the residual at the end, and whether a larger one is an outcome of the run or only a warning.
@@ -69,13 +69,13 @@ public:
     double energy_at_start(int lane) const { return Lanes<T>::get(energy_at_start_, lane); }  // J
     // peak_force: N, of the wall.
     EnergyTotals totals(int lane, const Plant<double>& plant, double peak_force, double steps) const {
-        const double scale = Lanes<T>::get(stored_, lane) + weight_times_reach(plant.arm);
-        return {Lanes<T>::get(throughput_, lane),
-                Lanes<T>::get(residual_, lane),
-                scale,
-                largest_force(plant, peak_force) * reach(plant.arm),
-                steps,
-                Lanes<T>::get(errors_, lane)};
+        return {.throughput = Lanes<T>::get(throughput_, lane),
+                .residual = Lanes<T>::get(residual_, lane),
+                .scale = Lanes<T>::get(stored_, lane) + weight_times_reach(plant.arm),
+                .force_times_reach = largest_force(plant, peak_force) * reach(plant.arm),
+                .steps = steps,
+                .errors = Lanes<T>::get(errors_, lane),
+                .inertia = plant.arm.lumped.B2 + plant.arm.lumped.B3};
     }
 
 private:

@@ -238,6 +238,24 @@ def test_the_works_of_a_stiff_step_that_an_event_cuts_have_the_order_of_the_meth
     assert run.summary["contacts"] > 20 and _left_over(run, tolerance) < 0.1
 
 
+AT_REST = """
+format: 1
+arm: {gravity: [0, 0, 0], friction: [0.12, 0.04, 0.4], friction_velocity: 0.1}
+initial: {q: [0.79738, -2.8884, 0.7617]}
+controller: {type: joint_pd, compensate_gravity: false, joint_stiffness: [200, 200, 100], joint_damping: [30, 30, 10]}
+reference: {type: hold}
+observer: {gain: 50, threshold: 0.5}
+time: {stop: 2}
+"""
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
+def test_rounding_errors_of_an_arm_at_rest_are_no_energy(method: str) -> None:
+    """rodas4 finds the slopes of an observer by differences, and so the arm turns by 1e-24 rad/s."""
+    run = _run(AT_REST, method=method, rtol=5e-11, atol=5e-14)
+    assert run.outcome == "ok" and run.summary["ledger_residual"] < 1e-40
+
+
 CHATTERING = """
 format: 1
 arm: {torque_limit: [60, 60, 60], link2: {length: 0.83}, link3: {length: 0.57}}
