@@ -22,10 +22,11 @@ def seed() -> str:
 
 
 def lists(items: list[pytest.Item]) -> dict[tuple[str, int], list[pytest.Item]]:
-    """The cases that a mark is for, under the name of their test or module and the number that the mark keeps."""
+    """The cases that a mark is for, without gates, under the name of their test or module and the number that the mark keeps."""
     found: dict[tuple[str, int], list[pytest.Item]] = defaultdict(list)
     for item in items:
-        if mark := item.get_closest_marker("sample"):
+        mark = item.get_closest_marker("sample")
+        if mark and not item.get_closest_marker("gate"):
             is_own = mark in item.own_markers
             name = item.nodeid.partition("[" if is_own else "::")[0]
             found[name, mark.args[0]].append(item)

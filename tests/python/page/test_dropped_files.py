@@ -11,7 +11,7 @@ import pytest
 from arm3r_cpp.commands.interchange.import_urdf import main
 from page_visitor import SIZES, Visitor
 
-pytestmark = pytest.mark.needs("page")
+pytestmark = [pytest.mark.needs("page"), pytest.mark.sample(4)]
 
 DROP = """([name, text]) => {
   const data = new DataTransfer();

@@ -12,7 +12,7 @@ from arm3r_cpp.live import page as live_page
 from arm3r_cpp.live import page_data
 from page_visitor import SIZES, Visitor
 
-pytestmark = pytest.mark.needs("page")
+pytestmark = [pytest.mark.needs("page"), pytest.mark.sample(1)]
 
 TOUCHES = "#scene-canvas[aria-label*='in contact with the wall, ']:not([aria-label*='not in contact'])"
 

@@ -18,7 +18,7 @@ from page_visitor import SIZES, Visitor, percentile, tasks_of
 from parts import PAGE
 from random_scenarios import sample_seed
 
-pytestmark = pytest.mark.needs("page")
+pytestmark = [pytest.mark.needs("page"), pytest.mark.sample(4)]
 
 NAMES = [path.relative_to(ROOT / "scenarios").with_suffix("").as_posix() for path in scenario_files()]
 

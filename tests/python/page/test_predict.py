@@ -12,7 +12,7 @@ import pytest
 from conftest import ROOT
 from page_visitor import SIZES, Visitor, percentile, tasks_of
 
-pytestmark = pytest.mark.needs("page")
+pytestmark = [pytest.mark.needs("page"), pytest.mark.sample(1)]
 
 HYBRID = "force_control/hybrid_first_contact"
 PANEL = '.plot[aria-label="Pressing force"]'

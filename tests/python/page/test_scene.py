@@ -14,7 +14,7 @@ from arm3r_cpp.plot import style
 from arm3r_cpp.plot.run_panels import ENERGIES
 from page_visitor import SIZES, Visitor, percentile, tasks_of
 
-pytestmark = pytest.mark.needs("page")
+pytestmark = [pytest.mark.needs("page"), pytest.mark.sample(4)]
 
 VIEWS = ["whole", "side", "front", "top"]
 HIDDEN = "#scene > :not(canvas) { visibility: hidden !important }"

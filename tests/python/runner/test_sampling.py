@@ -29,7 +29,9 @@ def pytest_with(request: pytest.FixtureRequest, tmp_path: Path):
     (tmp_path / "conftest.py").write_text(CONFTEST)
     (tmp_path / "test_all.py").write_text(TESTS)
     (tmp_path / "test_module.py").write_text(TESTS + "\npytestmark = pytest.mark.sample(1)")
-    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers = sample")
+    gates = "\n@pytest.mark.gate\n@pytest.mark.parametrize('i', range(9))\ndef test_gate(i): pass\n"
+    (tmp_path / "test_gates.py").write_text(TESTS + gates + "pytestmark = pytest.mark.sample(1)")
+    (tmp_path / "pytest.ini").write_text("[pytest]\nmarkers =\n  sample\n  gate")
 
     def call(seed: str | None, *arguments: str) -> str:
         environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
@@ -76,3 +78,7 @@ def test_all_cases_are_taken_where_that_is_asked(pytest_with) -> None:
 
 def test_the_mark_of_a_module_is_for_what_has_none_of_its_own(pytest_with) -> None:
     assert "8 passed" in pytest_with("1", "test_module.py")
+
+
+def test_gates_are_not_counted(pytest_with) -> None:
+    assert "8 passed" in pytest_with("1", "test_gates.py", "-m", "not gate")
