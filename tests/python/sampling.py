@@ -22,7 +22,7 @@ def seed() -> str:
 
 
 def lists(items: list[pytest.Item]) -> dict[tuple[str, int], list[pytest.Item]]:
-    """The cases that a mark is for, without gates, under the name of their test or module and the number that the mark keeps."""
+    """The cases that a mark is for, without gates, under the name of their test or module and the number it keeps."""
     found: dict[tuple[str, int], list[pytest.Item]] = defaultdict(list)
     for item in items:
         mark = item.get_closest_marker("sample")
