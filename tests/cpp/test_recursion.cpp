@@ -103,6 +103,43 @@ TEST_CASE(centres_and_elbow_are_where_the_chain_puts_them) {
     worst.check(1e-14);
 }
 
+// Two joints that turn and one that slides away from both axes, which carries a point: the textbook's spherical
+// coordinates, with the azimuth q1, the elevation q2 and the distance q3.
+TEST_CASE(a_joint_that_slides_has_the_equations_of_spherical_coordinates) {
+    Random random(13);
+    Worst worst;
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3<double> q = random.vector(0.2, 2), qd = random.vector(-3, 3), qdd = random.vector(-3, 3);
+        const double m = random.vector(0.1, 3)[0], g = 9.8, r = q[2];
+        Arm<double> arm = without_friction(random_params(random).arm());
+        arm.is_elbow = false;
+        arm.base_height = arm.payload = arm.link3.length = 0;
+        arm.armature = zero;
+        arm.gravity = {0, 0, -g};
+        std::array<Body<double>, 3> bodies = chain(arm, q);
+        for (Body<double>& body : bodies) body.mass = 0, body.com = body.inertia = body.products = zero;
+        bodies[2].R = from_rows<double>({0, 0, 1}, {1, 0, 0}, {0, 1, 0});  // z along link 2
+        bodies[2].origin = {r, 0, 0};
+        bodies[2].slides = true;
+        bodies[2].mass = m;
+
+        const double C1 = std::cos(q[0]), S1 = std::sin(q[0]), C2 = std::cos(q[1]), S2 = std::sin(q[1]);
+        const Vec3<double> out(C2 * C1, C2 * S1, S2), up(-S2 * C1, -S2 * S1, C2), around(-S1, C1, 0);
+        const TipSensor<double> sensor = tip_sensor(bodies, zero, qd);
+        worst.compare("position", sensor.position, Vec3<double>(r * out));
+        worst.compare("velocity", sensor.velocity,
+                      Vec3<double>(qd[2] * out + r * qd[1] * up + r * C2 * qd[0] * around));
+        const Vec3<double> acceleration =
+            (qdd[2] - r * qd[1] * qd[1] - r * C2 * C2 * qd[0] * qd[0] + g * S2) * out +
+            (r * qdd[1] + 2 * qd[2] * qd[1] + r * S2 * C2 * qd[0] * qd[0] + g * C2) * up +
+            (r * C2 * qdd[0] + 2 * qd[2] * C2 * qd[0] - 2 * r * S2 * qd[0] * qd[1]) * around;
+        const Vec3<double> f = random.vector(-9, 9), force = m * acceleration - f;
+        worst.compare("tau", recursion_inverse_dynamics(arm, bodies, qd, qdd, f),
+                      Vec3<double>(r * C2 * dot(force, around), r * dot(force, up), dot(force, out)));
+    }
+    worst.check(1e-13);
+}
+
 TEST_SUITE_END()
 
 }  // namespace arm3r

@@ -9,15 +9,16 @@
 
 namespace arm3r {
 
-// One body of the chain, in its own axes: z is its joint axis.
+// One body of the chain, in its own axes: its joint turns about z, or slides along it.
 template <class T>
 struct Body {
-    Mat3<T> R;         // from this body's axes to its parent's
-    Vec3<T> origin;    // m, of its joint, in the parent's axes
-    Vec3<T> com;       // m, from its joint
-    T mass;            // kg
-    Vec3<T> inertia;   // kg m^2, diagonal of the tensor about com
-    Vec3<T> products;  // kg m^2, its xy, xz, yz; of an elbow arm
+    Mat3<T> R;            // from this body's axes to its parent's
+    Vec3<T> origin;       // m, of its joint, in the parent's axes; moves with a joint that slides
+    Vec3<T> com;          // m, from its joint
+    T mass;               // kg
+    Vec3<T> inertia;      // kg m^2, diagonal of the tensor about com
+    Vec3<T> products;     // kg m^2, its xy, xz, yz; of an elbow arm
+    bool slides = false;  // then q is in m, and a torque is a force in N
 };
 
 template <class P, class T>
@@ -99,20 +100,24 @@ struct TipSensor {
     Vec3<T> position, velocity;  // m, m/s, base axes
 };
 
-template <class P, class T>
-ARM3R_INLINE TipSensor<T> tip_sensor(const Arm<P>& arm, const Vec3<T>& q, const Vec3<T>& qd) {
-    const std::array<Body<T>, 3> bodies = chain(arm, q);
+template <class T>
+ARM3R_INLINE TipSensor<T> tip_sensor(const std::array<Body<T>, 3>& bodies, const Vec3<T>& tip, const Vec3<T>& qd) {
     const T o(0.0);
     Vec3<T> omega(o, o, o), velocity(o, o, o);  // of the body's joint, in its axes
     for (int i = 0; i < 3; ++i) {
         velocity = transposed_times(bodies[i].R, plus(velocity, cross(omega, bodies[i].origin)));
         omega = transposed_times(bodies[i].R, omega);
-        omega[2] = omega[2] + qd[i];
+        T& along_z = bodies[i].slides ? velocity[2] : omega[2];
+        along_z = along_z + qd[i];
     }
-    const Vec3<T> tip = tip_of_link3<T>(arm);
     Vec3<T> position = tip;
     for (int i = 2; i >= 0; --i) position = plus(bodies[i].origin, times(bodies[i].R, position));
     return {position, to_base(bodies, 2, plus(velocity, cross(omega, tip)))};
+}
+
+template <class P, class T>
+ARM3R_INLINE TipSensor<T> tip_sensor(const Arm<P>& arm, const Vec3<T>& q, const Vec3<T>& qd) {
+    return tip_sensor<T>(chain(arm, q), tip_of_link3<T>(arm), qd);
 }
 
 // The moment, N m, that a rotor needs of the link that carries it, and what its joint's actuator needs for it.
@@ -132,11 +137,10 @@ ARM3R_INLINE CarriedRotor<T> carried_rotor(const Rotor<P>& rotor, const Vec3<T>&
     return {plus(scaled(change, axis), scaled(T(rotor.inertia * spin), cross(omega, axis))), rotor.ratio * change};
 }
 
-// tau for a motion and a force at the tip; armature and friction included (3.12).
+// tau for a motion and a force at the tip; armature and friction included (3.12). The bodies are those of the arm, at q.
 template <class P, class T>
-Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Vec3<T>& qd, const Vec3<T>& qdd,
-                                   const Vec3<T>& f_on_tip) {
-    const std::array<Body<T>, 3> bodies = chain(arm, q);
+ARM3R_INLINE Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const std::array<Body<T>, 3>& bodies,
+                                                const Vec3<T>& qd, const Vec3<T>& qdd, const Vec3<T>& f_on_tip) {
     const T o(0.0);
     std::array<Vec3<T>, 3> force, moment;  // that each body needs, at its centre of mass, in its axes
     Vec3<T> geared(o, o, o);               // N m, that the actuators need for the rotors beside `armature`
@@ -153,10 +157,15 @@ Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Ve
         acceleration = transposed_times(body.R, joint);
         omega = transposed_times(body.R, omega);
         alpha = transposed_times(body.R, alpha);
-        const Vec3<T> spin(o, o, qd[i]);
-        alpha = plus(alpha, cross(omega, spin));
-        alpha[2] = alpha[2] + qdd[i];
-        omega[2] = omega[2] + qd[i];
+        const Vec3<T> rate(o, o, qd[i]), turned = cross(omega, rate);
+        if (body.slides) {
+            acceleration = plus(acceleration, scaled(T(2.0), turned));
+            acceleration[2] = acceleration[2] + qdd[i];
+        } else {
+            alpha = plus(alpha, turned);
+            alpha[2] = alpha[2] + qdd[i];
+            omega[2] = omega[2] + qd[i];
+        }
 
         const Vec3<T> of_com = plus(acceleration, plus(cross(alpha, body.com), cross(omega, cross(omega, body.com))));
         const Vec3<T> angular_momentum = inertia_times(arm, body, omega), inertial = inertia_times(arm, body, alpha);
@@ -185,13 +194,19 @@ Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Ve
     for (int i = 2; i >= 0; --i) {
         f = plus(f, force[i]);
         n = plus(n, plus(moment[i], cross(bodies[i].com, force[i])));
-        tau[i] = n[2] + arm.armature[i] * qdd[i] + arm.damping[i] * qd[i];
+        tau[i] = (bodies[i].slides ? f[2] : n[2]) + arm.armature[i] * qdd[i] + arm.damping[i] * qd[i];
         if (arm.is_elbow) tau[i] = tau[i] + geared[i];
         if (arm.has_dry_friction) tau[i] = tau[i] + arm.friction[i] * tanh(T(qd[i] / arm.friction_velocity));
         f = times(bodies[i].R, f);
         n = plus(times(bodies[i].R, n), cross(bodies[i].origin, f));
     }
     return tau;
+}
+
+template <class P, class T>
+Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const Vec3<T>& q, const Vec3<T>& qd, const Vec3<T>& qdd,
+                                   const Vec3<T>& f_on_tip) {
+    return recursion_inverse_dynamics(arm, chain(arm, q), qd, qdd, f_on_tip);
 }
 
 template <class P, class T>
