@@ -168,9 +168,12 @@ def test_an_example_by_name() -> None:
 
 
 def test_the_progress_of_a_sweep_moves_by_runs(tmp_path: Path) -> None:
-    """Also in the middle of a shard, never backwards, and with statistics, for which each run is done once more."""
+    """Also in the middle of a shard, never backwards, and with statistics, for which each run is done once more.
+
+    All runs would take many of the tenths of a second after which it is told; the first one ends the sweep.
+    """
     statistics = [{"column": "depth", "of": "max"}]
-    for out, count, more in (("plain", 3000, {}), ("statistics", 400, {"statistics": statistics})):
+    for out, count, more in (("plain", 100_000, {}), ("statistics", 10_000, {"statistics": statistics})):
         plan = {
             "format": 1,
             "scenario": {"wall": {"acts_on_arm": True}, "controller": {"type": "gravity_compensation"}},
