@@ -137,6 +137,34 @@ ARM3R_INLINE CarriedRotor<T> carried_rotor(const Rotor<P>& rotor, const Vec3<T>&
     return {plus(scaled(change, axis), scaled(T(rotor.inertia * spin), cross(omega, axis))), rotor.ratio * change};
 }
 
+// The motion of a body's joint, in the axes of the body.
+template <class T>
+struct BodyMotion {
+    Vec3<T> omega, alpha, acceleration;  // rad/s, rad/s^2, m/s^2
+
+    // Of a point that the body carries, from its joint.
+    ARM3R_INLINE Vec3<T> acceleration_of(const Vec3<T>& point) const {
+        return plus(acceleration, plus(cross(alpha, point), cross(omega, cross(omega, point))));
+    }
+};
+
+// The motion of a body, of that of its parent.
+template <class T>
+ARM3R_INLINE BodyMotion<T> beyond_joint(const BodyMotion<T>& parent, const Body<T>& body, const T& qd, const T& qdd) {
+    BodyMotion<T> motion = {transposed_times(body.R, parent.omega), transposed_times(body.R, parent.alpha),
+                            transposed_times(body.R, parent.acceleration_of(body.origin))};
+    const Vec3<T> turned = cross(motion.omega, Vec3<T>(T(0.0), T(0.0), qd));
+    if (body.slides) {
+        motion.acceleration = plus(motion.acceleration, scaled(T(2.0), turned));
+        motion.acceleration[2] = motion.acceleration[2] + qdd;
+    } else {
+        motion.alpha = plus(motion.alpha, turned);
+        motion.alpha[2] = motion.alpha[2] + qdd;
+        motion.omega[2] = motion.omega[2] + qd;
+    }
+    return motion;
+}
+
 // tau for a motion and a force at the tip; armature and friction included (3.12). The bodies are those of the arm, at q.
 template <class P, class T>
 ARM3R_INLINE Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const std::array<Body<T>, 3>& bodies,
@@ -148,34 +176,19 @@ ARM3R_INLINE Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const std::ar
         geared[0] = carried_rotor(arm.elbow.rotors[0], Vec3<T>(o, o, o), Vec3<T>(o, o, o), qd[0], qdd[0]).on_joint;
 
     // outward: gravity enters as an acceleration of the base
-    Vec3<T> omega(o, o, o), alpha(o, o, o);
-    Vec3<T> acceleration(T(-arm.gravity[0]), T(-arm.gravity[1]), T(-arm.gravity[2]));
+    BodyMotion<T> motion = {Vec3<T>(o, o, o), Vec3<T>(o, o, o),
+                            Vec3<T>(T(-arm.gravity[0]), T(-arm.gravity[1]), T(-arm.gravity[2]))};
     for (int i = 0; i < 3; ++i) {
         const Body<T>& body = bodies[i];
-        const Vec3<T> joint =
-            plus(acceleration, plus(cross(alpha, body.origin), cross(omega, cross(omega, body.origin))));
-        acceleration = transposed_times(body.R, joint);
-        omega = transposed_times(body.R, omega);
-        alpha = transposed_times(body.R, alpha);
-        const Vec3<T> rate(o, o, qd[i]), turned = cross(omega, rate);
-        if (body.slides) {
-            acceleration = plus(acceleration, scaled(T(2.0), turned));
-            acceleration[2] = acceleration[2] + qdd[i];
-        } else {
-            alpha = plus(alpha, turned);
-            alpha[2] = alpha[2] + qdd[i];
-            omega[2] = omega[2] + qd[i];
-        }
-
-        const Vec3<T> of_com = plus(acceleration, plus(cross(alpha, body.com), cross(omega, cross(omega, body.com))));
-        const Vec3<T> angular_momentum = inertia_times(arm, body, omega), inertial = inertia_times(arm, body, alpha);
-        force[i] = Vec3<T>(body.mass * of_com[0], body.mass * of_com[1], body.mass * of_com[2]);
-        moment[i] = plus(inertial, cross(omega, angular_momentum));
+        motion = beyond_joint(motion, body, qd[i], qdd[i]);
+        force[i] = scaled(body.mass, motion.acceleration_of(body.com));
+        moment[i] =
+            plus(inertia_times(arm, body, motion.alpha), cross(motion.omega, inertia_times(arm, body, motion.omega)));
         if (arm.is_elbow && i < 2) {
-            const CarriedRotor<T> rotor = carried_rotor(arm.elbow.rotors[i + 1], omega, alpha, qd[i + 1], qdd[i + 1]);
+            const CarriedRotor<T> rotor =
+                carried_rotor(arm.elbow.rotors[i + 1], motion.omega, motion.alpha, qd[i + 1], qdd[i + 1]);
             const Vec3<T> at = bodies[i + 1].origin, from_com = minus(at, body.com);
-            const Vec3<T> of_rotor = plus(acceleration, plus(cross(alpha, at), cross(omega, cross(omega, at))));
-            const Vec3<T> push = scaled(T(arm.elbow.rotors[i + 1].mass), of_rotor);
+            const Vec3<T> push = scaled(T(arm.elbow.rotors[i + 1].mass), motion.acceleration_of(at));
             force[i] = plus(force[i], push);
             moment[i] = plus(moment[i], plus(rotor.moment, cross(from_com, push)));
             geared[i + 1] = rotor.on_joint;
@@ -187,7 +200,7 @@ ARM3R_INLINE Vec3<T> recursion_inverse_dynamics(const Arm<P>& arm, const std::ar
     Vec3<T> push = f_on_tip;
     for (int i = 0; i < 3; ++i) push = transposed_times(bodies[i].R, push);
     const Vec3<T> tip = tip_of_link3<T>(arm);
-    const Vec3<T> of_tip = plus(acceleration, plus(cross(alpha, tip), cross(omega, cross(omega, tip))));
+    const Vec3<T> of_tip = motion.acceleration_of(tip);
     Vec3<T> f(arm.payload * of_tip[0] - push[0], arm.payload * of_tip[1] - push[1], arm.payload * of_tip[2] - push[2]);
     Vec3<T> n = cross(tip, f);
     Vec3<T> tau;
