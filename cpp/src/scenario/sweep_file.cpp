@@ -38,8 +38,9 @@ std::string flow(const Node& node) {
                                      : "null";
 }
 
-// A list or map that is one value of the key that varies becomes a word.
+// Of the keys whose one value is a list or a map, each value becomes a word.
 void write_values_of_joints(const std::string& key, Node& list) {
+    if (key != "arm.joints" && key != "arm.lock") return;
     const Node::Type type = key == "arm.joints" ? Node::list : Node::map;
     for (Node& value : list.children)
         if (value.type == type) {
@@ -198,7 +199,7 @@ private:
         const std::string& name = choice_of(params_, axis);
         Key varied = *find_key(name.substr(0, name.find('[')));
         if (varied.kind == Kind::integer) varied.kind = Kind::number;
-        if (name == "arm.joints" || name == "arm.lock") write_values_of_joints(name, list);
+        write_values_of_joints(name, list);
         varied.allow_infinity = true;
         varied.path = rule.path;
         lengths_.emplace_back(name, rule.size == 1 ? read_values(varied, list) : read_numbers(rule, varied, list));

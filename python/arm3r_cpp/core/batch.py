@@ -397,10 +397,13 @@ OF_JOINTS = ("arm.joints", "arm.lock")
 
 
 def _words_of_joints(key: str, value: Any) -> Any:
-    is_names = key == "arm.joints" and isinstance(value, (list, tuple)) and not isinstance(value[0], (list, tuple))
-    if isinstance(value, Mapping) or (is_names and not str(value[0]).startswith("[")):
+    """The values of an axis over joints, each as YAML."""
+    if isinstance(value, Mapping):
         return flow(value, key)
-    return [_words_of_joints(key, one) for one in value] if isinstance(value, (list, tuple)) else value
+    if not isinstance(value, (list, tuple)):
+        return value
+    is_names = key == "arm.joints" and all(isinstance(one, str) and not one.startswith("[") for one in value)
+    return flow(value, key) if value and is_names else [_words_of_joints(key, one) for one in value]
 
 
 def put(scenario: AnyScenario, key: str, value: Any) -> None:

@@ -7,11 +7,12 @@ import pickle
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import arm3r_cpp as arm3r
 import numpy as np
 import pytest
-from arm3r_cpp import ScenarioError
+from arm3r_cpp import Arm3rError, ScenarioError
 from arm3r_cpp.core.scenario import Scenario
 from arm3r_cpp.sweeps.runner import _first_job
 from arm3r_cpp.sweeps.shard import run_shard
@@ -134,6 +135,18 @@ def test_one_robot_is_locked_at_several_angles(folder: Path) -> None:
     assert batch["work_actuators"].shape == (2, 2) and len(set(batch["work_actuators"].ravel())) == 4
     base["arm.lock"], base["arm.payload.mass"] = {"wrist": "90 deg"}, 1
     assert batch["work_actuators"][1, 1] == base.run().summary["metrics"]["work_actuators"]
+
+
+@pytest.mark.parametrize("values", [[], [1, 2]])
+def test_values_that_are_no_names_are_refused(folder: Path, values: Any) -> None:
+    with pytest.raises(Arm3rError, match=r"arm\.joints"):
+        Scenario.load(folder / "scenarios/base.yaml").batch({"arm.joints": values})
+
+
+@pytest.mark.parametrize("values", ["turn", [["turn", "lift"]]])
+def test_runs_without_three_joints_are_invalid(folder: Path, values: Any) -> None:
+    batch = Scenario.load(folder / "scenarios/base.yaml").batch({"arm.joints": values})
+    assert set(batch.outcomes.ravel()) == {"invalid"}
 
 
 @pytest.mark.parametrize(
